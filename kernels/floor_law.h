@@ -1,0 +1,22 @@
+/* What the floor does to a node that a step has carried below it, in the common subset of C++ and OpenCL C.
+ * The node is put back onto the floor; its falling speed comes back times the restitution; the sliding speed loses
+ * at most friction times the change of the normal speed (Coulomb's law for an impulse).
+ * Text for many number types like spring_law.h; beyond that file's names it needs
+ *   where_less(a, b, yes, no)   yes where a < b, else no.
+ */
+
+/* Vertical speed after the contact (m/s). */
+MSSIM_LAW floor_rebound(Real vertical, Real restitution) {
+  Real none = vertical - vertical;
+  return where_less(vertical, none, -(restitution * vertical), vertical);
+}
+
+/* Factor on both horizontal speeds after the contact, in [0, 1].
+ * normal_change: the vertical speed's change (m/s, not negative); slide_squared: the square of the sliding speed. */
+MSSIM_LAW floor_grip(Real normal_change, Real slide_squared, Real friction) {
+  Real none = normal_change - normal_change;
+  Real one = none + 1.0f;
+  /* 1e-30 keeps the reciprocal finite for a node that does not slide at all. */
+  Real kept = one - friction * normal_change * inverse_sqrt(slide_squared + 1e-30f);
+  return where_less(kept, none, none, kept);
+}

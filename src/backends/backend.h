@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "integrators/integrator.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// What the user chose about where a backend runs.
+struct ExecutionOptions {
+  int threads = 0;  ///< host threads, at least 1
+  std::string device =
+      {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
+};
+
+/// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.
+struct Unavailable : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Thrown when a backend runs here but not this scene or integrator; what() is the reason.
+struct Unsupported : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One simulation under way. All calls block until their work is done: a caller may read the clock around
+/// them.
+class Backend {
+ public:
+  Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+  virtual ~Backend() = default;
+
+  /// Takes a state of the system's size; pinned nodes must stand at their start, at rest.
+  virtual void set_state(const State& state) = 0;
+  /// Takes `count` steps of the dt given at construction. Never checks its numbers: callers do, outside timed
+  /// regions.
+  virtual void step(int count) = 0;
+  /// The present state, in the scene's node order.
+  virtual State state() const = 0;
+  /// What the steps run on, for the `device` column, for example "cpu" or an OpenCL device's name.
+  virtual std::string device() const = 0;
+  /// Host threads that take part in a step.
+  virtual int threads() const = 0;
+};
+
+/// A row of the TABLE of backends.
+struct BackendInfo {
+  std::string_view name;
+  std::string_view
+      paper_configuration;       ///< column of Hong et al.'s tables (`configuration` in the published CSV)
+  std::string_view description;  ///< one line for `mssim list backends`
+  bool uses_device;              ///< needs an OpenCL device
+  /// Makes a backend at the system's start state. `system` must outlive it. Throws Unavailable or
+  /// Unsupported.
+  std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
+                                   const ExecutionOptions& options);
+};
+
+}  // namespace mssim

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mssim {
+
+/// One combination of scene, backend and integrator, measured and verified: a row of timings.csv.
+/// Values that do not exist (a failed row's times, a paper time that was never published) are empty.
+struct ResultRow {
+  std::string scene;
+  std::uint64_t nodes = 0;
+  std::uint64_t springs_unique = 0;
+  std::uint64_t springs_published = 0;  ///< as Hong et al. count them
+  std::string backend;
+  std::string device;
+  int threads = 0;
+  std::string integrator;
+  double dt_s = 0;
+  int rounds = 0;                         ///< samples taken
+  std::optional<double> ms_per_step;      ///< median
+  std::optional<double> ms_per_step_low;  ///< 95 % interval of the median
+  std::optional<double> ms_per_step_high;
+  std::optional<double> ms_per_step_min;
+  std::optional<double> springs_per_second;    ///< unique springs times force evaluations
+  std::optional<double> gigabytes_per_second;  ///< bytes that the step must move at least, over the median
+  std::optional<double>
+      roofline_fraction;  ///< of the peak that bounds the step, measured in the same process
+  std::optional<double> speedup_vs_serial;  ///< median of the per-round ratios
+  std::optional<double> paper_ms;           ///< published for this scene, integrator and configuration
+  std::optional<double>
+      position_error;  ///< largest distance to the double reference over the mean rest length
+  std::optional<double>
+      energy_drift;  ///< difference of total energy to the reference over the energy in motion
+  bool verified = false;
+  std::string status = "ok";       ///< ok, or failed/unsupported/unavailable with the reason after a colon
+  std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
+  std::vector<int> sample_steps;   ///< [rounds] steps in each sample
+};
+
+}  // namespace mssim

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+#include "integrators/integrators.h"
+
+namespace mssim {
+
+/// coefficient * dt^dt_power of every term, evaluated once in double and rounded once to Real:
+/// [stage][line][term], so that the loops multiply by one number.
+template <class Real>
+using Coefficients = std::array<std::array<std::array<Real, max_terms>, max_lines>, max_stages>;
+
+template <class Real>
+Coefficients<Real> coefficients_of(const Integrator& integrator, double dt_s) {
+  Coefficients<Real> result{};
+  for (std::size_t s = 0; s < max_stages; ++s)
+    for (std::size_t l = 0; l < max_lines; ++l)
+      for (std::size_t t = 0; t < max_terms; ++t) {
+        const Term& term = integrator.stages[s].lines[l].terms[t];
+        result[s][l][t] = static_cast<Real>(term.coefficient * std::pow(dt_s, term.dt_power));
+      }
+  return result;
+}
+
+/// Calls `visit(std::integral_constant<std::size_t, I>)` with the table row of `integrator`, so that loops
+/// can be instantiated from the row. `integrator` must be an element of the table.
+template <class Visit>
+void with_integrator(const Integrator& integrator, Visit&& visit) {
+  [&]<std::size_t... row>(std::index_sequence<row...>) {
+    (void)((&integrators[row] == &integrator ? (visit(std::integral_constant<std::size_t, row>{}), true)
+                                             : false) ||
+           ...);
+  }
+  (std::make_index_sequence<integrators.size()>{});
+}
+
+/// Calls `visit(std::integral_constant<std::size_t, S>)` for each stage in order.
+template <std::size_t row, class Visit>
+constexpr void for_each_stage(Visit&& visit) {
+  [&]<std::size_t... stage>(std::index_sequence<stage...>) {
+    (visit(std::integral_constant<std::size_t, stage>{}), ...);
+  }
+  (std::make_index_sequence<integrators[row].stage_count>{});
+}
+
+}  // namespace mssim

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace mssim {
+
+/// Integrators are data: a list of stages, each of which evaluates the acceleration at one pair of slots and
+/// then writes pointwise linear combinations. The host backends unroll the table at compile time, the OpenCL
+/// backends generate their program text from it; the mathematics stands here and nowhere else.
+
+/// A pair holds one position-like and one velocity-like vector for every node.
+enum class Pair : std::uint8_t { state, next, trial_a, trial_b };
+inline constexpr std::size_t pair_kinds = 4;
+
+/// What a line may read or write. The first eight are memory, pair by pair; the rest live in registers within
+/// a stage.
+enum class Slot : std::uint8_t { x, v, x_next, v_next, x_a, v_a, x_b, v_b, a, temporary_1, temporary_2 };
+inline constexpr std::size_t memory_slots = 2 * pair_kinds;
+inline constexpr std::size_t slot_kinds = memory_slots + 3;
+
+/// coefficient * dt^dt_power * slot. A coefficient of zero ends the list of terms.
+struct Term {
+  double coefficient = 0;
+  int dt_power = 0;
+  Slot slot = Slot::a;
+};
+inline constexpr std::size_t max_terms = 5;
+
+/// out = sum of the terms. Lines run in order, later ones see earlier results.
+/// The first term is the large one; it is added last, so that a position is rounded once.
+struct Line {
+  Slot out = Slot::a;
+  std::array<Term, max_terms> terms{};
+};
+inline constexpr std::size_t max_lines = 4;
+
+/// Acceleration at `gather`, then the lines.
+struct Stage {
+  Pair gather = Pair::state;
+  std::array<Line, max_lines> lines{};
+};
+inline constexpr std::size_t max_stages = 4;
+
+/// A step: the stages in order; then `next` is the new state and the floor has acted on it.
+struct Integrator {
+  std::string_view name;
+  int order = 0;                   ///< of convergence on smooth problems, measured by the tests
+  std::size_t stage_count = 0;     ///< also the number of force evaluations
+  std::string_view description{};  ///< one line for `mssim list integrators`
+  std::string_view paper_name{};   ///< the integrator of Hong et al. that it stands for
+  std::array<Stage, max_stages> stages{};
+};
+
+constexpr std::size_t index(Slot slot) { return static_cast<std::size_t>(slot); }
+constexpr std::size_t index(Pair pair) { return static_cast<std::size_t>(pair); }
+constexpr Slot position_slot(Pair pair) { return static_cast<Slot>(2 * index(pair)); }
+constexpr Slot velocity_slot(Pair pair) { return static_cast<Slot>(2 * index(pair) + 1); }
+
+constexpr std::size_t term_count(const Line& line) {
+  std::size_t count = 0;
+  while (count < max_terms && line.terms[count].coefficient != 0) ++count;
+  return count;
+}
+
+constexpr std::size_t line_count(const Stage& stage) {
+  std::size_t count = 0;
+  while (count < max_lines && term_count(stage.lines[count]) > 0) ++count;
+  return count;
+}
+
+/// Does the stage write this slot?
+constexpr bool writes(const Stage& stage, Slot slot) {
+  for (const Line& line : stage.lines)
+    if (term_count(line) > 0 && line.out == slot) return true;
+  return false;
+}
+
+/// Does the stage need the slot's value from memory, because a line reads it before one has written it?
+/// The gathered pair is read by the force in any case.
+constexpr bool reads(const Stage& stage, Slot slot) {
+  for (const Line& line : stage.lines) {
+    for (std::size_t t = 0; t < term_count(line); ++t)
+      if (line.terms[t].slot == slot) return true;
+    if (term_count(line) > 0 && line.out == slot) return false;
+  }
+  return false;
+}
+
+constexpr bool touches(const Integrator& integrator, Pair pair) {
+  for (std::size_t s = 0; s < integrator.stage_count; ++s)
+    for (const Slot slot : {position_slot(pair), velocity_slot(pair)})
+      if (integrator.stages[s].gather == pair || reads(integrator.stages[s], slot) ||
+          writes(integrator.stages[s], slot))
+        return true;
+  return false;
+}
+
+/// Where neighbours are gathered while others are being written, a stage must not write what it gathers from.
+constexpr bool gathers_safely(const Integrator& integrator) {
+  for (std::size_t s = 0; s < integrator.stage_count; ++s)
+    if (writes(integrator.stages[s], position_slot(integrator.stages[s].gather)) ||
+        writes(integrator.stages[s], velocity_slot(integrator.stages[s].gather)))
+      return false;
+  return true;
+}
+
+/// How a backend lays the pairs out in memory.
+enum class Storage {
+  separate,  ///< every pair has arrays of its own: needed where a node's new value could be gathered by
+             ///< another
+  in_place   ///< pairs share arrays where a pointwise update allows it
+};
+
+/// The array pair that holds `pair`. In place, the second trial pair shares the first one's arrays (each
+/// trial is dead once the next is written), and `next` shares the state's unless an earlier stage already
+/// writes it.
+constexpr Pair storage_of(const Integrator& integrator, Pair pair, Storage storage) {
+  if (storage == Storage::separate) return pair;
+  if (pair == Pair::trial_b) return Pair::trial_a;
+  if (pair != Pair::next) return pair;
+  for (std::size_t s = 0; s + 1 < integrator.stage_count; ++s)
+    if (writes(integrator.stages[s], Slot::x_next) || writes(integrator.stages[s], Slot::v_next)) return pair;
+  return Pair::state;
+}
+
+/// Does a step end with the state in the arrays of `next`, so that the two change roles?
+constexpr bool swaps_state(const Integrator& integrator, Storage storage) {
+  return storage_of(integrator, Pair::next, storage) == Pair::next;
+}
+
+/// Does this storage need arrays for the pair?
+constexpr bool stores(const Integrator& integrator, Pair pair, Storage storage) {
+  return touches(integrator, pair) && storage_of(integrator, pair, storage) == pair;
+}
+
+/// Does a later stage, or the next step's first, gather from what this stage writes into `pair`?
+constexpr bool is_gathered(const Integrator& integrator, Pair pair) {
+  if (pair == Pair::next) return true;  // it becomes the state
+  for (std::size_t s = 0; s < integrator.stage_count; ++s)
+    if (integrator.stages[s].gather == pair) return true;
+  return false;
+}
+
+}  // namespace mssim

@@ -1,0 +1,46 @@
+#include "model/system.h"
+
+#include <algorithm>
+#include <array>
+
+namespace mssim {
+
+double mean_rest_length(const System& system) {
+  double sum = 0;
+  for (const Spring& spring : system.springs) sum += spring.rest_length;
+  return system.springs.empty() ? 0 : sum / static_cast<double>(system.springs.size());
+}
+
+double extent(const State& state) {
+  if (state.position.empty()) return 0;
+  Vec3d low = state.position.front(), high = low;
+  for (const Vec3d& x : state.position) {
+    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+    high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+  }
+  const Vec3d size = high - low;
+  return std::max({size.x, size.y, size.z});
+}
+
+StiffnessBound stiffness_bound(const System& system) {
+  struct Sum {
+    double stiffness = 0, damping = 0;
+  };
+  std::vector<Sum> node(system.nodes());
+  for (const Spring& spring : system.springs) {
+    const SpringMaterial& material = system.materials[spring.kind];
+    for (const std::uint32_t end : {spring.first, spring.second}) {
+      node[end].stiffness += material.stiffness;
+      node[end].damping += material.damping;
+    }
+  }
+  StiffnessBound bound;
+  for (const Sum& sum : node) {
+    bound.stiffness = std::max(bound.stiffness, 2 * sum.stiffness / system.node_mass);
+    bound.damping = std::max(bound.damping, 2 * sum.damping / system.node_mass);
+  }
+  bound.damping += system.viscous_damping;
+  return bound;
+}
+
+}  // namespace mssim

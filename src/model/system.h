@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "model/grid_patch.h"
+#include "model/spring.h"
+#include "model/vec3.h"
+
+namespace mssim {
+
+/// Where all nodes are and how they move, in the scene file's node order and in double precision: the form in
+/// which states enter and leave every backend.
+struct State {
+  std::vector<Vec3d> position;  ///< [nodes] m
+  std::vector<Vec3d> velocity;  ///< [nodes] m/s
+};
+
+/// The plane y = height that nothing may fall through (kernels/floor_law.h).
+struct Floor {
+  double height = 0;       ///< m
+  double restitution = 0;  ///< share of the falling speed that comes back, 0 to 1
+  double friction = 0;     ///< Coulomb's coefficient, not negative
+};
+
+/// Everything that stays constant while a scene is stepped, and the state that it starts from.
+/// The acceleration of a free node is
+///     a = (sum of spring forces) / node_mass - viscous_damping v + (0, -gravity, 0);
+/// a pinned node stays where it starts, at rest.
+struct System {
+  GridPatch grid;                         ///< topology: all nodes belong to it
+  std::vector<Spring> springs;            ///< [springs] each unique spring once
+  std::vector<SpringMaterial> materials;  ///< [kinds] indexed by Spring::kind
+  std::vector<std::uint32_t> pins;        ///< [pinned nodes] ascending
+  double node_mass = 0;                   ///< kg, the same for every node
+  double gravity = 0;                     ///< m/s^2, downwards
+  double viscous_damping = 0;             ///< 1/s
+  Floor floor;
+  State start;  ///< pinned nodes are at rest
+
+  std::size_t nodes() const { return start.position.size(); }
+};
+
+/// Mean rest length over all springs, m: the unit of position errors.
+double mean_rest_length(const System& system);
+
+/// Largest side of the box around the positions, m.
+double extent(const State& state);
+
+/// Bounds on what the springs can do to one node, for the stability limit.
+struct StiffnessBound {
+  double stiffness = 0;  ///< 1/s^2, at least the largest eigenvalue of K/m
+  double damping = 0;    ///< 1/s, at least the largest eigenvalue of C/m, viscous damping included
+};
+
+/// Gershgorin's bound: a node's springs all aligned, all neighbours moving against it.
+StiffnessBound stiffness_bound(const System& system);
+
+}  // namespace mssim

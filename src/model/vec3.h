@@ -1,0 +1,31 @@
+#pragma once
+
+namespace mssim {
+
+/// A vector in space; y points up. Units stand where a Vec3 is declared.
+template <class Real>
+struct Vec3 {
+  Real x{}, y{}, z{};
+
+  friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3 operator*(Real s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+  constexpr Vec3& operator+=(const Vec3& a) { return *this = *this + a; }
+  constexpr Vec3& operator-=(const Vec3& a) { return *this = *this - a; }
+  constexpr bool operator==(const Vec3&) const = default;
+};
+
+template <class Real>
+constexpr Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+using Vec3d = Vec3<double>;
+
+/// The same vector in another precision.
+template <class To, class From>
+constexpr Vec3<To> vec3_cast(const Vec3<From>& a) {
+  return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};
+}
+
+}  // namespace mssim

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "model/spring.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// A regular cloth that hangs by some nodes of one row from the ceiling, level at first. Row r, column c
+/// starts at (c spacing, ceiling height, r spacing), plus the ripple.
+struct ClothSpec {
+  std::uint32_t rows = 0;
+  std::uint32_t columns = 0;
+  double spacing_m = 0;
+  double areal_density_kg_per_m2 = 0;  ///< a node weighs areal density times spacing squared
+  double ceiling_height_m = 0;
+
+  /// Pinned nodes: of one row every `every_columns`-th, and its last one.
+  struct Pins {
+    std::uint32_t row = 0;
+    std::uint32_t every_columns = 1;
+  };
+  std::optional<Pins> pins;  ///< none: the cloth falls freely
+
+  /// A standing wave, so that every spring works from the first step on.
+  struct Ripple {
+    double height_m = 0;
+    double wavelength_m = 1;
+    double speed_m_per_s = 0;
+  };
+  Ripple ripple;
+  std::array<SpringMaterial, grid_spring_kinds.size()> springs;  ///< by GridSpringKind
+};
+
+/// A scene as its file describes it.
+struct SceneSpec {
+  std::string name;            ///< the file's name without .json
+  std::string description;     ///< one line
+  std::optional<double> dt_s;  ///< empty: `auto`, from the stability limit
+  double gravity_m_per_s2 = 0;
+  double viscous_damping_per_s = 0;
+  Floor floor;
+  ClothSpec cloth;
+  std::string source;  ///< the file's text, for traces and hashes
+};
+
+}  // namespace mssim

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+#include <utility>
+
+#include "model/grid_patch.h"
+
+namespace mssim {
+namespace {
+
+struct PublishedCloth {
+  std::uint32_t rows, columns;
+  std::uint64_t nodes, springs;
+};
+// Hong et al. 2016, Table 1.
+constexpr std::array<PublishedCloth, 6> published_cloths{{{50, 50, 2500, 29004},
+                                                          {70, 70, 4900, 57404},
+                                                          {100, 100, 10000, 118004},
+                                                          {200, 200, 40000, 476004},
+                                                          {400, 500, 200000, 2391004},
+                                                          {500, 700, 350000, 4188004}}};
+
+TEST(GridPatch, HasHalfOfThePublishedSpringsOfEveryCloth) {
+  for (const PublishedCloth& cloth : published_cloths) {
+    EXPECT_EQ(std::uint64_t{cloth.rows} * cloth.columns, cloth.nodes);
+    EXPECT_EQ(2 * count_springs(cloth.rows, cloth.columns), cloth.springs);
+  }
+}
+
+TEST(GridPatch, ListsAsManySpringsAsItCountsAndNoneTwice) {
+  for (const auto& [rows, columns] :
+       {std::pair{1U, 1U}, {1U, 7U}, {2U, 2U}, {3U, 2U}, {9U, 11U}, {50U, 50U}}) {
+    const auto springs = springs_of(GridPatch{rows, columns, 0.01});
+    EXPECT_EQ(springs.size(), count_springs(rows, columns)) << rows << " x " << columns;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> ends;
+    for (const Spring& spring : springs) {
+      EXPECT_NE(spring.first, spring.second);
+      EXPECT_LT(std::max(spring.first, spring.second), rows * columns);
+      ends.insert(std::minmax(spring.first, spring.second));
+    }
+    EXPECT_EQ(ends.size(), springs.size());
+  }
+}
+
+TEST(GridPatch, GivesInnerNodesTwelveNeighbours) {
+  const GridPatch grid{9, 11, 0.01};
+  std::set<std::uint32_t> neighbours;
+  const std::uint32_t middle = grid.node(4, 5);
+  for (const Spring& spring : springs_of(grid)) {
+    if (spring.first == middle) neighbours.insert(spring.second);
+    if (spring.second == middle) neighbours.insert(spring.first);
+  }
+  EXPECT_EQ(neighbours.size(), 12U);
+}
+
+}  // namespace
+}  // namespace mssim
