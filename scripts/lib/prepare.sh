@@ -32,17 +32,17 @@ ensure_packages() {
   mapfile -t missing < <(missing_packages "$@")
   ((${#missing[@]})) || return 0
   ((EUID == 0)) || as_root=(sudo)
-  local -a install=(apt-get install -y --no-install-recommends "${missing[@]}") non_interactive=()
-  non_interactive=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive)
-  local log=$root/build/packages.log
+  local install="install -y --no-install-recommends ${missing[*]}" log=$root/build/packages.log
   mkdir -p "$root/build"
   say "installing ${missing[*]} (log: $log)"
   # An update that fails, or fails in part, is no reason to stop: what decides is whether the packages can be installed.
+  # shellcheck disable=SC2086 # the words of $install are arguments of their own
   {
-    "${non_interactive[@]}" apt-get update || true
-    "${non_interactive[@]}" "${install[@]}" -o DPkg::Lock::Timeout=600
+    "${as_root[@]}" apt-get update || true
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 $install
   } </dev/null >"$log" 2>&1 && return 0
-  say "missing Debian packages that could not be installed; with network access, run: ${as_root[*]:+sudo }${install[*]}"
+  local apt="${as_root[*]:+sudo }apt-get"
+  say "these Debian packages are missing and could not be installed; with network access, run: $apt update && $apt $install"
   exit "$exit_missing"
 }
 
