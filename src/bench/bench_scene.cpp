@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <random>
 
 #include "bench/blow_up.h"
+#include "bench/machine_peak.h"
 #include "bench/statistics.h"
+#include "bench/step_cost.h"
 #include "bench/verification.h"
 
 namespace mssim {
@@ -17,6 +20,7 @@ namespace {
 struct Combination {
   ResultRow row;
   const Integrator* integrator = nullptr;
+  bool on_host = true;
   std::unique_ptr<Backend> backend;  ///< null once the row has failed
   int steps = 1;                     ///< in a sample
 };
@@ -54,6 +58,7 @@ Combination prepare(const SceneJob& job, const BackendInfo& info, const Integrat
     combination.backend = info.make(*job.system, integrator, job.dt_s, job.execution);
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
+    combination.on_host = combination.backend->runs_on_host();
   } catch (const Unavailable& reason) {
     fail(combination, std::string("unavailable: ") + reason.what());
   } catch (const Unsupported& reason) {
@@ -95,7 +100,9 @@ void take_sample(Combination& combination, const SceneJob& job) {
   }
 }
 
-void summarise(ResultRow& row, const ResultRow* serial) {
+/// The times of a row that has samples. `serial`: the baseline's row of the same integrator, or null.
+void summarise(Combination& combination, const ResultRow* serial) {
+  ResultRow& row = combination.row;
   row.rounds = static_cast<int>(row.samples_ms.size());
   if (row.status != "ok" || row.samples_ms.empty()) return;
   const MedianInterval time = median_interval(row.samples_ms);
@@ -103,11 +110,31 @@ void summarise(ResultRow& row, const ResultRow* serial) {
   row.ms_per_step_low = time.low;
   row.ms_per_step_high = time.high;
   row.ms_per_step_min = *std::min_element(row.samples_ms.begin(), row.samples_ms.end());
-  const Integrator& integrator = *find_integrator(row.integrator);
   row.springs_per_second = 1000 / time.median * static_cast<double>(row.springs_unique) *
-                           static_cast<double>(integrator.stage_count);
-  if (serial != nullptr && serial->status == "ok" && serial->samples_ms.size() == row.samples_ms.size())
+                           static_cast<double>(combination.integrator->stage_count);
+  if (serial != nullptr && serial->samples_ms.size() == row.samples_ms.size())
     row.speedup_vs_serial = median_ratio(serial->samples_ms, row.samples_ms).median;
+}
+
+/// Holds the rows' medians against the peaks of this machine, measured now for each working set and thread
+/// count.
+void compare_with_peaks(std::vector<Combination>& combinations, const Progress& progress) {
+  std::map<std::pair<const Integrator*, int>, MachinePeak> peaks;
+  for (Combination& combination : combinations) {
+    ResultRow& row = combination.row;
+    if (!row.ms_per_step) continue;
+    const StepCost cost = step_cost(*combination.integrator, row.nodes, row.springs_unique);
+    const double seconds = *row.ms_per_step / 1000;
+    row.gigabytes_per_second = cost.bytes / seconds / 1e9;
+    if (!combination.on_host) continue;
+    const auto key = std::pair(combination.integrator, row.threads);
+    if (!peaks.contains(key)) {
+      progress("machine peak with " + std::to_string(row.threads) + " threads", 1);
+      const double bytes = working_set_bytes(*combination.integrator, row.nodes);
+      peaks[key] = measure_peak(row.threads, static_cast<std::size_t>(bytes));
+    }
+    row.roofline_fraction = roofline_fraction(cost, seconds, peaks[key]);
+  }
 }
 
 }  // namespace
@@ -142,13 +169,16 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const Progress& progress
       if (combinations[i].backend) take_sample(combinations[i], job);
   }
 
-  std::vector<ResultRow> rows;
   for (Combination& combination : combinations) {
     const auto serial = std::find_if(combinations.begin(), combinations.end(), [&](const Combination& other) {
       return other.integrator == combination.integrator && other.row.backend == "serial";
     });
-    summarise(combination.row, serial == combinations.end() ? nullptr : &serial->row);
+    summarise(combination, serial == combinations.end() ? nullptr : &serial->row);
   }
+  compare_with_peaks(combinations, progress);
+
+  std::vector<ResultRow> rows;
+  rows.reserve(combinations.size());
   for (Combination& combination : combinations) rows.push_back(std::move(combination.row));
   return rows;
 }
