@@ -142,7 +142,8 @@ TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
 
 TEST(Provenance, HoldsTheseFactsAndNoOthers) {
   std::vector<std::string> facts;
-  for (const auto& [name, value] : to_json(gather_provenance({"mssim"}, 1)).items()) facts.push_back(name);
+  const nlohmann::json json = to_json(gather_provenance({"mssim"}, 1));
+  for (const auto& [name, value] : json.items()) facts.push_back(name);
   EXPECT_THAT(facts,
               ElementsAre("build", "command_line", "cpu", "kernel", "load_average", "memory_bytes",
                           "opencl_devices", "operating_system", "scenes_fnv1a_64", "started_utc", "threads"));
