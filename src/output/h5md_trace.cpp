@@ -223,12 +223,12 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
 void H5mdTrace::map_frames_for_xdmf() {
   const std::string action = "mapping frames for XDMF";
   const hsize_t frames = times_s_.size();
-  constexpr std::size_t room_for_head = 65536, room_per_frame = 4096;
+  constexpr std::size_t room_for_head = 65536, room_per_frame = 2048;
   reserve(room_for_head + room_per_frame * frames);
   const std::array<hsize_t, 3> all{frames, grid_.nodes(), dimensions}, one{1, grid_.nodes(), dimensions};
-  const std::array<hsize_t, 3> surface{grid_.rows, grid_.columns, dimensions};
+  const std::array<hsize_t, 4> surface{1, grid_.rows, grid_.columns, dimensions};
   create_group(file_.get(), "/xdmf");
-  const Hdf5Space target(H5Screate_simple(3, surface.data(), nullptr), action);
+  const Hdf5Space target(H5Screate_simple(4, surface.data(), nullptr), action);
   const Hdf5Space source(H5Screate_simple(3, all.data(), nullptr), action);
   for (const std::string vector : {"position", "velocity"}) {
     create_group(file_.get(), "/xdmf/" + vector);

@@ -33,7 +33,7 @@ struct TraceHeader {
 ///     .../step, .../time                          [frames] int64, float64: the same two datasets everywhere
 ///     /connectivity/springs                       [springs][2] uint32, each unique spring once
 ///     /parameters                                 scene and provenance as JSON, and how it was stepped
-///     /xdmf/{position,velocity}/FRAME             [rows][columns][3] virtual datasets, one frame each
+///     /xdmf/{position,velocity}/FRAME             [1][rows][columns][3] virtual datasets, one frame each
 ///
 /// Positions are single precision, as most backends compute them, which halves the file; energies are double.
 ///

@@ -56,7 +56,7 @@ std::filesystem::path xdmf_of(const std::filesystem::path& trace) {
 
 void write_xdmf(const std::filesystem::path& trace, const GridPatch& grid, std::span<const double> times_s) {
   const std::string name = escape_xml(trace.filename().string());
-  const std::string shape = std::to_string(grid.rows) + " " + std::to_string(grid.columns);
+  const std::string shape = "1 " + std::to_string(grid.rows) + " " + std::to_string(grid.columns);
   std::string text =
       "<?xml version=\"1.0\"?>\n"
       "<Xdmf Version=\"3.0\">\n"
@@ -65,7 +65,7 @@ void write_xdmf(const std::filesystem::path& trace, const GridPatch& grid, std::
   for (std::size_t frame = 0; frame < times_s.size(); ++frame) {
     text += "      <Grid Name=\"cloth\" GridType=\"Uniform\">\n";
     text += "        <Time Value=\"" + exact(times_s[frame]) + "\"/>\n";
-    text += "        <Topology TopologyType=\"2DSMesh\" Dimensions=\"" + shape + "\"/>\n";
+    text += "        <Topology TopologyType=\"3DSMesh\" Dimensions=\"" + shape + "\"/>\n";
     text += "        <Geometry GeometryType=\"XYZ\">" + data_item(name, shape, "position", frame) +
             "</Geometry>\n";
     text += "        <Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">" +
