@@ -61,7 +61,6 @@ class H5mdTrace {
   void create(const System& system, const TraceHeader& header);
   void create_series(const System& system);
   void append(std::int64_t step, double time_s, const State& state, const Energy& energy);
-  void map_frames_for_xdmf();
   void reserve(std::size_t bytes);
   void guard(const std::function<void()>& write);
   std::size_t give_up();

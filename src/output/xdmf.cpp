@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "output/atomic_file.h"
+#include "output/hdf5_write.h"
 
 namespace mssim {
 namespace {
@@ -48,6 +49,30 @@ std::string xdmf_dataset(std::string_view vector, std::size_t frame) {
   std::string number = std::to_string(frame);
   if (number.size() < digits) number.insert(0, digits - number.size(), '0');
   return "/xdmf/" + std::string(vector) + "/" + number;
+}
+
+void map_frames_for_xdmf(hid_t trace, const GridPatch& grid, std::size_t frames) {
+  const std::string action = "mapping frames for XDMF";
+  constexpr hsize_t dimensions = 3;
+  const std::array<hsize_t, 3> all{frames, grid.nodes(), dimensions}, one{1, grid.nodes(), dimensions};
+  const std::array<hsize_t, 4> surface{1, grid.rows, grid.columns, dimensions};
+  const Hdf5Space target(H5Screate_simple(4, surface.data(), nullptr), action);
+  const Hdf5Space source(H5Screate_simple(3, all.data(), nullptr), action);
+  create_group(trace, "/xdmf");
+  for (const std::string vector : {"position", "velocity"}) {
+    create_group(trace, "/xdmf/" + vector);
+    const std::string values = "/particles/cloth/" + vector + "/value";
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+      const std::array<hsize_t, 3> start{frame, 0, 0};
+      const Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), action);
+      checked(H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, one.data(), nullptr),
+              action);
+      // "." is the very file, whatever its name.
+      checked(H5Pset_virtual(properties.get(), target.get(), ".", values.c_str(), source.get()), action);
+      create_dataset(trace, xdmf_dataset(vector, frame), H5T_IEEE_F32LE, surface, false, properties)
+          .close(action);
+    }
+  }
 }
 
 std::filesystem::path xdmf_of(const std::filesystem::path& trace) {

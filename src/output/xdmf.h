@@ -1,5 +1,7 @@
 #pragma once
 
+#include <hdf5.h>
+
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -19,6 +21,12 @@ namespace mssim {
 /// Path in the trace of the virtual dataset of one frame, for example /xdmf/position/000012.
 /// `vector` is "position" or "velocity"; the dataset has the shape [1][rows][columns][3], float32.
 std::string xdmf_dataset(std::string_view vector, std::size_t frame);
+
+/// Adds the virtual datasets of frames 0 to frames - 1 to an open trace. Throws Hdf5Error.
+void map_frames_for_xdmf(hid_t trace, const GridPatch& grid, std::size_t frames);
+
+/// Room in the file that the virtual datasets of one frame take at most (measured: 1000 bytes).
+inline constexpr std::size_t xdmf_bytes_per_frame = 2048;
 
 /// FILE.h5 -> FILE.xdmf, in the same folder.
 std::filesystem::path xdmf_of(const std::filesystem::path& trace);
