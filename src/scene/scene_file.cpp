@@ -71,7 +71,7 @@ SceneSpec find_scene(std::string_view name_or_path) {
     const std::string_view nearest = nearest_name(name_or_path, known);
     throw SceneError("no scene is named \"" + printable(name_or_path) + '"' +
                      (nearest.empty() ? "" : ", did you mean \"" + std::string(nearest) + '"') +
-                     ": give a path to a scene file, or one of " + listed(known));
+                     ": give a path to a scene file, or a name: " + listed(known, "or"));
   }
   return load_scene(scene_folder() / (std::string(name_or_path) + ".json"));
 }
