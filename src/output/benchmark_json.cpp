@@ -12,6 +12,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double ns_per_ms = 1e6;
+
 ordered_json context_of(const Provenance& provenance) {
   const Machine& machine = provenance.machine;
   ordered_json caches = ordered_json::array();
@@ -44,23 +46,24 @@ ordered_json entry_of(const ResultRow& row, std::size_t family, const std::strin
           {"run_name", name},      {"run_type", run_type},   {"repetitions", row.samples_ms.size()}};
 }
 
-void add_time(ordered_json& entry, double time) {
-  if (!std::isfinite(time)) throw std::invalid_argument("benchmark.json: a time is not finite");
-  entry["real_time"] = time;
-  entry["cpu_time"] = time;
-  entry["time_unit"] = "ms";
+/// In nanoseconds, because compare.py prints times without decimals.
+void add_time(ordered_json& entry, double time_ns) {
+  if (!std::isfinite(time_ns)) throw std::invalid_argument("benchmark.json: a time is not finite");
+  entry["real_time"] = time_ns;
+  entry["cpu_time"] = time_ns;
+  entry["time_unit"] = "ns";
 }
 
 struct Aggregate {
   std::string name, unit;
-  double value;
+  double value;  ///< ns, or a ratio where the unit is "percentage"
 };
 
-std::vector<Aggregate> aggregates_of(std::span<const double> samples) {
-  const MeanDeviation moments = mean_deviation(samples);
-  return {{"mean", "time", moments.mean},
-          {"median", "time", median(samples)},
-          {"stddev", "time", moments.deviation},
+std::vector<Aggregate> aggregates_of(std::span<const double> samples_ms) {
+  const MeanDeviation moments = mean_deviation(samples_ms);
+  return {{"mean", "time", moments.mean * ns_per_ms},
+          {"median", "time", median(samples_ms) * ns_per_ms},
+          {"stddev", "time", moments.deviation * ns_per_ms},
           {"cv", "percentage", moments.deviation / moments.mean}};
 }
 
@@ -76,7 +79,7 @@ ordered_json benchmark_json(std::span<const ResultRow> rows, const Provenance& p
       entry["repetition_index"] = sample;
       entry["threads"] = row.threads;
       entry["iterations"] = row.sample_steps.at(sample);
-      add_time(entry, row.samples_ms[sample]);
+      add_time(entry, row.samples_ms[sample] * ns_per_ms);
       benchmarks.push_back(std::move(entry));
     }
     if (row.samples_ms.size() >= 2) {
