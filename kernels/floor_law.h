@@ -1,6 +1,7 @@
 /* What the floor does to a node that a step has carried below it, in the common subset of C++ and OpenCL C.
- * The node is put back onto the floor; its falling speed comes back times the restitution; the sliding speed loses
- * at most friction times the change of the normal speed (Coulomb's law for an impulse).
+ * The node is put back onto the floor; its falling speed comes back times the restitution; the sliding speed
+ * loses at most friction times the change of the normal speed (Coulomb's law for an impulse).
+ *
  * Text for many number types like spring_law.h; beyond that file's names it needs
  *   where_less(a, b, yes, no)   yes where a < b, else no.
  */
@@ -12,7 +13,8 @@ MSSIM_LAW floor_rebound(Real vertical, Real restitution) {
 }
 
 /* Factor on both horizontal speeds after the contact, in [0, 1].
- * normal_change: the vertical speed's change (m/s, not negative); slide_squared: the square of the sliding speed. */
+ * normal_change: the vertical speed's change (m/s, not negative); slide_squared: the square of the sliding
+ * speed. */
 MSSIM_LAW floor_grip(Real normal_change, Real slide_squared, Real friction) {
   Real none = normal_change - normal_change;
   Real one = none + 1.0f;

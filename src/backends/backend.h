@@ -47,6 +47,8 @@ class Backend {
   virtual std::string device() const = 0;
   /// Host threads that take part in a step.
   virtual int threads() const = 0;
+  /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
+  virtual bool runs_on_host() const { return true; }
 };
 
 /// A row of the TABLE of backends.

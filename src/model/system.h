@@ -37,7 +37,8 @@ struct System {
   double gravity = 0;                     ///< m/s^2, downwards
   double viscous_damping = 0;             ///< 1/s
   Floor floor;
-  State start;  ///< pinned nodes are at rest
+  /// Pinned nodes are at rest. The numbers are single precision, for the reason given at Spring::rest_length.
+  State start;
 
   std::size_t nodes() const { return start.position.size(); }
 };

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "model/spring.h"
 #include "model/system.h"
@@ -28,9 +30,9 @@ struct ClothSpec {
 
   /// A standing wave, so that every spring works from the first step on.
   struct Ripple {
-    double height_m = 0;
+    double height_m = 0;  ///< amplitude of the vertical displacement; in the plane it is half of that
     double wavelength_m = 1;
-    double speed_m_per_s = 0;
+    double speed_m_per_s = 0;  ///< amplitude of every component of the velocity
   };
   Ripple ripple;
   std::array<SpringMaterial, grid_spring_kinds.size()> springs;  ///< by GridSpringKind
@@ -44,8 +46,17 @@ struct SceneSpec {
   double gravity_m_per_s2 = 0;
   double viscous_damping_per_s = 0;
   Floor floor;
-  ClothSpec cloth;
-  std::string source;  ///< the file's text, for traces and hashes
+  std::variant<ClothSpec>
+      body;                    ///< one alternative a scene kind, in the order of their table (scene_kinds.h)
+  std::string source;          ///< the file's text, for traces and hashes
+  std::filesystem::path file;  ///< where it was read, for messages
+};
+
+/// The size of a scene as the tables state it.
+struct SceneCounts {
+  std::uint64_t nodes = 0;
+  std::uint64_t springs_unique = 0;     ///< each spring once
+  std::uint64_t springs_published = 0;  ///< as Hong et al. count them; how, depends on the scene kind
 };
 
 }  // namespace mssim

@@ -1,0 +1,92 @@
+# shellcheck shell=bash
+# What scripts/mssim, scripts/test and scripts/lint share: packages and builds. Sourced, with `set -euo pipefail`.
+# All that is printed here goes to stderr, and nothing is printed when there is nothing to do.
+
+root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." >/dev/null && pwd -P)
+
+# Exit code of mssim for a device or program that was asked for and is missing.
+readonly exit_missing=3
+
+say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
+
+# packages_for KIND...: the names of the packages of these kinds.
+packages_for() {
+  awk -v kinds=" $* " '!/^#/ && NF && index(kinds, " " $2 " ") { print $1 }' "$root/scripts/packages.txt"
+}
+
+# missing_packages KIND...: those of them that are not installed.
+missing_packages() {
+  local -a wanted
+  mapfile -t wanted < <(packages_for "$@")
+  # dpkg-query fails when it does not know one of them; what it does know is told all the same.
+  comm -23 <(printf '%s\n' "${wanted[@]}" | sort) \
+    <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
+      awk '$1 == "installed" { print $2 }' | sort)
+}
+
+# ensure_packages KIND...: installs those that are missing, or says which and exits.
+ensure_packages() {
+  # Elsewhere than on Debian the libraries come from elsewhere too, and CMake names the one it does not find.
+  command -v dpkg-query >/dev/null || return 0
+  local -a missing as_root=()
+  mapfile -t missing < <(missing_packages "$@")
+  ((${#missing[@]})) || return 0
+  ((EUID == 0)) || as_root=(sudo)
+  local install="install -y --no-install-recommends ${missing[*]}" log=$root/build/packages.log
+  mkdir -p "$root/build"
+  say "installing ${missing[*]} (log: $log)"
+  # An update that fails, or fails in part, is no reason to stop: what decides is whether the packages can be installed.
+  # shellcheck disable=SC2086 # the words of $install are arguments of their own
+  {
+    "${as_root[@]}" apt-get update || true
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 $install
+  } </dev/null >"$log" 2>&1 && return 0
+  local apt="${as_root[*]:+sudo }apt-get"
+  say "these Debian packages are missing and could not be installed; with network access, run: $apt update && $apt $install"
+  exit "$exit_missing"
+}
+
+# follow_build NAME LOG: reads ninja's output, keeps it in LOG, and says once when there is something to compile; on a
+# terminal it shows how far the build has come.
+follow_build() {
+  local name=$1 log=$2 line said='' width=${COLUMNS:-80}
+  while IFS= read -r line; do
+    printf '%s\n' "$line"
+    [[ $line == \[*\]\ * && $line == *@(Building|Linking)* ]] || continue
+    [[ $said ]] || say "building $name (log: $log)"
+    said=yes
+    [[ ! -t 2 ]] || printf '\r\033[K%s' "${line:0:width-1}" >&2
+  done >"$log"
+  [[ -z $said || ! -t 2 ]] || printf '\r\033[K' >&2
+}
+
+# fail_build LOG: shows why, and exits.
+fail_build() {
+  # From the first failure on; all of it when it is CMake that failed.
+  awk '/^FAILED: / { found = 1 } { line[NR] = $0; if (found && !first) first = NR }
+       END { for (i = first ? first : 1; i <= NR; ++i) print line[i] }' "$1" >&2
+  say "the build failed; its whole log is $1"
+  exit "$exit_missing"
+}
+
+# build PRESET [TARGET...]: brings build/PRESET up to date. Of several at the same time one builds and the others wait.
+build() {
+  local preset=$1 folder=$root/build/$1 lock
+  shift
+  mkdir -p "$folder"
+  exec {lock}>"$folder/.lock"
+  if ! flock --nonblock "$lock"; then
+    say "waiting for another build of $folder"
+    flock "$lock"
+  fi
+  # CMake reconfigures by itself when a CMakeLists.txt changed, but not for a new preset, and a build folder that was
+  # copied along with its repository would go on building the original.
+  if [[ ! -e $folder/build.ninja || $root/CMakePresets.json -nt $folder/build.ninja ]] ||
+    ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+    (cd -- "$root" && cmake --preset "$preset" --fresh) </dev/null >"$folder/configure.log" 2>&1 ||
+      fail_build "$folder/configure.log"
+  fi
+  NINJA_STATUS='[%f/%t] ' ninja -C "$folder" "$@" </dev/null 2>&1 |
+    follow_build "mssim, $preset" "$folder/build.log" || fail_build "$folder/build.log"
+  exec {lock}>&-
+}

@@ -1,0 +1,185 @@
+// The walk down one column of a banded cloth: every spring once, every node updated as soon as its forces are
+// complete. Compiled once per instruction set, so the guard toggles.
+//
+// A spring belongs to its upper or left end (grid_stencil). Its force on the other end waits: in registers
+// for the rows below, in three columns of forces (this one, the next, the one after) for the columns to the
+// right. Walking the columns from left to right and each from the top, a node meets its own springs last;
+// nothing conflicts, and nothing behind the walk is read again, so the update may write over the state it was
+// computed from.
+#if defined(MSSIM_COLUMN_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MSSIM_COLUMN_WALK_INL_H_
+#undef MSSIM_COLUMN_WALK_INL_H_
+#else
+#define MSSIM_COLUMN_WALK_INL_H_
+#endif
+
+#include "backends/grid_bands/band_sheet.h"
+#include "backends/grid_bands/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+/// Sets of springs that a row can own; bit i is spring i of grid_stencil.
+enum SpringSet : unsigned {
+  down = 1,
+  right = 2,
+  right_down = 4,
+  right_up = 8,
+  down_2 = 16,
+  right_2 = 32,
+  to_next_column = right | right_down | right_up,
+  within_column = down | down_2,
+  every_spring = within_column | to_next_column | right_2
+};
+static_assert(grid_stencil[0].rows == 1 && grid_stencil[0].columns == 0, "down");
+static_assert(grid_stencil[1].rows == 0 && grid_stencil[1].columns == 1, "right");
+static_assert(grid_stencil[2].rows == 1 && grid_stencil[2].columns == 1, "right_down");
+static_assert(grid_stencil[3].rows == -1 && grid_stencil[3].columns == 1, "right_up");
+static_assert(grid_stencil[4].rows == 2 && grid_stencil[4].columns == 0, "down_2");
+static_assert(grid_stencil[5].rows == 0 && grid_stencil[5].columns == 2, "right_2");
+
+/// Where the walk reads and writes. Pointers to columns stand at row 0.
+struct ColumnView {
+  const float* here;                     ///< gathered pair, this column
+  const float* next;                     ///< the column to the right
+  const float* next_2;                   ///< the one after
+  std::array<float*, pair_kinds> pairs;  ///< this column of every pair, for the update
+  const float* forces_here;              ///< [row][x y z][lane] from columns already walked
+  float* forces_next;
+  float* forces_next_2;
+};
+
+/// Spring constants in registers.
+struct SpringLanes {
+  Lanes stiffness, stiffness_rest, damping;
+  HWY_INLINE explicit SpringLanes(const BandSheet::Material& m)
+      : stiffness(m.stiffness), stiffness_rest(m.stiffness_rest), damping(m.damping) {}
+};
+
+struct NodeLanes {
+  Lanes3 x, v;
+};
+
+/// Forces that wait for the rows below while the walk goes down.
+struct Carry {
+  Lanes3 below;        ///< on the next row of this column
+  Lanes3 below_2;      ///< on the row after that
+  Lanes3 right_below;  ///< on the next row of the next column
+  /// On the previous row of the next column: complete but for this row's spring to it.
+  Lanes3 right_above;
+};
+
+/// Adds one spring's force to its owner and takes it from its other end. `exists`: the lanes that have the
+/// spring; looked at only if `masked`, because no force on a dummy matters.
+template <bool masked>
+HWY_INLINE void apply_spring(const NodeLanes& node, const float* other, const SpringLanes& spring,
+                             Mask exists, Lanes3& on_node, Lanes3& on_other) {
+  const Lanes3 d = load3(other) - node.x;
+  const Lanes3 u = load3(other + 3 * lane_count()) - node.v;
+  Lanes factor = spring_pull(dot(d, d), dot(u, d), spring.stiffness, spring.stiffness_rest, spring.damping);
+  if constexpr (masked) factor = keep(exists, factor);
+  const Lanes3 force = factor * d;
+  on_node = on_node + force;
+  on_other = on_other - force;
+}
+
+/// What the floor does to the new state of the lanes below it (the other lanes keep theirs).
+HWY_INLINE void touch_floor(const BandSheet& sheet, Lanes3& x, Lanes3& v) {
+  const Lanes height(sheet.floor_height);
+  const Mask under = hn::Lt(x.y.v, height.v);
+  if (HWY_LIKELY(hn::AllFalse(FloatTag(), under))) return;
+  const Lanes rebound = floor_rebound(v.y, Lanes(sheet.restitution));
+  const Lanes grip = floor_grip(rebound - v.y, mul_add(v.z, v.z, v.x * v.x), Lanes(sheet.friction));
+  x.y = select(under, height, x.y);
+  v = {select(under, grip * v.x, v.x), select(under, rebound, v.y), select(under, grip * v.z, v.z)};
+}
+
+/// One row: the springs of `set` that it owns and, if `update`, the nodes' new values.
+template <std::size_t method, std::size_t stage, unsigned set, bool update>
+HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3>& spring,
+                         const ColumnView& column, Carry& carry, std::ptrdiff_t row) {
+  const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
+  const std::ptrdiff_t row_floats = 6 * lanes, force_floats = 3 * lanes;
+  const NodeLanes node{load3(column.here + row * row_floats),
+                       load3(column.here + row * row_floats + 3 * lanes)};
+  const auto rows = static_cast<std::uint32_t>(sheet.layout.rows);
+  // Row of the cloth in each lane; a halo row above the cloth wraps to a huge number, which is below no
+  // limit.
+  const Index band_start =
+      hn::Mul(hn::Iota(IndexTag(), 0), hn::Set(IndexTag(), static_cast<std::uint32_t>(sheet.layout.height)));
+  const Index cloth_row = hn::Add(band_start, hn::Set(IndexTag(), static_cast<std::uint32_t>(row)));
+  const Mask has_below = below(cloth_row, rows - 1);
+
+  Lanes3 force = carry.below;
+  if constexpr (update) force = force + load3(column.forces_here + row * force_floats);
+  Lanes3 on_below = carry.below_2, on_below_2 = zero3();
+  if constexpr ((set & down) != 0)
+    apply_spring<true>(node, column.here + (row + 1) * row_floats, spring[structural], has_below, force,
+                       on_below);
+  if constexpr ((set & down_2) != 0)
+    apply_spring<true>(node, column.here + (row + 2) * row_floats, spring[bending],
+                       below(cloth_row, rows < 2 ? 0 : rows - 2), force, on_below_2);
+  if constexpr ((set & right_up) != 0) {
+    const Mask has_above = below(hn::Sub(cloth_row, hn::Set(IndexTag(), 1)), rows - 1);
+    apply_spring<true>(node, column.next + (row - 1) * row_floats, spring[shear], has_above, force,
+                       carry.right_above);
+    if (row > 0) store3(column.forces_next + (row - 1) * force_floats, carry.right_above);
+  }
+  if constexpr ((set & right) != 0) {
+    Lanes3 on_right = carry.right_below + load3(column.forces_next + row * force_floats);
+    apply_spring<false>(node, column.next + row * row_floats, spring[structural], has_below, force, on_right);
+    carry.right_above = on_right;
+  }
+  if constexpr ((set & right_down) != 0) {
+    carry.right_below = zero3();
+    apply_spring<true>(node, column.next + (row + 1) * row_floats, spring[shear], has_below, force,
+                       carry.right_below);
+  }
+  if constexpr ((set & right_2) != 0) {
+    Lanes3 on_right_2 = zero3();
+    apply_spring<false>(node, column.next_2 + row * row_floats, spring[bending], has_below, force,
+                        on_right_2);
+    store3(column.forces_next_2 + row * force_floats, on_right_2);
+  }
+  carry.below = on_below;
+  carry.below_2 = on_below_2;
+
+  if constexpr (update) {
+    // The forces are accelerations already; dummies get none and stay where they are.
+    Lanes3 a = mul_add(Lanes(-sheet.viscous_damping), node.v, force);
+    a.y = a.y - Lanes(sheet.gravity);
+    a = keep(below(cloth_row, rows), a);
+    const auto address = [&](auto slot) MSSIM_INLINE_LAMBDA {
+      constexpr std::size_t i = index(decltype(slot)::value);
+      return column.pairs[i / 2] + row * row_floats + static_cast<std::ptrdiff_t>(i % 2) * 3 * lanes;
+    };
+    update_stage<method, stage>(
+        sheet.coefficients, node.x, node.v, a,
+        [&](auto slot) MSSIM_INLINE_LAMBDA { return load3(address(slot)); },
+        [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { store3(address(slot), value); },
+        [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA { touch_floor(sheet, x, v); });
+  }
+}
+
+/// One column from the halo rows above it to the one below. `set`: springs of its nodes that exist and
+/// matter.
+template <std::size_t method, std::size_t stage, unsigned set, bool update>
+HWY_NOINLINE void walk_column(const BandSheet& sheet, const ColumnView& column) {
+  const std::array<SpringLanes, 3> spring{SpringLanes(sheet.materials[structural]),
+                                          SpringLanes(sheet.materials[shear]),
+                                          SpringLanes(sheet.materials[bending])};
+  const auto height = static_cast<std::ptrdiff_t>(sheet.layout.height);
+  Carry carry{zero3(), zero3(), zero3(), zero3()};
+  if constexpr ((set & within_column) != 0)
+    walk_row<method, stage, set & down_2, false>(sheet, spring, column, carry, -2);
+  walk_row<method, stage, set&(within_column | right_down), false>(sheet, spring, column, carry, -1);
+  for (std::ptrdiff_t row = 0; row < height; ++row)
+    walk_row<method, stage, set, update>(sheet, spring, column, carry, row);
+  if constexpr ((set & right_up) != 0)
+    walk_row<method, stage, right_up, false>(sheet, spring, column, carry, height);
+}
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mssim {
+
+/// A cache of one level and type, of which the machine may have several.
+struct Cache {
+  int level = 0;
+  std::string type;         ///< "Data", "Instruction" or "Unified"
+  std::uint64_t bytes = 0;  ///< of one
+  int count = 0;            ///< in the machine
+  int sharing = 0;          ///< logical CPUs that share one
+};
+
+/// What can be known about a Linux machine without asking for rights. What cannot be read is empty or zero.
+struct Machine {
+  std::string cpu_model;
+  int logical_cpus = 0;                 ///< online
+  double cpu_mhz = 0;                   ///< of the first CPU, now
+  std::vector<Cache> caches;            ///< by level, then type
+  std::optional<std::string> governor;  ///< of the first CPU's frequency; none in most virtual machines
+  std::vector<double> load_average;     ///< over 1, 5 and 15 minutes
+  std::uint64_t memory_bytes = 0;
+  std::string operating_system;  ///< the distribution's name for itself
+  std::string kernel;            ///< system, release and architecture
+};
+
+/// The machine that this runs on, as it is now. `root` stands before /proc, /sys and /etc; tests put a
+/// made-up machine there.
+Machine read_machine(const std::filesystem::path& root = "/");
+
+}  // namespace mssim

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/build_info.h"
+#include "bench/machine.h"
+
+namespace mssim {
+
+/// A scene and a hash of its file's text, by which two runs can tell whether they simulated the same.
+struct SceneHash {
+  std::string name;
+  std::uint64_t fnv1a_64 = 0;
+};
+
+/// FNV-1a of the text's bytes, 64 bits: tells files apart that differ by accident, not by intent.
+/// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm, IETF
+/// draft.
+std::uint64_t fnv1a_64(std::string_view text);
+
+/// Where numbers come from: enough to judge them and to measure them again. Names neither the user nor the
+/// host, and of the environment only what steers threads.
+struct Provenance {
+  BuildInfo build;
+  Machine machine;                ///< when the run started
+  int threads = 0;                ///< asked for
+  std::vector<int> allowed_cpus;  ///< the process's affinity mask
+  /// OMP_ and GOMP_ variables, by name.
+  std::vector<std::pair<std::string, std::string>> thread_environment;
+  std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
+  std::vector<SceneHash> scenes;
+  std::vector<std::string> command_line;  ///< the program without its folder; the home folder reads ~
+  std::string started_utc;                ///< ISO 8601, for example "2026-01-31T12:00:00Z"
+};
+
+/// Gathers all that can be known at the start; scenes and OpenCL devices are the caller's to add.
+/// `arguments` are main's.
+Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
+
+/// Adds the hash of a scene file's text.
+void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);
+
+/// All of it. Numbers are finite; what is not known is absent or null.
+nlohmann::json to_json(const Provenance& provenance);
+
+}  // namespace mssim

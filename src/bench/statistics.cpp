@@ -1,0 +1,68 @@
+#include "bench/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+namespace mssim {
+namespace {
+
+/// P(B(n, 1/2) = k). By logarithms, because 2^-n is no double from n = 1075 on.
+double fair_binomial(std::size_t n, std::size_t k) {
+  const auto log_factorial = [](std::size_t i) { return std::lgamma(static_cast<double>(i) + 1); };
+  return std::exp(log_factorial(n) - log_factorial(k) - log_factorial(n - k) -
+                  static_cast<double>(n) * std::numbers::ln2);
+}
+
+std::vector<double> sorted(std::span<const double> samples) {
+  if (samples.empty()) throw std::invalid_argument("a median needs at least one sample");
+  std::vector<double> result(samples.begin(), samples.end());
+  if (!std::all_of(result.begin(), result.end(), [](double sample) { return std::isfinite(sample); }))
+    throw std::invalid_argument("a median needs finite samples");
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+double middle(const std::vector<double>& ascending) {
+  const std::size_t half = ascending.size() / 2;
+  return ascending.size() % 2 == 1 ? ascending[half] : std::midpoint(ascending[half - 1], ascending[half]);
+}
+
+}  // namespace
+
+double rank_coverage(std::size_t samples, std::size_t rank) {
+  double tail = 0;
+  for (std::size_t k = 0; k < rank; ++k) tail += fair_binomial(samples, k);
+  return 1 - 2 * tail;
+}
+
+std::size_t interval_rank(std::size_t samples) {
+  std::size_t rank = 0;
+  for (double tail = fair_binomial(samples, 0); 1 - 2 * tail >= interval_confidence;
+       tail += fair_binomial(samples, rank))
+    ++rank;
+  return rank;
+}
+
+double median(std::span<const double> samples) { return middle(sorted(samples)); }
+
+MedianInterval median_interval(std::span<const double> samples) {
+  const std::vector<double> ascending = sorted(samples);
+  const std::size_t rank = std::max<std::size_t>(interval_rank(ascending.size()), 1);
+  return {middle(ascending), ascending[rank - 1], ascending[ascending.size() - rank],
+          rank_coverage(ascending.size(), rank)};
+}
+
+MedianInterval median_ratio(std::span<const double> numerators, std::span<const double> denominators) {
+  if (numerators.size() != denominators.size())
+    throw std::invalid_argument("a ratio per round needs as many numerators as denominators");
+  std::vector<double> ratios(numerators.size());
+  std::transform(numerators.begin(), numerators.end(), denominators.begin(), ratios.begin(),
+                 [](double numerator, double denominator) { return numerator / denominator; });
+  return median_interval(ratios);
+}
+
+}  // namespace mssim

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "integrators/integrator.h"
+
+namespace mssim {
+
+/// What one step has to do at least, however a backend stores the state: the roofline's two axes.
+struct StepCost {
+  double bytes = 0;  ///< moved between memory and registers
+  double flops = 0;  ///< floating-point operations; a fused multiply-add counts as two
+};
+
+/// Floating-point operations of one unique spring and one stage, when the force is computed once and given to
+/// both ends, d and u being the differences of position and velocity between them:
+///     d, u                           2 x 3 subtractions               6
+///     d . d, u . d                   2 x (3 products, 2 sums)        10
+///     spring_pull (spring_law.h)     root, reciprocal, product,
+///                                    two multiply-adds                7
+///     pull * d                       3 products                       3
+///     onto one end, off the other    2 x 3 sums                       6
+/// Root and reciprocal count one each, as everywhere, though they take a processor longer: the bound is
+/// optimistic. Sign changes are free.
+inline constexpr std::size_t flops_per_spring = 6 + 10 + 7 + 3 + 6;
+
+/// Of the acceleration of one node, when the springs' constants were divided by its mass beforehand: viscous
+/// damping (3 products, 3 sums) and gravity (1 sum).
+inline constexpr std::size_t flops_per_acceleration = 3 + 3 + 1;
+
+/// Of the pointwise lines of a stage, for one node: in each of three components a product for every term
+/// whose factor is not 1, and a sum between terms.
+constexpr std::size_t line_flops(const Stage& stage) {
+  std::size_t count = 0;
+  for (const Line& line : stage.lines) {
+    for (std::size_t t = 0; t < term_count(line); ++t) {
+      const bool multiplies = line.terms[t].coefficient != 1 || line.terms[t].dt_power != 0;
+      count += std::size_t{multiplies} + std::size_t{t > 0};
+    }
+  }
+  return 3 * count;
+}
+
+/// Vectors of three floats that a stage moves for one node: every slot that it reads, the gathered pair once
+/// however many neighbours look at it, and every slot that it writes. What lives within a stage is free.
+constexpr std::size_t slots_moved(const Stage& stage) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < memory_slots; ++i) {
+    const auto slot = static_cast<Slot>(i);
+    const bool gathered = slot == position_slot(stage.gather) || slot == velocity_slot(stage.gather);
+    count += std::size_t{gathered || reads(stage, slot)} + std::size_t{writes(stage, slot)};
+  }
+  return count;
+}
+
+/// Cost of a step that makes one pass over the nodes per stage, for a regular cloth, whose springs take no
+/// memory. Left out, being small: pins, contact with the floor, what a cache line moves besides.
+/// A backend that overlaps stages can move less than this through main memory, because trial values then
+/// never leave a cache.
+StepCost step_cost(const Integrator& integrator, std::uint64_t nodes, std::uint64_t springs_unique);
+
+/// Bytes of all the slots that a step of the integrator touches, for `nodes` nodes: the working set whose
+/// cache level bounds the step.
+double working_set_bytes(const Integrator& integrator, std::uint64_t nodes);
+
+}  // namespace mssim

@@ -1,0 +1,53 @@
+#include "commands/choices.h"
+
+#include <omp.h>
+
+#include <CLI/CLI.hpp>
+#include <span>
+#include <string_view>
+
+#include "backends/backends.h"
+#include "commands/exit_code.h"
+#include "integrators/integrators.h"
+#include "scene/nearest_name.h"
+
+namespace mssim {
+namespace {
+
+/// More threads than this are a typing error, and would only fail later and less clearly.
+constexpr int most_threads = 4096;
+
+template <class Rows>
+UsageError unknown(const std::string& what, const std::string& name, const Rows& rows) {
+  std::vector<std::string_view> known;
+  for (const auto& row : rows) known.push_back(row.name);
+  const std::string_view nearest = nearest_name(name, known);
+  const std::string remedy = nearest.empty() ? "" : "did you mean " + std::string(nearest) + "? ";
+  return UsageError("unknown " + what + " \"" + name + "\": " + remedy + "Known are " + listed(known));
+}
+
+}  // namespace
+
+const BackendInfo& require_backend(const std::string& name) {
+  if (const BackendInfo* backend = find_backend(name)) return *backend;
+  throw unknown("backend", name, backends());
+}
+
+const Integrator& require_integrator(const std::string& name) {
+  if (const Integrator* integrator = find_integrator(name)) return *integrator;
+  throw unknown("integrator", name, integrators);
+}
+
+void declare_execution(CLI::App& app, ExecutionOptions& options) {
+  app.add_option("--threads", options.threads, "Host threads (default: one for every processor)")
+      ->check(CLI::Range(1, most_threads));
+  app.add_option("--device", options.device,
+                 "OpenCL device: its number or a part of its name (see mssim list devices)");
+}
+
+ExecutionOptions complete(ExecutionOptions options) {
+  if (options.threads == 0) options.threads = omp_get_num_procs();
+  return options;
+}
+
+}  // namespace mssim

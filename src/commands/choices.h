@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "backends/backend.h"
+#include "integrators/integrator.h"
+
+namespace CLI {
+class App;
+}
+
+namespace mssim {
+
+/// The backend of that name. Throws UsageError naming the nearest or listing the known.
+const BackendInfo& require_backend(const std::string& name);
+
+/// The integrator of that name. Throws like require_backend.
+const Integrator& require_integrator(const std::string& name);
+
+/// Declares --threads and --device. `options` must outlive the parsing.
+void declare_execution(CLI::App& app, ExecutionOptions& options);
+
+/// `threads` as given or, for 0, one for every processor that this process may use.
+ExecutionOptions complete(ExecutionOptions options);
+
+}  // namespace mssim

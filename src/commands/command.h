@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <span>
+#include <string_view>
+
+namespace mssim {
+
+/// A row of the TABLE of subcommands. A new one is one row in commands.cpp and its own file.
+struct Command {
+  std::string_view name;
+  std::string_view description;
+  std::string_view example;  ///< shown by `mssim --help` and `mssim COMMAND --help`
+  /// Declares the options on `app` and returns what runs after they have been parsed: it returns an ExitCode.
+  std::function<int()> (*declare)(CLI::App& app);
+};
+
+std::span<const Command> commands();
+
+/// Runs the whole program. Messages go to stderr, results to stdout. Never throws.
+int run_program(int argc, char** argv);
+
+}  // namespace mssim

@@ -1,0 +1,92 @@
+#include <array>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "backends/backend.h"
+#include "bench/build_info.h"
+#include "commands/bench_command.h"
+#include "commands/command.h"
+#include "commands/exit_code.h"
+#include "commands/list_command.h"
+#include "commands/run_command.h"
+#include "commands/run_provenance.h"
+#include "output/write_error.h"
+#include "scene/scene_error.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::array<Command, 3> table{{
+    {"bench", "time and verify backends on scenes", "mssim bench --scene cloth350k --out results/today",
+     declare_bench},
+    {"run", "simulate one scene, tracing it into a file",
+     "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
+    {"list", "list scenes, backends, integrators or devices", "mssim list scenes --format csv", declare_list},
+}};
+
+int fail(int code, const std::string& sentence) {
+  std::cerr << "mssim: " << sentence << '\n';
+  return code;
+}
+
+/// Names the exit code of an error; the one place that does.
+int run_guarded(const std::function<int()>& run) {
+  try {
+    return run();
+  } catch (const NotVerified& error) {
+    return fail(exit_not_verified, error.what());
+  } catch (const UsageError& error) {
+    return fail(exit_bad_input, error.what());
+  } catch (const SceneError& error) {
+    return fail(exit_bad_input, error.what());
+  } catch (const Unsupported& error) {
+    return fail(exit_bad_input, error.what());
+  } catch (const Unavailable& error) {
+    return fail(exit_unavailable, error.what());
+  } catch (const WriteError& error) {
+    return fail(exit_file_error, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(exit_bad_input, "the memory does not suffice; close other programs or take a smaller scene");
+  } catch (const std::exception& error) {
+    return fail(exit_file_error, error.what());
+  }
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return table; }
+
+int run_program(int argc, char** argv) {
+  remember_arguments(argc, argv);
+  CLI::App app("mssim " + std::string(build_info().version) +
+                   ": benchmark harness for parallel mass-spring simulation",
+               "mssim");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "mssim " + std::string(build_info().version) + " (" +
+                                        std::string(build_info().commit) +
+                                        (build_info().dirty ? ", changed" : "") + ")");
+  std::string examples = "Examples:";
+  std::function<int()> run;
+  for (const Command& command : commands()) {
+    CLI::App* sub = app.add_subcommand(std::string(command.name), std::string(command.description));
+    sub->footer("Example:\n  " + std::string(command.example));
+    examples += "\n  " + std::string(command.example);
+    const std::function<int()> body = command.declare(*sub);
+    sub->callback([&run, body] { run = body; });
+  }
+  app.footer(examples);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return fail(exit_bad_input, std::string(error.what()) + "; see mssim --help");
+  }
+  const int code = run_guarded(run);
+  // Results that could not be written are no results (a full disk; a closed pipe ends the program by
+  // SIGPIPE).
+  if (!std::cout.flush()) return fail(exit_file_error, "standard output could not be written");
+  return code;
+}
+
+}  // namespace mssim

@@ -1,0 +1,123 @@
+#include "commands/list_command.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "backends/backends.h"
+#include "backends/opencl_device.h"
+#include "commands/choices.h"
+#include "commands/exit_code.h"
+#include "integrators/integrators.h"
+#include "output/listing.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+
+namespace mssim {
+namespace {
+
+nlohmann::ordered_json or_null(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+}
+
+Listing list_scenes(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const std::string& name : scene_names()) {
+    const SceneSpec spec = find_scene(name);
+    const SceneCounts counts = counts_of(spec);
+    listing.push_back(
+        {{"scene", name},
+         {"kind", kind_of(spec).name},
+         {"nodes", counts.nodes},
+         {"springs_unique", counts.springs_unique},
+         {"springs_published", counts.springs_published},
+         {"dt_s", spec.dt_s ? nlohmann::ordered_json(*spec.dt_s) : nlohmann::ordered_json("auto")},
+         {"description", spec.description}});
+  }
+  return listing;
+}
+
+Listing list_backends(const ExecutionOptions& options) {
+  Listing listing;
+  for (const BackendInfo& backend : backends()) {
+    const std::string reason = unavailable_reason(backend, options);
+    listing.push_back({{"backend", backend.name},
+                       {"paper_configuration", backend.paper_configuration},
+                       {"available", reason.empty()},
+                       {"reason", or_null(reason)},
+                       {"description", backend.description}});
+  }
+  return listing;
+}
+
+Listing list_integrators(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const Integrator& integrator : integrators)
+    listing.push_back({{"integrator", integrator.name},
+                       {"order", integrator.order},
+                       {"force_evaluations", integrator.stage_count},
+                       {"description", integrator.description}});
+  return listing;
+}
+
+Listing list_devices(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const OpenclDevice& device : opencl_devices())
+    listing.push_back({{"number", device.number},
+                       {"name", device.name},
+                       {"type", name_of(device.type)},
+                       {"platform", device.platform},
+                       {"driver", device.driver_version},
+                       {"compute_units", device.compute_units},
+                       {"memory_bytes", device.global_memory_bytes},
+                       {"float_width", device.preferred_float_width}});
+  return listing;
+}
+
+/// The TABLE of what can be listed.
+struct Subject {
+  std::string_view name;
+  Listing (*list)(const ExecutionOptions& options);
+};
+constexpr std::array<Subject, 4> subjects{{{"scenes", list_scenes},
+                                           {"backends", list_backends},
+                                           {"integrators", list_integrators},
+                                           {"devices", list_devices}}};
+
+struct ListOptions {
+  std::string subject;
+  ListingFormat format = ListingFormat::table;
+  ExecutionOptions execution;
+};
+
+int run_list(const ListOptions& options) {
+  for (const Subject& subject : subjects) {
+    if (subject.name != options.subject) continue;
+    const Listing listing = subject.list(options.execution);
+    if (listing.empty() && subject.list == list_devices)
+      std::cerr
+          << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
+    std::cout << to_text(listing, options.format);
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+std::function<int()> declare_list(CLI::App& app) {
+  const auto options = std::make_shared<ListOptions>();
+  std::vector<std::string> names;
+  for (const Subject& subject : subjects) names.emplace_back(subject.name);
+  app.add_option("subject", options->subject, "What to list")->required()->check(CLI::IsMember(names));
+  const std::map<std::string, ListingFormat> formats{
+      {"table", ListingFormat::table}, {"csv", ListingFormat::csv}, {"json", ListingFormat::json}};
+  app.add_option("--format", options->format, "table, csv or json (default: table)")
+      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  app.add_option("--device", options->execution.device, "OpenCL device that backends are checked with");
+  return [options] { return run_list(*options); };
+}
+
+}  // namespace mssim

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string_view>
+
+#include "model/system.h"
+#include "scene/scene_spec.h"
+
+namespace mssim {
+
+/// A scene ready to be stepped.
+struct PreparedScene {
+  SceneSpec spec;
+  System system;
+  double dt_s = 0;  ///< the scene's, or the largest safe one for `auto`
+};
+
+/// Reads, checks and builds the scene of that name or file. Throws SceneError.
+PreparedScene prepare_scene(std::string_view name_or_file);
+
+}  // namespace mssim

@@ -1,0 +1,55 @@
+#include "commands/simulation.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "bench/blow_up.h"
+#include "commands/exit_code.h"
+
+namespace mssim {
+namespace {
+
+/// Longest run, in steps: a frame's steps are counted in an int, and beyond 2^53 times lose whole steps.
+constexpr double most_steps = std::numeric_limits<int>::max();
+
+}  // namespace
+
+void simulate(Backend& backend, const System& system, const SimulationPlan& plan, const OnFrame& on_frame) {
+  const double exact_steps = plan.duration_s / plan.dt_s;
+  if (!(exact_steps >= 0.5 && exact_steps <= most_steps)) {
+    std::ostringstream text;
+    text << "a duration of " << plan.duration_s << " s is " << exact_steps << " steps of " << plan.dt_s
+         << " s; --duration must give between one step and " << most_steps;
+    throw UsageError(text.str());
+  }
+  const auto steps = static_cast<std::int64_t>(std::llround(exact_steps));
+  const double steps_per_frame = 1 / (plan.frames_per_second * plan.dt_s);
+  if (!(steps_per_frame >= 1)) {
+    std::ostringstream text;
+    text << plan.frames_per_second << " frames per second are more than one a step of " << plan.dt_s
+         << " s; take --fps " << std::floor(1 / plan.dt_s) << " or less";
+    throw UsageError(text.str());
+  }
+
+  backend.set_state(system.start);
+  State before = system.start;
+  on_frame(0, 0, before, energy_of(system, before));
+  std::int64_t done = 0;
+  for (std::int64_t frame = 1; done < steps; ++frame) {
+    const std::int64_t next =
+        std::min<std::int64_t>(steps, std::llround(static_cast<double>(frame) * steps_per_frame));
+    const int count = static_cast<int>(next - done);
+    backend.step(count);
+    State state = backend.state();
+    if (const auto node = first_bad_node(state)) {
+      const BlowUp blow_up = find_blow_up(backend, before, count).value_or(BlowUp{count, *node});
+      throw NotVerified("the simulation " + describe(blow_up, plan.dt_s, done));
+    }
+    done = next;
+    on_frame(done, static_cast<double>(done) * plan.dt_s, state, energy_of(system, state));
+    before = std::move(state);
+  }
+}
+
+}  // namespace mssim

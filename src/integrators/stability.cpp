@@ -1,0 +1,102 @@
+#include "integrators/stability.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "integrators/coefficients.h"
+#include "integrators/integrators.h"
+
+namespace mssim {
+namespace {
+
+/// A number as a linear function of the state that a step starts from: of_x * x + of_v * v. The step of such
+/// numbers is the step's matrix.
+struct Linear {
+  double of_x = 0, of_v = 0;
+
+  friend Linear operator+(const Linear& a, const Linear& b) { return {a.of_x + b.of_x, a.of_v + b.of_v}; }
+  friend Linear operator*(double s, const Linear& a) { return {s * a.of_x, s * a.of_v}; }
+  friend Linear mul_add(double s, const Linear& a, const Linear& b) { return s * a + b; }
+};
+
+#define MSSIM_INLINE inline
+#define MSSIM_INLINE_LAMBDA
+#include "integrators/stage_update-inl.h"
+#undef MSSIM_INLINE
+#undef MSSIM_INLINE_LAMBDA
+
+/// Largest modulus of the eigenvalues of the 2 x 2 matrix with these rows.
+double spectral_radius(const Linear& first, const Linear& second) {
+  const double half_trace = (first.of_x + second.of_v) / 2;
+  const double determinant = first.of_x * second.of_v - first.of_v * second.of_x;
+  const double discriminant = half_trace * half_trace - determinant;
+  return discriminant < 0 ? std::sqrt(determinant) : std::abs(half_trace) + std::sqrt(discriminant);
+}
+
+bool is_stable(const Integrator& integrator, double dt_s, const ModeBound& bound) {
+  // From the stiffest mode downwards in steps of a fifth; the softest of these moves as in free flight.
+  for (double share = 1; share > 1e-6; share *= 0.8) {
+    const double damping = bound.viscous_damping + share * (bound.damping - bound.viscous_damping);
+    if (!(amplification(integrator, dt_s, share * bound.stiffness, damping) <= 1 + tolerated_growth))
+      return false;
+  }
+  return true;
+}
+
+/// Does the row stand for a published method's cost under another name than the method's own?
+bool repeats_cost_only(const Integrator& integrator) {
+  return !integrator.paper_name.empty() && integrator.paper_name != integrator.name;
+}
+
+}  // namespace
+
+double amplification(const Integrator& integrator, double dt_s, double stiffness, double damping) {
+  const Coefficients<double> coefficients = coefficients_of<double>(integrator, dt_s);
+  std::array<Linear, memory_slots> memory{};
+  memory[index(Slot::x)] = {1, 0};
+  memory[index(Slot::v)] = {0, 1};
+  with_integrator(integrator, [&](auto method) {
+    for_each_stage<method>([&](auto stage) {
+      constexpr Pair gather = integrators[method].stages[stage].gather;
+      const Linear x = memory[index(position_slot(gather))], v = memory[index(velocity_slot(gather))];
+      const Linear a = -stiffness * x + -damping * v;
+      update_stage<method, stage>(
+          coefficients, x, v, a, [&](auto slot) { return memory[index(decltype(slot)::value)]; },
+          [&](auto slot, const Linear& value) { memory[index(decltype(slot)::value)] = value; },
+          [](const Linear&, const Linear&) {});
+    });
+  });
+  return spectral_radius(memory[index(Slot::x_next)], memory[index(Slot::v_next)]);
+}
+
+double largest_stable_dt(const Integrator& integrator, const ModeBound& bound) {
+  const double fastest_rate = std::max(std::sqrt(bound.stiffness), bound.damping);
+  if (!(fastest_rate > 0)) return std::numeric_limits<double>::infinity();
+  // The first unstable dt on the way up, so that an island of stability beyond it is not taken for the limit.
+  // Every consistent method is stable where the walk starts, and no explicit one is where it would end.
+  constexpr double step = 1.02;
+  double unstable = 1e-5 / fastest_rate;
+  while (is_stable(integrator, unstable, bound)) unstable *= step;
+  double stable = unstable / step;
+  while (unstable - stable > 1e-12 * unstable) {
+    const double middle = (stable + unstable) / 2;
+    (is_stable(integrator, middle, bound) ? stable : unstable) = middle;
+  }
+  return stable;
+}
+
+double auto_dt(const ModeBound& bound) {
+  constexpr double safety = 0.5;
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Integrator& integrator : integrators)
+    if (!repeats_cost_only(integrator)) limit = std::min(limit, largest_stable_dt(integrator, bound));
+  if (std::isinf(limit))
+    throw std::invalid_argument(
+        "dt_s \"auto\" needs a system with springs or damping, which bound it: give a number");
+  return safety * limit;
+}
+
+}  // namespace mssim

@@ -1,0 +1,135 @@
+#include "output/csv.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace mssim {
+namespace {
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string result = "\"";
+  for (const char character : field) {
+    if (character == '"') result += '"';
+    result += character;
+  }
+  return result + '"';
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  // A folder opens, and fails on the first read.
+  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf())) || in.bad())
+    throw CsvError("cannot read " + file.string() + ": check that it exists and may be read");
+  return text.str();
+}
+
+template <class Number>
+std::optional<Number> whole_field(const std::string& field) {
+  Number number{};
+  const char* end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+std::string csv_line(const std::vector<std::string>& fields) {
+  std::string line;
+  for (const std::string& field : fields) {
+    if (&field != &fields.front()) line += ',';
+    line += quoted(field);
+  }
+  return line + '\n';
+}
+
+std::string csv_number(double value) {
+  if (!std::isfinite(value)) throw std::invalid_argument("CSV: a number is not finite");
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+std::string csv_number(const std::optional<double>& value) {
+  return value ? csv_number(*value) : std::string();
+}
+
+CsvTable::CsvTable(const std::filesystem::path& file) : file_(file) {
+  const std::string text = read_text(file);
+  std::size_t line = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    Record record{line, {std::string()}};
+    bool in_quotes = false, ended = false;
+    for (; at < text.size() && !ended; ++at) {
+      const char character = text[at];
+      if (character == '\n') ++line;
+      if (in_quotes) {
+        if (character != '"') {
+          record.fields.back() += character;
+        } else if (at + 1 < text.size() && text[at + 1] == '"') {
+          record.fields.back() += text[++at];
+        } else {
+          in_quotes = false;
+        }
+      } else if (character == '"') {
+        in_quotes = true;
+      } else if (character == ',') {
+        record.fields.emplace_back();
+      } else if (character == '\n') {
+        ended = true;
+      } else if (character != '\r') {
+        record.fields.back() += character;
+      }
+    }
+    if (in_quotes)
+      throw CsvError(file.string() + ", line " + std::to_string(record.line) +
+                     ": a quoted field does not end; close it with a quotation mark");
+    if (header_.empty()) {
+      header_ = std::move(record.fields);
+      continue;
+    }
+    if (record.fields.size() != header_.size())
+      throw CsvError(file.string() + ", line " + std::to_string(record.line) + ": has " +
+                     std::to_string(record.fields.size()) + " fields where the header has " +
+                     std::to_string(header_.size()) + "; write the missing ones, or remove the line");
+    records_.push_back(std::move(record));
+  }
+}
+
+void CsvTable::require_columns(const std::vector<std::string_view>& columns) const {
+  for (std::size_t column = 0; column < columns.size(); ++column)
+    if (column >= header_.size() || header_[column] != columns[column])
+      throw CsvError(file_.string() + ", line 1: column " + std::to_string(column + 1) + " is " +
+                     (column < header_.size() ? "\"" + header_[column] + "\"" : "missing") +
+                     " instead of \"" + std::string(columns[column]) + "\"; give a file that mssim wrote");
+}
+
+CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
+  return CsvError(file_.string() + ", line " + std::to_string(records_[record].line) + ", column " +
+                  header_[column] + ": \"" + text(record, column) + "\" " + what);
+}
+
+double CsvTable::number(std::size_t record, std::size_t column) const {
+  const auto value = whole_field<double>(text(record, column));
+  if (!value || !std::isfinite(*value))
+    throw complaint(record, column, "is not a number; write a finite one");
+  return *value;
+}
+
+std::optional<double> CsvTable::optional_number(std::size_t record, std::size_t column) const {
+  if (text(record, column).empty()) return std::nullopt;
+  return number(record, column);
+}
+
+std::uint64_t CsvTable::count(std::size_t record, std::size_t column) const {
+  constexpr std::uint64_t largest = std::uint64_t{1} << 53;
+  const auto value = whole_field<std::uint64_t>(text(record, column));
+  if (!value || *value > largest) throw complaint(record, column, "is not a whole number from 0 to 2^53");
+  return *value;
+}
+
+}  // namespace mssim

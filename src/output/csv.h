@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mssim {
+
+/// Comma-separated values as RFC 4180 has them, with line feeds alone as line ends.
+
+/// Thrown when a CSV file cannot be read; what() is one sentence that names file, line and column, the value
+/// and what to do.
+struct CsvError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One line, each field quoted where it has to be, with its line feed.
+std::string csv_line(const std::vector<std::string>& fields);
+
+/// The shortest decimal that reads back as the same number. Throws std::invalid_argument unless it is finite.
+std::string csv_number(double value);
+/// Empty for an absent value.
+std::string csv_number(const std::optional<double>& value);
+
+/// A table read from a file: a header and records of as many fields.
+class CsvTable {
+ public:
+  /// Throws CsvError when the file cannot be read, a quote is left open or a record has not the header's
+  /// length.
+  explicit CsvTable(const std::filesystem::path& file);
+
+  const std::vector<std::string>& header() const { return header_; }
+  std::size_t size() const { return records_.size(); }
+  /// Throws CsvError when the header does not begin with these columns.
+  void require_columns(const std::vector<std::string_view>& columns) const;
+
+  const std::string& text(std::size_t record, std::size_t column) const {
+    return records_[record].fields[column];
+  }
+  /// Throws CsvError unless the whole field is a finite number.
+  double number(std::size_t record, std::size_t column) const;
+  /// The same; none for an empty field.
+  std::optional<double> optional_number(std::size_t record, std::size_t column) const;
+  /// Throws CsvError unless the whole field is a whole number from 0 to 2^53.
+  std::uint64_t count(std::size_t record, std::size_t column) const;
+  /// The CsvError for a field: "FILE, line L, column NAME: "VALUE" COMPLAINT".
+  CsvError complaint(std::size_t record, std::size_t column, const std::string& what) const;
+
+ private:
+  struct Record {
+    std::size_t line = 0;  ///< of its first character, from 1
+    std::vector<std::string> fields;
+  };
+  std::filesystem::path file_;
+  std::vector<std::string> header_;
+  std::vector<Record> records_;
+};
+
+}  // namespace mssim

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "model/energy.h"
+#include "model/system.h"
+#include "output/hdf5_handle.h"
+
+namespace mssim {
+
+/// What a trace says about how it came about.
+struct TraceHeader {
+  std::string author = "unknown";  ///< who ran the simulation
+  std::string creator_version;     ///< of mssim
+  std::string scene_json;          ///< the scene file's text
+  std::string provenance_json;     ///< the text of provenance.json
+  std::string backend;
+  std::string integrator;
+  double dt_s = 0;
+};
+
+/// A trace: the frames of one simulation in an HDF5 file after H5MD 1.1 (https://www.nongnu.org/h5md), with
+/// an XDMF file beside it for viewers. SI units throughout, listed in /parameters/units.
+///
+///     /h5md                                       author, creator, version of H5MD
+///     /particles/cloth/{position,velocity}/value  [frames][nodes][3] float32, in the scene's node order
+///     /particles/cloth/mass                       [nodes] float64
+///     /observables/{kinetic,elastic,gravitational,total}_energy/value   [frames] float64
+///     .../step, .../time                          [frames] int64, float64: the same two datasets everywhere
+///     /connectivity/springs                       [springs][2] uint32, each unique spring once
+///     /parameters                                 scene and provenance as JSON, and how it was stepped
+///     /xdmf/{position,velocity}/FRAME             [rows][columns][3] virtual datasets, one frame each
+///
+/// Positions are single precision, as most backends compute them, which halves the file; energies are double.
+///
+/// Until close() the file is called NAME.part. After write_frame() returns, the frame is with the system: a
+/// program that is killed, or a disk that is full, leaves a NAME.part with all frames written so far, without
+/// /xdmf. Not for use from several threads at a time, even on different traces: the HDF5 library is not.
+class H5mdTrace {
+ public:
+  /// Creates NAME.part with everything but frames. The grid of `system` must have nodes. Throws WriteError.
+  H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header);
+  H5mdTrace(const H5mdTrace&) = delete;
+  H5mdTrace& operator=(const H5mdTrace&) = delete;
+  /// Without close(): gives up, keeping NAME.part when it holds frames.
+  ~H5mdTrace();
+
+  /// Appends a frame. `step` and `time_s` increase from frame to frame, `state` has the system's size (else
+  /// std::invalid_argument). Throws WriteError, which says what became of the frames before; the trace can
+  /// then only be destroyed.
+  void write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy);
+
+  /// Finishes the trace, gives it its name and writes the XDMF. Throws WriteError.
+  void close();
+
+ private:
+  void create(const System& system, const TraceHeader& header);
+  void create_series(const System& system);
+  void append(std::int64_t step, double time_s, const State& state, const Energy& energy);
+  void map_frames_for_xdmf();
+  void reserve(std::size_t bytes);
+  void guard(const std::function<void()>& write);
+  std::size_t give_up();
+
+  std::filesystem::path file_name_;
+  GridPatch grid_;
+  Hdf5File file_;
+  Hdf5Dataset step_, time_, position_, velocity_;  // /particles/cloth
+  std::vector<Hdf5Dataset> energies_;              // in the order of the table of energies
+  std::vector<float> buffer_;                      // [nodes][3]
+  std::vector<double> times_s_;                    // [frames]
+  std::int64_t last_step_ = 0;
+  bool owns_temporary_ = false;  // from its creation until it has its name or is given up
+};
+
+}  // namespace mssim

@@ -1,0 +1,82 @@
+#include "output/xdmf.h"
+
+#include <array>
+#include <charconv>
+
+#include "output/atomic_file.h"
+
+namespace mssim {
+namespace {
+
+std::string escape_xml(std::string_view text) {
+  std::string escaped;
+  for (const char character : text) switch (character) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += character;
+    }
+  return escaped;
+}
+
+/// The shortest text that reads back as the same number, in any locale.
+std::string exact(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+std::string data_item(const std::string& trace, const std::string& shape, std::string_view vector,
+                      std::size_t frame) {
+  return "<DataItem Dimensions=\"" + shape + " 3\" NumberType=\"Float\" Precision=\"4\" Format=\"HDF\">" +
+         trace + ":" + xdmf_dataset(vector, frame) + "</DataItem>";
+}
+
+}  // namespace
+
+std::string xdmf_dataset(std::string_view vector, std::size_t frame) {
+  constexpr std::size_t digits = 6;  // so that viewers list the frames in order
+  std::string number = std::to_string(frame);
+  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
+  return "/xdmf/" + std::string(vector) + "/" + number;
+}
+
+std::filesystem::path xdmf_of(const std::filesystem::path& trace) {
+  return std::filesystem::path(trace).replace_extension(".xdmf");
+}
+
+void write_xdmf(const std::filesystem::path& trace, const GridPatch& grid, std::span<const double> times_s) {
+  const std::string name = escape_xml(trace.filename().string());
+  const std::string shape = std::to_string(grid.rows) + " " + std::to_string(grid.columns);
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<Xdmf Version=\"3.0\">\n"
+      "  <Domain>\n"
+      "    <Grid Name=\"trace\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t frame = 0; frame < times_s.size(); ++frame) {
+    text += "      <Grid Name=\"cloth\" GridType=\"Uniform\">\n";
+    text += "        <Time Value=\"" + exact(times_s[frame]) + "\"/>\n";
+    text += "        <Topology TopologyType=\"2DSMesh\" Dimensions=\"" + shape + "\"/>\n";
+    text += "        <Geometry GeometryType=\"XYZ\">" + data_item(name, shape, "position", frame) +
+            "</Geometry>\n";
+    text += "        <Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">" +
+            data_item(name, shape, "velocity", frame) + "</Attribute>\n";
+    text += "      </Grid>\n";
+  }
+  text +=
+      "    </Grid>\n"
+      "  </Domain>\n"
+      "</Xdmf>\n";
+  write_file_atomically(xdmf_of(trace), text);
+}
+
+}  // namespace mssim

@@ -1,0 +1,152 @@
+#include "scene/cloth.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "scene/json_document.h"
+#include "scene/memory.h"
+#include "scene/scene_error.h"
+
+namespace mssim {
+namespace {
+
+/// Amplitude of the ripple's displacement in the plane over that out of it. Out of the plane alone, a small
+/// ripple would strain the springs in second order only.
+constexpr double in_plane_share = 0.5;
+
+/// Largest height of the ripple over its wavelength. The displacement u in the plane has a gradient of at
+/// most sqrt(2) in_plane_share height 2 pi / wavelength in Frobenius' norm; below 1 no two nodes can meet,
+/// and at this slope it is 0.44.
+constexpr double steepest_ripple = 0.1;
+
+const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.body); }
+
+void visit_pins(FieldVisitor& fields, ClothSpec::Pins& pins) {
+  fields.integer("row", pins.row, 0, 999'999);
+  fields.integer("every_columns", pins.every_columns, 1, 1'000'000);
+}
+
+void visit_ripple(FieldVisitor& fields, ClothSpec::Ripple& ripple) {
+  fields.number("height_m", ripple.height_m, from(0, 100));
+  fields.number("wavelength_m", ripple.wavelength_m, from(1e-6, 1e6));
+  fields.number("speed_m_per_s", ripple.speed_m_per_s, from(0, 1000));
+}
+
+void visit_springs(FieldVisitor& fields, ClothSpec& cloth) {
+  for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
+    fields.object(grid_spring_kinds[kind].name, Presence::required, [&](FieldVisitor& material) {
+      // Without structural springs nothing would hold the cloth together; the other two kinds can be left
+      // out.
+      const Range stiffness = kind == structural ? above(0, 1e9) : from(0, 1e9);
+      material.number("stiffness_n_per_m", cloth.springs[kind].stiffness, stiffness);
+      material.number("damping_n_s_per_m", cloth.springs[kind].damping, from(0, 1e6));
+    });
+}
+
+bool is_pinned(const ClothSpec& cloth, std::uint32_t row, std::uint32_t column) {
+  return cloth.pins && row == cloth.pins->row &&
+         (column % cloth.pins->every_columns == 0 || column + 1 == cloth.columns);
+}
+
+/// One component of a standing wave, at most 1: its phases, in radians, along x and z.
+double wave(double wave_number, const Vec3d& at, double phase_x, double phase_z) {
+  return std::sin(wave_number * at.x + phase_x) * std::sin(wave_number * at.z + phase_z);
+}
+
+}  // namespace
+
+void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
+  ClothSpec& cloth = spec.body.emplace<ClothSpec>();
+  fields.integer("rows", cloth.rows, 2, 1'000'000);
+  fields.integer("columns", cloth.columns, 2, 1'000'000);
+  fields.number("spacing_m", cloth.spacing_m, from(1e-6, 100));
+  fields.number("areal_density_kg_per_m2", cloth.areal_density_kg_per_m2, from(1e-6, 1e6));
+  fields.number("ceiling_height_m", cloth.ceiling_height_m, from(-1e6, 1e6));
+  fields.object("pins", Presence::optional,
+                [&](FieldVisitor& pins) { visit_pins(pins, cloth.pins.emplace()); });
+  fields.object("ripple", Presence::required,
+                [&](FieldVisitor& ripple) { visit_ripple(ripple, cloth.ripple); });
+  fields.object("springs", Presence::required, [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
+}
+
+void check_cloth(const SceneSpec& spec) {
+  const ClothSpec& cloth = cloth_of(spec);
+  const auto refuse = [&](const std::string& pointer, const std::string& problem) {
+    throw SceneError(printable(spec.file.string(), 1000) + ": " + pointer + ' ' + problem);
+  };
+  constexpr std::uint64_t most_nodes = std::numeric_limits<std::uint32_t>::max();
+  if (const std::uint64_t nodes = std::uint64_t{cloth.rows} * cloth.columns; nodes > most_nodes)
+    refuse("/cloth/rows", "is " + std::to_string(cloth.rows) + ", which with " +
+                              std::to_string(cloth.columns) + " columns makes " + std::to_string(nodes) +
+                              " nodes: keep the product at or below " + std::to_string(most_nodes));
+  if (cloth.pins && cloth.pins->row >= cloth.rows)
+    refuse("/cloth/pins/row", "is " + std::to_string(cloth.pins->row) +
+                                  ", but the rows are numbered from 0 to " + std::to_string(cloth.rows - 1) +
+                                  ": name one of them");
+  const double lowest_start = cloth.ceiling_height_m - cloth.ripple.height_m;
+  if (!(lowest_start > spec.floor.height))
+    refuse("/cloth/ceiling_height_m",
+           "is " + shown_number(cloth.ceiling_height_m) + ", so that the ripple would start at " +
+               shown_number(lowest_start) + ", not above the floor at " + shown_number(spec.floor.height) +
+               ": raise it or lower /floor/height_m");
+  if (cloth.ripple.height_m > steepest_ripple * cloth.ripple.wavelength_m)
+    refuse("/cloth/ripple/height_m",
+           "is " + shown_number(cloth.ripple.height_m) +
+               ", more than a tenth of the wavelength, and could fold springs: give at most " +
+               shown_number(steepest_ripple * cloth.ripple.wavelength_m) +
+               " or raise /cloth/ripple/wavelength_m");
+  if (cloth.pins && cloth.ripple.height_m > cloth.spacing_m)
+    refuse("/cloth/ripple/height_m",
+           "is " + shown_number(cloth.ripple.height_m) +
+               ", more than the spacing, and could fold springs at the pins: give at most " +
+               shown_number(cloth.spacing_m) + " or take /cloth/pins away");
+}
+
+SceneCounts cloth_counts(const SceneSpec& spec) {
+  const ClothSpec& cloth = cloth_of(spec);
+  const std::uint64_t springs = count_springs(cloth.rows, cloth.columns);
+  return {std::uint64_t{cloth.rows} * cloth.columns, springs, 2 * springs};
+}
+
+System build_cloth(const SceneSpec& spec) {
+  require_memory(spec, "/cloth", cloth_counts(spec));
+  const ClothSpec& cloth = cloth_of(spec);
+  System system;
+  system.grid = {cloth.rows, cloth.columns, cloth.spacing_m};
+  system.springs = springs_of(system.grid);
+  system.materials.assign(cloth.springs.begin(), cloth.springs.end());
+  system.node_mass = cloth.areal_density_kg_per_m2 * cloth.spacing_m * cloth.spacing_m;
+  system.gravity = spec.gravity_m_per_s2;
+  system.viscous_damping = spec.viscous_damping_per_s;
+  system.floor = spec.floor;
+
+  const double wave_number = 2 * std::numbers::pi / cloth.ripple.wavelength_m;
+  const double height = cloth.ripple.height_m, speed = cloth.ripple.speed_m_per_s;
+  system.start.position.reserve(system.grid.nodes());
+  system.start.velocity.reserve(system.grid.nodes());
+  for (std::uint32_t row = 0; row < cloth.rows; ++row)
+    for (std::uint32_t column = 0; column < cloth.columns; ++column) {
+      Vec3d position{column * cloth.spacing_m, cloth.ceiling_height_m, row * cloth.spacing_m};
+      Vec3d velocity;
+      if (is_pinned(cloth, row, column)) {
+        system.pins.push_back(system.grid.node(row, column));
+      } else {
+        // A component is zero along lines of constant x and of constant z. As no two phases of the velocity
+        // on one axis differ by a multiple of pi, no place lies on a line of all three, and no node starts at
+        // rest.
+        const Vec3d flat = position;
+        velocity = speed * Vec3d{wave(wave_number, flat, 0.4, 1.3), wave(wave_number, flat, 1.5, 2.5),
+                                 wave(wave_number, flat, 2.6, 0.3)};
+        position += height * Vec3d{in_plane_share * wave(wave_number, flat, 0.2, 0.9),
+                                   wave(wave_number, flat, 1.2, 1.9),
+                                   in_plane_share * wave(wave_number, flat, 2.2, 2.9)};
+      }
+      system.start.position.push_back(position);
+      system.start.velocity.push_back(velocity);
+    }
+  return system;
+}
+
+}  // namespace mssim

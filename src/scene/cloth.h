@@ -1,0 +1,28 @@
+#pragma once
+
+#include "model/system.h"
+#include "scene/field_visitor.h"
+#include "scene/scene_spec.h"
+
+namespace mssim {
+
+/// The row "cloth" of the table of scene kinds (scene_kinds.h says what each function is for). All of them
+/// but visit_cloth_fields need a spec whose body is a ClothSpec.
+
+void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec);
+
+/// The nodes can be numbered, the pinned row exists, the cloth starts above the floor, and the ripple folds
+/// no spring to length zero. Throws SceneError.
+void check_cloth(const SceneSpec& spec);
+
+/// springs_published = 2 springs_unique: Hong et al. count the 12-neighbour stencil of every node, and so
+/// each spring once from each of its ends.
+SceneCounts cloth_counts(const SceneSpec& spec);
+
+/// The cloth as spec describes it: node (r, c) has the index r * columns + c and starts at
+/// (c spacing, ceiling height, r spacing) plus the ripple, a standing wave of given amplitude in position and
+/// velocity. Pinned nodes are not displaced. Deterministic. Throws SceneError when the memory does not
+/// suffice.
+System build_cloth(const SceneSpec& spec);
+
+}  // namespace mssim

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mssim {
+
+class FieldVisitor;
+
+/// Names the fields of one JSON object, each once, to whoever visits: the reader fills them from a file, the
+/// schema test compares them with the published schema. Such a list is the only place that knows a scene
+/// file's keys.
+using FieldList = std::function<void(FieldVisitor&)>;
+
+/// What a number in a scene file may be. The unit is part of the key.
+struct Range {
+  double minimum = 0;
+  bool minimum_excluded = false;
+  double maximum = 0;
+};
+constexpr Range from(double minimum, double maximum) { return {minimum, false, maximum}; }
+constexpr Range above(double minimum, double maximum) { return {minimum, true, maximum}; }
+
+enum class Presence { required, optional };
+
+/// Longest text of a scene file, in characters.
+inline constexpr std::size_t longest_text = 200;
+
+/// Is told the fields of one JSON object. Numbers, choices and objects marked so must be there; keys that no
+/// call names are not allowed.
+class FieldVisitor {
+ public:
+  FieldVisitor() = default;
+  FieldVisitor(const FieldVisitor&) = delete;
+  FieldVisitor& operator=(const FieldVisitor&) = delete;
+  virtual ~FieldVisitor() = default;
+
+  virtual void number(std::string_view key, double& target, const Range& range) = 0;
+  /// A number, or the text "auto", which leaves the target empty.
+  virtual void number_or_auto(std::string_view key, std::optional<double>& target, const Range& range) = 0;
+  virtual void integer(std::string_view key, std::uint32_t& target, std::uint32_t minimum,
+                       std::uint32_t maximum) = 0;
+  /// One line of at most `longest_text` characters.
+  virtual void text(std::string_view key, Presence presence, std::string& target) = 0;
+  /// One of `names`; returns its index.
+  virtual std::size_t choice(std::string_view key, std::span<const std::string_view> names) = 0;
+  /// A nested object; `fields` is called only when it is there.
+  virtual void object(std::string_view key, Presence presence, const FieldList& fields) = 0;
+};
+
+}  // namespace mssim

@@ -1,0 +1,195 @@
+#include "scene/json_document.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <system_error>
+#include <vector>
+
+#include "scene/scene_error.h"
+
+namespace mssim {
+namespace {
+
+using nlohmann::json;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
+  throw SceneError(printable(file.string(), 1000) + ": " + problem);
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    fail(file, "there is no such file: check the path, or name a scene of `mssim list scenes`");
+  if (error) fail(file, "cannot be looked up (" + error.message() + "): check the path and its permissions");
+  // A pipe would block and a folder reads as nothing, so only regular files are opened.
+  if (!std::filesystem::is_regular_file(status))
+    fail(file, "is not a regular file: give the path of a scene file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    fail(file, std::string("cannot be opened (") + std::strerror(errno) + "): check its permissions");
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  errno = 0;
+  // The length is counted while reading, because the one that the file system states can be wrong (/proc).
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) || stream.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > largest_json_bytes)
+      fail(file, "is longer than " + std::to_string(largest_json_bytes >> 20) +
+                     " MiB: give a scene file, which takes a few kilobytes");
+  }
+  if (stream.bad() || errno != 0)
+    fail(file, std::string("cannot be read (") + std::strerror(errno) + "): check the file and its disk");
+  if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
+  return text;
+}
+
+/// Follows the parser through the document: knows the place, and refuses what the parser lets pass.
+class Watcher {
+ public:
+  explicit Watcher(const std::filesystem::path& file) : file_(file) {}
+
+  bool operator()(json::parse_event_t event, const json& parsed) {
+    switch (event) {
+      case json::parse_event_t::object_start:
+      case json::parse_event_t::array_start:
+        if (levels_.size() == deepest_json_level)
+          fail(file_, printable(pointer()) + " is nested deeper than " + std::to_string(deepest_json_level) +
+                          " levels: a scene needs fewer, so remove the surplus brackets");
+        levels_.push_back({event == json::parse_event_t::array_start, 0, {}, {}});
+        break;
+      case json::parse_event_t::key:
+        levels_.back().key = parsed.get<std::string>();
+        if (!levels_.back().keys.insert(levels_.back().key).second)
+          fail(file_, printable(pointer()) + " is given twice: keep one of the two");
+        break;
+      case json::parse_event_t::object_end:
+      case json::parse_event_t::array_end:
+        levels_.pop_back();
+        next_element();
+        break;
+      case json::parse_event_t::value:
+        next_element();
+        break;
+    }
+    return true;
+  }
+
+  /// The value under way; at the top level the empty pointer.
+  std::string pointer() const {
+    std::string result;
+    for (const Level& level : levels_)
+      if (level.is_array)
+        result = json_pointer(result, std::to_string(level.element));
+      else if (!level.keys.empty())
+        result = json_pointer(result, level.key);
+    return result;
+  }
+
+ private:
+  struct Level {
+    bool is_array;
+    std::size_t element;  ///< of an array, the one under way
+    std::string key;      ///< of an object, the last one seen
+    std::set<std::string> keys;
+  };
+
+  void next_element() {
+    if (!levels_.empty() && levels_.back().is_array) ++levels_.back().element;
+  }
+
+  const std::filesystem::path& file_;
+  std::vector<Level> levels_;
+};
+
+/// The JSON library's account of a syntax error, "[json.exception.parse_error.101] parse error at line 1,
+/// column 9: syntax error while parsing value - invalid literal; last read: '"a": N'", from "line" on. It
+/// names what was expected for a wrong token but not for a broken one, where the context tells.
+std::string syntax_problem(std::string_view message) {
+  if (const std::size_t start = message.find("line "); start != std::string_view::npos)
+    message.remove_prefix(start);
+  std::string problem = printable(message, 300);
+  if (problem.find("expected ") == std::string::npos) {
+    if (problem.find("parsing object key") != std::string::npos)
+      problem += "; expected a key in double quotes";
+    else if (problem.find("parsing object separator") != std::string::npos)
+      problem += "; expected ':'";
+    else if (problem.find("parsing value") != std::string::npos)
+      problem += "; expected an object, a number, a string in double quotes, true, false or null";
+    else
+      problem += "; expected ',' or the closing bracket";
+  }
+  return problem;
+}
+
+/// The text between the first and the last apostrophe: the number, in the library's message about an
+/// overflow.
+std::string quoted_part(std::string_view message) {
+  const std::size_t first = message.find('\''), last = message.rfind('\'');
+  return first < last ? printable(message.substr(first + 1, last - first - 1)) : std::string("a number");
+}
+
+}  // namespace
+
+JsonDocument read_json(const std::filesystem::path& file) {
+  JsonDocument document{file, read_text(file), {}};
+  Watcher watcher(file);
+  try {
+    document.value = json::parse(
+        document.text, [&](int, json::parse_event_t event, json& parsed) { return watcher(event, parsed); });
+  } catch (const json::parse_error& error) {
+    const std::string place = watcher.pointer();
+    fail(file, "malformed JSON" + (place.empty() ? "" : " near " + printable(place)) + ", " +
+                   syntax_problem(error.what()) + ": correct the file there");
+  } catch (const json::out_of_range& error) {
+    fail(file, printable(watcher.pointer()) + " is " + quoted_part(error.what()) +
+                   ", which overflows to infinity: give a finite number");
+  }
+  return document;
+}
+
+std::string json_pointer(std::string_view pointer, std::string_view key) {
+  std::string result(pointer);
+  result += '/';
+  for (const char c : key) {
+    if (c == '~')
+      result += "~0";
+    else if (c == '/')
+      result += "~1";
+    else
+      result += c;
+  }
+  return result;
+}
+
+std::string printable(std::string_view text, std::size_t length) {
+  std::string result;
+  if (text.size() > length) {
+    std::size_t end = length;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
+      --end;  // not within a character
+    result = std::string(text.substr(0, end)) + "...";
+  } else {
+    result = text;
+  }
+  // The library's own writer escapes control characters and replaces what is not UTF-8; quotes are put back.
+  const std::string escaped = json(result).dump(-1, ' ', false, json::error_handler_t::replace);
+  result.clear();
+  for (std::size_t i = 1; i + 1 < escaped.size(); ++i) {
+    if (escaped[i] == '\\' && (escaped[i + 1] == '"' || escaped[i + 1] == '\\')) ++i;
+    result += escaped[i];
+  }
+  return result;
+}
+
+std::string shown_number(double number) {
+  // Shortest digits, also for whole numbers, which the JSON writer would give a ".0".
+  char text[32];
+  const std::to_chars_result end = std::to_chars(text, text + sizeof text, number);
+  return {text, end.ptr};
+}
+
+}  // namespace mssim

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "scene/scene_spec.h"
+
+namespace mssim {
+
+/// Bytes that any run of a scene needs at least: its System with the start state, and the double-precision
+/// reference that every run is compared with (up to four pairs of position and velocity), and one state read
+/// back. The backend under test comes on top.
+std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs);
+
+/// Bytes that this process can still get: what the kernel calls available, or what the address-space limit
+/// (`ulimit -v`) leaves if that is less.
+std::uint64_t memory_available();
+
+/// Throws SceneError when a scene of this size does not fit into the available memory, naming both. `pointer`
+/// is the JSON pointer to what sets the size.
+void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts);
+
+}  // namespace mssim

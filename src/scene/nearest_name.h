@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mssim {
+
+/// The candidate that `name` is most likely a misspelling of, or empty when none is near: at most a third of
+/// its letters (and always up to one) inserted, deleted, replaced or swapped with a neighbour, capitals
+/// counting as small letters.
+std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
+
+/// "a, b and c".
+std::string listed(std::span<const std::string_view> names);
+
+}  // namespace mssim

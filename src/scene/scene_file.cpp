@@ -1,0 +1,79 @@
+#include "scene/scene_file.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "model/data_folder.h"
+#include "scene/json_reader.h"
+#include "scene/nearest_name.h"
+#include "scene/scene_error.h"
+#include "scene/scene_kinds.h"
+
+namespace mssim {
+namespace {
+
+void visit_floor(FieldVisitor& fields, Floor& floor) {
+  fields.number("height_m", floor.height, from(-1e6, 1e6));
+  fields.number("restitution", floor.restitution, from(0, 1));
+  fields.number("friction", floor.friction, from(0, 100));
+}
+
+std::filesystem::path scene_folder() { return data_folder() / "scenes"; }
+
+}  // namespace
+
+void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
+  std::string schema;  // for editors; says nothing about the scene
+  fields.text("$schema", Presence::optional, schema);
+  std::vector<std::string_view> kind_names;
+  for (const SceneKind& kind : scene_kinds()) kind_names.push_back(kind.name);
+  const SceneKind& kind = scene_kinds()[fields.choice("kind", kind_names)];
+  fields.text("description", Presence::required, spec.description);
+  fields.number_or_auto("dt_s", spec.dt_s, above(0, 1));
+  fields.number("gravity_m_per_s2", spec.gravity_m_per_s2, from(0, 1000));
+  fields.number("viscous_damping_per_s", spec.viscous_damping_per_s, from(0, 1e6));
+  fields.object("floor", Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
+  fields.object(kind.name, Presence::required, [&](FieldVisitor& body) { kind.visit_fields(body, spec); });
+}
+
+SceneSpec load_scene(const std::filesystem::path& file) {
+  JsonDocument document = read_json(file);
+  SceneSpec spec;
+  read_fields(document, [&](FieldVisitor& fields) { visit_scene_fields(fields, spec); });
+  spec.name = file.stem().string();
+  spec.file = file;
+  spec.source = std::move(document.text);
+  kind_of(spec).check(spec);
+  return spec;
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::pair<std::uint64_t, std::string>> scenes;
+  for (const auto& entry : std::filesystem::directory_iterator(scene_folder())) {
+    const std::filesystem::path& file = entry.path();
+    if (file.extension() != ".json" || file.stem().extension() == ".schema") continue;
+    const SceneSpec spec = load_scene(file);
+    scenes.emplace_back(counts_of(spec).nodes, spec.name);
+  }
+  std::sort(scenes.begin(), scenes.end());
+  std::vector<std::string> names;
+  for (auto& [nodes, name] : scenes) names.push_back(std::move(name));
+  return names;
+}
+
+SceneSpec find_scene(std::string_view name_or_path) {
+  if (name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".json"))
+    return load_scene(name_or_path);
+  const std::vector<std::string> names = scene_names();
+  if (std::find(names.begin(), names.end(), name_or_path) == names.end()) {
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    const std::string_view nearest = nearest_name(name_or_path, known);
+    throw SceneError("no scene is named \"" + printable(name_or_path) + '"' +
+                     (nearest.empty() ? "" : ", did you mean \"" + std::string(nearest) + '"') +
+                     ": give a path to a scene file, or one of " + listed(known));
+  }
+  return load_scene(scene_folder() / (std::string(name_or_path) + ".json"));
+}
+
+}  // namespace mssim

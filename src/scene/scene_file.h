@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/field_visitor.h"
+#include "scene/scene_spec.h"
+
+namespace mssim {
+
+/// Names the fields of a whole scene file, with their targets in `spec`.
+void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec);
+
+/// Reads and checks a scene file. Throws SceneError.
+SceneSpec load_scene(const std::filesystem::path& file);
+
+/// The scene of that name (NAME.json in the data folder's scenes/), or of that file when `name_or_path`
+/// contains a slash or ends in .json. Throws SceneError; for an unknown name it lists the known ones.
+SceneSpec find_scene(std::string_view name_or_path);
+
+/// The names of the scenes in the data folder, the smallest (in nodes) first. Throws SceneError when one of
+/// them cannot be read.
+std::vector<std::string> scene_names();
+
+}  // namespace mssim

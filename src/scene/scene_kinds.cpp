@@ -1,0 +1,31 @@
+#include "scene/scene_kinds.h"
+
+#include <array>
+#include <variant>
+
+#include "scene/cloth.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::array<SceneKind, 1> kinds{{
+    {"cloth", visit_cloth_fields, check_cloth, cloth_counts, build_cloth},
+}};
+static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);
+
+}  // namespace
+
+std::span<const SceneKind> scene_kinds() { return kinds; }
+
+const SceneKind& kind_of(const SceneSpec& spec) { return kinds.at(spec.body.index()); }
+
+SceneCounts counts_of(const SceneSpec& spec) { return kind_of(spec).counts(spec); }
+
+System build_system(const SceneSpec& spec) {
+  System system = kind_of(spec).build(spec);
+  for (std::vector<Vec3d>* vectors : {&system.start.position, &system.start.velocity})
+    for (Vec3d& vector : *vectors) vector = vec3_cast<double>(vec3_cast<float>(vector));
+  return system;
+}
+
+}  // namespace mssim

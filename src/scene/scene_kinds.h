@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "model/system.h"
+#include "scene/field_visitor.h"
+#include "scene/scene_spec.h"
+
+namespace mssim {
+
+/// A row of the TABLE of scene kinds.
+struct SceneKind {
+  std::string_view name;  ///< value of the file's `kind`, and the key of the section that describes the body
+  /// Names the section's fields, with their targets in spec.body, which it sets to its alternative.
+  void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
+  /// Checks what one field alone cannot show. Throws SceneError.
+  void (*check)(const SceneSpec& spec);
+  SceneCounts (*counts)(const SceneSpec& spec);
+  /// Throws SceneError when the memory does not suffice.
+  System (*build)(const SceneSpec& spec);
+};
+
+/// The TABLE of scene kinds, in the order of SceneSpec::body's alternatives. A new kind is one row in
+/// scene_kinds.cpp and one alternative.
+std::span<const SceneKind> scene_kinds();
+
+/// The row of the scene's kind.
+const SceneKind& kind_of(const SceneSpec& spec);
+
+/// Nodes and springs of the scene, without building it.
+SceneCounts counts_of(const SceneSpec& spec);
+
+/// The System of the scene. Throws SceneError when it needs more memory than there is, before allocating any.
+System build_system(const SceneSpec& spec);
+
+}  // namespace mssim

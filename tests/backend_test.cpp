@@ -1,0 +1,189 @@
+// Every backend against the double-precision reference, for every integrator.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "backends/backends.h"
+#include "backends/grid_bands/step_bands.h"
+#include "backends/openmp.h"
+#include "bench/verification.h"
+#include "cloth_system.h"
+#include "integrators/integrators.h"
+
+namespace mssim {
+namespace {
+
+constexpr double dt_s = 1e-4;
+
+std::string plain(std::string_view name) {
+  std::string text(name);
+  for (char& c : text)
+    if (c == '-') c = '_';
+  return text;
+}
+
+class EachBackendAndIntegrator
+    : public testing::TestWithParam<std::tuple<std::string_view, std::string_view>> {
+ protected:
+  const BackendInfo& backend() const { return *find_backend(std::get<0>(GetParam())); }
+  const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
+  std::unique_ptr<Backend> make(const System& system, int threads = 2) const {
+    return backend().make(system, integrator(), dt_s, {threads, ""});
+  }
+};
+
+std::vector<std::string_view> names_of(const auto& table) {
+  std::vector<std::string_view> names;
+  for (const auto& row : table) names.push_back(row.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Tables, EachBackendAndIntegrator,
+                         testing::Combine(testing::ValuesIn(names_of(backends())),
+                                          testing::ValuesIn(names_of(integrators))),
+                         [](const auto& info) {
+                           return plain(std::get<0>(info.param)) + "__" + plain(std::get<1>(info.param));
+                         });
+
+TEST_P(EachBackendAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
+  // Odd sizes, fewer rows than lanes, single rows and columns: where layouts go wrong.
+  for (const auto& [rows, columns] :
+       {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {2U, 2U}, {1U, 7U}, {7U, 1U}}) {
+    const System system = cloth_system(rows, columns);
+    const Reference reference = run_reference(system, integrator(), dt_s);
+    ASSERT_FALSE(reference.failure) << *reference.failure;
+    ASSERT_EQ(reference.steps, verification_steps);
+    const auto simulation = make(system);
+    const Verification verification = verify(*simulation, system, reference, dt_s);
+    EXPECT_FALSE(verification.failure)
+        << rows << " x " << columns << ": " << verification.failure.value_or("");
+  }
+}
+
+TEST_P(EachBackendAndIntegrator, HoldsPinsExactlyWhereverTheyAre) {
+  SceneSpec spec = cloth_spec(20, 23);
+  std::get<ClothSpec>(spec.body).pins = ClothSpec::Pins{13, 5};
+  const System system = build_system(spec);
+  ASSERT_GE(system.pins.size(), 5U);
+  const auto simulation = make(system);
+  simulation->step(50);
+  const State state = simulation->state();
+  for (const std::uint32_t node : system.pins) {
+    EXPECT_EQ(state.position[node], system.start.position[node]) << node;
+    EXPECT_EQ(state.velocity[node], Vec3d{}) << node;
+  }
+}
+
+TEST_P(EachBackendAndIntegrator, TreatsTheFloorLikeTheReference) {
+  // A sheet that hits the floor flat, sliding: its nodes land in the same step in any precision.
+  SceneSpec spec = cloth_spec(20, 17);
+  auto& cloth = std::get<ClothSpec>(spec.body);
+  cloth.pins.reset();
+  cloth.ripple = {};
+  cloth.ripple.wavelength_m = 1;
+  cloth.ceiling_height_m = 0.00101;
+  System system = build_system(spec);
+  for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
+  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto simulation = make(system);
+  reference->step(15);
+  simulation->step(15);
+  const State expected = reference->state(), state = simulation->state();
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    EXPECT_GT(expected.velocity[i].y, 0.2) << "it has bounced";
+    EXPECT_LT(expected.velocity[i].x, 0.45) << "friction has slowed it";
+    EXPECT_NEAR(state.velocity[i].x, expected.velocity[i].x, 2e-3);
+    EXPECT_NEAR(state.velocity[i].y, expected.velocity[i].y, 2e-3);
+    EXPECT_NEAR(state.velocity[i].z, expected.velocity[i].z, 2e-3);
+    EXPECT_NEAR(state.position[i].y, expected.position[i].y, 1e-6);
+  }
+}
+
+TEST_P(EachBackendAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
+  const System system = cloth_system(12, 19);
+  const auto simulation = make(system);
+  simulation->step(7);
+  const State once = simulation->state();
+  simulation->set_state(system.start);
+  EXPECT_EQ(simulation->state().position, system.start.position);
+  EXPECT_EQ(simulation->state().velocity, system.start.velocity);
+  simulation->step(7);
+  const State again = simulation->state();
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    EXPECT_NEAR(again.position[i].y, once.position[i].y, 1e-6);
+    EXPECT_NEAR(again.velocity[i].y, once.velocity[i].y, 1e-3);
+  }
+}
+
+class EachIntegratorOnOpenMp : public testing::TestWithParam<std::string_view> {
+ protected:
+  const Integrator& integrator() const { return *find_integrator(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorOnOpenMp, testing::ValuesIn(names_of(integrators)),
+                         [](const auto& info) { return plain(info.param); });
+
+TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
+  for (const auto& [rows, columns] : {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {61U, 200U}}) {
+    SceneSpec spec = cloth_spec(rows, columns);
+    std::get<ClothSpec>(spec.body).ceiling_height_m = 0.02;  // the floor is met on the way
+    const System system = build_system(spec);
+    const auto alone = make_openmp(system, integrator(), dt_s, {1, ""});
+    alone->step(600);
+    const State expected = alone->state();
+    for (const int threads : {2, 3, 4, 7}) {
+      const auto simulation = make_openmp(system, integrator(), dt_s, {threads, ""});
+      simulation->step(600);
+      const State state = simulation->state();
+      EXPECT_EQ(state.position, expected.position)
+          << rows << " x " << columns << ", " << threads << " threads";
+      EXPECT_EQ(state.velocity, expected.velocity)
+          << rows << " x " << columns << ", " << threads << " threads";
+    }
+  }
+}
+
+TEST_P(EachIntegratorOnOpenMp, IsVerifiedForEveryInstructionSetOfThisProcessor) {
+  const System system = cloth_system(37, 23);
+  const Reference reference = run_reference(system, integrator(), dt_s);
+  const std::int64_t all = hwy::SupportedTargets();
+  int tried = 0;
+  for (std::int64_t rest = all & HWY_TARGETS; rest != 0; rest &= rest - 1) {
+    hwy::SetSupportedTargetsForTest(rest & -rest);
+    hwy::GetChosenTarget().Update(rest & -rest);
+    const auto simulation = make_openmp(system, integrator(), dt_s, {2, ""});
+    const Verification verification = verify(*simulation, system, reference, dt_s);
+    EXPECT_FALSE(verification.failure) << simulation->device() << ": " << verification.failure.value_or("");
+    ++tried;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(all);
+  EXPECT_GE(tried, 1);
+}
+
+TEST(BackendTable, NamesEachOnceWithItsPaperConfiguration) {
+  for (const BackendInfo& backend : backends()) {
+    EXPECT_EQ(find_backend(backend.name), &backend);
+    EXPECT_FALSE(backend.paper_configuration.empty());
+  }
+  EXPECT_EQ(backends().size(), 5U);
+  EXPECT_EQ(find_backend("cuda"), nullptr);
+}
+
+TEST(BackendTable, SaysWhyADeviceBackendCannotRun) {
+  const ExecutionOptions options{1, "no such device"};
+  for (const BackendInfo& backend : backends()) {
+    const std::string reason = unavailable_reason(backend, options);
+    EXPECT_EQ(reason.empty(), !backend.uses_device) << backend.name;
+    if (!backend.uses_device) continue;
+    EXPECT_NE(reason.find("no such device"), std::string::npos) << reason;
+    const System system = cloth_system(4, 4);
+    EXPECT_THROW(backend.make(system, integrators[0], dt_s, options), Unavailable);
+  }
+}
+
+}  // namespace
+}  // namespace mssim

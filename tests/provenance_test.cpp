@@ -1,0 +1,153 @@
+#include "bench/provenance.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A folder that is removed at the end.
+class MadeUpMachine : public testing::Test {
+ protected:
+  fs::path root = fs::path(testing::TempDir()) / ("mssim_machine_" + std::to_string(getpid()));
+  ~MadeUpMachine() override { fs::remove_all(root); }
+
+  void put(const std::string& file, const std::string& text) const {
+    fs::create_directories((root / file).parent_path());
+    std::ofstream(root / file) << text;
+  }
+  void put_cache(int cpu, int index, const std::string& level, const std::string& type,
+                 const std::string& size, const std::string& shared) const {
+    const std::string folder =
+        "sys/devices/system/cpu/cpu" + std::to_string(cpu) + "/cache/index" + std::to_string(index) + "/";
+    put(folder + "level", level + "\n");
+    put(folder + "type", type + "\n");
+    put(folder + "size", size + "\n");
+    put(folder + "shared_cpu_list", shared + "\n");
+  }
+};
+
+TEST_F(MadeUpMachine, IsReadFromItsFiles) {
+  put("proc/cpuinfo", "processor\t: 0\nmodel name\t: A Processor (R) 9000\ncpu MHz\t\t: 3400.125\n");
+  put("proc/meminfo", "MemTotal:       16384 kB\nMemFree: 1 kB\n");
+  put("proc/loadavg", "0.50 1.25 2.00 1/100 4242\n");
+  put("etc/os-release", "ID=x\nPRETTY_NAME=\"Some Linux 12 (name)\"\n");
+  put("sys/devices/system/cpu/online", "0-2,5\n");
+  put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n");
+  for (const int cpu : {0, 1, 2, 5}) {
+    put_cache(cpu, 0, "1", "Data", "48K", std::to_string(cpu));
+    put_cache(cpu, 1, "1", "Instruction", "32K", std::to_string(cpu));
+    put_cache(cpu, 2, "3", "Unified", "32M", "0-2,5");
+  }
+  const Machine machine = read_machine(root);
+  EXPECT_EQ(machine.cpu_model, "A Processor (R) 9000");
+  EXPECT_EQ(machine.cpu_mhz, 3400.125);
+  EXPECT_EQ(machine.logical_cpus, 4);
+  EXPECT_EQ(machine.memory_bytes, 16U << 20);
+  EXPECT_THAT(machine.load_average, ElementsAre(0.5, 1.25, 2.0));
+  EXPECT_EQ(machine.operating_system, "Some Linux 12 (name)");
+  EXPECT_EQ(machine.governor, "performance");
+  ASSERT_EQ(machine.caches.size(), 3U);
+  EXPECT_EQ(machine.caches[0].type, "Data");
+  EXPECT_EQ(machine.caches[0].bytes, 48U << 10);
+  EXPECT_EQ(machine.caches[0].count, 4);
+  EXPECT_EQ(machine.caches[0].sharing, 1);
+  EXPECT_EQ(machine.caches[2].level, 3);
+  EXPECT_EQ(machine.caches[2].bytes, 32U << 20);
+  EXPECT_EQ(machine.caches[2].count, 1);
+  EXPECT_EQ(machine.caches[2].sharing, 4);
+}
+
+TEST_F(MadeUpMachine, MayHideEverything) {
+  const Machine machine = read_machine(root / "nothing");
+  EXPECT_EQ(machine.cpu_model, "");
+  EXPECT_EQ(machine.governor, std::nullopt);
+  EXPECT_TRUE(machine.caches.empty());
+  EXPECT_TRUE(machine.load_average.empty());
+  EXPECT_EQ(machine.memory_bytes, 0U);
+}
+
+TEST_F(MadeUpMachine, OfArmIsNamedByItsNumbers) {
+  put("proc/cpuinfo", "processor : 0\nCPU implementer\t: 0x41\nCPU part\t: 0xd0c\n");
+  EXPECT_EQ(read_machine(root).cpu_model, "implementer 0x41 part 0xd0c");
+}
+
+TEST(Hash, EqualsThePublishedTestVectors) {
+  // From the FNV draft's appendix.
+  EXPECT_EQ(fnv1a_64(""), 0xcbf29ce484222325U);
+  EXPECT_EQ(fnv1a_64("a"), 0xaf63dc4c8601ec8cU);
+  EXPECT_EQ(fnv1a_64("foobar"), 0x85944171f73967e8U);
+}
+
+void expect_finite_numbers(const nlohmann::json& value) {
+  if (value.is_number_float()) {
+    EXPECT_TRUE(std::isfinite(value.get<double>()));
+  }
+  if (value.is_structured()) {
+    for (const auto& child : value) expect_finite_numbers(child);
+  }
+}
+
+TEST(Provenance, TellsWhatRanWhereAndHow) {
+  setenv("OMP_PLACES", "cores", 1);
+  Provenance provenance = gather_provenance({"/opt/x/bin/mssim", "bench", "--threads", "2"}, 2);
+  unsetenv("OMP_PLACES");
+  add_scene(provenance, "cloth2500", "foobar");
+  provenance.opencl_devices = {"platform / device / driver"};
+  const nlohmann::json json = nlohmann::json::parse(to_json(provenance).dump());
+  EXPECT_THAT(json["command_line"], ElementsAre("mssim", "bench", "--threads", "2"));
+  EXPECT_EQ(json["build"]["commit"], build_info().commit);
+  EXPECT_EQ(json["build"]["compiler"], build_info().compiler);
+  EXPECT_EQ(json["threads"]["asked_for"], 2);
+  EXPECT_EQ(json["threads"]["environment"]["OMP_PLACES"], "cores");
+  EXPECT_GE(json["threads"]["allowed_cpus"].size(), 1U);
+  EXPECT_GE(json["cpu"]["logical_cpus"], 1);
+  EXPECT_GT(json["memory_bytes"], 1 << 20);
+  EXPECT_EQ(json["scenes_fnv1a_64"]["cloth2500"], "85944171f73967e8");
+  EXPECT_EQ(json["opencl_devices"][0], "platform / device / driver");
+  EXPECT_TRUE(std::regex_match(json["started_utc"].get<std::string>(),
+                               std::regex(R"(20\d\d-[01]\d-[0-3]\dT[0-2]\d:[0-5]\d:[0-6]\dZ)")));
+  expect_finite_numbers(json);
+}
+
+TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
+  setenv("MSSIM_TEST_TOKEN", "hush-hush", 1);
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  setenv("HOME", "/home/jane_doe", 1);
+  const std::string json =
+      to_json(gather_provenance({"/home/jane_doe/mssim/bin/mssim", "bench", "--out=/home/jane_doe/results",
+                                 "/home/jane_doe2", "/home/jane_doe"},
+                                1))
+          .dump();
+  setenv("HOME", home.c_str(), 1);
+  unsetenv("MSSIM_TEST_TOKEN");
+  EXPECT_THAT(json, Not(HasSubstr("hush-hush")));
+  EXPECT_THAT(json, HasSubstr(R"(["mssim","bench","--out=~/results","/home/jane_doe2","~"])"));
+}
+
+TEST(Provenance, HoldsTheseFactsAndNoOthers) {
+  std::vector<std::string> facts;
+  const nlohmann::json json = to_json(gather_provenance({"mssim"}, 1));
+  for (const auto& [name, value] : json.items()) facts.push_back(name);
+  EXPECT_THAT(facts,
+              ElementsAre("build", "command_line", "cpu", "kernel", "load_average", "memory_bytes",
+                          "opencl_devices", "operating_system", "scenes_fnv1a_64", "started_utc", "threads"));
+}
+
+}  // namespace
+}  // namespace mssim
