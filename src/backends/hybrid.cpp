@@ -177,6 +177,7 @@ class Hybrid final : public Backend {
 
   std::string device() const override { return device_.name; }
   int threads() const override { return threads_; }
+  bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
 
  private:
   struct Launch {
