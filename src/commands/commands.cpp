@@ -10,6 +10,7 @@
 #include "commands/exit_code.h"
 #include "commands/list_command.h"
 #include "commands/run_command.h"
+#include "commands/run_provenance.h"
 #include "output/write_error.h"
 #include "scene/scene_error.h"
 
@@ -57,10 +58,13 @@ int run_guarded(const std::function<int()>& run) {
 std::span<const Command> commands() { return table; }
 
 int run_program(int argc, char** argv) {
-  CLI::App app("mssim " + std::string(build_info().version) + ": benchmark harness for parallel mass-spring simulation",
+  remember_arguments(argc, argv);
+  CLI::App app("mssim " + std::string(build_info().version) +
+                   ": benchmark harness for parallel mass-spring simulation",
                "mssim");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "mssim " + std::string(build_info().version) + " (" + std::string(build_info().commit) +
+  app.set_version_flag("--version", "mssim " + std::string(build_info().version) + " (" +
+                                        std::string(build_info().commit) +
                                         (build_info().dirty ? ", changed" : "") + ")");
   std::string examples = "Examples:";
   std::function<int()> run;

@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <set>
@@ -112,6 +114,13 @@ std::string syntax_problem(std::string_view message) {
   if (const std::size_t start = message.find("line "); start != std::string_view::npos)
     message.remove_prefix(start);
   std::string problem = printable(message, 300);
+  // After an element the library asks for the closing bracket alone, though a comma is what is usually
+  // missing.
+  if (const std::size_t bracket = problem.find("; expected '"); bracket != std::string::npos) {
+    const std::size_t at = bracket + std::string_view("; expected ").size();
+    if (problem.compare(at, 3, "'}'") == 0 || problem.compare(at, 3, "']'") == 0)
+      problem.insert(at, "',' or ");
+  }
   if (problem.find("expected ") == std::string::npos) {
     if (problem.find("parsing object key") != std::string::npos)
       problem += "; expected a key in double quotes";
@@ -186,9 +195,12 @@ std::string printable(std::string_view text, std::size_t length) {
 }
 
 std::string shown_number(double number) {
-  // Shortest digits, also for whole numbers, which the JSON writer would give a ".0".
-  char text[32];
-  const std::to_chars_result end = std::to_chars(text, text + sizeof text, number);
+  // Whole numbers in full (general notation would make 1e+06 of a million), others in the fewest digits.
+  const bool whole = std::abs(number) < 1e15 && number == std::trunc(number);
+  char text[64];
+  const std::to_chars_result end =
+      whole ? std::to_chars(text, text + sizeof text, static_cast<std::int64_t>(number))
+            : std::to_chars(text, text + sizeof text, number, std::chars_format::general);
   return {text, end.ptr};
 }
 

@@ -92,8 +92,7 @@ class JsonReader final : public FieldVisitor {
   }
 
   std::size_t choice(std::string_view key, std::span<const std::string_view> names) override {
-    std::string wanted = "one of";
-    for (const std::string_view name : names) wanted += " \"" + std::string(name) + '"';
+    std::string wanted = "the text " + listed(names, "or");
     const json* value = find(key, Presence::required, wanted);
     if (value == nullptr) return 0;  // finish() throws
     if (!value->is_string()) refuse(key, *value, wanted);
@@ -101,7 +100,8 @@ class JsonReader final : public FieldVisitor {
     const auto match = std::find(names.begin(), names.end(), word);
     if (match == names.end()) {
       const std::string_view nearest = nearest_name(word, names);
-      refuse(key, *value, wanted + (nearest.empty() ? "" : ", perhaps \"" + std::string(nearest) + '"'));
+      if (!nearest.empty() && names.size() > 1) wanted += ", perhaps " + std::string(nearest);
+      refuse(key, *value, wanted);
     }
     return static_cast<std::size_t>(match - names.begin());
   }

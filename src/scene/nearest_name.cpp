@@ -44,10 +44,11 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
   return nearest;
 }
 
-std::string listed(std::span<const std::string_view> names) {
+std::string listed(std::span<const std::string_view> names, std::string_view last_word) {
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) list += i + 1 < names.size() ? ", " : " and ";
+    if (i > 0 && i + 1 < names.size()) list += ", ";
+    if (i > 0 && i + 1 == names.size()) list.append(" ").append(last_word).append(" ");
     list += names[i];
   }
   return list;

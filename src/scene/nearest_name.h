@@ -11,7 +11,7 @@ namespace mssim {
 /// counting as small letters.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
 
-/// "a, b and c".
-std::string listed(std::span<const std::string_view> names);
+/// "a, b and c", or with another last word "a, b or c".
+std::string listed(std::span<const std::string_view> names, std::string_view last_word = "and");
 
 }  // namespace mssim

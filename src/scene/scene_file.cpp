@@ -1,7 +1,6 @@
 #include "scene/scene_file.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "model/data_folder.h"
@@ -20,6 +19,21 @@ void visit_floor(FieldVisitor& fields, Floor& floor) {
 }
 
 std::filesystem::path scene_folder() { return data_folder() / "scenes"; }
+
+std::filesystem::path file_of(std::string_view name) {
+  return scene_folder() / (std::string(name) + ".json");
+}
+
+/// In no particular order. The schema beside the scenes, scene.schema.json, is not one of them.
+std::vector<std::string> names_in_folder() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(scene_folder())) {
+    const std::filesystem::path& file = entry.path();
+    if (file.extension() == ".json" && file.stem().extension() != ".schema")
+      names.push_back(file.stem().string());
+  }
+  return names;
+}
 
 }  // namespace
 
@@ -50,12 +64,8 @@ SceneSpec load_scene(const std::filesystem::path& file) {
 
 std::vector<std::string> scene_names() {
   std::vector<std::pair<std::uint64_t, std::string>> scenes;
-  for (const auto& entry : std::filesystem::directory_iterator(scene_folder())) {
-    const std::filesystem::path& file = entry.path();
-    if (file.extension() != ".json" || file.stem().extension() == ".schema") continue;
-    const SceneSpec spec = load_scene(file);
-    scenes.emplace_back(counts_of(spec).nodes, spec.name);
-  }
+  for (std::string& name : names_in_folder())
+    scenes.emplace_back(counts_of(load_scene(file_of(name))).nodes, std::move(name));
   std::sort(scenes.begin(), scenes.end());
   std::vector<std::string> names;
   for (auto& [nodes, name] : scenes) names.push_back(std::move(name));
@@ -65,15 +75,15 @@ std::vector<std::string> scene_names() {
 SceneSpec find_scene(std::string_view name_or_path) {
   if (name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".json"))
     return load_scene(name_or_path);
-  const std::vector<std::string> names = scene_names();
-  if (std::find(names.begin(), names.end(), name_or_path) == names.end()) {
-    const std::vector<std::string_view> known(names.begin(), names.end());
-    const std::string_view nearest = nearest_name(name_or_path, known);
-    throw SceneError("no scene is named \"" + printable(name_or_path) + '"' +
-                     (nearest.empty() ? "" : ", did you mean \"" + std::string(nearest) + '"') +
-                     ": give a path to a scene file, or one of " + listed(known));
-  }
-  return load_scene(scene_folder() / (std::string(name_or_path) + ".json"));
+  const std::vector<std::string> names = names_in_folder();
+  if (std::find(names.begin(), names.end(), name_or_path) != names.end())
+    return load_scene(file_of(name_or_path));
+  const std::vector<std::string> sorted_names = scene_names();
+  const std::vector<std::string_view> known(sorted_names.begin(), sorted_names.end());
+  const std::string_view nearest = nearest_name(name_or_path, known);
+  throw SceneError("no scene is named \"" + printable(name_or_path) + '"' +
+                   (nearest.empty() ? "" : ", did you mean \"" + std::string(nearest) + '"') +
+                   ": give a path to a scene file, or a name: " + listed(known, "or"));
 }
 
 }  // namespace mssim

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/bench_scene.h"
+#include "bench/result.h"
+#include "commands/prepared_scene.h"
+
+namespace mssim {
+
+/// Traces every combination whose row is ok, from the start over as many steps as it was verified with, into
+/// FOLDER/SCENE-BACKEND-INTEGRATOR.h5: what `mssim bench --trace` does after the timing. Throws WriteError.
+void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
+                        const std::filesystem::path& folder,
+                        const std::function<void(const std::string& activity)>& progress);
+
+}  // namespace mssim

@@ -1,0 +1,64 @@
+#include "commands/run_provenance.h"
+
+#include <nlohmann/json.hpp>
+
+#include "backends/opencl_device.h"
+
+namespace mssim {
+namespace {
+
+std::vector<std::string>& arguments() {
+  static std::vector<std::string> remembered;
+  return remembered;
+}
+
+/// As a shell reads it back: in single quotes unless all its characters are plain.
+std::string quoted(const std::string& argument) {
+  const bool plain = !argument.empty() && argument.find_first_not_of(
+                                              "abcdefghijklmnopqrstuvwxyz"
+                                              "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                              "0123456789_-+=:,./~%@") == std::string::npos;
+  if (plain) return argument;
+  std::string text = "'";
+  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+void remember_arguments(int argc, char** argv) { arguments().assign(argv, argv + argc); }
+
+std::string command_line() {
+  std::string text;
+  for (const std::string& argument : gather_provenance(arguments(), 0).command_line)
+    text += (text.empty() ? "" : " ") + quoted(argument);
+  return text;
+}
+
+Provenance run_provenance(int threads) {
+  Provenance provenance = gather_provenance(arguments(), threads);
+  try {
+    for (const OpenclDevice& device : opencl_devices())
+      provenance.opencl_devices.push_back(device.platform + ": " + device.name + ", driver " +
+                                          device.driver_version);
+  } catch (const Unavailable& reason) {
+    provenance.opencl_devices.push_back(reason.what());  // rows that need a device say the same
+  }
+  return provenance;
+}
+
+TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
+                         const Integrator& integrator) {
+  Provenance provenance = run_provenance(backend.threads());
+  add_scene(provenance, scene.spec.name, scene.spec.source);
+  TraceHeader header;
+  header.creator_version = build_info().version;
+  header.scene_json = scene.spec.source;
+  header.provenance_json = to_json(provenance).dump(2);
+  header.backend = backend_name + " on " + backend.device();
+  header.integrator = integrator.name;
+  header.dt_s = scene.dt_s;
+  return header;
+}
+
+}  // namespace mssim

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "backends/backend.h"
+#include "bench/provenance.h"
+#include "commands/prepared_scene.h"
+#include "output/h5md_trace.h"
+
+namespace mssim {
+
+/// Remembers main's arguments for the provenance of what the program writes. Called once, first.
+void remember_arguments(int argc, char** argv);
+
+/// The command line in one line, quoted where a shell needs it.
+std::string command_line();
+
+/// Where this run's numbers come from, with the OpenCL devices of the machine. Scenes are added with
+/// add_scene.
+Provenance run_provenance(int threads);
+
+/// The header of a trace of `scene`, stepped by `backend` (called `backend_name` in the table).
+TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
+                         const Integrator& integrator);
+
+}  // namespace mssim
