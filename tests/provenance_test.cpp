@@ -126,7 +126,8 @@ TEST(Provenance, TellsWhatRanWhereAndHow) {
 
 TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
   setenv("MSSIM_TEST_TOKEN", "hush-hush", 1);
-  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  const char* variable = std::getenv("HOME");
+  const std::string home = variable ? variable : "";
   setenv("HOME", "/home/jane_doe", 1);
   const std::string json =
       to_json(gather_provenance({"/home/jane_doe/mssim/bin/mssim", "bench", "--out=/home/jane_doe/results",
