@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "backends/grid_bands/column_walk-inl.h"
+#include "backends/spin_barrier.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
@@ -111,10 +113,14 @@ template <std::size_t method>
 HWY_INLINE void step_method(BandSheet& sheet, int count) {
   // Every thread computes its own columns whole, whatever their number: the order of every sum depends on the
   // cloth alone, and the result is the same to the last bit for any number of threads.
-#pragma omp parallel num_threads(static_cast <int>(sheet.parts.size()))
+  const int parts = static_cast<int>(sheet.parts.size());
+  std::optional<SpinBarrier> barrier;
+#pragma omp parallel num_threads(parts)
   {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
+#pragma omp single
+    barrier.emplace(threads);
     const auto for_my_parts = [&](auto&& act) HWY_ATTR {
       for (std::size_t p = thread; p < sheet.parts.size(); p += threads) act(p);
     };
@@ -126,9 +132,9 @@ HWY_INLINE void step_method(BandSheet& sheet, int count) {
             last ? Pair::next : integrators[method].stages[(s + 1) % stages].gather;
         for_my_parts([&](std::size_t p) HWY_ATTR { walk_part<method, s>(sheet, sheet.parts[p]); });
         if (sheet.parts.size() > 1) {
-#pragma omp barrier
+          barrier->wait();
           for_my_parts([&](std::size_t p) HWY_ATTR { fetch_ghosts(sheet, p, gathered_next); });
-#pragma omp barrier
+          barrier->wait();
         }
         if constexpr (last && swaps_state(integrators[method], Storage::in_place))
           for_my_parts([&](std::size_t p) HWY_ATTR {
