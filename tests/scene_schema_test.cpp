@@ -6,7 +6,7 @@
 
 #include "scene/field_visitor.h"
 #include "scene/scene_file.h"
-#include "tests/scene_files.h"
+#include "scene_files.h"
 
 namespace mssim {
 namespace {
@@ -73,7 +73,7 @@ json without_words(json schema, const std::string& place) {
   schema.erase("$schema");
   if (schema.contains("properties"))
     for (auto& [key, property] : schema["properties"].items())
-      property = without_words(property, place + '/' + key);
+      property = without_words(property, key);
   return schema;
 }
 
