@@ -12,7 +12,7 @@ integrators
 contact      model kernels
 backends     model integrators kernels contact
 bench        backends model integrators mssim
-output       model bench/result.h bench/provenance.h
+output       model bench/result.h bench/provenance.h bench/statistics.h
 commands     *
 main.cpp     *
 '

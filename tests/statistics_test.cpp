@@ -118,8 +118,16 @@ TEST(MedianRatio, IsNotTheRatioOfMedians) {
   EXPECT_EQ(ratio.high, 10);
 }
 
+TEST(MeanDeviation, OfTheNumbersOneToFiveIsTheTextbookOne) {
+  const MeanDeviation moments = mean_deviation(std::vector{1.0, 2.0, 3.0, 4.0, 5.0});
+  EXPECT_DOUBLE_EQ(moments.mean, 3);
+  EXPECT_DOUBLE_EQ(moments.deviation, std::sqrt(2.5));
+  EXPECT_EQ(mean_deviation(std::vector{7.0}).deviation, 0);
+}
+
 TEST(Statistics, RefuseSamplesThatHaveNoMedian) {
   EXPECT_THROW(median({}), std::invalid_argument);
+  EXPECT_THROW(mean_deviation({}), std::invalid_argument);
   EXPECT_THROW(median(std::vector{1.0, std::numeric_limits<double>::quiet_NaN()}), std::invalid_argument);
   EXPECT_THROW(median_ratio(std::vector{1.0}, std::vector{1.0, 2.0}), std::invalid_argument);
   EXPECT_THROW(median_ratio(std::vector{1.0}, std::vector{0.0}), std::invalid_argument);

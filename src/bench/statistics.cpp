@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -48,6 +49,17 @@ std::size_t interval_rank(std::size_t samples) {
 }
 
 double median(std::span<const double> samples) { return middle(sorted(samples)); }
+
+MeanDeviation mean_deviation(std::span<const double> samples) {
+  if (samples.empty()) throw std::invalid_argument("a mean needs at least one sample");
+  const auto count = static_cast<double>(samples.size());
+  const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / count;
+  if (samples.size() == 1) return {mean, 0};
+  const double squares =
+      std::transform_reduce(samples.begin(), samples.end(), 0.0, std::plus<>(),
+                            [&](double sample) { return (sample - mean) * (sample - mean); });
+  return {mean, std::sqrt(squares / (count - 1))};
+}
 
 MedianInterval median_interval(std::span<const double> samples) {
   const std::vector<double> ascending = sorted(samples);

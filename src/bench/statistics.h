@@ -36,6 +36,15 @@ std::size_t interval_rank(std::size_t samples);
 /// one that is not finite.
 double median(std::span<const double> samples);
 
+/// Mean, and standard deviation of the distribution as estimated from the sample (division by n - 1), for
+/// formats that ask for them: both follow outliers, which the median does not.
+struct MeanDeviation {
+  double mean = 0;
+  double deviation = 0;  ///< 0 for a single sample
+};
+/// Throws std::invalid_argument for no samples.
+MeanDeviation mean_deviation(std::span<const double> samples);
+
 /// Throws like median().
 MedianInterval median_interval(std::span<const double> samples);
 

@@ -1,16 +1,21 @@
 #include "model/data_folder.h"
 
 #include <stdexcept>
+#include <system_error>
 
 namespace mssim {
 
 std::filesystem::path data_folder() {
-  const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe");
-  std::filesystem::path folder = executable.parent_path().parent_path() / "share" / "mssim";
-  if (!std::filesystem::is_directory(folder))
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error)
+    throw std::runtime_error("mssim cannot find its own program file through /proc/self/exe (" +
+                             error.message() + "), beside which its data folder lies");
+  const std::filesystem::path folder = program.parent_path().parent_path() / "share" / "mssim";
+  if (!std::filesystem::is_directory(folder, error))
     throw std::runtime_error(
-        folder.string() + ": the data folder of " + executable.string() +
-        " is missing: install mssim with `cmake --install`, or run it from its build folder");
+        "the data folder " + folder.string() + " of " + program.string() +
+        " is missing: run mssim from its build tree or from where `cmake --install` put it");
   return folder;
 }
 

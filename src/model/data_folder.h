@@ -4,8 +4,9 @@
 
 namespace mssim {
 
-/// The folder with the scenes, kernels and published results: share/mssim beside the bin/ of the running
-/// executable, in a build tree as after an installation. Throws std::runtime_error when it is not there.
+/// The folder of what mssim reads at run time (`kernels`, `scenes`, `published`): share/mssim beside the
+/// folder that holds the running program, in the build tree as in an installation. Throws std::runtime_error
+/// with one sentence when it is missing.
 std::filesystem::path data_folder();
 
 }  // namespace mssim

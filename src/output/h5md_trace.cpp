@@ -1,5 +1,6 @@
 #include "output/h5md_trace.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <stdexcept>
@@ -15,6 +16,8 @@ namespace mssim {
 namespace {
 
 constexpr std::size_t dimensions = 3;
+/// What HDF5 itself adds to a file at a time, at most: a few index nodes and chunks of numbers.
+constexpr std::size_t room_for_metadata = 65536;
 
 struct EnergyInfo {
   const char* path;
@@ -141,6 +144,9 @@ H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const Tra
   require_replaceable(file_name_);
   require_replaceable(temporary_of(file_name_));
   require_replaceable(xdmf_of(file_name_));
+  if (xdmf_of(file_name_) == file_name_)
+    throw WriteError("cannot write " + file_name_.string() +
+                     ": its XDMF would have the same name; choose a name that ends in .h5");
   guard([&] { create(system, header); });
 }
 
@@ -198,7 +204,6 @@ void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state
 
 void H5mdTrace::append(std::int64_t step, double time_s, const State& state, const Energy& energy) {
   const hsize_t frame = times_s_.size();
-  constexpr std::size_t room_for_metadata = 65536;
   reserve(2 * buffer_.size() * sizeof(float) + room_for_metadata);
   const auto write_vectors = [&](const Hdf5Dataset& dataset, const std::string& name,
                                  const std::vector<Vec3d>& vectors) {
@@ -220,36 +225,11 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
   checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing frame " + std::to_string(frame));
 }
 
-void H5mdTrace::map_frames_for_xdmf() {
-  const std::string action = "mapping frames for XDMF";
-  const hsize_t frames = times_s_.size();
-  constexpr std::size_t room_for_head = 65536, room_per_frame = 4096;
-  reserve(room_for_head + room_per_frame * frames);
-  const std::array<hsize_t, 3> all{frames, grid_.nodes(), dimensions}, one{1, grid_.nodes(), dimensions};
-  const std::array<hsize_t, 3> surface{grid_.rows, grid_.columns, dimensions};
-  create_group(file_.get(), "/xdmf");
-  const Hdf5Space target(H5Screate_simple(3, surface.data(), nullptr), action);
-  const Hdf5Space source(H5Screate_simple(3, all.data(), nullptr), action);
-  for (const std::string vector : {"position", "velocity"}) {
-    create_group(file_.get(), "/xdmf/" + vector);
-    const std::string values = "/particles/cloth/" + vector + "/value";
-    for (hsize_t frame = 0; frame < frames; ++frame) {
-      const std::array<hsize_t, 3> start{frame, 0, 0};
-      const Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), action);
-      checked(H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, one.data(), nullptr),
-              action);
-      // "." is the very file, whatever its name.
-      checked(H5Pset_virtual(properties.get(), target.get(), ".", values.c_str(), source.get()), action);
-      create_dataset(file_.get(), xdmf_dataset(vector, frame), H5T_IEEE_F32LE, surface, false, properties)
-          .close(action);
-    }
-  }
-}
-
 void H5mdTrace::close() {
   guard([&] {
-    map_frames_for_xdmf();
     const std::string action = "finishing the trace";
+    reserve(room_for_metadata + times_s_.size() * xdmf_bytes_per_frame);
+    map_frames_for_xdmf(file_.get(), grid_, times_s_.size());
     checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), action);
     for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) dataset->close(action);
     for (Hdf5Dataset& dataset : energies_) dataset.close(action);
@@ -298,7 +278,7 @@ std::size_t H5mdTrace::give_up() {
   file_ = {};
   const std::filesystem::path temporary = temporary_of(file_name_);
   release_reserved_space(temporary);
-  const std::size_t kept = times_s_.empty() ? 0 : count_frames(temporary);
+  const std::size_t kept = times_s_.empty() ? 0 : std::min(times_s_.size(), count_frames(temporary));
   std::error_code ignored;
   if (kept == 0) std::filesystem::remove(temporary, ignored);
   return kept;

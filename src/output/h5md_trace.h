@@ -33,7 +33,7 @@ struct TraceHeader {
 ///     .../step, .../time                          [frames] int64, float64: the same two datasets everywhere
 ///     /connectivity/springs                       [springs][2] uint32, each unique spring once
 ///     /parameters                                 scene and provenance as JSON, and how it was stepped
-///     /xdmf/{position,velocity}/FRAME             [rows][columns][3] virtual datasets, one frame each
+///     /xdmf/{position,velocity}/FRAME             [1][rows][columns][3] virtual datasets, one frame each
 ///
 /// Positions are single precision, as most backends compute them, which halves the file; energies are double.
 ///
@@ -61,7 +61,6 @@ class H5mdTrace {
   void create(const System& system, const TraceHeader& header);
   void create_series(const System& system);
   void append(std::int64_t step, double time_s, const State& state, const Energy& energy);
-  void map_frames_for_xdmf();
   void reserve(std::size_t bytes);
   void guard(const std::function<void()>& write);
   std::size_t give_up();

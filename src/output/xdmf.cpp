@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "output/atomic_file.h"
+#include "output/hdf5_write.h"
 
 namespace mssim {
 namespace {
@@ -50,13 +51,37 @@ std::string xdmf_dataset(std::string_view vector, std::size_t frame) {
   return "/xdmf/" + std::string(vector) + "/" + number;
 }
 
+void map_frames_for_xdmf(hid_t trace, const GridPatch& grid, std::size_t frames) {
+  const std::string action = "mapping frames for XDMF";
+  constexpr hsize_t dimensions = 3;
+  const std::array<hsize_t, 3> all{frames, grid.nodes(), dimensions}, one{1, grid.nodes(), dimensions};
+  const std::array<hsize_t, 4> surface{1, grid.rows, grid.columns, dimensions};
+  const Hdf5Space target(H5Screate_simple(4, surface.data(), nullptr), action);
+  const Hdf5Space source(H5Screate_simple(3, all.data(), nullptr), action);
+  create_group(trace, "/xdmf");
+  for (const std::string vector : {"position", "velocity"}) {
+    create_group(trace, "/xdmf/" + vector);
+    const std::string values = "/particles/cloth/" + vector + "/value";
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+      const std::array<hsize_t, 3> start{frame, 0, 0};
+      const Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), action);
+      checked(H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, one.data(), nullptr),
+              action);
+      // "." is the very file, whatever its name.
+      checked(H5Pset_virtual(properties.get(), target.get(), ".", values.c_str(), source.get()), action);
+      create_dataset(trace, xdmf_dataset(vector, frame), H5T_IEEE_F32LE, surface, false, properties)
+          .close(action);
+    }
+  }
+}
+
 std::filesystem::path xdmf_of(const std::filesystem::path& trace) {
   return std::filesystem::path(trace).replace_extension(".xdmf");
 }
 
 void write_xdmf(const std::filesystem::path& trace, const GridPatch& grid, std::span<const double> times_s) {
   const std::string name = escape_xml(trace.filename().string());
-  const std::string shape = std::to_string(grid.rows) + " " + std::to_string(grid.columns);
+  const std::string shape = "1 " + std::to_string(grid.rows) + " " + std::to_string(grid.columns);
   std::string text =
       "<?xml version=\"1.0\"?>\n"
       "<Xdmf Version=\"3.0\">\n"
@@ -65,7 +90,7 @@ void write_xdmf(const std::filesystem::path& trace, const GridPatch& grid, std::
   for (std::size_t frame = 0; frame < times_s.size(); ++frame) {
     text += "      <Grid Name=\"cloth\" GridType=\"Uniform\">\n";
     text += "        <Time Value=\"" + exact(times_s[frame]) + "\"/>\n";
-    text += "        <Topology TopologyType=\"2DSMesh\" Dimensions=\"" + shape + "\"/>\n";
+    text += "        <Topology TopologyType=\"3DSMesh\" Dimensions=\"" + shape + "\"/>\n";
     text += "        <Geometry GeometryType=\"XYZ\">" + data_item(name, shape, "position", frame) +
             "</Geometry>\n";
     text += "        <Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">" +

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/backend.h"
+#include "backends/opencl_device.h"
+
+namespace mssim {
+
+/// Nodes per work-item that suit the device: wide vectors for a CPU, whose driver packs nothing by itself,
+/// one node for everything else.
+int lanes_for(const OpenclDevice& device);
+
+/// Steps a cloth on an OpenCL device, `lanes` nodes per work-item (1, 2, 4, 8 or 16): one fused kernel per
+/// stage, all steps queued one behind the other. See make_opencl for errors.
+std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int lanes);
+
+/// The same on the device that options.device names; options.threads is not used: the device's own threads
+/// work. Throws Unavailable where there is no such device or its driver fails, Unsupported where the scene
+/// does not fit into its memory.
+std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options);
+
+}  // namespace mssim

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <CL/cl.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mssim {
+
+enum class OpenclDeviceType : std::uint8_t { cpu, gpu, other };
+
+/// One OpenCL device of this machine.
+struct OpenclDevice {
+  int number = 0;  ///< in this list, from 0; what `--device` takes
+  std::string name;
+  std::string platform;
+  std::string driver_version;
+  OpenclDeviceType type = OpenclDeviceType::other;
+  std::uint32_t compute_units = 0;
+  std::uint64_t global_memory_bytes = 0;
+  std::uint64_t max_allocation_bytes = 0;   ///< largest single buffer
+  std::uint32_t preferred_float_width = 0;  ///< floats in the vector that suits the device best
+  bool shares_host_memory = false;          ///< its buffers can lie in host memory without being copied
+  cl_device_id id = nullptr;
+};
+
+/// "cpu", "gpu" or "other".
+std::string_view name_of(OpenclDeviceType type);
+
+/// All devices of all platforms, in the order of the drivers. Empty when there is no OpenCL driver at all;
+/// throws Unavailable when a driver fails.
+std::vector<OpenclDevice> opencl_devices();
+
+/// The device that `wanted` names: empty for the first, its number, or a part of its name in any case.
+/// Throws Unavailable when there is none or when the part fits several; the sentence lists what there is.
+OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
+
+/// One sentence about a failed OpenCL call: the call, the error's name and its number.
+std::string opencl_failure(std::string_view call, int error);
+
+}  // namespace mssim

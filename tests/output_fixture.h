@@ -1,0 +1,95 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include "model/grid_patch.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// A test with an empty folder of its own, removed afterwards.
+class OutputTest : public testing::Test {
+ protected:
+  OutputTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "mssim-test-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
+    folder_ = name;
+  }
+  ~OutputTest() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+inline std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void write_text_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// A rippled cloth; its springs are real, its state is whatever `state_at` says.
+inline System small_cloth(std::uint32_t rows, std::uint32_t columns) {
+  System system;
+  system.grid = {rows, columns, 0.01};
+  system.springs = springs_of(system.grid);
+  system.materials.resize(grid_spring_kinds.size());
+  system.node_mass = 1e-5;
+  system.start.position.resize(system.grid.nodes());
+  system.start.velocity.resize(system.grid.nodes());
+  return system;
+}
+
+/// A state in which every number is another one, not exact in single precision and hard to compress.
+inline State state_at(const System& system, int frame) {
+  State state = system.start;
+  for (std::size_t node = 0; node < state.position.size(); ++node) {
+    const double number = static_cast<double>(node) + 0.1 * frame;
+    state.position[node] = {std::sin(number), std::sin(3 * number), std::sin(5 * number)};
+    state.velocity[node] = {std::cos(number), std::cos(3 * number), std::cos(5 * number)};
+  }
+  return state;
+}
+
+/// Runs `body` in a process of its own, where it may change limits and kill itself. Returns what waitpid()
+/// says.
+inline int status_in_child(const std::function<int()>& body) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    int result = 99;
+    try {
+      result = body();
+    } catch (const std::exception& error) {
+      (void)!::write(STDERR_FILENO, error.what(), std::string(error.what()).size());
+    }
+    ::_exit(result);
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  return status;
+}
+
+/// The exit status of `body`, or -1 when it did not exit.
+inline int exit_of_child(const std::function<int()>& body) {
+  const int status = status_in_child(body);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace mssim
