@@ -72,8 +72,7 @@ json without_words(json schema, const std::string& place) {
   schema.erase("title");
   schema.erase("$schema");
   if (schema.contains("properties"))
-    for (auto& [key, property] : schema["properties"].items())
-      property = without_words(property, key);
+    for (auto& [key, property] : schema["properties"].items()) property = without_words(property, key);
   return schema;
 }
 

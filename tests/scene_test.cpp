@@ -232,8 +232,9 @@ INSTANTIATE_TEST_SUITE_P(
                              "at or below 4294967295"}));
 
 TEST_F(SceneFile, ThatIsMissingIsNamed) {
-  EXPECT_THAT(error_of(folder() / "none.json"), AllOf(StartsWith((folder() / "none.json").string()),
-                                                     HasSubstr("no such file"), HasSubstr("check the path")));
+  EXPECT_THAT(error_of(folder() / "none.json"),
+              AllOf(StartsWith((folder() / "none.json").string()), HasSubstr("no such file"),
+                    HasSubstr("check the path")));
 }
 
 TEST_F(SceneFile, ThatIsAFolderOrAPipeIsRefusedAtOnce) {
