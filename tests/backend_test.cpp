@@ -67,7 +67,7 @@ TEST_P(EachBackendAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
 
 TEST_P(EachBackendAndIntegrator, HoldsPinsExactlyWhereverTheyAre) {
   SceneSpec spec = cloth_spec(20, 23);
-  std::get<ClothSpec>(spec.body).pins = ClothSpec::Pins{13, 5};
+  std::get<ClothSpec>(spec.body).pins = ClothPins{13, 5};
   const System system = build_system(spec);
   ASSERT_GE(system.pins.size(), 5U);
   const auto simulation = make(system);

@@ -16,7 +16,7 @@ inline SceneSpec cloth_spec(std::uint32_t rows, std::uint32_t columns) {
   cloth.spacing_m = 0.01;
   cloth.areal_density_kg_per_m2 = 0.2;
   cloth.ceiling_height_m = 1;
-  cloth.pins = ClothSpec::Pins{0, 10};
+  cloth.pins = ClothPins{0, 10};
   cloth.ripple = {0.0005, 0.2, 0.2};
   cloth.springs = {{{200, 0.01}, {60, 0.003}, {8, 0.0004}}};
   SceneSpec spec;

@@ -13,13 +13,13 @@
 #include <string>
 #include <tuple>
 
+#include "cloth_system.h"
 #include "model/data_folder.h"
 #include "scene/memory.h"
 #include "scene/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "tests/cloth_system.h"
-#include "tests/scene_files.h"
+#include "scene_files.h"
 
 namespace mssim {
 namespace {
@@ -122,7 +122,7 @@ TEST(BuildCloth, TakesOverThePhysics) {
 
 TEST(BuildCloth, PinsEverySoManyColumnsAndTheLastOfOneRow) {
   SceneSpec spec = cloth_spec(3, 12);
-  std::get<ClothSpec>(spec.body).pins = ClothSpec::Pins{1, 5};
+  std::get<ClothSpec>(spec.body).pins = ClothPins{1, 5};
   const System system = build_cloth(spec);
   EXPECT_THAT(system.pins, testing::ElementsAre(12, 17, 22, 23));
   for (const std::uint32_t pin : system.pins)

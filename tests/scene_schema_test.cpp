@@ -6,7 +6,7 @@
 
 #include "scene/field_visitor.h"
 #include "scene/scene_file.h"
-#include "tests/scene_files.h"
+#include "scene_files.h"
 
 namespace mssim {
 namespace {
@@ -72,8 +72,7 @@ json without_words(json schema, const std::string& place) {
   schema.erase("title");
   schema.erase("$schema");
   if (schema.contains("properties"))
-    for (auto& [key, property] : schema["properties"].items())
-      property = without_words(property, place + '/' + key);
+    for (auto& [key, property] : schema["properties"].items()) property = without_words(property, key);
   return schema;
 }
 

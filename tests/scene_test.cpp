@@ -14,7 +14,7 @@
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
 #include "scene/scene_file.h"
-#include "tests/scene_files.h"
+#include "scene_files.h"
 
 namespace mssim {
 namespace {
@@ -28,17 +28,18 @@ using testing::StartsWith;
 /// A folder of its own for every test, removed with it.
 class SceneFile : public testing::Test {
  protected:
-  SceneFile() {
+  void SetUp() override {
     std::string name = (std::filesystem::temp_directory_path() / "mssim-scene-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+    ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
     folder_ = name;
   }
-  ~SceneFile() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path write(std::string_view text) const {
     std::ofstream(file(), std::ios::binary) << text;
     return file();
   }
+  const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path file() const { return folder_ / "bad.json"; }
 
   static std::string error_of(const std::filesystem::path& path) {
@@ -51,6 +52,7 @@ class SceneFile : public testing::Test {
     return {};
   }
 
+ private:
   std::filesystem::path folder_;
 };
 
@@ -110,8 +112,8 @@ struct BadScene {
   const char *place, *value, *remedy;
 };
 
-void PrintTo(const BadScene& scene, std::ostream* stream) {
-  *stream << std::string_view(scene.new_part).substr(0, 60);
+std::ostream& operator<<(std::ostream& stream, const BadScene& scene) {
+  return stream << std::string_view(scene.new_part).substr(0, 60);
 }
 
 class BadSceneFile : public SceneFile, public testing::WithParamInterface<BadScene> {};
@@ -134,7 +136,7 @@ const std::string nested_objects = [] {
   return text;
 }();
 const std::string long_words(201, 'x');
-const std::string long_key = '"' + std::string(1'000'000, 'x') + "\": 1, \"rows\": 50";
+const std::string long_key = '"' + std::string(1'000'000, 'x') + R"(": 1, "rows": 50)";
 
 INSTANTIATE_TEST_SUITE_P(
     Numbers, BadSceneFile,
@@ -230,12 +232,13 @@ INSTANTIATE_TEST_SUITE_P(
                              "at or below 4294967295"}));
 
 TEST_F(SceneFile, ThatIsMissingIsNamed) {
-  EXPECT_THAT(error_of(folder_ / "none.json"), AllOf(StartsWith((folder_ / "none.json").string()),
-                                                     HasSubstr("no such file"), HasSubstr("check the path")));
+  EXPECT_THAT(error_of(folder() / "none.json"),
+              AllOf(StartsWith((folder() / "none.json").string()), HasSubstr("no such file"),
+                    HasSubstr("check the path")));
 }
 
 TEST_F(SceneFile, ThatIsAFolderOrAPipeIsRefusedAtOnce) {
-  EXPECT_THAT(error_of(folder_), HasSubstr("is not a regular file: give"));
+  EXPECT_THAT(error_of(folder()), HasSubstr("is not a regular file: give"));
   ASSERT_EQ(mkfifo(file().c_str(), 0600), 0);
   EXPECT_THAT(error_of(file()), HasSubstr("is not a regular file: give"));
 }

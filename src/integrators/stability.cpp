@@ -37,8 +37,11 @@ double spectral_radius(const Linear& first, const Linear& second) {
 }
 
 bool is_stable(const Integrator& integrator, double dt_s, const ModeBound& bound) {
-  // From the stiffest mode downwards in steps of a fifth; the softest of these moves as in free flight.
-  for (double share = 1; share > 1e-6; share *= 0.8) {
+  // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, moves as in free
+  // flight.
+  constexpr int modes = 63;
+  double share = 1;
+  for (int mode = 0; mode < modes; ++mode, share *= 0.8) {
     const double damping = bound.viscous_damping + share * (bound.damping - bound.viscous_damping);
     if (!(amplification(integrator, dt_s, share * bound.stiffness, damping) <= 1 + tolerated_growth))
       return false;

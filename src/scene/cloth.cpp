@@ -23,12 +23,12 @@ constexpr double steepest_ripple = 0.1;
 
 const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.body); }
 
-void visit_pins(FieldVisitor& fields, ClothSpec::Pins& pins) {
+void visit_pins(FieldVisitor& fields, ClothPins& pins) {
   fields.integer("row", pins.row, 0, 999'999);
   fields.integer("every_columns", pins.every_columns, 1, 1'000'000);
 }
 
-void visit_ripple(FieldVisitor& fields, ClothSpec::Ripple& ripple) {
+void visit_ripple(FieldVisitor& fields, ClothRipple& ripple) {
   fields.number("height_m", ripple.height_m, from(0, 100));
   fields.number("wavelength_m", ripple.wavelength_m, from(1e-6, 1e6));
   fields.number("speed_m_per_s", ripple.speed_m_per_s, from(0, 1000));

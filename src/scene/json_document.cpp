@@ -109,7 +109,7 @@ class Watcher {
 
 /// The JSON library's account of a syntax error, "[json.exception.parse_error.101] parse error at line 1,
 /// column 9: syntax error while parsing value - invalid literal; last read: '"a": N'", from "line" on. It
-/// names what was expected for a wrong token but not for a broken one, where the context tells.
+/// names what was expected except where it has found no token at all.
 std::string syntax_problem(std::string_view message) {
   if (const std::size_t start = message.find("line "); start != std::string_view::npos)
     message.remove_prefix(start);
@@ -121,16 +121,9 @@ std::string syntax_problem(std::string_view message) {
     if (problem.compare(at, 3, "'}'") == 0 || problem.compare(at, 3, "']'") == 0)
       problem.insert(at, "',' or ");
   }
-  if (problem.find("expected ") == std::string::npos) {
-    if (problem.find("parsing object key") != std::string::npos)
-      problem += "; expected a key in double quotes";
-    else if (problem.find("parsing object separator") != std::string::npos)
-      problem += "; expected ':'";
-    else if (problem.find("parsing value") != std::string::npos)
-      problem += "; expected an object, a number, a string in double quotes, true, false or null";
-    else
-      problem += "; expected ',' or the closing bracket";
-  }
+  const auto says = [&](std::string_view words) { return problem.find(words) != std::string::npos; };
+  if (says("parsing value - invalid literal") && !says("; expected "))
+    problem += "; expected an object, a number, a string in double quotes, true, false or null";
   return problem;
 }
 

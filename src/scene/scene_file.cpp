@@ -41,6 +41,7 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
   std::string schema;  // for editors; says nothing about the scene
   fields.text("$schema", Presence::optional, schema);
   std::vector<std::string_view> kind_names;
+  kind_names.reserve(scene_kinds().size());
   for (const SceneKind& kind : scene_kinds()) kind_names.push_back(kind.name);
   const SceneKind& kind = scene_kinds()[fields.choice("kind", kind_names)];
   fields.text("description", Presence::required, spec.description);
@@ -68,6 +69,7 @@ std::vector<std::string> scene_names() {
     scenes.emplace_back(counts_of(load_scene(file_of(name))).nodes, std::move(name));
   std::sort(scenes.begin(), scenes.end());
   std::vector<std::string> names;
+  names.reserve(scenes.size());
   for (auto& [nodes, name] : scenes) names.push_back(std::move(name));
   return names;
 }

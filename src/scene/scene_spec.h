@@ -12,6 +12,19 @@
 
 namespace mssim {
 
+/// The nodes of a cloth that stay where they start: of one row every `every_columns`-th, and its last one.
+struct ClothPins {
+  std::uint32_t row = 0;
+  std::uint32_t every_columns = 1;
+};
+
+/// A standing wave at the start of a cloth, so that every spring works from the first step on.
+struct ClothRipple {
+  double height_m = 0;  ///< amplitude of the vertical displacement; in the plane it is half of that
+  double wavelength_m = 1;
+  double speed_m_per_s = 0;  ///< amplitude of every component of the velocity
+};
+
 /// A regular cloth that hangs by some nodes of one row from the ceiling, level at first. Row r, column c
 /// starts at (c spacing, ceiling height, r spacing), plus the ripple.
 struct ClothSpec {
@@ -21,20 +34,9 @@ struct ClothSpec {
   double areal_density_kg_per_m2 = 0;  ///< a node weighs areal density times spacing squared
   double ceiling_height_m = 0;
 
-  /// Pinned nodes: of one row every `every_columns`-th, and its last one.
-  struct Pins {
-    std::uint32_t row = 0;
-    std::uint32_t every_columns = 1;
-  };
-  std::optional<Pins> pins;  ///< none: the cloth falls freely
+  std::optional<ClothPins> pins;  ///< none: the cloth falls freely
 
-  /// A standing wave, so that every spring works from the first step on.
-  struct Ripple {
-    double height_m = 0;  ///< amplitude of the vertical displacement; in the plane it is half of that
-    double wavelength_m = 1;
-    double speed_m_per_s = 0;  ///< amplitude of every component of the velocity
-  };
-  Ripple ripple;
+  ClothRipple ripple;
   std::array<SpringMaterial, grid_spring_kinds.size()> springs;  ///< by GridSpringKind
 };
 
