@@ -10,6 +10,7 @@
 #include "backends/backends.h"
 #include "backends/grid_bands/step_bands.h"
 #include "backends/openmp.h"
+#include "backends/serial.h"
 #include "bench/verification.h"
 #include "cloth_system.h"
 #include "integrators/integrators.h"
@@ -45,8 +46,8 @@ std::vector<std::string_view> names_of(const auto& table) {
 INSTANTIATE_TEST_SUITE_P(Tables, EachBackendAndIntegrator,
                          testing::Combine(testing::ValuesIn(names_of(backends())),
                                           testing::ValuesIn(names_of(integrators))),
-                         [](const auto& info) {
-                           return plain(std::get<0>(info.param)) + "__" + plain(std::get<1>(info.param));
+                         [](const auto& test) {
+                           return plain(std::get<0>(test.param)) + "__" + plain(std::get<1>(test.param));
                          });
 
 TEST_P(EachBackendAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
@@ -124,7 +125,7 @@ class EachIntegratorOnOpenMp : public testing::TestWithParam<std::string_view> {
   const Integrator& integrator() const { return *find_integrator(GetParam()); }
 };
 INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorOnOpenMp, testing::ValuesIn(names_of(integrators)),
-                         [](const auto& info) { return plain(info.param); });
+                         [](const auto& test) { return plain(test.param); });
 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
   for (const auto& [rows, columns] : {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {61U, 200U}}) {

@@ -18,8 +18,8 @@ class EachIntegrator : public testing::TestWithParam<Integrator> {
   const Integrator& integrator() const { return *find_integrator(GetParam().name); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Table, EachIntegrator, testing::ValuesIn(integrators), [](const auto& info) {
-  std::string name(info.param.name);
+INSTANTIATE_TEST_SUITE_P(Table, EachIntegrator, testing::ValuesIn(integrators), [](const auto& test) {
+  std::string name(test.param.name);
   for (char& c : name)
     if (c == '-') c = '_';
   return name;

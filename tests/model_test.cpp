@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <set>
 #include <utility>
 
 #include "model/grid_patch.h"
+#include "model/system.h"
 
 namespace mssim {
 namespace {
@@ -52,6 +54,30 @@ TEST(GridPatch, GivesInnerNodesTwelveNeighbours) {
     if (spring.second == middle) neighbours.insert(spring.first);
   }
   EXPECT_EQ(neighbours.size(), 12U);
+}
+
+double mantissa(double value) {
+  int exponent = 0;
+  return std::frexp(value, &exponent);
+}
+
+TEST(RoundToSingle, LeavesNothingThatAFloatCannotHold) {
+  State state;
+  for (int i = 1; i < 50; ++i) {
+    state.position.push_back({1.0 / i, -3.0 / i, 1e-3 * i});
+    state.velocity.push_back({0.1 * i, 0.7 / i, -1e-9 / i});
+  }
+  const State exact = state;
+  round_to_single(state);
+  for (std::size_t i = 0; i < state.position.size(); ++i)
+    for (const auto& [rounded, before] : {std::pair{state.position[i].x, exact.position[i].x},
+                                          {state.position[i].y, exact.position[i].y},
+                                          {state.position[i].z, exact.position[i].z},
+                                          {state.velocity[i].x, exact.velocity[i].x},
+                                          {state.velocity[i].z, exact.velocity[i].z}}) {
+      EXPECT_EQ(std::fmod(std::abs(mantissa(rounded)) * 0x1p24, 1.0), 0) << "more than 24 bits: " << rounded;
+      EXPECT_NEAR(rounded, before, 0x1p-24 * std::abs(before));
+    }
 }
 
 }  // namespace

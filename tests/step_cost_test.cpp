@@ -19,7 +19,7 @@ struct Counted {
   friend Counted operator+(Counted a, Counted b) { return ++operations, Counted(a.value + b.value); }
   friend Counted operator-(Counted a, Counted b) { return ++operations, Counted(a.value - b.value); }
   friend Counted operator*(Counted a, Counted b) { return ++operations, Counted(a.value * b.value); }
-  friend Counted operator-(Counted a) { return Counted(-a.value); }
+  friend Counted operator-(Counted a) { return {-a.value}; }
 };
 Counted mul_add(Counted a, Counted b, Counted c) { return a * b + c; }
 Counted inverse_sqrt(Counted a) {

@@ -210,6 +210,7 @@ class OpenclCloth final : public Backend {
   int threads() const override {
     return device_.type == OpenclDeviceType::cpu ? static_cast<int>(device_.compute_units) : 1;
   }
+  bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
 
  private:
   /// A buffer with a copy of `values`.

@@ -20,8 +20,13 @@ std::string quoted(const std::string& argument) {
                                               "0123456789_-+=:,./~%@") == std::string::npos;
   if (plain) return argument;
   std::string text = "'";
-  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
+  for (const char c : argument) {
+    if (c == '\'')
+      text += "'\\'";  // closes the quotes, a quoted quote, and the next character opens them again
+    text += c;
+  }
+  text += '\'';
+  return text;
 }
 
 }  // namespace
@@ -31,7 +36,7 @@ void remember_arguments(int argc, char** argv) { arguments().assign(argv, argv +
 std::string command_line() {
   std::string text;
   for (const std::string& argument : gather_provenance(arguments(), 0).command_line)
-    text += (text.empty() ? "" : " ") + quoted(argument);
+    text.append(text.empty() ? "" : " ").append(quoted(argument));
   return text;
 }
 

@@ -11,6 +11,21 @@ double mean_rest_length(const System& system) {
   return system.springs.empty() ? 0 : sum / static_cast<double>(system.springs.size());
 }
 
+void round_to_single(State& state) {
+  // Through memory: g++ 12 vectorises a conversion to float and back to double into nothing at all (-O2, no
+  // fast-math).
+  const auto round = [](double& value) {
+    const volatile float single = static_cast<float>(value);
+    value = static_cast<double>(single);
+  };
+  for (std::vector<Vec3d>* vectors : {&state.position, &state.velocity})
+    for (Vec3d& vector : *vectors) {
+      round(vector.x);
+      round(vector.y);
+      round(vector.z);
+    }
+}
+
 double extent(const State& state) {
   if (state.position.empty()) return 0;
   Vec3d low = state.position.front(), high = low;

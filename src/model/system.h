@@ -46,6 +46,9 @@ struct System {
 /// Mean rest length over all springs, m: the unit of position errors.
 double mean_rest_length(const System& system);
 
+/// Rounds all numbers of a state to single precision.
+void round_to_single(State& state);
+
 /// Largest side of the box around the positions, m.
 double extent(const State& state);
 

@@ -109,8 +109,8 @@ void CsvTable::require_columns(const std::vector<std::string_view>& columns) con
 }
 
 CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
-  return CsvError(file_.string() + ", line " + std::to_string(records_[record].line) + ", column " +
-                  header_[column] + ": \"" + text(record, column) + "\" " + what);
+  return CsvError{file_.string() + ", line " + std::to_string(records_[record].line) + ", column " +
+                  header_[column] + ": \"" + text(record, column) + "\" " + what};
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {

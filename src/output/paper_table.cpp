@@ -18,6 +18,17 @@ namespace {
 constexpr std::string_view nothing = "–";
 constexpr std::string_view baseline_configuration = "cpu-only";
 
+constexpr std::string_view how_to_read =
+    "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are the "
+    "paper's numbers, from its authors' mobile device, compared with its *CPU only*; **measured** lines are "
+    "ours, medians, compared with `serial`. Springs are counted as in the paper: twice the unique ones, by "
+    "inference from its numbers.\n\n";
+constexpr std::string_view why_frozen =
+    "The published midpoint and Runge-Kutta steps cost hardly more than an Euler step. *Inferred from those "
+    "times, not stated in the paper:* they evaluated the forces once and reused them in the trial steps. "
+    "`semi-euler`, `midpoint` and `rk4` evaluate the forces anew in every stage; `midpoint-frozen` and "
+    "`rk4-frozen`";
+
 struct Scene {
   std::string name;
   std::uint64_t nodes = 0, springs = 0;
@@ -182,24 +193,11 @@ class Markdown {
   }
 
   void add_legend() {
-    const bool frozen =
+    const bool has_frozen =
         std::any_of(legend_.integrators.begin(), legend_.integrators.end(),
                     [&](const auto& row) { return row.name != row.paper_name && measured_.has(row.name); });
-    out_
-        << "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are "
-           "the "
-           "paper's numbers, from its authors' mobile device, and are compared with its *CPU only*; "
-           "**measured** lines are ours, medians, and are compared with `serial`. Springs are counted as in "
-           "the "
-           "paper: twice the unique ones, by inference from its numbers.\n\n"
-           "The published midpoint and Runge-Kutta steps cost hardly more than an Euler step. *Inferred from "
-           "those times, not stated in the paper:* they evaluated the forces once and reused them in the "
-           "trial "
-           "steps. `semi-euler`, `midpoint` and `rk4` evaluate the forces anew in every stage; "
-           "`midpoint-frozen` and `rk4-frozen` "
-        << (frozen ? "hold them as the paper seems to, and reproduce its ratio of costs.\n"
-                   : "(`--integrator all`) hold them as the paper seems to, and reproduce its ratio of "
-                     "costs.\n");
+    out_ << how_to_read << why_frozen << (has_frozen ? "" : " (`--integrator all`)")
+         << " hold them as the paper seems to, and reproduce its ratio of costs.\n";
   }
 
   void add_block(const PaperLegend::Integrator& integrator) {

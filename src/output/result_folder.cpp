@@ -26,10 +26,10 @@ std::string text_of(const Json& json) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(fs::path folder, const Provenance& provenance, PaperLegend legend,
+ResultFolder::ResultFolder(fs::path folder, Provenance provenance, PaperLegend legend,
                            PublishedTable published)
     : folder_(std::move(folder)),
-      provenance_(provenance),
+      provenance_(std::move(provenance)),
       legend_(std::move(legend)),
       published_(std::move(published)) {
   std::error_code error;

@@ -17,7 +17,7 @@ class ResultFolder {
  public:
   /// Creates the folder and those above it and writes provenance.json, so that a folder that cannot be
   /// written is found before anything is measured. Throws WriteError.
-  ResultFolder(std::filesystem::path folder, const Provenance& provenance, PaperLegend legend,
+  ResultFolder(std::filesystem::path folder, Provenance provenance, PaperLegend legend,
                PublishedTable published);
 
   /// Writes all that follows from the rows, each file whole or not at all, timings.csv last: what stands

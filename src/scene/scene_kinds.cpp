@@ -23,8 +23,7 @@ SceneCounts counts_of(const SceneSpec& spec) { return kind_of(spec).counts(spec)
 
 System build_system(const SceneSpec& spec) {
   System system = kind_of(spec).build(spec);
-  for (std::vector<Vec3d>* vectors : {&system.start.position, &system.start.velocity})
-    for (Vec3d& vector : *vectors) vector = vec3_cast<double>(vec3_cast<float>(vector));
+  round_to_single(system.start);
   return system;
 }
 
