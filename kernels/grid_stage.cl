@@ -1,5 +1,5 @@
-/* What the stage kernels of a grid have in common. A work-item owns MSSIM_LANES neighbouring nodes of one row:
- * it gathers the forces of their springs and then runs the stage's lines, all in registers. The kernels
+/* What the stage kernels of a grid have in common. A work-item owns MSSIM_LANES neighbouring nodes of one
+ * row: it gathers the forces of their springs and then runs the stage's lines, all in registers. The kernels
  * themselves, and `spring_forces`, are generated from the tables of integrators and of the stencil
  * (src/backends/opencl_program.cpp) and follow this text.
  */
@@ -40,8 +40,9 @@ static inline void store_vector(Vector value, __global float* to, int plane) {
 
 /* `sum` and the pull of the springs to the nodes that lie `down` rows below and `right` columns to the right.
  * Where the cloth ends, whatever the padding holds is computed with and then left out. */
-static inline Vector add_spring(Vector sum, __global const float* restrict pair, Site site, Vector x, Vector v,
-                                int down, int right, int kind, __constant struct GridParameters* grid) {
+static inline Vector add_spring(Vector sum, __global const float* restrict pair, Site site, Vector x,
+                                Vector v, int down, int right, int kind,
+                                __constant struct GridParameters* grid) {
   __global const float* other = pair + site.first + down * grid->stride + right;
   Vector d = minus(load_vector(other, grid->plane), x);
   Vector u = minus(load_vector(other + 3 * grid->plane, grid->plane), v);
@@ -70,8 +71,7 @@ static inline void touch_floor(Vector* x, Vector* v, Site site, __constant struc
   Mask below = (x->y < grid->floor_height) & site.free;
   if (!any_lane(below)) return;
   Real rebound = floor_rebound(v->y, (Real)(grid->restitution));
-  Real grip =
-      floor_grip(rebound - v->y, mul_add(v->x, v->x, v->z * v->z), (Real)(grid->friction));
+  Real grip = floor_grip(rebound - v->y, mul_add(v->x, v->x, v->z * v->z), (Real)(grid->friction));
   Vector after = {grip * v->x, rebound, grip * v->z};
   x->y = select(x->y, (Real)(grid->floor_height), below);
   *v = where(below, after, *v);

@@ -47,7 +47,7 @@ Provenance run_provenance(int threads) {
       provenance.opencl_devices.push_back(device.platform + ": " + device.name + ", driver " +
                                           device.driver_version);
   } catch (const Unavailable& reason) {
-    provenance.opencl_devices.push_back(reason.what());  // rows that need a device say the same
+    provenance.opencl_devices.emplace_back(reason.what());  // rows that need a device say the same
   }
   return provenance;
 }

@@ -11,7 +11,7 @@ std::filesystem::path data_folder() {
   if (error)
     throw std::runtime_error("mssim cannot find its own program file through /proc/self/exe (" +
                              error.message() + "), beside which its data folder lies");
-  const std::filesystem::path folder = program.parent_path().parent_path() / "share" / "mssim";
+  std::filesystem::path folder = program.parent_path().parent_path() / "share" / "mssim";
   if (!std::filesystem::is_directory(folder, error))
     throw std::runtime_error(
         "the data folder " + folder.string() + " of " + program.string() +
