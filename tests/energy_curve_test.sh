@@ -7,7 +7,7 @@ source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export POCL_CACHE_DIR=$work/pocl
-tolerance=0.001
+tolerance=0.0004 # the largest error of a right one is 0.00019, semi-euler's
 failures=0
 
 # trace SCENE BACKEND INTEGRATOR: writes $work/trace.h5

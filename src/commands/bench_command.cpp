@@ -148,6 +148,7 @@ int run(const BenchOptions& options) {
   Provenance provenance = run_provenance(job.execution.threads);
   for (const std::string& name : names) {
     const SceneSpec spec = find_scene(name);
+    require_memory(spec);
     add_scene(provenance, spec.name, spec.source);
   }
   const PublishedTable published = published_table1();

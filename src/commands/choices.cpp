@@ -2,9 +2,10 @@
 
 #include <omp.h>
 
-#include <CLI/CLI.hpp>
+#include <cmath>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "backends/backends.h"
 #include "commands/exit_code.h"
@@ -36,6 +37,16 @@ const BackendInfo& require_backend(const std::string& name) {
 const Integrator& require_integrator(const std::string& name) {
   if (const Integrator* integrator = find_integrator(name)) return *integrator;
   throw unknown("integrator", name, integrators);
+}
+
+CLI::Validator positive_number() {
+  return CLI::Validator(
+      [](const std::string& text) -> std::string {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return "";
+        return "\"" + text + "\" is not a positive number";
+      },
+      "POSITIVE");
 }
 
 void declare_execution(CLI::App& app, ExecutionOptions& options) {

@@ -1,14 +1,10 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
-#include <vector>
 
 #include "backends/backend.h"
 #include "integrators/integrator.h"
-
-namespace CLI {
-class App;
-}
 
 namespace mssim {
 
@@ -17,6 +13,9 @@ const BackendInfo& require_backend(const std::string& name);
 
 /// The integrator of that name. Throws like require_backend.
 const Integrator& require_integrator(const std::string& name);
+
+/// Accepts finite numbers above zero, and says so in words.
+CLI::Validator positive_number();
 
 /// Declares --threads and --device. `options` must outlive the parsing.
 void declare_execution(CLI::App& app, ExecutionOptions& options);

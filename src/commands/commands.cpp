@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "backends/backend.h"
 #include "bench/build_info.h"
@@ -12,6 +14,7 @@
 #include "commands/run_command.h"
 #include "commands/run_provenance.h"
 #include "output/write_error.h"
+#include "scene/nearest_name.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -76,6 +79,13 @@ int run_program(int argc, char** argv) {
     sub->callback([&run, body] { run = body; });
   }
   app.footer(examples);
+  if (argc > 1 && argv[1][0] != '-') {  // the parser would only ask for a subcommand
+    std::vector<std::string_view> known;
+    for (const Command& command : commands()) known.push_back(command.name);
+    if (std::find(known.begin(), known.end(), argv[1]) == known.end())
+      return fail(exit_bad_input,
+                  "unknown command \"" + std::string(argv[1]) + "\": known are " + listed(known));
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

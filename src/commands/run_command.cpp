@@ -103,10 +103,10 @@ std::function<int()> declare_run(CLI::App& app) {
   app.add_option("--backend", options->backend, "Backend (default: openmp)");
   app.add_option("--integrator", options->integrator, "Integrator (default: semi-euler)");
   app.add_option("--duration", options->duration_s, "Simulated seconds (default: 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   app.add_option("--fps", options->fps, "Frames per simulated second (default: 60)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--dt", options->dt_s, "Step in seconds (default: the scene's)")->check(CLI::PositiveNumber);
+      ->check(positive_number());
+  app.add_option("--dt", options->dt_s, "Step in seconds (default: the scene's)")->check(positive_number());
   app.add_option("--precision", options->precision,
                  "single, or double with --backend serial (default: single)")
       ->check(CLI::IsMember({"single", "double"}));

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "scene/json_document.h"
-#include "scene/memory.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -111,7 +110,6 @@ SceneCounts cloth_counts(const SceneSpec& spec) {
 }
 
 System build_cloth(const SceneSpec& spec) {
-  require_memory(spec, "/cloth", cloth_counts(spec));
   const ClothSpec& cloth = cloth_of(spec);
   System system;
   system.grid = {cloth.rows, cloth.columns, cloth.spacing_m};

@@ -1,9 +1,11 @@
 #include "scene/scene_kinds.h"
 
 #include <array>
+#include <string>
 #include <variant>
 
 #include "scene/cloth.h"
+#include "scene/memory.h"
 
 namespace mssim {
 namespace {
@@ -21,7 +23,12 @@ const SceneKind& kind_of(const SceneSpec& spec) { return kinds.at(spec.body.inde
 
 SceneCounts counts_of(const SceneSpec& spec) { return kind_of(spec).counts(spec); }
 
+void require_memory(const SceneSpec& spec) {
+  require_memory(spec, "/" + std::string(kind_of(spec).name), counts_of(spec));
+}
+
 System build_system(const SceneSpec& spec) {
+  require_memory(spec);
   System system = kind_of(spec).build(spec);
   round_to_single(system.start);
   return system;

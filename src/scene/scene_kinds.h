@@ -17,7 +17,6 @@ struct SceneKind {
   /// Checks what one field alone cannot show. Throws SceneError.
   void (*check)(const SceneSpec& spec);
   SceneCounts (*counts)(const SceneSpec& spec);
-  /// Throws SceneError when the memory does not suffice.
   System (*build)(const SceneSpec& spec);
 };
 
@@ -30,6 +29,9 @@ const SceneKind& kind_of(const SceneSpec& spec);
 
 /// Nodes and springs of the scene, without building it.
 SceneCounts counts_of(const SceneSpec& spec);
+
+/// Throws SceneError when the scene needs more memory than there is, naming both amounts.
+void require_memory(const SceneSpec& spec);
 
 /// The System of the scene. Throws SceneError when it needs more memory than there is, before allocating any.
 System build_system(const SceneSpec& spec);

@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+# What a user meets at the command line: exit codes, one clear sentence for each mistake, nothing half-written.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export POCL_CACHE_DIR=$work/pocl
+failures=0
+
+fail() {
+  echo "FAILED: $1"
+  failures=$((failures + 1))
+}
+
+# expect STATUS PATTERN ARGUMENTS...: mssim must exit with STATUS and say PATTERN on stderr, in one line, with nothing on stdout
+expect() {
+  local wanted=$1 pattern=$2 status=0
+  shift 2
+  "$mssim" "$@" >"$work/out" 2>"$work/err" || status=$?
+  echo "mssim $*: $status $(cat "$work/err")"
+  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
+  grep -q -- "$pattern" "$work/err" || fail "stderr does not say \"$pattern\""
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "stderr has not one line"
+  [ ! -s "$work/out" ] || fail "stdout is not empty"
+}
+
+# column NAME: that column of $work/results/timings.csv (no field before it may hold a comma)
+column() {
+  awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' \
+    "$work/results/timings.csv"
+}
+
+# Usage.
+expect 2 'nothing to measure' bench
+expect 2 'known are bench, run and list' frobnicate
+expect 2 'rounds' bench --rounds 0 --scene cloth2500
+expect 2 'threads' bench --threads -3 --scene cloth2500
+expect 2 'Did you mean openmp\|did you mean openmp' bench --scene cloth2500 --backend openpm
+expect 2 'Known are serial, threads-mutex, openmp, opencl and hybrid' bench --scene cloth2500 --backend cuda
+expect 2 'rk4-frozen' bench --scene cloth2500 --integrator verlet
+expect 2 'cloth2500' bench --scene cloth2501
+expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json
+expect 2 'table1' bench --suite table9
+expect 2 'give --out' bench --scene cloth2500 --trace
+expect 2 'duration' run --scene cloth2500 --duration 1e-9
+expect 2 'fps' run --scene cloth2500 --fps 1e9
+expect 2 'duration: "nan" is not a positive number' run --scene cloth2500 --duration nan
+expect 2 'dt' run --scene cloth2500 --dt -1
+expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
+
+# Scenes.
+sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
+expect 2 'typo.json.*rowz.*rows' bench --scene "$work/typo.json"
+sed 's/"rows": 50/"rows": 1000000/; s/"columns": 50/"columns": 4000/' "$source/scenes/cloth2500.json" >"$work/huge.json"
+expect 2 'huge.json.*GB' bench --scene "$work/huge.json" --out "$work/never"
+
+# Devices and files.
+expect 3 'no such device' run --scene cloth2500 --backend opencl --device 'no such device'
+expect 4 'not-a-folder' bench --scene cloth2500 --out "$work/typo.json/not-a-folder"
+expect 4 'no/such' run --scene cloth2500 --duration 0.01 --trace "$work/no/such/trace.h5"
+[ -z "$(find "$work" -name '*.part' -o -name never)" ] || fail "something half-written is left"
+
+# A simulation that blows up: named, and not verified.
+sed 's/"dt_s": 5e-5/"dt_s": 1e-2/' "$source/scenes/cloth2500.json" >"$work/wild.json"
+expect 1 'blew up at step [0-9]* (t = .* s): node [0-9]* is not finite' run --scene "$work/wild.json"
+status=0
+"$mssim" bench --scene "$work/wild.json" --backend serial,openmp --rounds 2 --out "$work/results" >"$work/out" 2>"$work/err" ||
+  status=$?
+[ "$status" -eq 1 ] || fail "a bench that blows up exits with $status"
+[ "$(column verified | sort -u)" = false ] || fail "a row that blew up is verified"
+grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timings.csv does not say what failed"
+
+# A bench as it should be.
+"$mssim" bench --scene cloth2500 --rounds 3 --threads 2 --trace --out "$work/results" >"$work/out" 2>"$work/err" ||
+  fail "bench exits with $?"
+cat "$work/out"
+[ "$(column nodes | sort -u)" = 2500 ] || fail "nodes"
+[ "$(column springs_published | sort -u)" = 29004 ] || fail "springs"
+[ "$(column verified | grep -c true)" -eq 15 ] || fail "not 15 verified rows"
+for file in timings.csv samples.csv table1.csv table1.md benchmark.json provenance.json; do
+  [ -s "$work/results/$file" ] || fail "$file is missing"
+done
+[ "$(find "$work/results/traces" -name '*.h5' | wc -l)" -eq 15 ] || fail "not 15 traces"
+[ "$(awk -F, 'NR > 1' "$work/results/samples.csv" | wc -l)" -eq 45 ] || fail "not 45 samples"
+column roofline_fraction | awk '!($1 > 0 && $1 <= 1.05) { bad = 1 } END { exit bad }' || fail "a roofline fraction"
+
+# A device that is missing: its rows say so; asked for by name it is an error.
+status=0
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --out "$work/results" >"$work/out" 2>&1 ||
+  status=$?
+[ "$status" -eq 0 ] || fail "an unavailable backend that nobody asked for gives $status"
+[ "$(grep -c 'unavailable: ' "$work/results/timings.csv")" -eq 2 ] || fail "not two unavailable rows"
+status=0
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --backend opencl >"$work/out" 2>&1 ||
+  status=$?
+[ "$status" -eq 3 ] || fail "an unavailable backend that was asked for gives $status"
+
+# Help and listings.
+for arguments in '--help' 'bench --help' 'run --help' 'list --help'; do
+  # shellcheck disable=SC2086 # words of their own
+  "$mssim" $arguments >"$work/out" 2>"$work/err" || fail "$arguments exits with $?"
+  grep -q 'Example' "$work/out" || fail "$arguments shows no example"
+  [ ! -s "$work/err" ] || fail "$arguments writes to stderr"
+done
+"$mssim" list scenes --format csv | grep -q '^cloth350k,cloth,350000,2094002,4188004,' || fail "list scenes"
+[ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 5 ] || fail "list integrators"
+"$mssim" list backends | grep -q '^hybrid ' || fail "list backends"
+if "$mssim" list scenes >/dev/full 2>"$work/err"; then fail "a full standard output is no error"; fi
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
