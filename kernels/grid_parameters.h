@@ -11,6 +11,7 @@ struct GridParameters {
   int columns;
   int stride;              /* floats from one row to the next, a multiple of 16 */
   int plane;               /* floats */
+  int block_rows;          /* that a work-item walks over, where it has more than one lane */
   float stiffness[3];      /* 1/s^2, by kind of spring */
   float stiffness_rest[3]; /* stiffness * rest length, m/s^2 */
   float damping[3];        /* 1/s */

@@ -1,4 +1,4 @@
-/* The number type of the OpenCL programs: one Real holds MSSIM_LANES neighbouring nodes (1, 2, 4, 8 or 16).
+/* The number type of the OpenCL programs: one Real holds MSSIM_LANES neighbouring nodes (1, 4, 8 or 16).
  * CPU drivers do not turn work-items into vector lanes by themselves, so they get wide Reals and few
  * work-items; a GPU does, and gets one node per work-item. The text over Real is the same.
  * Needs MSSIM_LANES; gives the names that spring_law.h and floor_law.h ask for.
@@ -10,17 +10,44 @@
 typedef float Real;
 typedef int Mask; /* not 0: true */
 #define load_lanes(from) (*(from))
-#define store_lanes(value, to) (*(to) = (value))
-#define any_lane(mask) ((mask) != 0)
 #else
 typedef MSSIM_PASTE(float, MSSIM_LANES) Real;
 typedef MSSIM_PASTE(int, MSSIM_LANES) Mask; /* sign bit set: true */
 #define load_lanes(from) MSSIM_PASTE(vload, MSSIM_LANES)(0, from)
-#define store_lanes(value, to) MSSIM_PASTE(vstore, MSSIM_LANES)(value, 0, to)
-#define any_lane(mask) any(mask)
+#endif
+/* At addresses that are multiples of a Real's size. vload and vstore work there too, but PoCL 3.1 takes them
+ * apart into scalar pairs where other writes are near. */
+#define load_aligned(from) (*(__global const Real*)(from))
+#define store_aligned(value, to) (*(__global Real*)(to) = (value))
+
+/* Not any(): PoCL 3.1 makes a branch per lane of it. */
+#if MSSIM_LANES == 1
+#define any_lane(mask) ((mask) != 0)
+#elif MSSIM_LANES == 4
+static inline int any_lane(int4 mask) { return (mask.s0 | mask.s1 | mask.s2 | mask.s3) < 0; }
+#elif MSSIM_LANES == 8
+static inline int any_lane(int8 mask) {
+  int4 four = mask.lo | mask.hi;
+  return (four.s0 | four.s1 | four.s2 | four.s3) < 0;
+}
+#elif MSSIM_LANES == 16
+static inline int any_lane(int16 mask) {
+  int8 eight = mask.lo | mask.hi;
+  int4 four = eight.lo | eight.hi;
+  return (four.s0 | four.s1 | four.s2 | four.s3) < 0;
+}
 #endif
 
-__constant int lane_numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+/* The number of each lane. */
+#if MSSIM_LANES == 1
+#define lane_number ((Mask)(0))
+#elif MSSIM_LANES == 4
+#define lane_number ((Mask)(0, 1, 2, 3))
+#elif MSSIM_LANES == 8
+#define lane_number ((Mask)(0, 1, 2, 3, 4, 5, 6, 7))
+#elif MSSIM_LANES == 16
+#define lane_number ((Mask)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#endif
 
 /* A scalar condition in every lane. */
 #define all_lanes(condition) ((Mask)((condition) ? -1 : 0))
@@ -35,6 +62,10 @@ typedef struct {
   Real x, y, z;
 } Vector;
 
+static inline Vector no_vector(void) {
+  Vector nothing = {(Real)(0.0f), (Real)(0.0f), (Real)(0.0f)};
+  return nothing;
+}
 static inline Vector plus(Vector a, Vector b) {
   Vector sum = {a.x + b.x, a.y + b.y, a.z + b.z};
   return sum;
@@ -57,3 +88,27 @@ static inline Vector where(Mask condition, Vector yes, Vector no) {
                    select(no.z, yes.z, condition)};
   return chosen;
 }
+
+/* All lanes move to the right by one or two; what falls in from the left were the last lanes of `before`.
+ * Written as a choice between two permutations, which compilers make one instruction of. */
+#if MSSIM_LANES == 4
+#define shifted_1(before, now) (lane_number == 0 ? (before).s3333 : (now).s0012)
+#define shifted_2(before, now) (lane_number < 2 ? (before).s2323 : (now).s0001)
+#elif MSSIM_LANES == 8
+#define shifted_1(before, now) (lane_number == 0 ? (before).s77777777 : (now).s00123456)
+#define shifted_2(before, now) (lane_number < 2 ? (before).s67676767 : (now).s00012345)
+#elif MSSIM_LANES == 16
+#define shifted_1(before, now) (lane_number == 0 ? (before).sffffffffffffffff : (now).s00123456789abcde)
+#define shifted_2(before, now) (lane_number < 2 ? (before).sefefefefefefefef : (now).s000123456789abcd)
+#endif
+
+#if MSSIM_LANES > 1
+static inline Vector shifted_vector_1(Vector before, Vector now) {
+  Vector moved = {shifted_1(before.x, now.x), shifted_1(before.y, now.y), shifted_1(before.z, now.z)};
+  return moved;
+}
+static inline Vector shifted_vector_2(Vector before, Vector now) {
+  Vector moved = {shifted_2(before.x, now.x), shifted_2(before.y, now.y), shifted_2(before.z, now.z)};
+  return moved;
+}
+#endif

@@ -29,25 +29,38 @@ constexpr std::size_t round_up(std::size_t value, std::size_t multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
 
-/// Work-items of a launch: along a row, and rows.
+/// Rows of a block, where work-items walk over blocks: the two further rows that each block walks over shall
+/// be a small share, and yet every compute unit shall have a block, or better several, so that one that was
+/// held up leaves some of its share to the others.
+std::size_t block_rows(std::size_t rows, std::size_t compute_units) {
+  constexpr std::size_t good_rows = 32, good_blocks_per_unit = 4;
+  const std::size_t blocks =
+      std::clamp(rows / good_rows, compute_units, good_blocks_per_unit * compute_units);
+  return (rows + blocks - 1) / blocks;
+}
+
+/// Work-items of a launch, and what each of them does.
 struct Range {
-  std::array<std::size_t, 2> global;  // multiples of `local`
+  std::array<std::size_t, 2> global;  // along a row, rows; multiples of `local`
   std::array<std::size_t, 2> local;
+  std::size_t block_rows;  // 0 where each work-item owns one node
+
+  bool walks() const { return block_rows > 0; }
 };
 
-Range range_for(const GridPatch& grid, const OpenclDevice& device, std::size_t lanes) {
+Range range_for(const GridPatch& grid, const OpenclDevice& device, int lanes) {
+  if (grid_program_walks(lanes)) {
+    const std::size_t rows = block_rows(grid.rows, device.compute_units);
+    return {.global = {(grid.rows + rows - 1) / rows, 1}, .local = {1, 1}, .block_rows = rows};
+  }
+  // A tile, so that most neighbours of a group's nodes are its own; 64 wide, as wide as any hardware's groups
+  // of lanes.
   const std::size_t largest = cl::Device(device.id, true).getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
-  const std::size_t items = round_up(grid.columns, lanes) / lanes;
-  Range range;
-  if (device.type == OpenclDeviceType::cpu)
-    // A group is a loop on one core. A whole row of it streams through memory.
-    range.local = {std::min(items, largest), 1};
-  else
-    // A tile, so that most neighbours of a group's nodes are its own; 64 wide, as wide as any hardware's
-    // groups of lanes.
-    range.local = {std::min<std::size_t>(64, largest), std::clamp<std::size_t>(largest / 64, 1, 4)};
-  range.global = {round_up(items, range.local[0]), round_up(grid.rows, range.local[1])};
-  return range;
+  const std::array<std::size_t, 2> local{std::min<std::size_t>(64, largest),
+                                         std::clamp<std::size_t>(largest / 64, 1, 4)};
+  return {.global = {round_up(grid.columns, local[0]), round_up(grid.rows, local[1])},
+          .local = local,
+          .block_rows = 0};
 }
 
 /// Where nodes lie in the planes of a pair (kernels/grid_parameters.h).
@@ -57,10 +70,10 @@ struct PlaneLayout {
   static constexpr std::size_t halo_rows = 2;   // above and below, as far as the stencil reaches
   static constexpr std::size_t left_halo = 16;  // floats; keeps every row aligned to the widest vector
 
-  PlaneLayout(const GridPatch& grid, const Range& range, std::size_t lanes)
+  PlaneLayout(const GridPatch& grid, const Range& range)
       : columns(grid.columns),
-        stride(left_halo + round_up(range.global[0] * lanes, left_halo)),
-        plane((range.global[1] + 2 * halo_rows) * stride + left_halo) {}
+        stride(left_halo + round_up(range.walks() ? grid.columns : range.global[0], left_halo)),
+        plane(((range.walks() ? grid.rows : range.global[1]) + 2 * halo_rows) * stride + left_halo) {}
 
   std::size_t offset(std::size_t node) const {
     return (node / columns + halo_rows) * stride + left_halo + node % columns;
@@ -84,12 +97,13 @@ void check_size(const PlaneLayout& layout, std::size_t pairs, const OpenclDevice
 }
 
 GridParameters parameters_of(const System& system, const Integrator& integrator, double dt_s,
-                             const PlaneLayout& layout) {
+                             const PlaneLayout& layout, const Range& range) {
   GridParameters grid{};
   grid.rows = static_cast<int>(system.grid.rows);
   grid.columns = static_cast<int>(system.grid.columns);
   grid.stride = static_cast<int>(layout.stride);
   grid.plane = static_cast<int>(layout.plane);
+  grid.block_rows = static_cast<int>(range.block_rows);
   for (const GridSpringKind kind : {structural, shear, bending}) {
     const SpringMaterial& material = system.materials[kind];
     grid.stiffness[kind] = static_cast<float>(material.stiffness / system.node_mass);
@@ -128,11 +142,11 @@ struct PinLines {
 class OpenclCloth final : public Backend {
  public:
   OpenclCloth(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-              std::size_t lanes)
+              int lanes)
       : device_(device),
         nodes_(system.nodes()),
         range_(range_for(system.grid, device, lanes)),
-        layout_(system.grid, range_, lanes) {
+        layout_(system.grid, range_) {
     std::vector<Pair> stored;
     for (std::size_t i = 0; i < pair_kinds; ++i)
       if (stores(integrator, static_cast<Pair>(i), Storage::separate)) stored.push_back(static_cast<Pair>(i));
@@ -141,7 +155,7 @@ class OpenclCloth final : public Backend {
     const cl::Device cl_device(device.id, true);
     context_ = cl::Context(cl_device);
     queue_ = cl::CommandQueue(context_, cl_device);
-    const GridParameters parameters = parameters_of(system, integrator, dt_s, layout_);
+    const GridParameters parameters = parameters_of(system, integrator, dt_s, layout_, range_);
     const PinLines pins(system, layout_);
     parameters_ = filled_buffer(std::span(&parameters, 1));
     pin_rows_ = filled_buffer(std::span(pins.line_of_row));
@@ -149,8 +163,9 @@ class OpenclCloth final : public Backend {
     // Zeros in the padding too, so that no arithmetic there meets a denormal number, which can be slow.
     const std::vector<float> zeros(layout_.floats_per_pair());
     for (const Pair pair : stored) pairs_[index(pair)] = filled_buffer(std::span(zeros));
-    make_kernels(integrator,
-                 build_program(context_, cl_device, grid_program_text(integrator, static_cast<int>(lanes))));
+    if (range_.walks())
+      sums_.emplace(context_, range_.global[0] * 9 * layout_.stride, device.shares_host_memory);
+    make_kernels(integrator, build_program(context_, cl_device, grid_program_text(integrator, lanes)));
 
     // Drivers finish compiling at a kernel's first launch with a range: take it here, in both roles of the
     // pairs.
@@ -234,6 +249,7 @@ class OpenclCloth final : public Backend {
         kernel.setArg(argument++, parameters_->buffer());
         kernel.setArg(argument++, pin_rows_->buffer());
         kernel.setArg(argument++, pins_->buffer());
+        if (sums_) kernel.setArg(argument++, sums_->buffer());
         kernels_[swapped ? 1 : 0].push_back(kernel);
       }
   }
@@ -256,6 +272,7 @@ class OpenclCloth final : public Backend {
       pairs_;  // [Pair], those that the integrator needs
   std::optional<OpenclBuffer<GridParameters>> parameters_;
   std::optional<OpenclBuffer<cl_int>> pin_rows_, pins_;
+  std::optional<OpenclBuffer<float>> sums_;  // [blocks][3 rows][3 planes][stride], where work-items walk
   std::array<std::vector<cl::Kernel>, 2> kernels_;  // [swapped][stage]
   bool swapped_ = false;                            // the state lies in the pair `next`
 };
@@ -279,7 +296,7 @@ int lanes_for(const OpenclDevice& device) {
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes) {
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    return std::make_unique<OpenclCloth>(system, integrator, dt_s, device, static_cast<std::size_t>(lanes));
+    return std::make_unique<OpenclCloth>(system, integrator, dt_s, device, lanes);
   });
 }
 

@@ -11,7 +11,7 @@ namespace mssim {
 /// one node for everything else.
 int lanes_for(const OpenclDevice& device);
 
-/// Steps a cloth on an OpenCL device, `lanes` nodes per work-item (1, 2, 4, 8 or 16): one fused kernel per
+/// Steps a cloth on an OpenCL device, `lanes` nodes side by side (1, 4, 8 or 16): one fused kernel per
 /// stage, all steps queued one behind the other. See make_opencl for errors.
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes);

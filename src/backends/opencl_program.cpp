@@ -4,10 +4,11 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "backends/backend.h"
+#include "backends/opencl_stencil.h"
 #include "model/data_folder.h"
-#include "model/spring.h"
 
 namespace mssim {
 namespace {
@@ -59,44 +60,32 @@ std::string sum_of_terms(const Line& line, std::size_t stage, std::size_t number
   return sum;
 }
 
-/// `spring_forces` of grid_stage.cl: both ends of every spring of the stencil.
-std::string stencil_text() {
-  std::ostringstream text;
-  text << "static inline Vector spring_forces(__global const float* restrict pair, Site site, Vector x, "
-          "Vector v,\n"
-          "                                   __constant struct GridParameters* grid) {\n"
-          "  Vector sum = {(Real)(0.0f), (Real)(0.0f), (Real)(0.0f)};\n";
-  for (const GridSpring& spring : grid_stencil)
-    for (const int end : {1, -1})
-      text << "  sum = add_spring(sum, pair, site, x, v, " << end * spring.rows << ", "
-           << end * spring.columns << ", " << spring.kind << ", grid);\n";
-  text << "  return sum;\n}\n";
-  return text.str();
-}
-
-std::string stage_text(const Integrator& integrator, std::size_t number) {
+/// The stage's kernel and what it does with the nodes of one site once their springs are summed.
+std::string stage_text(const Integrator& integrator, std::size_t number, bool walks) {
   const Stage& stage = integrator.stages[number];
   const Slot x = position_slot(stage.gather), v = velocity_slot(stage.gather);
+  const std::string suffix = std::to_string(number);
+  std::string parameters, arguments;
+  for (const Pair pair : stage_arguments(stage)) {
+    parameters += std::string("__global ") + (writes_pair(stage, pair) ? "" : "const ") + "float* restrict " +
+                  name(pair) + ", ";
+    arguments += name(pair) + ", ";
+  }
+
   std::ostringstream text;
   text << "\n/* " << integrator.name << ", stage " << number << " */\n"
-       << "__kernel void " << stage_kernel_name(number) << "(";
-  for (const Pair pair : stage_arguments(stage))
-    text << "__global " << (writes_pair(stage, pair) ? "" : "const ") << "float* restrict " << name(pair)
-         << ", ";
-  text << "__constant struct GridParameters* grid, __global const int* restrict pin_rows, "
-          "__global const int* restrict pins) {\n"
-       << "  const Site site = find_site(grid, pin_rows, pins);\n"
-       << "  Vector " << name(Slot::a);
+       << "static inline void update_" << suffix << "(" << parameters
+       << "Site site, Node node, Vector spring_forces, __constant struct GridParameters* grid) {\n"
+       << "  Vector " << name(x) << " = node.x, " << name(v) << " = node.v;\n"
+       << "  Vector a = acceleration(spring_forces, node.v, site, grid);\n";
   for (std::size_t i = 0; i < slot_kinds; ++i)
-    if (const Slot slot = static_cast<Slot>(i);
-        slot != Slot::a && (slot == x || slot == v || reads(stage, slot) || writes(stage, slot)))
-      text << ", " << name(slot);
-  text << ";\n";
-  for (std::size_t i = 0; i < memory_slots; ++i)
-    if (const Slot slot = static_cast<Slot>(i); slot == x || slot == v || reads(stage, slot))
-      text << "  " << name(slot) << " = load_vector(" << address(slot) << ", grid->plane);\n";
-  text << "  a = acceleration(" << name(stage.gather) << ", site, " << name(x) << ", " << name(v)
-       << ", grid);\n";
+    if (const Slot slot = static_cast<Slot>(i); slot != Slot::a && slot != x && slot != v) {
+      if (i < memory_slots && reads(stage, slot))
+        text << "  Vector " << name(slot) << " = load_vector_aligned(" << address(slot)
+             << ", grid->plane);\n";
+      else if (writes(stage, slot))
+        text << "  Vector " << name(slot) << ";\n";
+    }
   for (std::size_t line = 0; line < line_count(stage); ++line)
     text << "  " << name(stage.lines[line].out) << " = " << sum_of_terms(stage.lines[line], number, line)
          << ";\n";
@@ -104,7 +93,37 @@ std::string stage_text(const Integrator& integrator, std::size_t number) {
     text << "  touch_floor(&" << name(Slot::x_next) << ", &" << name(Slot::v_next) << ", site, grid);\n";
   for (std::size_t i = 0; i < memory_slots; ++i)
     if (const Slot slot = static_cast<Slot>(i); writes(stage, slot))
-      text << "  store_vector(" << name(slot) << ", " << address(slot) << ", grid->plane);\n";
+      text << "  store_vector_aligned(" << name(slot) << ", " << address(slot) << ", grid->plane);\n";
+  text << "}\n"
+       << "__kernel void " << stage_kernel_name(number) << "(" << parameters
+       << "__constant struct GridParameters* grid, __global const int* restrict pin_rows,\n"
+          "    __global const int* restrict pins"
+       << (walks ? ", __global float* restrict sums" : "") << ") {\n";
+  if (walks)
+    text << "  const int block = (int)get_global_id(0);\n"
+            "  const int first_row = block * grid->block_rows;\n"
+            "  const int end_row = min(first_row + grid->block_rows, grid->rows);\n"
+            "  sums += block * 9 * grid->stride;\n"
+            "  int row = max(first_row - 2, 0);\n"
+            "  clear_sums(sums, row, grid);\n"
+            "  for (; row < end_row; ++row) {\n"
+            "    Carry carry;\n"
+            "    clear_carry(&carry);\n"
+            "    for (int column = 0; column < grid->columns; column += MSSIM_LANES) {\n"
+            "      const Site site = site_at(row, column, grid, pin_rows, pins);\n"
+         << "      const Node node = load_node(" << name(stage.gather) << ", site, 0, 0, grid);\n"
+         << "      const Vector forces = walk_springs(" << name(stage.gather)
+         << ", site, node, &carry, sums, grid);\n"
+         << "      if (row >= first_row) update_" << suffix << "(" << arguments
+         << "site, node, forces, grid);\n"
+         << "    }\n"
+            "  }\n";
+  else
+    text << "  const Site site = site_at((int)get_global_id(1), (int)get_global_id(0), grid, pin_rows, "
+            "pins);\n"
+         << "  const Node node = load_node(" << name(stage.gather) << ", site, 0, 0, grid);\n"
+         << "  update_" << suffix << "(" << arguments << "site, node, gather_springs(" << name(stage.gather)
+         << ", site, node, grid), grid);\n";
   text << "}\n";
   return text.str();
 }
@@ -120,12 +139,16 @@ std::vector<Pair> stage_arguments(const Stage& stage) {
   return pairs;
 }
 
+bool grid_program_walks(int lanes) { return lanes > 1; }
+
 std::string grid_program_text(const Integrator& integrator, int lanes) {
   std::string text = "#define MSSIM_LANES " + std::to_string(lanes) + "\n";
   for (const char* file : {"lanes.h", "spring_law.h", "floor_law.h", "grid_parameters.h", "grid_stage.cl"})
     text += kernel_file(file);
-  text += stencil_text();
-  for (std::size_t stage = 0; stage < integrator.stage_count; ++stage) text += stage_text(integrator, stage);
+  const bool walks = grid_program_walks(lanes);
+  text += walks ? walk_springs_text() : gather_springs_text();
+  for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
+    text += stage_text(integrator, stage, walks);
   return text;
 }
 

@@ -12,9 +12,14 @@ namespace mssim {
 
 /// Text of the program that steps a grid with `integrator`: the shared laws, what the stages have in common
 /// (kernels/*), and one kernel per stage, generated from the tables of integrators and of the stencil. It
-/// depends on the integrator and on `lanes` alone (nodes per work-item: 1, 2, 4, 8 or 16), so that a driver's
-/// cache of built programs serves every scene. Throws std::runtime_error when a kernel file is missing.
+/// depends on the integrator and on `lanes` alone (nodes side by side in one number: 1, 4, 8 or 16), so that
+/// a driver's cache of built programs serves every scene. Throws std::runtime_error when a kernel file is
+/// missing.
 std::string grid_program_text(const Integrator& integrator, int lanes);
+
+/// Does a work-item of the program walk over a block of rows, with one row of work-items and `sums` as the
+/// last argument, or own one node? kernels/grid_stage.cl says how.
+bool grid_program_walks(int lanes);
 
 /// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).
 std::string packed_springs_program_text();
