@@ -33,7 +33,17 @@ inline System cloth_system(std::uint32_t rows, std::uint32_t columns) {
   return build_system(cloth_spec(rows, columns));
 }
 
-/// The same without pins, gravity, damping by the air: nothing outside the cloth acts on it.
+/// A flat sheet at rest, without pins, at `height_m`.
+inline SceneSpec sheet_spec(std::uint32_t rows, std::uint32_t columns, double height_m) {
+  SceneSpec spec = cloth_spec(rows, columns);
+  auto& cloth = std::get<ClothSpec>(spec.body);
+  cloth.pins.reset();
+  cloth.ripple = {0, 1, 0};
+  cloth.ceiling_height_m = height_m;
+  return spec;
+}
+
+/// A rippled cloth without pins, gravity, damping by the air: nothing outside the cloth acts on it.
 inline System lone_cloth(std::uint32_t rows, std::uint32_t columns) {
   SceneSpec spec = cloth_spec(rows, columns);
   std::get<ClothSpec>(spec.body).pins.reset();

@@ -90,11 +90,7 @@ TEST_P(EachIntegrator, FollowsItsOwnRecurrenceForAnUndampedOscillator) {
 }
 
 TEST_P(EachIntegrator, LetsAnUnstrainedSheetFallWithoutDeformingIt) {
-  SceneSpec spec = cloth_spec(9, 11);
-  auto& cloth = std::get<ClothSpec>(spec.body);
-  cloth.pins.reset();
-  cloth.ripple = {};
-  cloth.ripple.wavelength_m = 1;
+  SceneSpec spec = sheet_spec(9, 11, 1);
   spec.viscous_damping_per_s = 0;
   const System system = build_system(spec);
   const int steps = 500;
