@@ -26,17 +26,6 @@ void round_to_single(State& state) {
     }
 }
 
-double extent(const State& state) {
-  if (state.position.empty()) return 0;
-  Vec3d low = state.position.front(), high = low;
-  for (const Vec3d& x : state.position) {
-    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
-    high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
-  }
-  const Vec3d size = high - low;
-  return std::max({size.x, size.y, size.z});
-}
-
 StiffnessBound stiffness_bound(const System& system) {
   struct Sum {
     double stiffness = 0, damping = 0;

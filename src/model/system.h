@@ -49,9 +49,6 @@ double mean_rest_length(const System& system);
 /// Rounds all numbers of a state to single precision.
 void round_to_single(State& state);
 
-/// Largest side of the box around the positions, m.
-double extent(const State& state);
-
 /// Bounds on what the springs can do to one node, for the stability limit.
 struct StiffnessBound {
   double stiffness = 0;  ///< 1/s^2, at least the largest eigenvalue of K/m
