@@ -7,6 +7,7 @@ set -euo pipefail
 rule='
 kernels
 model        kernels
+mesh         model
 scene        model
 integrators
 contact      model kernels
