@@ -8,9 +8,9 @@ namespace {
 
 class OpenMp final : public Backend {
  public:
-  OpenMp(const System& system, const Integrator& integrator, double dt_s, int threads)
+  OpenMp(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s, int threads)
       : kernel_(best_band_kernel()),
-        sheet_(system, integrator, dt_s, kernel_.lanes, static_cast<std::size_t>(threads)) {
+        sheet_(system, grid, integrator, dt_s, kernel_.lanes, static_cast<std::size_t>(threads)) {
     sheet_.set_state(system.start);
   }
 
@@ -29,7 +29,8 @@ class OpenMp final : public Backend {
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  return std::make_unique<OpenMp>(system, integrator, dt_s, options.threads);
+  return std::make_unique<OpenMp>(system, std::get<GridPatch>(system.topology), integrator, dt_s,
+                                  options.threads);
 }
 
 }  // namespace mssim
