@@ -14,7 +14,7 @@
 #endif
 
 #include "backends/grid_bands/band_sheet.h"
-#include "backends/grid_bands/lanes-inl.h"
+#include "backends/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

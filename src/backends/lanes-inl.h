@@ -25,7 +25,7 @@ using Index = hn::Vec<IndexTag>;
 #define MSSIM_INLINE HWY_INLINE
 #define MSSIM_INLINE_LAMBDA HWY_ATTR __attribute__((always_inline))
 
-/// Floats, one of each band.
+/// Floats side by side, one of each node of a vector.
 struct Lanes {
   hn::Vec<FloatTag> v;
   Lanes() = default;
