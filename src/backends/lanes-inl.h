@@ -90,6 +90,16 @@ HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
 #include "kernels/spring_law.h"
 #undef MSSIM_LAW
 
+/// What the floor does to the new state of the lanes `under` it (the other lanes keep theirs).
+HWY_INLINE void touch_floor(Mask under, Lanes height, Lanes restitution, Lanes friction, Lanes3& x,
+                            Lanes3& v) {
+  if (HWY_LIKELY(hn::AllFalse(FloatTag(), under))) return;
+  const Lanes rebound = floor_rebound(v.y, restitution);
+  const Lanes grip = floor_grip(rebound - v.y, mul_add(v.z, v.z, v.x * v.x), friction);
+  x.y = select(under, height, x.y);
+  v = {select(under, grip * v.x, v.x), select(under, rebound, v.y), select(under, grip * v.z, v.z)};
+}
+
 #include "integrators/stage_update-inl.h"
 
 }  // namespace mssim::HWY_NAMESPACE
