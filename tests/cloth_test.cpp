@@ -111,7 +111,7 @@ TEST(BuildCloth, PlacesTheNodesRowByRowUnderTheCeiling) {
 TEST(BuildCloth, TakesOverThePhysics) {
   const SceneSpec spec = cloth_spec(4, 4);
   const System system = build_cloth(spec);
-  EXPECT_DOUBLE_EQ(system.node_mass, 2e-5);
+  for (const double mass : system.node_mass) EXPECT_DOUBLE_EQ(mass, 2e-5);
   EXPECT_EQ(system.gravity, spec.gravity_m_per_s2);
   EXPECT_EQ(system.viscous_damping, spec.viscous_damping_per_s);
   EXPECT_EQ(system.floor.friction, spec.floor.friction);

@@ -48,12 +48,13 @@ inline void write_text_file(const std::filesystem::path& file, const std::string
 /// A rippled cloth; its springs are real, its state is whatever `state_at` says.
 inline System small_cloth(std::uint32_t rows, std::uint32_t columns) {
   System system;
-  system.grid = {rows, columns, 0.01};
-  system.springs = springs_of(system.grid);
+  const GridPatch grid{rows, columns, 0.01};
+  system.topology = grid;
+  system.springs = springs_of(grid);
   system.materials.resize(grid_spring_kinds.size());
-  system.node_mass = 1e-5;
-  system.start.position.resize(system.grid.nodes());
-  system.start.velocity.resize(system.grid.nodes());
+  system.node_mass.assign(grid.nodes(), 1e-5);
+  system.start.position.resize(grid.nodes());
+  system.start.velocity.resize(grid.nodes());
   return system;
 }
 

@@ -113,7 +113,7 @@ class Hybrid final : public Backend {
         threads_(threads),
         nodes_(system.nodes()),
         pinned_(nodes_, false),
-        inverse_mass_(static_cast<float>(1 / system.node_mass)),
+        inverse_mass_(nodes_),
         viscous_damping_(static_cast<float>(system.viscous_damping)),
         gravity_(static_cast<float>(system.gravity)),
         floor_height_(static_cast<float>(system.floor.height)),
@@ -136,6 +136,8 @@ class Hybrid final : public Backend {
     springs_->unmap(queue_, units);
     first_entry_ = std::move(springs.first_entry);
     entries_ = std::move(springs.entries);
+    for (std::size_t node = 0; node < nodes_; ++node)
+      inverse_mass_[node] = static_cast<float>(1 / system.node_mass[node]);
     for (const std::uint32_t pin : system.pins) pinned_[pin] = true;
     for (const Pair pair : stored) {
       auto& buffer = pairs_[index(pair)];
@@ -243,7 +245,7 @@ class Hybrid final : public Backend {
           else
             force -= of_spring;
         }
-        a = mul_add(-viscous_damping_, v, inverse_mass_ * force);
+        a = mul_add(-viscous_damping_, v, inverse_mass_[node] * force);
         a.y -= gravity_;
       }
       update_stage<row, stage>(
@@ -300,7 +302,8 @@ class Hybrid final : public Backend {
   std::size_t nodes_;
   std::vector<std::uint32_t> first_entry_, entries_;  // see PackedSprings
   std::vector<std::uint8_t> pinned_;                  // [nodes]
-  float inverse_mass_, viscous_damping_, gravity_, floor_height_, restitution_, friction_;
+  std::vector<float> inverse_mass_;                   // [nodes] 1/kg
+  float viscous_damping_, gravity_, floor_height_, restitution_, friction_;
   cl::Context context_;
   cl::CommandQueue queue_;
   std::array<std::optional<OpenclBuffer<NodeRecord>>, pair_kinds> pairs_;  // [Pair], those that are stored

@@ -96,20 +96,20 @@ void check_size(const PlaneLayout& layout, std::size_t pairs, const OpenclDevice
     throw Unsupported(needs + "the kernels' 32-bit offsets reach 8191 MiB");
 }
 
-GridParameters parameters_of(const System& system, const Integrator& integrator, double dt_s,
-                             const PlaneLayout& layout, const Range& range) {
+GridParameters parameters_of(const System& system, const GridPatch& patch, const Integrator& integrator,
+                             double dt_s, const PlaneLayout& layout, const Range& range) {
   GridParameters grid{};
-  grid.rows = static_cast<int>(system.grid.rows);
-  grid.columns = static_cast<int>(system.grid.columns);
+  grid.rows = static_cast<int>(patch.rows);
+  grid.columns = static_cast<int>(patch.columns);
   grid.stride = static_cast<int>(layout.stride);
   grid.plane = static_cast<int>(layout.plane);
   grid.block_rows = static_cast<int>(range.block_rows);
+  const double mass = require_uniform_mass(system);
   for (const GridSpringKind kind : {structural, shear, bending}) {
     const SpringMaterial& material = system.materials[kind];
-    grid.stiffness[kind] = static_cast<float>(material.stiffness / system.node_mass);
-    grid.stiffness_rest[kind] =
-        static_cast<float>(material.stiffness * system.grid.rest_length(kind) / system.node_mass);
-    grid.damping[kind] = static_cast<float>(material.damping / system.node_mass);
+    grid.stiffness[kind] = static_cast<float>(material.stiffness / mass);
+    grid.stiffness_rest[kind] = static_cast<float>(material.stiffness * patch.rest_length(kind) / mass);
+    grid.damping[kind] = static_cast<float>(material.damping / mass);
   }
   grid.viscous_damping = static_cast<float>(system.viscous_damping);
   grid.gravity = static_cast<float>(system.gravity);
@@ -127,8 +127,8 @@ struct PinLines {
   std::vector<cl_int> line_of_row;  ///< [rows] line in `pinned`, or -1
   std::vector<cl_int> pinned;       ///< [lines][stride] -1 for a pinned node; at least one line
 
-  PinLines(const System& system, const PlaneLayout& layout)
-      : line_of_row(system.grid.rows, -1), pinned(layout.stride, 0) {
+  PinLines(const System& system, std::size_t rows, const PlaneLayout& layout)
+      : line_of_row(rows, -1), pinned(layout.stride, 0) {
     cl_int lines = 0;
     for (const std::uint32_t pin : system.pins) {
       cl_int& line = line_of_row[pin / layout.columns];
@@ -141,12 +141,12 @@ struct PinLines {
 
 class OpenclCloth final : public Backend {
  public:
-  OpenclCloth(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-              int lanes)
+  OpenclCloth(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
+              const OpenclDevice& device, int lanes)
       : device_(device),
         nodes_(system.nodes()),
-        range_(range_for(system.grid, device, lanes)),
-        layout_(system.grid, range_) {
+        range_(range_for(grid, device, lanes)),
+        layout_(grid, range_) {
     std::vector<Pair> stored;
     for (std::size_t i = 0; i < pair_kinds; ++i)
       if (stores(integrator, static_cast<Pair>(i), Storage::separate)) stored.push_back(static_cast<Pair>(i));
@@ -155,8 +155,8 @@ class OpenclCloth final : public Backend {
     const cl::Device cl_device(device.id, true);
     context_ = cl::Context(cl_device);
     queue_ = cl::CommandQueue(context_, cl_device);
-    const GridParameters parameters = parameters_of(system, integrator, dt_s, layout_, range_);
-    const PinLines pins(system, layout_);
+    const GridParameters parameters = parameters_of(system, grid, integrator, dt_s, layout_, range_);
+    const PinLines pins(system, grid.rows, layout_);
     parameters_ = filled_buffer(std::span(&parameters, 1));
     pin_rows_ = filled_buffer(std::span(pins.line_of_row));
     pins_ = filled_buffer(std::span(pins.pinned));
@@ -296,7 +296,8 @@ int lanes_for(const OpenclDevice& device) {
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes) {
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    return std::make_unique<OpenclCloth>(system, integrator, dt_s, device, lanes);
+    return std::make_unique<OpenclCloth>(system, std::get<GridPatch>(system.topology), integrator, dt_s,
+                                         device, lanes);
   });
 }
 

@@ -73,8 +73,7 @@ void write_mass(hid_t file, const System& system) {
   const std::array<hsize_t, 1> shape{system.nodes()};
   Hdf5Dataset mass = create_dataset(file, "/particles/cloth/mass", H5T_IEEE_F64LE, shape, false,
                                     chunked(shape, Packing::deflated));
-  const std::vector<double> masses(system.nodes(), system.node_mass);
-  checked(H5Dwrite(mass.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, masses.data()),
+  checked(H5Dwrite(mass.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, system.node_mass.data()),
           "writing masses");
   mass.close("writing masses");
 }
@@ -137,7 +136,9 @@ std::size_t count_frames(const std::filesystem::path& trace) {
 }  // namespace
 
 H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header)
-    : file_name_(std::move(file)), grid_(system.grid), buffer_(dimensions * system.nodes()) {
+    : file_name_(std::move(file)),
+      grid_(std::get<GridPatch>(system.topology)),
+      buffer_(dimensions * system.nodes()) {
   if (system.nodes() == 0 || system.nodes() != grid_.nodes())
     throw std::invalid_argument("a trace needs a system whose nodes form a grid");
   prepare_hdf5();
