@@ -33,8 +33,11 @@ class Check {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw MeshError(std::string(name_) + ": " + what); }
 
-  std::string at(std::uint32_t point) const {
-    return "point " + std::to_string(point) + " at " + place(surface_.points[point]);
+  /// Files number points and triangles in their own ways, so messages give coordinates.
+  std::string at(std::uint32_t point) const { return place(surface_.points[point]); }
+  std::string corners(std::size_t triangle) const {
+    const auto& [a, b, c] = surface_.triangles[triangle];
+    return "the triangle " + at(a) + ", " + at(b) + ", " + at(c);
   }
 
   void points() const {
@@ -48,23 +51,22 @@ class Check {
     std::vector<bool> used(surface_.points.size());
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
       const auto& triangle = surface_.triangles[t];
-      const std::string named = "triangle " + std::to_string(t) + " (from 0)";
       for (const std::uint32_t point : triangle) {
         if (point >= surface_.points.size())
-          fail(named + " names point " + std::to_string(point) + " but there are only " +
-               std::to_string(surface_.points.size()) + " points, counted from 0");
+          fail("triangle " + std::to_string(t) + " (from 0) names point " + std::to_string(point) +
+               " but there are only " + std::to_string(surface_.points.size()) + " points, counted from 0");
         used[point] = true;
       }
       const Vec3d& a = surface_.points[triangle[0]];
       const Vec3d ab = surface_.points[triangle[1]] - a;
       const Vec3d ac = surface_.points[triangle[2]] - a;
       if (length(cross(ab, ac)) <= flat * std::max(dot(ab, ab), dot(ac, ac)))
-        fail(named + " with " + at(triangle[0]) + ", " + at(triangle[1]) + " and " + at(triangle[2]) +
-             " has no area; remove it or move its points apart");
+        fail(corners(t) + " has no area; remove it or move its points apart");
     }
     const auto unused = std::find(used.begin(), used.end(), false);
     if (unused != used.end())
-      fail(at(static_cast<std::uint32_t>(unused - used.begin())) + " belongs to no triangle; remove it");
+      fail("the point " + at(static_cast<std::uint32_t>(unused - used.begin())) +
+           " belongs to no triangle; remove it");
   }
 
   void sides() const {
@@ -85,14 +87,13 @@ class Check {
       while (end < sides.size() && key(sides[end]) == key(sides[first])) ++end;
       const Side& side = sides[first];
       const std::string edge = "the edge from " + at(side.low) + " to " + at(side.high);
-      const std::string one = " triangle " + std::to_string(side.triangle);
-      if (end - first == 1) fail(edge + " belongs to" + one + " (from 0) alone; close the hole there");
+      if (end - first == 1) fail(edge + " belongs to one triangle only; close the hole there");
       if (end - first > 2)
         fail(edge + " belongs to " + std::to_string(end - first) +
              " triangles; an edge of a closed surface joins two, so separate the parts that meet there");
       if (side.upwards == sides[first + 1].upwards)
-        fail(one.substr(1) + " and triangle " + std::to_string(sides[first + 1].triangle) +
-             " (from 0) both run along " + edge + " in the same direction; turn one of them round");
+        fail(corners(side.triangle) + " and " + corners(sides[first + 1].triangle) + " both run along " +
+             edge + " in the same direction; turn one of them round");
       first = end;
     }
   }

@@ -33,9 +33,8 @@ void write_text(const fs::path& file, const std::string& text) {
 }
 
 std::string corners_of(const Surface& surface, std::size_t triangle) {
-  std::string text = "triangle " + std::to_string(triangle) + " with corners";
-  for (const std::uint32_t point : surface.triangles[triangle]) text += ' ' + place(surface.points[point]);
-  return text;
+  const auto& [a, b, c] = surface.triangles[triangle];
+  return place(surface.points[a]) + ", " + place(surface.points[b]) + ", " + place(surface.points[c]);
 }
 
 /// One run of TetGen on files of its folder.
@@ -102,8 +101,9 @@ class Run {
       if (std::sscanf(line.c_str(), " Facet #%zu intersects facet #%zu", &first, &second) != 2) continue;
       const std::size_t count = surface_.triangles.size();
       if (first < 1 || second < 1 || first > count || second > count) continue;
-      return "the surface crosses or touches itself: " + corners_of(surface_, first - 1) + " meets " +
-             corners_of(surface_, second - 1) + " (triangles from 0); move them apart or join their parts";
+      return "the surface crosses or touches itself: the triangle " + corners_of(surface_, first - 1) +
+             " meets the triangle " + corners_of(surface_, second - 1) +
+             "; move them apart or join their parts";
     }
     return std::nullopt;
   }

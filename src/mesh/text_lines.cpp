@@ -12,17 +12,8 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\f\v";
 
-/// A word for a message: short, and no control characters for the terminal.
-std::string quoted(std::string_view word) {
-  constexpr std::size_t longest = 40;
-  std::string text = "\"";
-  for (const char c : word.substr(0, longest)) text += (c < ' ' || c == 0x7f) ? '?' : c;
-  return text + (word.size() > longest ? "...\"" : "\"");
-}
-
-/// The whole word as a number, in no locale.
 template <class Number>
-bool parse(std::string_view word, Number& value) {
+bool parse_number(std::string_view word, Number& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const char* end = word.data() + word.size();
   const auto [stopped, error] = std::from_chars(word.data(), end, value);
@@ -69,6 +60,16 @@ bool TextLines::next() {
 
 void TextLines::require_next(const std::string& expected) {
   if (!next()) fail("the file ends before " + expected + "; it is truncated, so write it again");
+}
+
+bool TextLines::parse(std::string_view word, double& value) { return parse_number(word, value); }
+bool TextLines::parse(std::string_view word, std::int64_t& value) { return parse_number(word, value); }
+
+std::string TextLines::quoted(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  std::string text = "\"";
+  for (const char c : word.substr(0, longest)) text += (c < ' ' || c == 0x7f) ? '?' : c;
+  return text + (word.size() > longest ? "...\"" : "\"");
 }
 
 double TextLines::number(std::size_t index, std::string_view what) const {

@@ -36,6 +36,12 @@ class TextLines {
   /// Word `index` as a whole number.
   std::int64_t integer(std::size_t index, std::string_view what) const;
 
+  /// The whole word as a number, in no locale; false when it is none or too large.
+  static bool parse(std::string_view word, double& value);
+  static bool parse(std::string_view word, std::int64_t& value);
+  /// A word for a message: in quotes, cut off when long, without control characters.
+  static std::string quoted(std::string_view word);
+
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }
   [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 
