@@ -159,7 +159,7 @@ class BodiesFile : public testing::Test {
     "springs": {"stiffness_n_per_m": 100, "damping_n_s_per_m": 0.1},
     "list": [{
       "shape": "tetgen",
-      "tetgen": {"node_file": "one.node", "ele_file": "one.ele", "scale": 0.01},
+      "tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01},
       "centre_m": [1, 2, 3],
       "turn": {"axis": [0, 0, 0.5], "angle_deg": 90},
       "velocity_m_per_s": [0.5, 0, 0],
@@ -196,7 +196,7 @@ TEST_F(BodiesFile, BuildsABodyThatIsTurnedFliesSpinsAndSwells) {
 
 TEST_F(BodiesFile, MayStateItsSizeWhichIsComparedNotBelieved) {
   const std::string stated =
-      with_change(good_, R"("scale": 0.01)", R"("scale": 0.01, "expected": {"nodes": 5, "springs": 7})");
+      with_change(good_, R"("unit_m": 0.01)", R"("unit_m": 0.01, "expected": {"nodes": 5, "springs": 7})");
   const SceneSpec spec = load_scene(scene(stated));
   ASSERT_TRUE(stated_counts(spec));
   EXPECT_EQ(stated_counts(spec)->springs_unique, 7U);
@@ -206,7 +206,7 @@ TEST_F(BodiesFile, MayStateItsSizeWhichIsComparedNotBelieved) {
 TEST_F(BodiesFile, TakesTheShapeOfAnotherScene) {
   const std::string other =
       with_change(with_change(good_, "\"tetgen\",", "\"scene\","),
-                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "scale": 0.01})",
+                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
                   R"("scene": {"name": "box-small"})");
   EXPECT_EQ(counts_of(load_scene(scene(other))).nodes, counts_of(find_scene("box-small")).nodes);
 }
@@ -217,8 +217,8 @@ TEST_F(BodiesFile, FillsASurfaceWithTetrahedra) {
         "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
   const std::string text =
       with_change(with_change(good_, "\"tetgen\",", "\"surface\","),
-                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "scale": 0.01})",
-                  R"("surface": {"file": "cube.obj", "scale": 0.1, "largest_tetrahedron_m3": 2e-6})");
+                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
+                  R"("surface": {"file": "cube.obj", "unit_m": 0.1, "largest_tetrahedron_m3": 2e-6})");
   const System system = build_system(load_scene(scene(text)));
   const auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
   EXPECT_GE(tetrahedra.size(), 500U);
@@ -279,7 +279,7 @@ TEST_F(BodiesFile, WithoutAListIsRefused) {
 TEST_F(BodiesFile, CannotTakeTheShapeOfAnythingElse) {
   const auto with_name = [&](const std::string& name) {
     return scene(with_change(with_change(good_, "\"tetgen\",", "\"scene\","),
-                             R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "scale": 0.01})",
+                             R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
                              R"("scene": {"name": ")" + name + "\"}"));
   };
   EXPECT_THAT(error_of(with_name("cloth2500")), HasSubstr("cloth2500\" has no bodies"));

@@ -38,7 +38,7 @@ struct GeneratedShape {
 struct MeshFiles {
   std::string node_file;
   std::string ele_file;
-  double scale = 1;  ///< metres per unit of the files
+  double unit_m = 1;  ///< metres in one unit of the files
 
   bool operator==(const MeshFiles&) const = default;
 };
@@ -47,8 +47,8 @@ struct MeshFiles {
 /// the scene file's folder.
 struct SurfaceFile {
   std::string file;
-  double scale = 1;              ///< metres per unit of the file
-  double largest_tetrahedron_m3 = 0;  ///< volume of the largest one wanted
+  double unit_m = 1;                  ///< metres in one unit of the file
+  double largest_tetrahedron_m3 = 0;  ///< volume of the largest one allowed, 0 for no limit
 
   bool operator==(const SurfaceFile&) const = default;
 };

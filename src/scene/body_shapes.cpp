@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "mesh/mesh_error.h"
 #include "mesh/shape_mesh.h"
+#include "mesh/surface_mesh.h"
 #include "mesh/tetgen_files.h"
 #include "scene/scene_error.h"
 #include "scene/scene_file.h"
@@ -64,15 +64,15 @@ void visit_mesh_files(FieldVisitor& fields, BodySpec& body) {
   auto& files = body.shape.emplace<MeshFiles>();
   fields.text("node_file", Presence::required, files.node_file);
   fields.text("ele_file", Presence::required, files.ele_file);
-  fields.number("scale", files.scale, above(0, 1e6));
+  fields.number("unit_m", files.unit_m, above(0, 1e6));
   visit_expected(fields, body);
 }
 
 void visit_surface_file(FieldVisitor& fields, BodySpec& body) {
   auto& surface = body.shape.emplace<SurfaceFile>();
   fields.text("file", Presence::required, surface.file);
-  fields.number("scale", surface.scale, above(0, 1e6));
-  fields.number("largest_tetrahedron_m3", surface.largest_tetrahedron_m3, above(0, 1e9));
+  fields.number("unit_m", surface.unit_m, above(0, 1e6));
+  fields.number("largest_tetrahedron_m3", surface.largest_tetrahedron_m3, from(0, 1e9));
   visit_expected(fields, body);
 }
 
@@ -119,12 +119,11 @@ struct Mesher {
   }
   TetMesh operator()(const MeshFiles& files) const {
     TetMesh mesh = read_tetgen_files(folder / files.node_file, folder / files.ele_file);
-    for (Vec3d& node : mesh.nodes) node = files.scale * node;
+    for (Vec3d& node : mesh.nodes) node = files.unit_m * node;
     return mesh;
   }
   TetMesh operator()(const SurfaceFile& surface) const {
-    (void)surface;
-    throw MeshError("surfaces of files cannot be meshed yet");
+    return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
   }
   TetMesh operator()(const ShapeOfScene& shape) const {
     const SceneSpec scene = find_scene(shape.name);
