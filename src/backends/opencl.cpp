@@ -83,17 +83,11 @@ struct PlaneLayout {
 
 /// Throws Unsupported unless the device can hold `pairs` buffers of this layout.
 void check_size(const PlaneLayout& layout, std::size_t pairs, const OpenclDevice& device) {
-  const auto megabytes = [](std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; };
-  const std::uint64_t bytes = layout.floats_per_pair() * sizeof(float);
-  const std::string needs =
-      "the cloth needs " + std::to_string(pairs) + " OpenCL buffers of " + megabytes(bytes) + " each, ";
-  if (bytes > device.max_allocation_bytes)
-    throw Unsupported(needs + device.name + " allocates at most " + megabytes(device.max_allocation_bytes) +
-                      " in one piece");
-  if (pairs * bytes > device.global_memory_bytes)
-    throw Unsupported(needs + device.name + " has " + megabytes(device.global_memory_bytes) + " in all");
+  require_memory(device, std::vector<std::uint64_t>(pairs, layout.floats_per_pair() * sizeof(float)));
   if (layout.floats_per_pair() > std::numeric_limits<cl_int>::max())
-    throw Unsupported(needs + "the kernels' 32-bit offsets reach 8191 MiB");
+    throw Unsupported(
+        "the cloth needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit "
+        "offsets reach");
 }
 
 GridParameters parameters_of(const System& system, const GridPatch& patch, const Integrator& integrator,
@@ -285,13 +279,6 @@ constexpr bool all_swap_state() {
 static_assert(all_swap_state(), "step() swaps the two pairs after every step");
 
 }  // namespace
-
-int lanes_for(const OpenclDevice& device) {
-  if (device.type != OpenclDeviceType::cpu) return 1;
-  int lanes = 4;
-  while (lanes < 16 && static_cast<std::uint32_t>(lanes) < device.preferred_float_width) lanes *= 2;
-  return lanes;
-}
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes) {

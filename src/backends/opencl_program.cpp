@@ -152,9 +152,10 @@ std::string grid_program_text(const Integrator& integrator, int lanes) {
   return text;
 }
 
-std::string packed_springs_program_text() {
-  std::string text = "#define MSSIM_LANES 1\n";
-  for (const char* file : {"lanes.h", "spring_law.h", "packed_springs.cl"}) text += kernel_file(file);
+std::string packed_springs_program_text(int lanes) {
+  std::string text = "#define MSSIM_LANES " + std::to_string(lanes) + "\n";
+  for (const char* file : {"lanes.h", "records.h", "spring_law.h", "packed_springs.cl"})
+    text += kernel_file(file);
   return text;
 }
 

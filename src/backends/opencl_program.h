@@ -21,8 +21,9 @@ std::string grid_program_text(const Integrator& integrator, int lanes);
 /// last argument, or own one node? kernels/grid_stage.cl says how.
 bool grid_program_walks(int lanes);
 
-/// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).
-std::string packed_springs_program_text();
+/// Text of the program that computes one force per packed spring (kernels/packed_springs.cl), `lanes` of them
+/// side by side.
+std::string packed_springs_program_text(int lanes);
 
 /// Name of the stage's kernel in grid_program_text.
 std::string stage_kernel_name(std::size_t stage);
