@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <barrier>
-#include <bit>
 #include <cstdint>
 #include <exception>
 #include <optional>
@@ -184,19 +183,19 @@ class Hybrid final : public Backend {
     host_[place] = pair.map(queue_, CL_MAP_READ | CL_MAP_WRITE);
   }
 
-  /// Adds up the forces on the nodes of a slice, N. What the slice's threads read is in entries' order; signs
-  /// are flipped by their bit, so that nothing branches.
+  /// The spring forces on the nodes of a slice, N.
   std::array<Quad, PackedSprings::slice_nodes> sum_forces(std::size_t slice) const {
-    using Bits = std::uint32_t __attribute__((vector_size(16)));
     std::array<Quad, PackedSprings::slice_nodes> sums{};
-    const std::uint32_t* entry = &packed_.entries[packed_.first_entry[slice] * sums.size()];
-    const std::uint32_t* end = &packed_.entries[packed_.first_entry[slice + 1] * sums.size()];
+    const Quad* forces = host_forces_.data();
+    const auto entry_at = [&](std::size_t bound) {
+      return packed_.entries.data() + packed_.first_entry[bound] * sums.size();
+    };
+    const std::uint32_t *entry = entry_at(2 * slice), *subtracted = entry_at(2 * slice + 1),
+                        *end = entry_at(2 * slice + 2);
+    for (; entry != subtracted; entry += sums.size())
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = sums[i] + forces[entry[i]];
     for (; entry != end; entry += sums.size())
-      for (std::size_t i = 0; i < sums.size(); ++i) {
-        const std::uint32_t sign = entry[i] & PackedSprings::opposite;
-        const Quad force = host_forces_[entry[i] ^ sign];
-        sums[i].lanes += std::bit_cast<Quad::Lanes>(std::bit_cast<Bits>(force.lanes) ^ sign);
-      }
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = sums[i] - forces[entry[i]];
     return sums;
   }
 
@@ -207,6 +206,12 @@ class Hybrid final : public Backend {
     std::array<NodeRecord*, pair_kinds> pairs{};
     for (std::size_t i = 0; i < pair_kinds; ++i)
       pairs[i] = host_[place_of<row>(static_cast<Pair>(i), present)].data();
+    // Copies, because the compiler must take every node written for a change of the members.
+    const Coefficients<float> coefficients = coefficients_;
+    const Quad gravity = gravity_;
+    const float viscous_damping = viscous_damping_, floor_height = floor_height_;
+    const std::uint8_t* held = held_.data();
+    const float* inverse_mass = inverse_mass_.data();
     for (std::size_t slice = begin; slice < end; ++slice) {
       const auto forces = sum_forces(slice);
       for (std::size_t i = 0; i < forces.size(); ++i) {
@@ -216,21 +221,17 @@ class Hybrid final : public Backend {
           return index(slot) % 2 == 0 ? found.position : found.velocity;
         };
         const Quad x = pairs[index(gather)][node].position, v = pairs[index(gather)][node].velocity;
-        const bool held = held_[node] != 0;
-        Quad a{};
-        if (!held) {
-          a = mul_add(-viscous_damping_, v, inverse_mass_[node] * forces[i]);
-          a.lanes -= gravity_.lanes;
-        }
+        const bool free = held[node] == 0;
+        const Quad a = free ? mul_add(-viscous_damping, v, inverse_mass[node] * forces[i]) - gravity : Quad{};
         update_stage<row, stage>(
-            coefficients_, x, v, a, record,
+            coefficients, x, v, a, record,
             [&]<Slot slot>(std::integral_constant<Slot, slot> which, const Quad& value) {
               record(which) = value;
             },
             [&](Quad& next_x, Quad& next_v) {
-              if (held || !(next_x.lanes[1] < floor_height_)) return;
+              if (!free || !(next_x.lanes[1] < floor_height)) return;
               Vec3<float> on_floor = vec3_of(next_x), bounced = vec3_of(next_v);
-              touch_floor(on_floor, bounced, floor_height_, restitution_, friction_);
+              touch_floor(on_floor, bounced, floor_height, restitution_, friction_);
               next_x = quad_of(on_floor);
               next_v = quad_of(bounced);
             });
@@ -251,7 +252,7 @@ class Hybrid final : public Backend {
       gate.emplace(omp_get_num_threads());
       const auto thread = static_cast<std::size_t>(omp_get_thread_num());
       const auto threads = static_cast<std::size_t>(omp_get_num_threads());
-      const std::size_t slices = packed_.places() / PackedSprings::slice_nodes;
+      const std::size_t slices = packed_.slices();
       const std::size_t begin = slices * thread / threads, end = slices * (thread + 1) / threads;
       std::size_t present = present_;
       for (int i = 0; i < count; ++i) {

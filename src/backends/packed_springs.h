@@ -13,14 +13,13 @@ namespace mssim {
 /// computes one force each, and for every node the forces that the host sums.
 ///
 /// The nodes are numbered for it: a grid's as they are, those of bodies so that neighbours stand near each
-/// other. The units are sorted by kind, then by their first node, and laid out as kernels/packed_springs.cl
-/// reads them.
+/// other, and within windows by their degree. Which end of a spring comes first is chosen so that every node
+/// is about as often first as second. The units are sorted by kind, then by their first node, and laid out as
+/// kernels/packed_springs.cl reads them.
 struct PackedSprings {
   static constexpr std::size_t side_by_side = 16;  ///< units, of one kind
   static constexpr std::size_t slice_nodes = 4;
   static constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
-  /// Set in an entry whose node is the unit's second end and feels the opposite of its force.
-  static constexpr std::uint32_t opposite = 0x80000000;
 
   std::vector<std::uint32_t> scene_node;  ///< [places] the scene's number of the node, or no_node at the end
   std::vector<std::uint32_t> place;       ///< [nodes] where the scene's node stands
@@ -31,15 +30,17 @@ struct PackedSprings {
   std::vector<std::uint32_t> units;
   std::vector<std::uint32_t> kinds;  ///< [units / 16] index into System::materials
 
-  /// [slices + 1] of the slice; the last one is the number of entries.
+  /// [slices][added, subtracted], then the number of entries: where the entries of a slice begin.
   std::vector<std::uint32_t> first_entry;
-  /// [entries][slice_nodes] a unit, perhaps `opposite`. Nodes with fewer springs than others of their slice
-  /// end with the unit `unit_count()`, whose force is to be zero.
+  /// [entries][slice_nodes] units whose force on a node is to be added, since it is their first end, then
+  /// units whose force is to be subtracted. Nodes with fewer than others of their slice get the unit
+  /// `unit_count()`, whose force is to be zero.
   std::vector<std::uint32_t> entries;
 
-  /// Throws Unsupported for more springs than 31 bits number.
+  /// Throws Unsupported for more springs than 32 bits number from both ends.
   explicit PackedSprings(const System& system);
 
+  std::size_t slices() const { return places() / slice_nodes; }
   std::size_t places() const { return scene_node.size(); }
   std::size_t unit_count() const { return kinds.size() * side_by_side; }
 };

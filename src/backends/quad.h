@@ -11,6 +11,7 @@ struct Quad {
   Lanes lanes{};
 
   friend Quad operator+(const Quad& a, const Quad& b) { return {a.lanes + b.lanes}; }
+  friend Quad operator-(const Quad& a, const Quad& b) { return {a.lanes - b.lanes}; }
   friend Quad operator*(float s, const Quad& a) { return {s * a.lanes}; }
 };
 
