@@ -1,13 +1,8 @@
-/* Nodes as records of eight floats: x y z and a float that is zero, u v w and another. A record is one load of
- * 32 bytes wherever the node lies, so that gathering MSSIM_LANES nodes is that many loads and a transposition
- * in registers. Needs lanes.h.
+/* Nodes as records of eight floats: x y z and a float that is zero, u v w and another. A record is one load
+ * of 32 bytes wherever the node lies, so that gathering MSSIM_LANES nodes is that many loads and a
+ * transposition in registers. Needs lanes.h.
  */
 #define record_floats 8
-
-typedef struct {
-  Vector x; /* m */
-  Vector v; /* m/s */
-} Node;
 
 #if MSSIM_LANES == 1
 
@@ -52,7 +47,7 @@ static inline void store_quads(Vector value, __global float* to, size_t distance
 #define record_at(records, number) (*(__global const float8*)((records) + record_floats * (size_t)(number)))
 
 #if MSSIM_LANES == 4
-#define load_records(records, of)                                                        \
+#define load_records(records, of)                                                               \
   transposed_4(record_at(records, of(0)), record_at(records, of(1)), record_at(records, of(2)), \
                record_at(records, of(3)))
 static inline Node transposed_4(float8 a, float8 b, float8 c, float8 d) {
@@ -81,10 +76,10 @@ static inline EightNodes transposed_8(float8 a, float8 b, float8 c, float8 d, fl
                       low_halves_16(ab_high, cd_high)};
   return nodes;
 }
-#define load_eight(records, of, from)                                                     \
-  transposed_8(record_at(records, of(from)), record_at(records, of(from + 1)),            \
-               record_at(records, of(from + 2)), record_at(records, of(from + 3)),        \
-               record_at(records, of(from + 4)), record_at(records, of(from + 5)),        \
+#define load_eight(records, of, from)                                              \
+  transposed_8(record_at(records, of(from)), record_at(records, of(from + 1)),     \
+               record_at(records, of(from + 2)), record_at(records, of(from + 3)), \
+               record_at(records, of(from + 4)), record_at(records, of(from + 5)), \
                record_at(records, of(from + 6)), record_at(records, of(from + 7)))
 #define positions_of(pair) (pair).s012389ab
 #define velocities_of(pair) (pair).s4567cdef

@@ -16,6 +16,7 @@
 
 #include "backends/hybrid.h"
 #include "backends/opencl_device.h"
+#include "backends/opencl_grid_program.h"
 #include "backends/opencl_program.h"
 #include "integrators/integrators.h"
 #include "model/grid_patch.h"
