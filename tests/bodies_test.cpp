@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
                               "is the text \"2\": give a number"},
                     BadBodies{"[1, 2, 3]", "[1, 2e7, 3]", "/bodies/list/0/centre_m/1", "is 20000000.0"},
                     BadBodies{"[1, 2, 3]", "{}", "/bodies/list/0/centre_m", "is an object"},
-                    BadBodies{"[1, 2, 3]", "[1, 0.01, 3]", "/bodies/list/0/centre_m/1",
+                    BadBodies{"[1, 2, 3]", "[1, 0.005, 3]", "/bodies/list/0/centre_m/1",
                               "not above the floor at 0: raise it"},
                     BadBodies{"[0, 0, 0.5]", "[0, 0, 0]", "/bodies/list/0/turn/axis", "has no direction"},
                     BadBodies{"[{\n", "[{}, {\n", "/bodies/list/0/shape", "is missing"},

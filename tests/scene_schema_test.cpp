@@ -109,12 +109,14 @@ TEST(SceneSchema, SaysExactlyWhatTheReaderAccepts) {
 TEST(SceneSchema, NamesTheUnitOfEveryFieldThatHasOne) {
   const json committed = json::parse(text_of(source_file("scenes/scene.schema.json")));
   const std::vector<std::pair<std::string, std::string>> units{
-      {"_kg_per_m2", "kg/m^2"}, {"_n_s_per_m", "N s/m"}, {"_n_per_m", "N/m"}, {"_m_per_s2", "m/s^2"},
-      {"_m_per_s", "m/s"},      {"_per_s", "1/s"},       {"_m", ", m"},       {"_s", ", s"}};
+      {"_kg_per_m2", "kg/m^2"}, {"_kg_per_m3", "kg/m^3"}, {"_m3", "m^3"},      {"_rad_per_s", "rad/s"},
+      {"_deg", "degrees"},      {"_n_s_per_m", "N s/m"},  {"_n_per_m", "N/m"}, {"_m_per_s2", "m/s^2"},
+      {"_m_per_s", "m/s"},      {"_per_s", "1/s"},        {"_m", ", m"},       {"_s", ", s"}};
   int checked = 0;
   const std::function<void(const json&)> check = [&](const json& schema) {
     for (const auto& [key, property] : schema.at("properties").items()) {
       if (property.contains("properties")) check(property);
+      if (property.contains("items") && property["items"].contains("properties")) check(property["items"]);
       const auto unit = std::find_if(
           units.begin(), units.end(),
           [&, name = std::string_view(key)](const auto& row) { return name.ends_with(row.first); });
