@@ -92,7 +92,9 @@ void require_between(double value, double low, double high, const std::string& w
 
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space) {
   constexpr std::uint32_t most = 1000000;
-  require_between(parameters.count, 0, most, "count");
+  if (parameters.count > most)
+    throw MeshError("the count of interior points is " + std::to_string(parameters.count) +
+                    "; give at most " + std::to_string(most));
   require_between(parameters.jitter, 0, 0.5, "jitter");
   require_between(parameters.margin, 0, 1, "margin");
   if (parameters.count == 0) return {};

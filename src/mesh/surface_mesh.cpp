@@ -13,6 +13,11 @@
 namespace mssim {
 namespace {
 
+/// Nodes are added, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
+/// than 1.414 times its shortest edge. (The surface's triangles may be few and long; kept as they are, they
+/// would stay the springs of the body.)
+const std::string fill_well = "-pq1.414";
+
 /// The limit in TetGen's form, which has no exponents.
 std::string volume_switch(double largest_volume_m3) {
   if (largest_volume_m3 == 0) return "";
@@ -42,7 +47,7 @@ TetMesh surface_mesh(const SurfaceBody& body) {
                     " m^3 in a body of " + decimal(volume_of(surface)) +
                     " m^3 would be more than ten million; give a larger volume");
   try {
-    return tetrahedralise(surface, {}, keep_surface + ("q1.414" + volume_switch(body.largest_volume_m3)));
+    return tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3));
   } catch (const MeshError& error) {
     throw MeshError(name + ": " + error.what());
   }

@@ -1,5 +1,6 @@
 #include "mesh/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -88,7 +89,7 @@ std::int64_t TextLines::integer(std::size_t index, std::string_view what) const 
 }
 
 void TextLines::fail_at(std::size_t line, const std::string& what) const {
-  throw MeshError(file_ + ", line " + std::to_string(line) + ": " + what);
+  throw MeshError(file_ + ", line " + std::to_string(std::max<std::size_t>(line, 1)) + ": " + what);
 }
 
 std::string_view TextLines::word(std::size_t index, std::string_view what) const {
