@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "model/fnv1a.h"
+
 namespace mssim {
 namespace {
 

@@ -117,18 +117,18 @@ TEST_F(ResultFiles, TimingsHaveTheDocumentedColumnsAndQuoteWhatNeedsIt) {
       "scene,nodes,springs_unique,springs_published,backend,device,threads,integrator,dt_s,rounds,"
       "ms_per_step,ms_per_step_low,ms_per_step_high,ms_per_step_min,springs_per_second,"
       "gigabytes_per_second,roofline_fraction,speedup_vs_serial,paper_ms,position_error,energy_drift,"
-      "verified,status\n"
+      "verified,status,note\n"
       "cloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,116016000,1.5,"
-      "0.25,1,19.475,1e-05,-2e-07,true,ok\n"
+      "0.25,1,19.475,1e-05,-2e-07,true,ok,\n"
       "cloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
-      "\"unavailable: no device \"\"fast, big\"\"\nhere\"\n");
+      "\"unavailable: no device \"\"fast, big\"\"\nhere\",\n");
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
   std::vector<ResultRow> rows{measured_row("serial", 1.0 / 3, 1.0), measured_row("openmp", 0.1, M_PI),
                               failed_row("opencl", "failed: \"x\", at\r\nstep 3")};
   rows[1].samples_ms = {0.1, 1.0 / 7, std::numeric_limits<double>::denorm_min()};
-  ResultFolder(folder, made_up_provenance(), legend, published_table1()).write(rows);
+  ResultFolder(folder, made_up_provenance(), legend, published_tables()).write(rows);
   const std::vector<ResultRow> back = read_results(folder);
   ASSERT_EQ(back.size(), rows.size());
   EXPECT_EQ(timings_csv(back), timings_csv(rows));
@@ -179,7 +179,7 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(complaint(with("19.475", "nan")), HasSubstr("column paper_ms: \"nan\""));
   EXPECT_THAT(complaint(with("2500,14502", "-1,14502")), HasSubstr("column nodes: \"-1\""));
   EXPECT_THAT(complaint(with("true", "yes")), HasSubstr("column verified: \"yes\""));
-  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 22 fields where the header has 23"));
+  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 23 fields where the header has 24"));
   EXPECT_THAT(complaint(with("ok", "\"ok")), HasSubstr("line 2: a quoted field does not end"));
   EXPECT_THAT(complaint(with("roofline_fraction", "roof")), HasSubstr("column 17 is \"roof\""));
   EXPECT_THAT(complaint(""), HasSubstr("column 1 is missing"));
@@ -198,7 +198,7 @@ TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
 }
 
 TEST(Published, TimesEqualTheDataFileEverywhere) {
-  const PublishedTable table = published_table1();
+  const PublishedTable table = PublishedTable(published_table_kinds[0]);
   std::ifstream file(data_folder() / "published/hong2016_table1.csv");
   std::string line;
   std::getline(file, line);
@@ -217,7 +217,7 @@ TEST(Published, TimesEqualTheDataFileEverywhere) {
 }
 
 TEST(Published, TimesExistOnlyForWhatThePaperMeasured) {
-  const PublishedTable table = published_table1();
+  const PublishedTable table = PublishedTable(published_table_kinds[0]);
   EXPECT_EQ(table.ms("rk4", "gpu+multi-thread-cpu", 2500, 29004), std::nullopt);
   EXPECT_EQ(table.ms("rk4-frozen", "gpu", 2500, 29004), std::nullopt);
   EXPECT_EQ(table.ms("rk4", "gpu", 2501, 29004), std::nullopt);
@@ -227,7 +227,7 @@ TEST(Published, TimesExistOnlyForWhatThePaperMeasured) {
 }
 
 TEST(Published, TableOfBodiesReadsToo) {
-  const PublishedTable table(data_folder() / "published/hong2016_table3.csv");
+  const PublishedTable table(published_table_kinds[1]);
   EXPECT_EQ(table.ms("semi-euler", "gpu+multi-thread-cpu", 38233, 759330), 127.45);
 }
 
@@ -247,7 +247,8 @@ std::vector<ResultRow> table_rows() {
 }
 
 TEST(PaperTable, AsCsvHasPublishedAndMeasuredUnderOneAnother) {
-  const PaperTable table = paper_table1(table_rows(), legend, published_table1(), made_up_provenance());
+  const PaperTable table =
+      paper_table(table_rows(), legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
   EXPECT_FALSE(table.empty);
   EXPECT_EQ(table.csv,
             "integrator,configuration,backend,quantity,cloth2500,cloth350k\n"
@@ -281,7 +282,8 @@ TEST(PaperTable, AsCsvHasPublishedAndMeasuredUnderOneAnother) {
 
 TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
   const std::string text =
-      paper_table1(table_rows(), legend, published_table1(), made_up_provenance()).markdown;
+      paper_table(table_rows(), legend, PublishedTable(published_table_kinds[0]), made_up_provenance())
+          .markdown;
   EXPECT_THAT(text,
               HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads; device Some device; mssim "
                         "0.1.0, commit 0123456789ab with uncommitted changes; 2026-01-31T12:00:00Z."));
@@ -306,7 +308,8 @@ TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
 TEST(PaperTable, ShowsNoTimeThatWasNotVerified) {
   std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
   rows[0].verified = false;
-  const PaperTable table = paper_table1(rows, legend, published_table1(), made_up_provenance());
+  const PaperTable table =
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
   EXPECT_THAT(table.markdown, HasSubstr("| `openmp`, **measured** | failed |"));
   EXPECT_THAT(table.csv, Not(HasSubstr("0.0125")));
 }
@@ -314,13 +317,15 @@ TEST(PaperTable, ShowsNoTimeThatWasNotVerified) {
 TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
   std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
   rows[0].integrator = "rk4-frozen";
-  const PaperTable table = paper_table1(rows, legend, published_table1(), made_up_provenance());
+  const PaperTable table =
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
   EXPECT_THAT(table.csv, HasSubstr("rk4-frozen,multi-thread-cpu,openmp,published_ms,7.94\n"));
   EXPECT_THAT(table.markdown,
               HasSubstr("## rk4-frozen: 1 force evaluation a step, beside the published rk4\n"));
   EXPECT_THAT(table.markdown, Not(HasSubstr("--integrator all")));
   rows[0].integrator = "rk4";
-  const std::string real = paper_table1(rows, legend, published_table1(), made_up_provenance()).markdown;
+  const std::string real =
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).markdown;
   EXPECT_THAT(real, HasSubstr("## rk4: 4 force evaluations a step, beside the published rk4\n"));
   EXPECT_THAT(real, HasSubstr("--integrator all"));
 }
@@ -328,7 +333,8 @@ TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
 TEST(PaperTable, OfOtherScenesIsEmpty) {
   std::vector<ResultRow> rows{measured_row("serial", 1, 1.0)};
   rows[0].springs_published = 29000;
-  EXPECT_TRUE(paper_table1(rows, legend, published_table1(), made_up_provenance()).empty);
+  EXPECT_TRUE(
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).empty);
 }
 
 TEST(BenchmarkJson, HasTheSchemaOfGoogleBenchmark) {
@@ -380,7 +386,7 @@ TEST(BenchmarkJson, OfOneSampleHasNoAggregates) {
 }
 
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
-  const ResultFolder results(folder / "new/out", made_up_provenance(), legend, published_table1());
+  const ResultFolder results(folder / "new/out", made_up_provenance(), legend, published_tables());
   EXPECT_EQ(nlohmann::json::parse(text_of(folder / "new/out/provenance.json")),
             to_json(made_up_provenance()));
   EXPECT_TRUE(read_results(folder / "new/out").empty());
@@ -392,7 +398,8 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
     EXPECT_EQ(text_of(folder / "new/out/samples.csv"), samples_csv(rows));
     EXPECT_EQ(nlohmann::ordered_json::parse(text_of(folder / "new/out/benchmark.json")),
               benchmark_json(rows, made_up_provenance()));
-    const PaperTable table = paper_table1(rows, legend, published_table1(), made_up_provenance());
+    const PaperTable table =
+        paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
     EXPECT_EQ(text_of(folder / "new/out/table1.csv"), table.csv);
     EXPECT_EQ(text_of(folder / "new/out/table1.md"), table.markdown);
   }
@@ -404,7 +411,7 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
 }
 
 TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
-  const ResultFolder results(folder, made_up_provenance(), legend, published_table1());
+  const ResultFolder results(folder, made_up_provenance(), legend, published_tables());
   std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   results.write(rows);
   const std::string before = text_of(folder / "timings.csv") + text_of(folder / "benchmark.json");
@@ -419,7 +426,7 @@ TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
 
 TEST_F(ResultFiles, CannotGoWhereAFileIs) {
   put("taken", "a file");
-  EXPECT_THROW(ResultFolder(folder / "taken", made_up_provenance(), legend, published_table1()), WriteError);
+  EXPECT_THROW(ResultFolder(folder / "taken", made_up_provenance(), legend, published_tables()), WriteError);
   EXPECT_EQ(text_of(folder / "taken"), "a file");
 }
 

@@ -36,9 +36,27 @@ class SchemaWriter final : public FieldVisitor {
     add(key, presence,
         {{"type", "string"}, {"maxLength", longest_text}, {"pattern", "^[^\\u0000-\\u001f]*$"}});
   }
-  std::size_t choice(std::string_view key, std::span<const std::string_view> names) override {
+  void vector(std::string_view key, Presence presence, Vec3d& /*target*/, const Range& each) override {
+    add(key, presence,
+        {{"type", "array"}, {"items", number_schema("number", each)}, {"minItems", 3}, {"maxItems", 3}});
+  }
+  void one_of(std::string_view key, std::span<const Section> sections) override {
+    json names = json::array();
+    for (const Section& section : sections) {
+      names.push_back(section.name);
+      object(section.name, Presence::optional, section.fields);
+      const json present{{"required", {section.name}}};
+      schema_["allOf"].push_back({{"if", {{"properties", {{key, {{"const", section.name}}}}}}},
+                                  {"then", present},
+                                  {"else", {{"not", present}}}});
+    }
     add(key, Presence::required, {{"type", "string"}, {"enum", names}});
-    return 0;
+  }
+  void list(std::string_view key, std::size_t most, const FieldList& element) override {
+    SchemaWriter item;
+    element(item);
+    add(key, Presence::required,
+        {{"type", "array"}, {"minItems", 1}, {"maxItems", most}, {"items", item.schema()}});
   }
   void object(std::string_view key, Presence presence, const FieldList& fields) override {
     SchemaWriter nested;
@@ -73,6 +91,8 @@ json without_words(json schema, const std::string& place) {
   schema.erase("$schema");
   if (schema.contains("properties"))
     for (auto& [key, property] : schema["properties"].items()) property = without_words(property, key);
+  if (schema.contains("items") && schema["items"].contains("properties"))
+    schema["items"] = without_words(schema["items"], place + " element");
   return schema;
 }
 

@@ -51,6 +51,7 @@ Combination prepare(const SceneJob& job, const BackendInfo& info, const Integrat
   row.nodes = job.system->nodes();
   row.springs_unique = job.system->springs.size();
   row.springs_published = job.springs_published;
+  row.note = job.note;
   row.backend = info.name;
   row.integrator = integrator.name;
   row.dt_s = job.dt_s;
