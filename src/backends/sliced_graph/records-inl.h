@@ -57,6 +57,29 @@ HWY_INLINE void transpose_blocks(V r0, V r1, V r2, V r3, V* out) {
   out[3] = hn::BitCast(d, hn::InterleaveUpper(wide, high_01, high_23));
 }
 
+/// The even blocks of four floats of `low`, then those of `high`.
+template <class V>
+HWY_INLINE V even_blocks(V low, V high) {
+#if HWY_CAP_GE512
+  // vshuff32x4, which has no name in Highway; its intrinsic makes g++ 12 warn of what it left uninitialised.
+  return V{
+      __builtin_shufflevector(low.raw, high.raw, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)};
+#else
+  return hn::ConcatLowerLower(FloatTag(), high, low);
+#endif
+}
+
+/// The odd blocks of four floats of `low`, then those of `high`.
+template <class V>
+HWY_INLINE V odd_blocks(V low, V high) {
+#if HWY_CAP_GE512
+  return V{
+      __builtin_shufflevector(low.raw, high.raw, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31)};
+#else
+  return hn::ConcatUpperUpper(FloatTag(), high, low);
+#endif
+}
+
 /// The same for vectors.
 template <std::size_t lanes, class Record>
 HWY_INLINE NodeLanes load_records(Record record) {
@@ -71,25 +94,21 @@ HWY_INLINE NodeLanes load_records(Record record) {
                              hn::Load(d, record(2) + 4), hn::Load(d, record(3) + 4), v);
     return {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}};
   } else {
-    // Record i, with 16 lanes followed by record i + 8.
+    // Record i, with 16 lanes followed by record i + 4.
     const auto load = [&](std::size_t i) MSSIM_INLINE_LAMBDA -> Vector {
       if constexpr (lanes == 16) {
         const hn::Half<FloatTag> half;
-        return hn::Combine(d, hn::Load(half, record(i + 8)), hn::Load(half, record(i)));
+        return hn::Combine(d, hn::Load(half, record(i + 4)), hn::Load(half, record(i)));
       } else {
         return hn::Load(d, record(i));
       }
     };
-    Vector low[4], high[4];  // even blocks: a position's component, odd ones: a velocity's
+    constexpr std::size_t middle = lanes / 2;
+    Vector low[4], high[4];  // even blocks: a component of positions, odd ones: of velocities
     transpose_blocks<Vector>(load(0), load(1), load(2), load(3), low);
-    transpose_blocks<Vector>(load(4), load(5), load(6), load(7), high);
-    const auto even = [&](std::size_t k) MSSIM_INLINE_LAMBDA -> Lanes {
-      return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(high[k]), low[k]);
-    };
-    const auto odd = [&](std::size_t k) MSSIM_INLINE_LAMBDA -> Lanes {
-      return hn::OddEvenBlocks(high[k], hn::SwapAdjacentBlocks(low[k]));
-    };
-    return {{even(0), even(1), even(2)}, {odd(0), odd(1), odd(2)}};
+    transpose_blocks<Vector>(load(middle), load(middle + 1), load(middle + 2), load(middle + 3), high);
+    return {{even_blocks(low[0], high[0]), even_blocks(low[1], high[1]), even_blocks(low[2], high[2])},
+            {odd_blocks(low[0], high[0]), odd_blocks(low[1], high[1]), odd_blocks(low[2], high[2])}};
   }
 }
 
@@ -112,7 +131,7 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
                          MSSIM_INLINE_LAMBDA { return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(v.v), x.v); };
     const auto high = [&](Lanes x, Lanes v)
                           MSSIM_INLINE_LAMBDA { return hn::OddEvenBlocks(v.v, hn::SwapAdjacentBlocks(x.v)); };
-    Vector records[8];
+    Vector records[8];  // record i, with 16 lanes followed by record i + 8
     transpose_blocks<Vector>(low(node.x.x, node.v.x), low(node.x.y, node.v.y), low(node.x.z, node.v.z), zero,
                              records);
     transpose_blocks<Vector>(high(node.x.x, node.v.x), high(node.x.y, node.v.y), high(node.x.z, node.v.z),

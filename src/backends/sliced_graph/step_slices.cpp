@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 #include <omp.h>
 
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -30,22 +31,22 @@ HWY_INLINE NodeLanes load_slice(const float* pair, std::size_t slice) {
 
 /// Acceleration that the springs of a slice's nodes give them, neighbour by neighbour in the order of
 /// entries.
-HWY_INLINE Lanes3 spring_acceleration(const SlicedGraph& graph, const float* pair, std::size_t slice,
-                                      const NodeLanes& node) {
-  const Lanes stiffness = hn::LoadU(FloatTag(), graph.stiffness.data() + slice * slice_lanes);
-  const Lanes damping = hn::LoadU(FloatTag(), graph.damping.data() + slice * slice_lanes);
+HWY_INLINE Lanes3 spring_acceleration(const SlicedBodies& bodies, const float* pair, std::size_t slice,
+                                      const NodeLanes& node, Lanes stiffness, Lanes damping) {
+  const FloatTag d;
   Lanes3 sum = zero3();
-  const std::size_t end = graph.first_entry[slice + 1];
-  for (std::size_t entry = graph.first_entry[slice]; entry < end; ++entry) {
-    const std::uint32_t* neighbour = graph.neighbour.data() + entry * slice_lanes;
+  const float* end = bodies.entries.data() + bodies.first_entry[slice + 1] * 2 * slice_lanes;
+  for (const float* entry = bodies.entries.data() + bodies.first_entry[slice] * 2 * slice_lanes; entry < end;
+       entry += 2 * slice_lanes) {
     const NodeLanes other = load_records<slice_lanes>([&](std::size_t i) MSSIM_INLINE_LAMBDA {
-      return pair + std::size_t{neighbour[i]} * SlicedBodies::record_floats;
+      return pair + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * SlicedBodies::offset_floats;
     });
-    const Lanes stiffness_rest = hn::LoadU(FloatTag(), graph.stiffness_rest.data() + entry * slice_lanes);
-    const Lanes3 d = other.x - node.x, u = other.v - node.v;
-    const Lanes pull = spring_pull(dot(d, d), dot(u, d), stiffness, stiffness_rest, damping);
-    const Mask exists = hn::Ge(stiffness_rest.v, hn::Zero(FloatTag()));
-    sum = mul_add(keep(exists, pull), d, sum);
+    const Lanes stiffness_rest = hn::Load(d, entry + slice_lanes);
+    const Lanes3 to_other = other.x - node.x;
+    const Lanes pull = spring_pull(dot(to_other, to_other), dot(other.v - node.v, to_other), stiffness,
+                                   stiffness_rest, damping);
+    const Mask exists = hn::Ge(stiffness_rest.v, hn::Zero(d));
+    sum = mul_add(keep(exists, pull), to_other, sum);
   }
   return sum;
 }
@@ -56,10 +57,11 @@ HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::s
   constexpr Stage table = integrators[method].stages[stage];
   const float* gathered = base[index(table.gather)];
   const NodeLanes node = load_slice(gathered, slice);
-  const Index held_lanes = hn::LoadU(IndexTag(), bodies.graph.held.data() + slice * slice_lanes);
-  const Mask free = hn::RebindMask(FloatTag(), hn::Eq(held_lanes, hn::Zero(IndexTag())));
+  const float* constants = bodies.constants.data() + slice * 3 * slice_lanes;
+  const Mask free = hn::Eq(hn::Load(FloatTag(), constants + 2 * slice_lanes), hn::Zero(FloatTag()));
 
-  Lanes3 a = spring_acceleration(bodies.graph, gathered, slice, node);
+  Lanes3 a = spring_acceleration(bodies, gathered, slice, node, Lanes(hn::Load(FloatTag(), constants)),
+                                 Lanes(hn::Load(FloatTag(), constants + slice_lanes)));
   a = mul_add(Lanes(-bodies.viscous_damping), node.v, a);
   a.y = a.y - Lanes(bodies.gravity);
   // What is held is at rest; without acceleration every line gives it back as it was.
