@@ -5,7 +5,6 @@
 #include <CL/opencl.hpp>
 #include <algorithm>
 #include <array>
-#include <barrier>
 #include <cstdint>
 #include <exception>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/chunk_tickets.h"
 #include "backends/host_lines.h"
 #include "backends/opencl_buffer.h"
 #include "backends/opencl_call.h"
@@ -116,6 +116,8 @@ class Hybrid final : public Backend {
 
   void step(int count) override {
     with_integrator(integrator_, [&]<std::size_t row>(std::integral_constant<std::size_t, row>) {
+      constexpr int most = 1 << 20;  // a ticket numbers a call's phases in 32 bits
+      for (; count > most; count -= most) take_steps<row>(most);
       take_steps<row>(count);
     });
   }
@@ -143,6 +145,9 @@ class Hybrid final : public Backend {
     buffer.unmap(queue_, memory);
     return buffer;
   }
+
+  /// Slices that a thread integrates between two looks at what is left.
+  static constexpr std::size_t chunk_slices = 64;
 
   void make_kernel(const System& system, const cl::Device& cl_device, int lanes) {
     std::vector<Material> materials;
@@ -239,40 +244,56 @@ class Hybrid final : public Backend {
     }
   }
 
-  /// One parallel region for all steps. Its threads sleep at the gate while the device computes: a device on
-  /// the same cores needs them, and threads that wait at OpenMP's own barriers spin for milliseconds.
+  /// Integrates the nodes of one chunk of slices in the stage that the ticket's phase stands for.
+  template <std::size_t row>
+  void work_on(const ChunkTickets::Ticket& ticket) {
+    constexpr std::size_t stages = integrators[row].stage_count;
+    const std::size_t begin = ticket.chunk * chunk_slices;
+    const std::size_t end = std::min(begin + chunk_slices, packed_.slices());
+    for_each_stage<row>([&]<std::size_t stage>(std::integral_constant<std::size_t, stage>) {
+      if (ticket.phase % stages == stage)
+        integrate<row, stage>(begin, end, present_at<row>(ticket.phase / stages));
+    });
+  }
+
+  /// Where the state lies before the call's step number `step`.
+  template <std::size_t row>
+  std::size_t present_at(std::size_t step) const {
+    return step % 2 == 0 ? present_ : place_of<row>(Pair::next, present_);
+  }
+
+  /// One parallel region for all steps. Thread 0 drives the device; a phase is what the host does in a stage.
   template <std::size_t row>
   void take_steps(int count) {
-    std::optional<std::barrier<>> gate;
-    std::exception_ptr failure;  // written by the first thread before the first gate, read between the two
-    std::size_t last_present = present_;
+    constexpr std::size_t stages = integrators[row].stage_count;
+    ChunkTickets tickets(static_cast<std::uint32_t>((packed_.slices() + chunk_slices - 1) / chunk_slices));
+    const auto work = [&] {
+      while (const auto ticket = tickets.take()) {
+        work_on<row>(*ticket);
+        tickets.finish_one();
+      }
+    };
+    std::exception_ptr failure;  // of thread 0; none may leave the region
 #pragma omp parallel num_threads(threads_)
     {
-#pragma omp single
-      gate.emplace(omp_get_num_threads());
-      const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-      const auto threads = static_cast<std::size_t>(omp_get_num_threads());
-      const std::size_t slices = packed_.slices();
-      const std::size_t begin = slices * thread / threads, end = slices * (thread + 1) / threads;
-      std::size_t present = present_;
-      for (int i = 0; i < count; ++i) {
-        for_each_stage<row>([&]<std::size_t stage>(std::integral_constant<std::size_t, stage>) {
-          if (thread == 0 && !failure) {
-            try {
-              compute_forces(place_of<row>(integrators[row].stages[stage].gather, present));
-            } catch (...) {
-              failure = std::current_exception();
-            }
+      if (omp_get_thread_num() == 0) {
+        try {
+          for (std::size_t phase = 0; phase < static_cast<std::size_t>(count) * stages; ++phase) {
+            compute_forces(place_of<row>(integrators[row].stages[phase % stages].gather,
+                                         present_at<row>(phase / stages)));
+            tickets.open();
+            work();
+            tickets.wait_until_finished();
           }
-          gate->arrive_and_wait();
-          if (!failure) integrate<row, stage>(begin, end, present);
-          gate->arrive_and_wait();
-        });
-        present = place_of<row>(Pair::next, present);
+        } catch (...) {
+          failure = std::current_exception();
+        }
+        tickets.close();
+      } else {
+        while (tickets.wait_for_work()) work();
       }
-      if (thread == 0) last_present = present;
     }
-    present_ = last_present;
+    present_ = present_at<row>(static_cast<std::size_t>(count));
     if (failure) opencl_call<std::runtime_error>([&] { std::rethrow_exception(failure); });
   }
 
