@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -20,6 +19,7 @@
 #include "output/result_folder.h"
 #include "output/timings_csv.h"
 #include "output/write_error.h"
+#include "temporary_folder.h"
 
 namespace mssim {
 namespace {
@@ -29,22 +29,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-class ResultFiles : public testing::Test {
- protected:
-  fs::path folder = fs::path(testing::TempDir()) / ("mssim_results_" + std::to_string(getpid()));
-  ResultFiles() { fs::create_directories(folder); }
-  ~ResultFiles() override { fs::remove_all(folder); }
-
-  fs::path put(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name, std::ios::binary) << text;
-    return folder / name;
-  }
-  static std::string text_of(const fs::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-  }
-};
+class ResultFiles : public TemporaryFolderTest {};
 
 ResultRow measured_row(const std::string& backend, double ms, std::optional<double> speedup) {
   ResultRow row;
@@ -128,8 +113,8 @@ TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
   std::vector<ResultRow> rows{measured_row("serial", 1.0 / 3, 1.0), measured_row("openmp", 0.1, M_PI),
                               failed_row("opencl", "failed: \"x\", at\r\nstep 3")};
   rows[1].samples_ms = {0.1, 1.0 / 7, std::numeric_limits<double>::denorm_min()};
-  ResultFolder(folder, made_up_provenance(), legend, published_table1()).write(rows);
-  const std::vector<ResultRow> back = read_results(folder);
+  ResultFolder(folder(), made_up_provenance(), legend, published_table1()).write(rows);
+  const std::vector<ResultRow> back = read_results(folder());
   ASSERT_EQ(back.size(), rows.size());
   EXPECT_EQ(timings_csv(back), timings_csv(rows));
   EXPECT_EQ(samples_csv(back), samples_csv(rows));
@@ -183,8 +168,8 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(complaint(with("ok", "\"ok")), HasSubstr("line 2: a quoted field does not end"));
   EXPECT_THAT(complaint(with("roofline_fraction", "roof")), HasSubstr("column 17 is \"roof\""));
   EXPECT_THAT(complaint(""), HasSubstr("column 1 is missing"));
-  EXPECT_THROW(read_timings(folder / "missing.csv"), CsvError);
-  EXPECT_THROW(read_timings(folder), CsvError);
+  EXPECT_THROW(read_timings(folder() / "missing.csv"), CsvError);
+  EXPECT_THROW(read_timings(folder()), CsvError);
 }
 
 TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
@@ -380,47 +365,48 @@ TEST(BenchmarkJson, OfOneSampleHasNoAggregates) {
 }
 
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
-  const ResultFolder results(folder / "new/out", made_up_provenance(), legend, published_table1());
-  EXPECT_EQ(nlohmann::json::parse(text_of(folder / "new/out/provenance.json")),
+  const ResultFolder results(folder() / "new/out", made_up_provenance(), legend, published_table1());
+  EXPECT_EQ(nlohmann::json::parse(text_of(folder() / "new/out/provenance.json")),
             to_json(made_up_provenance()));
-  EXPECT_TRUE(read_results(folder / "new/out").empty());
+  EXPECT_TRUE(read_results(folder() / "new/out").empty());
   std::vector<ResultRow> rows;
   for (const ResultRow& row : table_rows()) {
     rows.push_back(row);
     results.write(rows);
-    EXPECT_EQ(text_of(folder / "new/out/timings.csv"), timings_csv(rows));
-    EXPECT_EQ(text_of(folder / "new/out/samples.csv"), samples_csv(rows));
-    EXPECT_EQ(nlohmann::ordered_json::parse(text_of(folder / "new/out/benchmark.json")),
+    EXPECT_EQ(text_of(folder() / "new/out/timings.csv"), timings_csv(rows));
+    EXPECT_EQ(text_of(folder() / "new/out/samples.csv"), samples_csv(rows));
+    EXPECT_EQ(nlohmann::ordered_json::parse(text_of(folder() / "new/out/benchmark.json")),
               benchmark_json(rows, made_up_provenance()));
     const PaperTable table = paper_table1(rows, legend, published_table1(), made_up_provenance());
-    EXPECT_EQ(text_of(folder / "new/out/table1.csv"), table.csv);
-    EXPECT_EQ(text_of(folder / "new/out/table1.md"), table.markdown);
+    EXPECT_EQ(text_of(folder() / "new/out/table1.csv"), table.csv);
+    EXPECT_EQ(text_of(folder() / "new/out/table1.md"), table.markdown);
   }
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder / "new/out"))
+  for (const auto& entry : fs::directory_iterator(folder() / "new/out"))
     names.push_back(entry.path().filename().string());
   EXPECT_THAT(names, testing::UnorderedElementsAre("timings.csv", "samples.csv", "benchmark.json",
                                                    "provenance.json", "table1.csv", "table1.md"));
 }
 
 TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
-  const ResultFolder results(folder, made_up_provenance(), legend, published_table1());
+  const ResultFolder results(folder(), made_up_provenance(), legend, published_table1());
   std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   results.write(rows);
-  const std::string before = text_of(folder / "timings.csv") + text_of(folder / "benchmark.json");
+  const std::string before = text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json");
   rows.push_back(measured_row("openmp", 0.25, 2.0));
   rows[1].energy_drift = std::numeric_limits<double>::infinity();
   EXPECT_THROW(results.write(rows), std::invalid_argument);
   rows[1].energy_drift = 0;
   rows[1].samples_ms[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(results.write(rows), std::invalid_argument);
-  EXPECT_EQ(text_of(folder / "timings.csv") + text_of(folder / "benchmark.json"), before);
+  EXPECT_EQ(text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json"), before);
 }
 
 TEST_F(ResultFiles, CannotGoWhereAFileIs) {
   put("taken", "a file");
-  EXPECT_THROW(ResultFolder(folder / "taken", made_up_provenance(), legend, published_table1()), WriteError);
-  EXPECT_EQ(text_of(folder / "taken"), "a file");
+  EXPECT_THROW(ResultFolder(folder() / "taken", made_up_provenance(), legend, published_table1()),
+               WriteError);
+  EXPECT_EQ(text_of(folder() / "taken"), "a file");
 }
 
 }  // namespace
