@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,22 +24,10 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// A folder of its own for every test, removed with it.
-class SceneFile : public testing::Test {
+class SceneFile : public TemporaryFolderTest {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "mssim-scene-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(std::string_view text) const {
-    std::ofstream(file(), std::ios::binary) << text;
-    return file();
-  }
-  const std::filesystem::path& folder() const { return folder_; }
-  std::filesystem::path file() const { return folder_ / "bad.json"; }
+  std::filesystem::path write(std::string_view text) const { return put(file().filename(), text); }
+  std::filesystem::path file() const { return folder() / "bad.json"; }
 
   static std::string error_of(const std::filesystem::path& path) {
     try {
@@ -51,9 +38,6 @@ class SceneFile : public testing::Test {
     ADD_FAILURE() << path << " was accepted";
     return {};
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 const std::string good = text_of(source_file("scenes/cloth2500.json"));
