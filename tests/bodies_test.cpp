@@ -21,6 +21,7 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "scene_files.h"
+#include "temporary_folder.h"
 
 namespace mssim {
 namespace {
@@ -122,24 +123,14 @@ TEST(BodyScenes, StartApartAboveTheFloorAndEachInAWayOfItsOwn) {
 }
 
 /// A tetrahedron with legs of 3 cm in a folder of its own, and a scene of it.
-class BodiesFile : public testing::Test {
+class BodiesFile : public TemporaryFolderTest {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "mssim-bodies-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
-    folder_ = name;
-    write("one.node", node_text({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}}));
-    write("one.ele", ele_text({{0, 1, 2, 3}}));
+  BodiesFile() {
+    put("one.node", node_text({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}}));
+    put("one.ele", ele_text({{0, 1, 2, 3}}));
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-  std::filesystem::path scene(const std::string& text) const {
-    write("scene.json", text);
-    return folder_ / "scene.json";
-  }
+  std::filesystem::path scene(const std::string& text) const { return put("scene.json", text); }
   static std::string error_of(const std::filesystem::path& file) {
     try {
       build_system(load_scene(file));
@@ -150,7 +141,6 @@ class BodiesFile : public testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
   const std::string good_ = R"({
   "kind": "bodies", "description": "one tetrahedron", "dt_s": 1e-4, "gravity_m_per_s2": 9.81,
   "viscous_damping_per_s": 0, "floor": {"height_m": 0, "restitution": 0.5, "friction": 0.4},
@@ -212,9 +202,9 @@ TEST_F(BodiesFile, TakesTheShapeOfAnotherScene) {
 }
 
 TEST_F(BodiesFile, FillsASurfaceWithTetrahedra) {
-  write("cube.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-        "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  put("cube.obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+      "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
   const std::string text =
       with_change(with_change(good_, "\"tetgen\",", "\"surface\","),
                   R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",

@@ -9,24 +9,22 @@
 
 #include "mesh/box_shape.h"
 #include "mesh/mesh_error.h"
-#include "output_fixture.h"
+#include "temporary_folder.h"
 
 namespace mssim {
 
 /// A test whose mesh cache lies in a folder of its own. (Every test runs in a process of its own, so that it
 /// may change the environment.)
-class MeshTest : public OutputTest {
+class MeshTest : public TemporaryFolderTest {
  protected:
   MeshTest() { ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1); }
   std::filesystem::path cache() const { return folder() / "cache" / "mssim" / "meshes"; }
 
   /// Puts a program named tetgen that runs this shell script before all others.
   void install_tetgen(const std::string& script) const {
-    const std::filesystem::path programs = folder() / "programs";
-    std::filesystem::create_directories(programs);
-    write_text_file(programs / "tetgen", "#!/bin/sh\n" + script);
-    std::filesystem::permissions(programs / "tetgen", std::filesystem::perms::owner_all);
-    ::setenv("PATH", (programs.string() + ":" + ::getenv("PATH")).c_str(), 1);
+    const std::filesystem::path program = put("programs/tetgen", "#!/bin/sh\n" + script);
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    ::setenv("PATH", (program.parent_path().string() + ":" + ::getenv("PATH")).c_str(), 1);
   }
 };
 

@@ -182,9 +182,9 @@ INSTANTIATE_TEST_SUITE_P(
 using SurfaceFile = MeshTest;
 
 TEST_F(SurfaceFile, IsReadByItsExtension) {
-  write_text_file(folder() / "a.OBJ", obj_tetrahedron);
-  write_text_file(folder() / "a.stl", binary_stl());
-  write_text_file(folder() / "a.ply", "");
+  put("a.OBJ", obj_tetrahedron);
+  put("a.stl", binary_stl());
+  put("a.ply", "");
   EXPECT_EQ(read_surface(folder() / "a.OBJ").triangles.size(), 4U);
   EXPECT_EQ(read_surface(folder() / "a.stl").triangles.size(), 4U);
   EXPECT_THAT(mesh_error_of([&] { read_surface(folder() / "a.ply"); }),
@@ -193,7 +193,7 @@ TEST_F(SurfaceFile, IsReadByItsExtension) {
 }
 
 TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {
-  write_text_file(folder() / "a.obj", obj_tetrahedron);
+  put("a.obj", obj_tetrahedron);
   const TetMesh coarse = surface_mesh({folder() / "a.obj", 0.001, 0});
   EXPECT_NEAR(volume_of(coarse), 1e-9 / 6, 1e-18);
   const TetMesh fine = surface_mesh({folder() / "a.obj", 0.001, 2e-12});
@@ -203,10 +203,10 @@ TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {
 }
 
 TEST_F(SurfaceFile, ThatEnclosesNoBodyIsNamed) {
-  write_text_file(folder() / "open.obj", obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
+  put("open.obj", obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
   EXPECT_THAT(mesh_error_of([&] { surface_mesh({folder() / "open.obj"}); }),
               HasSubstr("open.obj: the edge from "));
-  write_text_file(folder() / "a.obj", obj_tetrahedron);
+  put("a.obj", obj_tetrahedron);
   const auto complaint = [&](double unit_m, double largest_volume_m3) {
     return mesh_error_of([&] { surface_mesh({folder() / "a.obj", unit_m, largest_volume_m3}); });
   };

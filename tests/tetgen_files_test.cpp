@@ -119,14 +119,14 @@ INSTANTIATE_TEST_SUITE_P(
                    "a.ele, line 4: ", "goes on after the 2 tetrahedra"}));
 
 TEST_F(MeshTest, TetgenFilesThatAreMissingOrFoldersAreNamed) {
-  write_text_file(folder() / "a.node", good_nodes);
+  put("a.node", good_nodes);
   const auto complaint = [&](const std::string& ele) {
     return mesh_error_of([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
   };
   EXPECT_THAT(complaint("b.ele"), HasSubstr("b.ele is missing"));
   std::filesystem::create_directory(folder() / "c.ele");
   EXPECT_THAT(complaint("c.ele"), HasSubstr("c.ele is not a regular file"));
-  write_text_file(folder() / "d.ele", good_tetrahedra);
+  put("d.ele", good_tetrahedra);
   expect_good(read_tetgen_files(folder() / "a.node", folder() / "d.ele"));
 }
 

@@ -176,17 +176,17 @@ TEST_F(MeshCacheTest, ADamagedEntryIsMadeAnew) {
   for (const std::string& damaged :
        {std::string(), whole.substr(0, whole.size() / 2), changed, whole + "0",
         std::string("mssim mesh 1 99999999999999999999 0\n"), std::string("nonsense")}) {
-    write_text_file(file, damaged);
+    put(file, damaged);
     expect_same(mesh(), made);
     EXPECT_EQ(text_of(file), whole);
   }
-  write_text_file(file, changed);
+  put(file, changed);
   ::setenv("PATH", "", 1);
   EXPECT_THROW(mesh(), MissingProgram);
 }
 
 TEST_F(MeshCacheTest, AFolderThatCannotBeWrittenIsNoFailure) {
-  write_text_file(folder() / "cache", "a file where the folder should be");
+  put("cache", "a file where the folder should be");
   EXPECT_EQ(mesh().nodes.size(), 56U + 20);
   ::unsetenv("XDG_CACHE_HOME");
   ::unsetenv("HOME");
