@@ -15,10 +15,4 @@ struct GridParameters {
   float stiffness[3];      /* 1/s^2, by kind of spring */
   float stiffness_rest[3]; /* stiffness * rest length, m/s^2 */
   float damping[3];        /* 1/s */
-  float viscous_damping;   /* 1/s */
-  float gravity;           /* m/s^2, downwards */
-  float floor_height;      /* m */
-  float restitution;
-  float friction;
-  float coefficients[4][4][5]; /* of the integrator, [stage][line][term], dt included */
 };

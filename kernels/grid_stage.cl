@@ -1,6 +1,6 @@
 /* What the stage kernels of a grid have in common. The kernels themselves are generated from the tables of
- * integrators and of the stencil (src/backends/opencl_program.cpp) and follow this text. They come in two
- * shapes:
+ * integrators and of the stencil (src/backends/opencl_grid_program.cpp) and follow this text. They come in
+ * two shapes:
  * - one lane: a work-item owns one node, gathers the forces of all its springs and runs the stage's lines on
  * it;
  * - several lanes: a work-item walks row by row, in each row to the right, over a block of rows, so that it
@@ -17,10 +17,7 @@ typedef struct {
   Mask free; /* is a node of the cloth and not pinned */
 } Site;
 
-typedef struct {
-  Vector x; /* m */
-  Vector v; /* m/s */
-} Node;
+typedef __constant struct GridParameters* Shape;
 
 /* pin_rows[row] is the line of `pins` that belongs to the row, or negative where the row has no pinned node.
  * pins[line][column] is -1 for a pinned node, 0 for a free one. */
@@ -53,6 +50,20 @@ static inline void store_vector_aligned(Vector value, __global float* to, int pl
   store_aligned(value.z, to + 2 * plane);
 }
 
+/* The site's own vectors in a pair. */
+static inline Vector load_position(__global const float* pair, Site site, Shape grid) {
+  return load_vector_aligned(pair + site.first, grid->plane);
+}
+static inline Vector load_velocity(__global const float* pair, Site site, Shape grid) {
+  return load_vector_aligned(pair + site.first + 3 * grid->plane, grid->plane);
+}
+static inline void store_position(Vector value, __global float* pair, Site site, Shape grid) {
+  store_vector_aligned(value, pair + site.first, grid->plane);
+}
+static inline void store_velocity(Vector value, __global float* pair, Site site, Shape grid) {
+  store_vector_aligned(value, pair + site.first + 3 * grid->plane, grid->plane);
+}
+
 /* The nodes `down` rows below the site and `right` columns to its right. */
 static inline Node load_node(__global const float* restrict pair, Site site, int down, int right,
                              __constant struct GridParameters* grid) {
@@ -77,26 +88,6 @@ static inline void add_spring(Vector* on_first, Vector* on_second, Node first, N
   pull = select((Real)(0.0f), pull, there);
   *on_first = times_plus(pull, d, *on_first);
   *on_second = times_plus(-pull, d, *on_second);
-}
-
-/* Acceleration of the site's nodes at the velocities v. A pinned node has none: with its speed of zero it
- * then stays where it is under every integrator. */
-static inline Vector acceleration(Vector spring_forces, Vector v, Site site,
-                                  __constant struct GridParameters* grid) {
-  Vector a = times_plus((Real)(-grid->viscous_damping), v, spring_forces);
-  a.y -= grid->gravity;
-  return where(site.free, a, no_vector());
-}
-
-/* Puts the free nodes that have fallen through the floor back onto it. */
-static inline void touch_floor(Vector* x, Vector* v, Site site, __constant struct GridParameters* grid) {
-  Mask below = (x->y < grid->floor_height) & site.free;
-  if (!any_lane(below)) return;
-  Real rebound = floor_rebound(v->y, (Real)(grid->restitution));
-  Real grip = floor_grip(rebound - v->y, mul_add(v->x, v->x, v->z * v->z), (Real)(grid->friction));
-  Vector after = {grip * v->x, rebound, grip * v->z};
-  x->y = select(x->y, (Real)(grid->floor_height), below);
-  *v = where(below, after, *v);
 }
 
 #if MSSIM_LANES > 1

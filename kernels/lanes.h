@@ -18,6 +18,7 @@ typedef MSSIM_PASTE(int, MSSIM_LANES) Mask; /* sign bit set: true */
 /* At addresses that are multiples of a Real's size. vload and vstore work there too, but PoCL 3.1 takes them
  * apart into scalar pairs where other writes are near. */
 #define load_aligned(from) (*(__global const Real*)(from))
+#define load_aligned_mask(from) (*(__global const Mask*)(from))
 #define store_aligned(value, to) (*(__global Real*)(to) = (value))
 
 /* Not any(): PoCL 3.1 makes a branch per lane of it. */
@@ -61,6 +62,12 @@ static inline int any_lane(int16 mask) {
 typedef struct {
   Real x, y, z;
 } Vector;
+
+/* Every lane's node. */
+typedef struct {
+  Vector x; /* m */
+  Vector v; /* m/s */
+} Node;
 
 static inline Vector no_vector(void) {
   Vector nothing = {(Real)(0.0f), (Real)(0.0f), (Real)(0.0f)};

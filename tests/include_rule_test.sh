@@ -8,7 +8,7 @@ rule='
 kernels
 model        kernels
 mesh         model
-scene        model
+scene        model mesh
 integrators
 contact      model kernels
 backends     model integrators kernels contact

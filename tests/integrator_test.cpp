@@ -71,7 +71,7 @@ TEST_P(EachIntegrator, FollowsItsOwnRecurrenceForAnUndampedOscillator) {
   const double rest = static_cast<double>(system.springs.at(0).rest_length);
   system.start.position = {{0, 1, 0}, {1.1 * rest, 1, 0}};
   system.start.velocity = {{}, {0.3, 0, 0}};
-  const double w = std::sqrt(200 / system.node_mass), dt = 0.1 / w;
+  const double w = std::sqrt(200 / system.node_mass[0]), dt = 0.1 / w;
   const auto [xx, xv, vx, vv] = recurrence(integrator().name, w, dt);
   ASSERT_NE(vv, 0) << "no recurrence was worked out for this integrator";
 

@@ -1,59 +1,29 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <exception>
 #include <functional>
-#include <iterator>
-#include <stdexcept>
 #include <string>
 
 #include "model/grid_patch.h"
 #include "model/system.h"
+#include "temporary_folder.h"
 
 namespace mssim {
-
-/// A test with an empty folder of its own, removed afterwards.
-class OutputTest : public testing::Test {
- protected:
-  OutputTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "mssim-test-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
-    folder_ = name;
-  }
-  ~OutputTest() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  const std::filesystem::path& folder() const { return folder_; }
-
- private:
-  std::filesystem::path folder_;
-};
-
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-inline void write_text_file(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
 
 /// A rippled cloth; its springs are real, its state is whatever `state_at` says.
 inline System small_cloth(std::uint32_t rows, std::uint32_t columns) {
   System system;
-  system.grid = {rows, columns, 0.01};
-  system.springs = springs_of(system.grid);
+  const GridPatch grid{rows, columns, 0.01};
+  system.topology = grid;
+  system.springs = springs_of(grid);
   system.materials.resize(grid_spring_kinds.size());
-  system.node_mass = 1e-5;
-  system.start.position.resize(system.grid.nodes());
-  system.start.velocity.resize(system.grid.nodes());
+  system.node_mass.assign(grid.nodes(), 1e-5);
+  system.start.position.resize(grid.nodes());
+  system.start.velocity.resize(grid.nodes());
   return system;
 }
 

@@ -39,7 +39,10 @@ const std::vector<Mistake> mistakes{
     {"one border spring missing", [](System& s) { s.springs.pop_back(); }},
     {"one pin forgotten", [](System& s) { s.pins.pop_back(); }},
     {"no gravity", [](System& s) { s.gravity = 0; }},
-    {"mass 1 % off", [](System& s) { s.node_mass *= 1.01; }},
+    {"mass 1 % off",
+     [](System& s) {
+       for (double& mass : s.node_mass) mass *= 1.01;
+     }},
 };
 
 /// Near the origin, where positions are rounded least.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,6 +27,13 @@ struct Unavailable : std::runtime_error {
 struct Unsupported : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// The mass of every node, kg. Throws Unsupported when they differ.
+inline double require_uniform_mass(const System& system) {
+  const std::optional<double> mass = uniform_node_mass(system);
+  if (!mass) throw Unsupported("the nodes of a cloth must weigh the same, and this one's do not");
+  return *mass;
+}
 
 /// One simulation under way. All calls block until their work is done: a caller may read the clock around
 /// them.

@@ -3,8 +3,14 @@
 #include <memory>
 
 #include "backends/backend.h"
+#include "backends/opencl_device.h"
 
 namespace mssim {
+
+/// Steps a system on an OpenCL device, which takes `lanes` springs side by side (1, 4, 8 or 16), and
+/// `threads` host threads. See the other make_hybrid.
+std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int threads, int lanes);
 
 /// Hong et al.'s GPU + multi-thread CPU: the OpenCL device that options.device names computes the force of
 /// every spring into memory shared with the host, options.threads OpenMP threads sum them at the nodes and

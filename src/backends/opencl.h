@@ -7,11 +7,7 @@
 
 namespace mssim {
 
-/// Nodes per work-item that suit the device: wide vectors for a CPU, whose driver packs nothing by itself,
-/// one node for everything else.
-int lanes_for(const OpenclDevice& device);
-
-/// Steps a cloth on an OpenCL device, `lanes` nodes side by side (1, 4, 8 or 16): one fused kernel per
+/// Steps a system on an OpenCL device, `lanes` nodes side by side (1, 4, 8 or 16): one fused kernel per
 /// stage, all steps queued one behind the other. See make_opencl for errors.
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes);

@@ -180,6 +180,28 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
   return fitting.front();
 }
 
+int lanes_for(const OpenclDevice& device) {
+  if (device.type != OpenclDeviceType::cpu) return 1;
+  int lanes = 4;
+  while (lanes < 16 && static_cast<std::uint32_t>(lanes) < device.preferred_float_width) lanes *= 2;
+  return lanes;
+}
+
+void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes) {
+  const auto megabytes = [](std::uint64_t bytes) { return std::to_string((bytes >> 20) + 1) + " MiB"; };
+  std::uint64_t largest = 0, all = 0;
+  for (const std::uint64_t bytes : buffer_bytes) {
+    largest = std::max(largest, bytes);
+    all += bytes;
+  }
+  if (largest > device.max_allocation_bytes)
+    throw Unsupported("the scene needs an OpenCL buffer of " + megabytes(largest) + ", " + device.name +
+                      " allocates at most " + megabytes(device.max_allocation_bytes) + " in one piece");
+  if (all > device.global_memory_bytes)
+    throw Unsupported("the scene needs " + megabytes(all) + " of OpenCL buffers, " + device.name + " has " +
+                      megabytes(device.global_memory_bytes) + " in all");
+}
+
 std::string opencl_failure(std::string_view call, int error) {
   const auto known = std::find_if(error_names.begin(), error_names.end(),
                                   [&](const ErrorName& entry) { return entry.code == error; });

@@ -38,6 +38,13 @@ std::vector<OpenclDevice> opencl_devices();
 /// Throws Unavailable when there is none or when the part fits several; the sentence lists what there is.
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
 
+/// Nodes or springs per work-item that suit the device: wide vectors for a CPU, whose driver packs nothing by
+/// itself, one for everything else.
+int lanes_for(const OpenclDevice& device);
+
+/// Throws Unsupported unless the device can hold buffers of these many bytes all at once.
+void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes);
+
 /// One sentence about a failed OpenCL call: the call, the error's name and its number.
 std::string opencl_failure(std::string_view call, int error);
 

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "backends/backend.h"
-#include "backends/opencl_stencil.h"
 #include "model/data_folder.h"
 
 namespace mssim {
@@ -39,17 +38,10 @@ bool uses_pair(const Stage& stage, Pair pair) {
          reads(stage, velocity_slot(pair));
 }
 
-/// Where the slot's three planes begin for the work-item's nodes, as an expression.
-std::string address(Slot slot) {
-  const std::size_t pair = index(slot) / 2;
-  const bool velocity = index(slot) % 2 == 1;
-  return std::string(pair_names[pair]) + " + site.first" + (velocity ? " + 3 * grid->plane" : "");
-}
-
 /// A line's sum, the last term first, so that the large first term is added last.
 std::string sum_of_terms(const Line& line, std::size_t stage, std::size_t number) {
   const auto factor = [&](std::size_t term) {
-    return "(Real)(grid->coefficients[" + std::to_string(stage) + "][" + std::to_string(number) + "][" +
+    return "(Real)(step->coefficients[" + std::to_string(stage) + "][" + std::to_string(number) + "][" +
            std::to_string(term) + "])";
   };
   const std::size_t last = term_count(line) - 1;
@@ -60,29 +52,45 @@ std::string sum_of_terms(const Line& line, std::size_t stage, std::size_t number
   return sum;
 }
 
-/// The stage's kernel and what it does with the nodes of one site once their springs are summed.
-std::string stage_text(const Integrator& integrator, std::size_t number, bool walks) {
+/// The call that reads or writes the slot's memory: kernels/*_stage.cl have these functions.
+std::string access(const char* what, Slot slot, const std::string& value = "") {
+  const bool velocity = index(slot) % 2 == 1;
+  return std::string(what) + (velocity ? "_velocity(" : "_position(") + value +
+         name(static_cast<Pair>(index(slot) / 2)) + ", site, shape)";
+}
+
+}  // namespace
+
+std::string pair_parameters(const Stage& stage) {
+  std::string text;
+  for (const Pair pair : stage_arguments(stage))
+    text += std::string("__global ") + (writes_pair(stage, pair) ? "" : "const ") + "float* restrict " +
+            name(pair) + ", ";
+  return text;
+}
+
+std::string pair_names_of(const Stage& stage) {
+  std::string text;
+  for (const Pair pair : stage_arguments(stage)) text += name(pair) + ", ";
+  return text;
+}
+
+std::string gathered_name(const Stage& stage) { return name(stage.gather); }
+
+std::string update_text(const Integrator& integrator, std::size_t number) {
   const Stage& stage = integrator.stages[number];
   const Slot x = position_slot(stage.gather), v = velocity_slot(stage.gather);
-  const std::string suffix = std::to_string(number);
-  std::string parameters, arguments;
-  for (const Pair pair : stage_arguments(stage)) {
-    parameters += std::string("__global ") + (writes_pair(stage, pair) ? "" : "const ") + "float* restrict " +
-                  name(pair) + ", ";
-    arguments += name(pair) + ", ";
-  }
-
   std::ostringstream text;
   text << "\n/* " << integrator.name << ", stage " << number << " */\n"
-       << "static inline void update_" << suffix << "(" << parameters
-       << "Site site, Node node, Vector spring_forces, __constant struct GridParameters* grid) {\n"
+       << "static inline void update_" << number << "(" << pair_parameters(stage)
+       << "Site site, Node node, Vector spring_forces, Shape shape, __constant struct StepParameters* step) "
+          "{\n"
        << "  Vector " << name(x) << " = node.x, " << name(v) << " = node.v;\n"
-       << "  Vector a = acceleration(spring_forces, node.v, site, grid);\n";
+       << "  Vector a = acceleration(spring_forces, node.v, site.free, step);\n";
   for (std::size_t i = 0; i < slot_kinds; ++i)
     if (const Slot slot = static_cast<Slot>(i); slot != Slot::a && slot != x && slot != v) {
       if (i < memory_slots && reads(stage, slot))
-        text << "  Vector " << name(slot) << " = load_vector_aligned(" << address(slot)
-             << ", grid->plane);\n";
+        text << "  Vector " << name(slot) << " = " << access("load", slot) << ";\n";
       else if (writes(stage, slot))
         text << "  Vector " << name(slot) << ";\n";
     }
@@ -90,45 +98,13 @@ std::string stage_text(const Integrator& integrator, std::size_t number, bool wa
     text << "  " << name(stage.lines[line].out) << " = " << sum_of_terms(stage.lines[line], number, line)
          << ";\n";
   if (number + 1 == integrator.stage_count)
-    text << "  touch_floor(&" << name(Slot::x_next) << ", &" << name(Slot::v_next) << ", site, grid);\n";
+    text << "  touch_floor(&" << name(Slot::x_next) << ", &" << name(Slot::v_next) << ", site.free, step);\n";
   for (std::size_t i = 0; i < memory_slots; ++i)
     if (const Slot slot = static_cast<Slot>(i); writes(stage, slot))
-      text << "  store_vector_aligned(" << name(slot) << ", " << address(slot) << ", grid->plane);\n";
-  text << "}\n"
-       << "__kernel void " << stage_kernel_name(number) << "(" << parameters
-       << "__constant struct GridParameters* grid, __global const int* restrict pin_rows,\n"
-          "    __global const int* restrict pins"
-       << (walks ? ", __global float* restrict sums" : "") << ") {\n";
-  if (walks)
-    text << "  const int block = (int)get_global_id(0);\n"
-            "  const int first_row = block * grid->block_rows;\n"
-            "  const int end_row = min(first_row + grid->block_rows, grid->rows);\n"
-            "  sums += block * 9 * grid->stride;\n"
-            "  int row = max(first_row - 2, 0);\n"
-            "  clear_sums(sums, row, grid);\n"
-            "  for (; row < end_row; ++row) {\n"
-            "    Carry carry;\n"
-            "    clear_carry(&carry);\n"
-            "    for (int column = 0; column < grid->columns; column += MSSIM_LANES) {\n"
-            "      const Site site = site_at(row, column, grid, pin_rows, pins);\n"
-         << "      const Node node = load_node(" << name(stage.gather) << ", site, 0, 0, grid);\n"
-         << "      const Vector forces = walk_springs(" << name(stage.gather)
-         << ", site, node, &carry, sums, grid);\n"
-         << "      if (row >= first_row) update_" << suffix << "(" << arguments
-         << "site, node, forces, grid);\n"
-         << "    }\n"
-            "  }\n";
-  else
-    text << "  const Site site = site_at((int)get_global_id(1), (int)get_global_id(0), grid, pin_rows, "
-            "pins);\n"
-         << "  const Node node = load_node(" << name(stage.gather) << ", site, 0, 0, grid);\n"
-         << "  update_" << suffix << "(" << arguments << "site, node, gather_springs(" << name(stage.gather)
-         << ", site, node, grid), grid);\n";
+      text << "  " << access("store", slot, name(slot) + ", ") << ";\n";
   text << "}\n";
   return text.str();
 }
-
-}  // namespace
 
 std::string stage_kernel_name(std::size_t stage) { return "stage_" + std::to_string(stage); }
 
@@ -139,23 +115,14 @@ std::vector<Pair> stage_arguments(const Stage& stage) {
   return pairs;
 }
 
-bool grid_program_walks(int lanes) { return lanes > 1; }
-
-std::string grid_program_text(const Integrator& integrator, int lanes) {
+std::string program_text(int lanes, std::initializer_list<const char*> files) {
   std::string text = "#define MSSIM_LANES " + std::to_string(lanes) + "\n";
-  for (const char* file : {"lanes.h", "spring_law.h", "floor_law.h", "grid_parameters.h", "grid_stage.cl"})
-    text += kernel_file(file);
-  const bool walks = grid_program_walks(lanes);
-  text += walks ? walk_springs_text() : gather_springs_text();
-  for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
-    text += stage_text(integrator, stage, walks);
+  for (const char* file : files) text += kernel_file(file);
   return text;
 }
 
-std::string packed_springs_program_text() {
-  std::string text = "#define MSSIM_LANES 1\n";
-  for (const char* file : {"lanes.h", "spring_law.h", "packed_springs.cl"}) text += kernel_file(file);
-  return text;
+std::string packed_springs_program_text(int lanes) {
+  return program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "packed_springs.cl"});
 }
 
 cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text) {

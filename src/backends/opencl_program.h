@@ -2,6 +2,7 @@
 
 #include <CL/opencl.hpp>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -10,26 +11,35 @@
 
 namespace mssim {
 
-/// Text of the program that steps a grid with `integrator`: the shared laws, what the stages have in common
-/// (kernels/*), and one kernel per stage, generated from the tables of integrators and of the stencil. It
-/// depends on the integrator and on `lanes` alone (nodes side by side in one number: 1, 4, 8 or 16), so that
-/// a driver's cache of built programs serves every scene. Throws std::runtime_error when a kernel file is
+/// The text of OpenCL programs, which consists of files in kernels/ and of what is generated from the table
+/// of integrators. It depends on the integrator and on `lanes` alone (nodes or springs side by side in one
+/// number: 1, 4, 8 or 16), so that a driver's cache of built programs serves every scene.
+
+/// Text of the files in kernels/, in this order, for that many lanes. Throws std::runtime_error when one is
 /// missing.
-std::string grid_program_text(const Integrator& integrator, int lanes);
+std::string program_text(int lanes, std::initializer_list<const char*> files);
 
-/// Does a work-item of the program walk over a block of rows, with one row of work-items and `sums` as the
-/// last argument, or own one node? kernels/grid_stage.cl says how.
-bool grid_program_walks(int lanes);
-
-/// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).
-std::string packed_springs_program_text();
-
-/// Name of the stage's kernel in grid_program_text.
+/// Name of the stage's kernel.
 std::string stage_kernel_name(std::size_t stage);
 
-/// The pairs whose buffers are the first arguments of the stage's kernel, in their order; the buffers of the
-/// parameters, the pin rows and the pins follow.
+/// The pairs whose buffers are the first arguments of the stage's kernel, in their order. The step parameters
+/// follow (kernels/step_parameters.h), then what the topology needs.
 std::vector<Pair> stage_arguments(const Stage& stage);
+
+/// These pairs as parameters, and as arguments of a call, each with a comma behind it.
+std::string pair_parameters(const Stage& stage);
+std::string pair_names_of(const Stage& stage);
+
+/// The name of the pair that the stage gathers from.
+std::string gathered_name(const Stage& stage);
+
+/// `update_N`: the lines of stage N for the nodes of a site, once their springs are summed. It takes the
+/// pairs, the site, its nodes, the spring forces per mass, the shape of the topology and the step parameters,
+/// and asks the topology for Site, Shape, load_position, load_velocity, store_position and store_velocity.
+std::string update_text(const Integrator& integrator, std::size_t number);
+
+/// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).
+std::string packed_springs_program_text(int lanes);
 
 /// The built program. Square roots and divisions are correctly rounded where the device can do that.
 /// Throws Unavailable with the compiler's first complaint.

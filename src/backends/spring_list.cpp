@@ -14,6 +14,7 @@ SpringList<Real>::SpringList(const System& system, const Integrator& integrator,
       force_(system.nodes()) {
   for (const SpringMaterial& material : system.materials)
     materials_.push_back({static_cast<Real>(material.stiffness), static_cast<Real>(material.damping)});
+  for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
   for (const std::uint32_t node : system.pins) pinned_[node] = 1;
   for (std::size_t pair = 0; pair < pair_kinds; ++pair)
     if (stores(integrator, static_cast<Pair>(pair), storage)) pairs_[pair].resize(system.nodes());

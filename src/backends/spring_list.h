@@ -66,6 +66,7 @@ class SpringList {
   Coefficients<Real> coefficients_;
   std::vector<Material> materials_;
   std::vector<std::uint8_t> pinned_;                 ///< [nodes]
+  std::vector<Real> inverse_mass_;                   ///< [nodes] 1/kg
   std::vector<Vec3<Real>> force_;                    ///< [nodes] N
   std::array<std::vector<Node>, pair_kinds> pairs_;  ///< [nodes] each; empty where not stored
   std::array<std::size_t, pair_kinds> place_{};      ///< role -> element of pairs_
@@ -77,14 +78,13 @@ void SpringList<Real>::update_nodes(std::size_t first, std::size_t last) {
   const std::vector<Node>& gathered = array(integrators[method].stages[stage].gather);
   std::array<Node*, pair_kinds> nodes;
   for (std::size_t pair = 0; pair < pair_kinds; ++pair) nodes[pair] = array(static_cast<Pair>(pair)).data();
-  const Real inverse_mass = static_cast<Real>(1 / system_.node_mass);
   const Real viscous_damping = static_cast<Real>(system_.viscous_damping);
   const Real gravity = static_cast<Real>(system_.gravity);
   const Floor& floor = system_.floor;
   for (std::size_t i = first; i < last; ++i) {
     if (pinned_[i] != 0) continue;
     const Node node = gathered[i];
-    Vec3<Real> a = inverse_mass * force_[i] - viscous_damping * node.v;
+    Vec3<Real> a = inverse_mass_[i] * force_[i] - viscous_damping * node.v;
     a.y -= gravity;
     const auto slot_of = [&](auto slot) -> Vec3<Real>& {
       constexpr std::size_t s = index(decltype(slot)::value);

@@ -12,6 +12,8 @@ struct BoxShape {
   Vec3d size;  ///< m, length of the sides
   std::array<std::uint32_t, 3>
       cells;  ///< squares of the surface along x, y and z, each cut into two triangles
+
+  bool operator==(const BoxShape&) const = default;
 };
 
 /// The surface with 2 (ab + bc + ca) + 2 points for a x b x c cells. Throws MeshError for a size that is not

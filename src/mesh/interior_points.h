@@ -15,6 +15,8 @@ struct InteriorPoints {
   std::uint32_t seed = 0;  ///< of the lattice's place and turn and of the moves
   double jitter = 0;       ///< how far a point may move along each axis, in lattice spacings, 0 to 0.5
   double margin = 0;       ///< smallest distance from the surface, in lattice spacings, 0 to 1
+
+  bool operator==(const InteriorPoints&) const = default;
 };
 
 /// Where interior points may be.

@@ -11,6 +11,8 @@ namespace mssim {
 struct SphereShape {
   double radius_m = 0;          ///< m
   std::uint32_t frequency = 0;  ///< triangles along an edge of the icosahedron
+
+  bool operator==(const SphereShape&) const = default;
 };
 
 /// The surface with 10 frequency^2 + 2 points. Throws MeshError for a radius or a frequency that is not

@@ -14,6 +14,8 @@ struct TorusShape {
   std::uint32_t cells_around =
       0;  ///< circles along the ring, an even number: every other one is turned by half a cell
   std::uint32_t cells_across = 0;  ///< points of each circle
+
+  bool operator==(const TorusShape&) const = default;
 };
 
 /// The surface with cells_around x cells_across points. Throws MeshError for radii that make no ring, for an

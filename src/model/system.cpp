@@ -2,8 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace mssim {
+
+std::optional<double> uniform_node_mass(const System& system) {
+  const std::vector<double>& mass = system.node_mass;
+  if (mass.empty() || std::adjacent_find(mass.begin(), mass.end(), std::not_equal_to<>()) != mass.end())
+    return std::nullopt;
+  return mass.front();
+}
 
 double mean_rest_length(const System& system) {
   double sum = 0;
@@ -39,9 +47,9 @@ StiffnessBound stiffness_bound(const System& system) {
     }
   }
   StiffnessBound bound;
-  for (const Sum& sum : node) {
-    bound.stiffness = std::max(bound.stiffness, 2 * sum.stiffness / system.node_mass);
-    bound.damping = std::max(bound.damping, 2 * sum.damping / system.node_mass);
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    bound.stiffness = std::max(bound.stiffness, 2 * node[i].stiffness / system.node_mass[i]);
+    bound.damping = std::max(bound.damping, 2 * node[i].damping / system.node_mass[i]);
   }
   bound.damping += system.viscous_damping;
   return bound;

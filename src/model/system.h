@@ -2,10 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <variant>
 #include <vector>
 
 #include "model/grid_patch.h"
 #include "model/spring.h"
+#include "model/tetrahedral_mesh.h"
 #include "model/vec3.h"
 
 namespace mssim {
@@ -24,16 +27,19 @@ struct Floor {
   double friction = 0;     ///< Coulomb's coefficient, not negative
 };
 
+/// How the nodes hang together: what a backend may know beyond the list of springs.
+using Topology = std::variant<GridPatch, TetrahedralMesh>;
+
 /// Everything that stays constant while a scene is stepped, and the state that it starts from.
 /// The acceleration of a free node is
-///     a = (sum of spring forces) / node_mass - viscous_damping v + (0, -gravity, 0);
+///     a = (sum of spring forces) / node_mass[node] - viscous_damping v + (0, -gravity, 0);
 /// a pinned node stays where it starts, at rest.
 struct System {
-  GridPatch grid;                         ///< topology: all nodes belong to it
+  Topology topology;                      ///< all nodes belong to it
   std::vector<Spring> springs;            ///< [springs] each unique spring once
   std::vector<SpringMaterial> materials;  ///< [kinds] indexed by Spring::kind
   std::vector<std::uint32_t> pins;        ///< [pinned nodes] ascending
-  double node_mass = 0;                   ///< kg, the same for every node
+  std::vector<double> node_mass;          ///< [nodes] kg
   double gravity = 0;                     ///< m/s^2, downwards
   double viscous_damping = 0;             ///< 1/s
   Floor floor;
@@ -42,6 +48,9 @@ struct System {
 
   std::size_t nodes() const { return start.position.size(); }
 };
+
+/// The mass of each node, kg, where all nodes weigh the same.
+std::optional<double> uniform_node_mass(const System& system);
 
 /// Mean rest length over all springs, m: the unit of position errors.
 double mean_rest_length(const System& system);

@@ -109,27 +109,30 @@ SceneCounts cloth_counts(const SceneSpec& spec) {
   return {std::uint64_t{cloth.rows} * cloth.columns, springs, 2 * springs};
 }
 
+std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec) { return cloth_counts(spec); }
+
 System build_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   System system;
-  system.grid = {cloth.rows, cloth.columns, cloth.spacing_m};
-  system.springs = springs_of(system.grid);
+  const GridPatch grid{cloth.rows, cloth.columns, cloth.spacing_m};
+  system.topology = grid;
+  system.springs = springs_of(grid);
   system.materials.assign(cloth.springs.begin(), cloth.springs.end());
-  system.node_mass = cloth.areal_density_kg_per_m2 * cloth.spacing_m * cloth.spacing_m;
+  system.node_mass.assign(grid.nodes(), cloth.areal_density_kg_per_m2 * cloth.spacing_m * cloth.spacing_m);
   system.gravity = spec.gravity_m_per_s2;
   system.viscous_damping = spec.viscous_damping_per_s;
   system.floor = spec.floor;
 
   const double wave_number = 2 * std::numbers::pi / cloth.ripple.wavelength_m;
   const double height = cloth.ripple.height_m, speed = cloth.ripple.speed_m_per_s;
-  system.start.position.reserve(system.grid.nodes());
-  system.start.velocity.reserve(system.grid.nodes());
+  system.start.position.reserve(grid.nodes());
+  system.start.velocity.reserve(grid.nodes());
   for (std::uint32_t row = 0; row < cloth.rows; ++row)
     for (std::uint32_t column = 0; column < cloth.columns; ++column) {
       Vec3d position{column * cloth.spacing_m, cloth.ceiling_height_m, row * cloth.spacing_m};
       Vec3d velocity;
       if (is_pinned(cloth, row, column)) {
-        system.pins.push_back(system.grid.node(row, column));
+        system.pins.push_back(grid.node(row, column));
       } else {
         // A component is zero along lines of constant x and of constant z. As no two phases of the velocity
         // on one axis differ by a multiple of pi, no place lies on a line of all three, and no node starts at

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "backends/backend.h"
+
 namespace mssim {
 namespace {
 
@@ -23,9 +25,9 @@ BandLayout layout_for(const GridPatch& grid, std::size_t lanes) {
 
 }  // namespace
 
-BandSheet::BandSheet(const System& system, const Integrator& method, double dt_s, std::size_t lanes,
-                     std::size_t threads)
-    : layout(layout_for(system.grid, lanes)),
+BandSheet::BandSheet(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
+                     std::size_t lanes, std::size_t threads)
+    : layout(layout_for(grid, lanes)),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
       viscous_damping(static_cast<float>(system.viscous_damping)),
@@ -33,12 +35,13 @@ BandSheet::BandSheet(const System& system, const Integrator& method, double dt_s
       floor_height(static_cast<float>(system.floor.height)),
       restitution(static_cast<float>(system.floor.restitution)),
       friction(static_cast<float>(system.floor.friction)),
-      spacing_(system.grid.spacing) {
+      spacing_(grid.spacing) {
+  const double mass = require_uniform_mass(system);
   for (std::size_t kind = 0; kind < materials.size(); ++kind) {
-    const double stiffness = system.materials[kind].stiffness / system.node_mass;
-    const double rest = static_cast<double>(system.grid.rest_length(static_cast<GridSpringKind>(kind)));
+    const double stiffness = system.materials[kind].stiffness / mass;
+    const double rest = static_cast<double>(grid.rest_length(static_cast<GridSpringKind>(kind)));
     materials[kind] = {static_cast<float>(stiffness), static_cast<float>(stiffness * rest),
-                       static_cast<float>(system.materials[kind].damping / system.node_mass)};
+                       static_cast<float>(system.materials[kind].damping / mass)};
   }
 
   parts.resize(

@@ -74,8 +74,8 @@ struct BandSheet {
   std::vector<BandPart> parts;
 
   /// Cuts the cloth for `lanes` lanes and at most `threads` parts. Arrays stay untouched until set_state.
-  BandSheet(const System& system, const Integrator& method, double dt_s, std::size_t lanes,
-            std::size_t threads);
+  BandSheet(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
+            std::size_t lanes, std::size_t threads);
   /// Spreads the state over the parts, each by a thread of its own, ghosts, halos and dummies included.
   void set_state(const State& state);
   State state() const;

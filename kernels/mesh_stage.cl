@@ -1,0 +1,73 @@
+/* What the stage kernels of a tetrahedral body have in common. The kernels themselves are generated from the
+ * table of integrators (src/backends/opencl_mesh_program.cpp) and follow this text: a work-item takes sites
+ * of MSSIM_LANES nodes, one after the other, and every node gathers the forces of all its springs.
+ *
+ * A pair is an array of records (records.h). The springs are those of a sliced graph (SlicedGraph in
+ * src/backends/sliced_graph/sliced_graph.h), in slices of MSSIM_SLICE nodes: of MSSIM_LANES where a site has
+ * several nodes, of some multiple where it has one. Their constants are per unit of node mass.
+ */
+typedef struct {
+  __global const uint* first_entry;     /* of a slice */
+  __global const uint* neighbour;       /* [entries][MSSIM_SLICE] */
+  __global const float* stiffness_rest; /* [entries][MSSIM_SLICE] m/s^2, negative: no spring */
+  __global const float* stiffness;      /* of a node, 1/s^2 */
+  __global const float* damping;        /* of a node, 1/s */
+  __global const int* held;             /* 1: pinned, or no node at all */
+} Mesh;
+typedef const Mesh* Shape;
+
+/* Where MSSIM_LANES nodes are. */
+typedef struct {
+  size_t first; /* the first one's number */
+  Mask free;
+} Site;
+
+static inline Site site_at(uint number, const Mesh* mesh) {
+  Site site;
+  site.first = (size_t)number * MSSIM_LANES;
+  site.free = load_aligned_mask(mesh->held + site.first) == 0;
+  return site;
+}
+
+#define own_record(lane) site.first + (lane)
+static inline Node load_node(__global const float* restrict pair, Site site) {
+  return load_records(pair, own_record);
+}
+
+/* The site's own vectors in a pair. */
+static inline Vector load_position(__global const float* pair, Site site, Shape mesh) {
+  return load_node(pair, site).x;
+}
+static inline Vector load_velocity(__global const float* pair, Site site, Shape mesh) {
+  return load_node(pair, site).v;
+}
+static inline void store_position(Vector value, __global float* pair, Site site, Shape mesh) {
+  store_quads(value, pair + record_floats * site.first, record_floats);
+}
+static inline void store_velocity(Vector value, __global float* pair, Site site, Shape mesh) {
+  store_quads(value, pair + record_floats * site.first + 4, record_floats);
+}
+
+/* The forces of all springs on the site's nodes, m/s^2. Where a lane has fewer springs than its slice has
+ * entries, the node is its own neighbour, at no distance, and whatever comes of it is left out. */
+#define neighbour_record(lane) neighbour[lane]
+static inline Vector gather_springs(__global const float* restrict pair, Site site, Node node,
+                                    const Mesh* mesh) {
+  const Real stiffness = load_aligned(mesh->stiffness + site.first);
+  const Real damping = load_aligned(mesh->damping + site.first);
+  const size_t slice = site.first / MSSIM_SLICE, lane = site.first % MSSIM_SLICE;
+  const uint end = mesh->first_entry[slice + 1];
+  Vector sum = no_vector();
+  for (uint entry = mesh->first_entry[slice]; entry < end; ++entry) {
+    const size_t element = (size_t)entry * MSSIM_SLICE + lane;
+    __global const uint* neighbour = mesh->neighbour + element;
+    const Real stiffness_rest = load_aligned(mesh->stiffness_rest + element);
+    const Node other = load_records(pair, neighbour_record);
+    const Vector d = minus(other.x, node.x);
+    Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, node.v), d), stiffness,
+                            stiffness_rest, damping);
+    pull = select(pull, (Real)(0.0f), stiffness_rest < 0.0f);
+    sum = times_plus(pull, d, sum);
+  }
+  return sum;
+}

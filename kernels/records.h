@@ -1,0 +1,147 @@
+/* Nodes as records of eight floats: x y z and a float that is zero, u v w and another. A record is one load
+ * of 32 bytes wherever the node lies, so that gathering MSSIM_LANES nodes is that many loads and a
+ * transposition in registers. Needs lanes.h.
+ */
+#define record_floats 8
+
+#if MSSIM_LANES == 1
+
+/* of(lane): the number of the lane's record. */
+#define load_records(records, of) load_record(records, of(0))
+static inline Node load_record(__global const float* records, size_t number) {
+  float4 x = *(__global const float4*)(records + record_floats * number);
+  float4 v = *(__global const float4*)(records + record_floats * number + 4);
+  Node node = {{x.x, x.y, x.z}, {v.x, v.y, v.z}};
+  return node;
+}
+
+/* The lane's vector as x y z 0. */
+static inline void store_quads(Vector value, __global float* to, size_t distance) {
+  *(__global float4*)to = (float4)(value.x, value.y, value.z, 0.0f);
+}
+
+#else
+
+/* Within each four elements of a and b: a0 b0 a1 b1, a2 b2 a3 b3, a0 a1 b0 b1, a2 a3 b2 b3. Choices between
+ * two constant permutations, which compilers make one instruction of. */
+#define odd_4 ((int4)(0, -1, 0, -1))
+#define odd_8 ((int8)(odd_4, odd_4))
+#define odd_16 ((int16)(odd_8, odd_8))
+#define late_4 ((int4)(0, 0, -1, -1))
+#define late_8 ((int8)(late_4, late_4))
+#define late_16 ((int16)(late_8, late_8))
+#define low_pairs_4(a, b) (odd_4 ? (b).s0011 : (a).s0011)
+#define high_pairs_4(a, b) (odd_4 ? (b).s2233 : (a).s2233)
+#define low_halves_4(a, b) (late_4 ? (b).s0101 : (a).s0101)
+#define high_halves_4(a, b) (late_4 ? (b).s2323 : (a).s2323)
+#define low_pairs_8(a, b) (odd_8 ? (b).s00114455 : (a).s00114455)
+#define high_pairs_8(a, b) (odd_8 ? (b).s22336677 : (a).s22336677)
+#define low_halves_8(a, b) (late_8 ? (b).s01014545 : (a).s01014545)
+#define high_halves_8(a, b) (late_8 ? (b).s23236767 : (a).s23236767)
+#define low_pairs_16(a, b) (odd_16 ? (b).s001144558899ccdd : (a).s001144558899ccdd)
+#define high_pairs_16(a, b) (odd_16 ? (b).s22336677aabbeeff : (a).s22336677aabbeeff)
+#define low_halves_16(a, b) (late_16 ? (b).s010145458989cdcd : (a).s010145458989cdcd)
+#define high_halves_16(a, b) (late_16 ? (b).s23236767ababefef : (a).s23236767ababefef)
+
+/* The records' numbers are of(0) to of(MSSIM_LANES - 1). */
+#define record_at(records, number) (*(__global const float8*)((records) + record_floats * (size_t)(number)))
+
+#if MSSIM_LANES == 4
+#define load_records(records, of)                                                               \
+  transposed_4(record_at(records, of(0)), record_at(records, of(1)), record_at(records, of(2)), \
+               record_at(records, of(3)))
+static inline Node transposed_4(float8 a, float8 b, float8 c, float8 d) {
+  float8 ab_low = low_pairs_8(a, b), ab_high = high_pairs_8(a, b);
+  float8 cd_low = low_pairs_8(c, d), cd_high = high_pairs_8(c, d);
+  float8 xu = low_halves_8(ab_low, cd_low), yv = high_halves_8(ab_low, cd_low),
+         zw = low_halves_8(ab_high, cd_high);
+  Node node = {{xu.lo, yv.lo, zw.lo}, {xu.hi, yv.hi, zw.hi}};
+  return node;
+}
+#else
+/* Eight nodes: two and two share a register; positions are then in the even, velocities in the odd quarters.
+ */
+typedef struct {
+  float16 xu, yv, zw;
+} EightNodes;
+/* As wider integers, because PoCL 3.1 would move the shuffles that follow to the halves, which doubles them.
+ */
+#define beside(a, b) as_float16((ulong8)(as_ulong4(a), as_ulong4(b)))
+static inline EightNodes transposed_8(float8 a, float8 b, float8 c, float8 d, float8 e, float8 f, float8 g,
+                                      float8 h) {
+  float16 ae = beside(a, e), bf = beside(b, f), cg = beside(c, g), dh = beside(d, h);
+  float16 ab_low = low_pairs_16(ae, bf), ab_high = high_pairs_16(ae, bf);
+  float16 cd_low = low_pairs_16(cg, dh), cd_high = high_pairs_16(cg, dh);
+  EightNodes nodes = {low_halves_16(ab_low, cd_low), high_halves_16(ab_low, cd_low),
+                      low_halves_16(ab_high, cd_high)};
+  return nodes;
+}
+#define load_eight(records, of, from)                                              \
+  transposed_8(record_at(records, of(from)), record_at(records, of(from + 1)),     \
+               record_at(records, of(from + 2)), record_at(records, of(from + 3)), \
+               record_at(records, of(from + 4)), record_at(records, of(from + 5)), \
+               record_at(records, of(from + 6)), record_at(records, of(from + 7)))
+#define positions_of(pair) (pair).s012389ab
+#define velocities_of(pair) (pair).s4567cdef
+#if MSSIM_LANES == 8
+#define load_records(records, of) node_of_eight(load_eight(records, of, 0))
+static inline Node node_of_eight(EightNodes all) {
+  Node node = {{positions_of(all.xu), positions_of(all.yv), positions_of(all.zw)},
+               {velocities_of(all.xu), velocities_of(all.yv), velocities_of(all.zw)}};
+  return node;
+}
+#else
+#define load_records(records, of) node_of_sixteen(load_eight(records, of, 0), load_eight(records, of, 8))
+static inline Node node_of_sixteen(EightNodes low, EightNodes high) {
+  Node node = {{(float16)(positions_of(low.xu), positions_of(high.xu)),
+                (float16)(positions_of(low.yv), positions_of(high.yv)),
+                (float16)(positions_of(low.zw), positions_of(high.zw))},
+               {(float16)(velocities_of(low.xu), velocities_of(high.xu)),
+                (float16)(velocities_of(low.yv), velocities_of(high.yv)),
+                (float16)(velocities_of(low.zw), velocities_of(high.zw))}};
+  return node;
+}
+#endif
+#endif
+
+/* The vectors of every fourth lane, as x y z 0 each: of lanes 0, 4, 8 .., of lanes 1, 5, 9 .. and so on. */
+typedef struct {
+  Real from_0, from_1, from_2, from_3;
+} Quads;
+static inline Quads quads_of(Vector value) {
+  const Real zero = (Real)(0.0f);
+  const Real xy_low = MSSIM_PASTE(low_pairs_, MSSIM_LANES)(value.x, value.y);
+  const Real xy_high = MSSIM_PASTE(high_pairs_, MSSIM_LANES)(value.x, value.y);
+  const Real z_low = MSSIM_PASTE(low_pairs_, MSSIM_LANES)(value.z, zero);
+  const Real z_high = MSSIM_PASTE(high_pairs_, MSSIM_LANES)(value.z, zero);
+  Quads quads = {MSSIM_PASTE(low_halves_, MSSIM_LANES)(xy_low, z_low),
+                 MSSIM_PASTE(high_halves_, MSSIM_LANES)(xy_low, z_low),
+                 MSSIM_PASTE(low_halves_, MSSIM_LANES)(xy_high, z_high),
+                 MSSIM_PASTE(high_halves_, MSSIM_LANES)(xy_high, z_high)};
+  return quads;
+}
+
+/* The quads of every fourth lane, `distance` floats from one lane's to the next one's. */
+static inline void store_every_fourth(Real quads, __global float* to, size_t distance) {
+#if MSSIM_LANES == 4
+  *(__global float4*)to = quads;
+#else
+  *(__global float4*)to = quads.s0123;
+  *(__global float4*)(to + 4 * distance) = quads.s4567;
+#endif
+#if MSSIM_LANES == 16
+  *(__global float4*)(to + 8 * distance) = quads.s89ab;
+  *(__global float4*)(to + 12 * distance) = quads.scdef;
+#endif
+}
+
+/* Every lane's vector as x y z 0, `distance` floats from one lane's to the next one's. */
+static inline void store_quads(Vector value, __global float* to, size_t distance) {
+  const Quads quads = quads_of(value);
+  store_every_fourth(quads.from_0, to, distance);
+  store_every_fourth(quads.from_1, to + distance, distance);
+  store_every_fourth(quads.from_2, to + 2 * distance, distance);
+  store_every_fourth(quads.from_3, to + 3 * distance, distance);
+}
+
+#endif

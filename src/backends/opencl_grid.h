@@ -1,0 +1,16 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/backend.h"
+#include "backends/opencl_device.h"
+
+namespace mssim {
+
+/// Steps a cloth on an OpenCL device, `lanes` nodes side by side (1, 4, 8 or 16). Lets cl::Error through;
+/// throws Unsupported where the cloth does not fit into the device's memory.
+std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch& grid,
+                                          const Integrator& integrator, double dt_s,
+                                          const OpenclDevice& device, int lanes);
+
+}  // namespace mssim

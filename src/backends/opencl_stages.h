@@ -1,0 +1,86 @@
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "backends/backend.h"
+#include "backends/opencl_buffer.h"
+#include "backends/opencl_device.h"
+#include "kernels/step_parameters.h"
+
+namespace mssim {
+
+/// How a topology's nodes lie in the buffer of a pair.
+struct PairLayout {
+  std::size_t floats = 0;                  ///< in the buffer
+  std::vector<std::size_t> node;           ///< [nodes] where the node's numbers begin
+  std::array<std::size_t, 6> component{};  ///< from there on x, y, z, u, v, w
+};
+
+/// Work-items of a launch, a multiple of those of a group.
+struct WorkItems {
+  cl::NDRange global, local;
+};
+
+/// Steps a system by one kernel per stage of the integrator, all steps queued one behind the other: what the
+/// `opencl` backend does whatever the topology. A derived class says how nodes lie in memory, gives the
+/// program and the arguments that its kernels take, and then calls `prepare`.
+class OpenclStages : public Backend {
+ public:
+  void set_state(const State& state) override;
+  void step(int count) override;
+  State state() const override;
+  std::string device() const override { return device_.name; }
+  int threads() const override {
+    return device_.type == OpenclDeviceType::cpu ? static_cast<int>(device_.compute_units) : 1;
+  }
+  bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
+
+ protected:
+  /// Throws Unsupported unless the device can hold the integrator's pairs and `others`, all bytes.
+  OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
+               PairLayout layout, std::vector<std::uint64_t> others);
+
+  /// The next argument of every kernel: a buffer with a copy of `values`, or of this size. The step
+  /// parameters are there from the beginning.
+  template <class T>
+  void add_argument(std::span<const T> values) {
+    const auto bytes = std::as_bytes(values);
+    const auto& buffer = add_buffer(bytes.size());
+    const auto memory = buffer.map(queue_, CL_MAP_WRITE);
+    std::copy(bytes.begin(), bytes.end(), memory.begin());
+    buffer.unmap(queue_, memory);
+  }
+  /// OpenCL has no empty buffers.
+  const OpenclBuffer<std::byte>& add_buffer(std::size_t bytes) {
+    return arguments_.emplace_back(context_, std::max<std::size_t>(1, bytes), device_.shares_host_memory);
+  }
+
+  /// Builds the program, and takes some steps, because drivers finish compiling at a kernel's first launch
+  /// with a range; then stands at `start`.
+  void prepare(const std::string& program_text, const WorkItems& items, const State& start);
+
+ private:
+  const OpenclBuffer<float>& present() const;
+
+  const Integrator& integrator_;
+  OpenclDevice device_;
+  PairLayout layout_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  WorkItems items_;
+  std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are needed
+  std::vector<OpenclBuffer<std::byte>> arguments_;
+  std::array<std::vector<cl::Kernel>, 2> kernels_;  // [swapped][stage]
+  bool swapped_ = false;                            // the state lies in the pair `next`
+};
+
+}  // namespace mssim

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "model/system.h"
+
+namespace mssim {
+
+/// The springs of a system as every node sees them, for code that gathers: the nodes renumbered so that
+/// neighbours stand near each other (reverse Cuthill-McKee), then sorted by degree within windows, then cut
+/// into slices of `lanes` nodes, whose springs lie side by side (sliced ELLPACK; M. Kreutzer et al., 2014,
+/// call it SELL-C-sigma). The spring law's constants are divided by the mass of the node, so that forces are
+/// accelerations.
+///
+/// A slice has as many entries as its node of the largest degree, ascending by neighbour; entry e of the
+/// slice gives each lane's node one neighbour, in elements e * lanes + lane of `neighbour` and
+/// `stiffness_rest`. Nodes of smaller degree end with empty entries: the node itself for a neighbour, and
+/// empty_entry, which is negative as no spring's is, for stiffness_rest. They must give no force (distance 0:
+/// mask them).
+///
+/// Places after the last node fill up the last slice: held, with empty entries only.
+struct SlicedGraph {
+  static constexpr std::size_t window = 256;  ///< nodes; more saves few empty entries and costs locality
+  static constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
+  static constexpr float empty_entry = -1;
+
+  std::size_t lanes = 0;                  ///< nodes in a slice
+  std::vector<std::uint32_t> scene_node;  ///< [places] the scene's number of the node, or no_node
+  std::vector<std::uint32_t> place;       ///< [nodes] where the scene's node stands
+  std::vector<std::uint32_t>
+      first_entry;                       ///< [slices + 1] of the slice; the last one is the number of entries
+  std::vector<std::uint32_t> neighbour;  ///< [entries][lanes] places
+  std::vector<float> stiffness_rest;     ///< [entries][lanes] stiffness * rest length / mass, m/s^2
+  std::vector<float> stiffness;          ///< [places] 1/s^2, of all springs of the node
+  std::vector<float> damping;            ///< [places] 1/s
+  std::vector<std::uint32_t> held;       ///< [places] 1 where nothing may move: pinned, or no node; else 0
+
+  /// Throws Unsupported where springs of unlike materials meet in a node, and for more springs than 32 bits
+  /// number from both ends.
+  SlicedGraph(const System& system, std::size_t slice_lanes);
+
+  std::size_t nodes() const { return place.size(); }
+  std::size_t places() const { return scene_node.size(); }  ///< slices() * lanes
+  std::size_t slices() const { return first_entry.size() - 1; }
+  std::size_t entries() const { return first_entry.back(); }
+};
+
+}  // namespace mssim

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <set>
+#include <utility>
+
+#include "model/system.h"
+
+namespace mssim {
+
+/// A block of nx x ny x nz nodes about 2 cm apart, each cube of neighbours cut into six tetrahedra around its
+/// diagonal (Kuhn's cut), its inner nodes off their places at random: a tetrahedral body that needs no
+/// mesher. It starts strained and moving, `height_m` above the floor.
+inline System solid_block(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double height_m = 0.5) {
+  constexpr double spacing = 0.02;
+  System system;
+  std::mt19937 random(nx + 100 * ny + 10000 * nz);
+  const auto jitter = [&] { return (static_cast<double>(random()) / 4294967296.0 - 0.5) * 0.4 * spacing; };
+  for (std::uint32_t z = 0; z < nz; ++z)
+    for (std::uint32_t y = 0; y < ny; ++y)
+      for (std::uint32_t x = 0; x < nx; ++x)
+        system.start.position.push_back(
+            {x * spacing + jitter(), height_m + y * spacing + std::abs(jitter()), z * spacing + jitter()});
+
+  TetrahedralMesh mesh;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  const auto node = [&](std::array<std::uint32_t, 3> at) { return (at[2] * ny + at[1]) * nx + at[0]; };
+  for (std::uint32_t z = 0; z + 1 < nz; ++z)
+    for (std::uint32_t y = 0; y + 1 < ny; ++y)
+      for (std::uint32_t x = 0; x + 1 < nx; ++x) {
+        std::array<std::size_t, 3> axes{0, 1, 2};
+        do {  // the six ways from the cube's first corner to its last along edges
+          std::array<std::uint32_t, 3> at{x, y, z};
+          Tetrahedron corners{node(at)};
+          for (std::size_t i = 0; i < 3; ++i) {
+            ++at[axes[i]];
+            corners[i + 1] = node(at);
+          }
+          const bool even = axes[0] == 0 ? axes[1] == 1 : axes[0] == 1 ? axes[1] == 2 : axes[1] == 0;
+          if (!even) std::swap(corners[1], corners[2]);
+          mesh.tetrahedra.push_back(corners);
+          for (std::size_t a = 0; a < 4; ++a)
+            for (std::size_t b = a + 1; b < 4; ++b) edges.insert(std::minmax(corners[a], corners[b]));
+        } while (std::next_permutation(axes.begin(), axes.end()));
+      }
+  system.topology = std::move(mesh);
+  for (const auto& [first, second] : edges) {
+    const Vec3d d = system.start.position[second] - system.start.position[first];
+    system.springs.push_back({first, second, static_cast<float>(std::sqrt(dot(d, d))), 0});
+  }
+  system.materials = {{200, 0.05}};
+  system.node_mass.assign(system.nodes(), 0.004);
+  system.gravity = 9.81;
+  system.viscous_damping = 0.1;
+  system.floor = {0, 0.5, 0.3};
+  for (Vec3d& x : system.start.position) {
+    system.start.velocity.push_back({0.3 * x.z + 0.1, 0.5 * x.x - 0.2, 0.4 * x.y - 0.1});
+    x += {0.001 * std::sin(90 * x.y), 0.001 * std::sin(70 * x.z), 0.001 * std::sin(80 * x.x)};
+  }
+  round_to_single(system.start);
+  return system;
+}
+
+/// Two blocks beside each other in one system, of unlike nodes and materials.
+inline System two_solid_blocks() {
+  System system = solid_block(4, 5, 3);
+  const System other = solid_block(3, 3, 7);
+  const auto offset = static_cast<std::uint32_t>(system.nodes());
+  for (const Vec3d& x : other.start.position) system.start.position.push_back(x + Vec3d{0.5, 0.1, 0});
+  for (const Vec3d& v : other.start.velocity) system.start.velocity.push_back(v);
+  for (Spring spring : other.springs) {
+    spring.first += offset;
+    spring.second += offset;
+    spring.kind = 1;
+    system.springs.push_back(spring);
+  }
+  auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
+  for (Tetrahedron corners : std::get<TetrahedralMesh>(other.topology).tetrahedra) {
+    for (std::uint32_t& corner : corners) corner += offset;
+    tetrahedra.push_back(corners);
+  }
+  system.materials.push_back({350, 0.02});
+  system.node_mass.insert(system.node_mass.end(), other.nodes(), 0.007);
+  round_to_single(system.start);
+  return system;
+}
+
+}  // namespace mssim
