@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <array>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mesh/box_shape.h"
 #include "mesh/mesh_error.h"
@@ -13,11 +16,22 @@
 
 namespace mssim {
 
-/// A test whose mesh cache lies in a folder of its own. (Every test runs in a process of its own, so that it
-/// may change the environment.)
+/// A test whose mesh cache lies in a folder of its own, and which may change the variables that find programs
+/// and folders: they are put back.
 class MeshTest : public TemporaryFolderTest {
  protected:
-  MeshTest() { ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1); }
+  MeshTest() {
+    for (const char* name : variables_)
+      before_.push_back(::getenv(name) ? std::optional<std::string>(::getenv(name)) : std::nullopt);
+    ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1);
+  }
+  ~MeshTest() override {
+    for (std::size_t i = 0; i < variables_.size(); ++i)
+      if (before_[i])
+        ::setenv(variables_[i], before_[i]->c_str(), 1);
+      else
+        ::unsetenv(variables_[i]);
+  }
   std::filesystem::path cache() const { return folder() / "cache" / "mssim" / "meshes"; }
 
   /// Puts a program named tetgen that runs this shell script before all others.
@@ -26,6 +40,10 @@ class MeshTest : public TemporaryFolderTest {
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
     ::setenv("PATH", (program.parent_path().string() + ":" + ::getenv("PATH")).c_str(), 1);
   }
+
+ private:
+  static constexpr std::array variables_{"HOME", "PATH", "TMPDIR", "XDG_CACHE_HOME"};
+  std::vector<std::optional<std::string>> before_;
 };
 
 /// What a MeshError that `body` throws says, or "" when it throws none.
