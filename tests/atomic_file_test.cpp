@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-class AtomicFile : public OutputTest {};
+class AtomicFile : public TemporaryFolderTest {};
 
 TEST_F(AtomicFile, ReplacesTheOldTextAndLeavesNothingElse) {
   const auto file = folder() / "rows.csv";

@@ -25,7 +25,7 @@ struct Verdict {
   std::string out, err;
 };
 
-class CheckEnergy : public OutputTest {
+class CheckEnergy : public TemporaryFolderTest {
  protected:
   CheckEnergy() {
     std::vector<EnergySample> samples;
@@ -114,9 +114,9 @@ TEST_F(CheckEnergy, RejectsATraceThatRunsLate) {
 
 TEST_F(CheckEnergy, ReadsCurvesWithExponentsAndWindowsLineEnds) {
   write_right_trace();
-  write_text_file(folder() / "line.csv",
-                  "# two rows\r\ntime_s,kinetic_j,elastic_j,gravitational_j,total_j\r\n"
-                  "0E0,+1.e+02,-1e-3,.5,0\r\n1e0,-1.0E2,1e-3,5e-1,0\r\n");
+  put("line.csv",
+      "# two rows\r\ntime_s,kinetic_j,elastic_j,gravitational_j,total_j\r\n"
+      "0E0,+1.e+02,-1e-3,.5,0\r\n1e0,-1.0E2,1e-3,5e-1,0\r\n");
   const Verdict verdict = run("trace.h5 line.csv 1");
   EXPECT_EQ(verdict.status, 0) << verdict.err;
   EXPECT_THAT(verdict.out, HasSubstr("J where the curve has -100 J"));
@@ -139,7 +139,7 @@ TEST_F(CheckEnergy, ComplainsAboutUsageAndTolerance) {
 
 TEST_F(CheckEnergy, ComplainsAboutFilesThatAreMissingEmptyOrOfAnotherKind) {
   write_right_trace();
-  write_text_file(folder() / "empty", "");
+  put("empty", "");
   expect_complaint("nothing.h5 curve.csv 1", "nothing.h5 is no file");
   expect_complaint("trace.h5 . 1", ". is no file");
   expect_complaint("trace.h5 empty 1", "empty is empty");
@@ -176,7 +176,7 @@ TEST_F(CheckEnergy, ComplainsAboutCurvesThatCannotBeUsed) {
       {head + "0,1,2,3,6\n1,1,2,3,6\n", "never changes"},
   }};
   for (const auto& [text, complaint] : cases) {
-    write_text_file(folder() / "bad.csv", text);
+    put("bad.csv", text);
     expect_complaint("trace.h5 bad.csv 1", complaint);
   }
 }

@@ -9,7 +9,7 @@
 namespace mssim {
 namespace {
 
-class EnergyCurve : public OutputTest {};
+class EnergyCurve : public TemporaryFolderTest {};
 
 TEST_F(EnergyCurve, StandsInTheFileBehindItsCommentWithTenDigits) {
   const std::array<EnergySample, 2> samples{{{0, {0, 1. / 3, 1e-20}}, {0.1, {2, -5, 12345678901.}}}};

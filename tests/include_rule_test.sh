@@ -7,7 +7,8 @@ set -euo pipefail
 rule='
 kernels
 model        kernels
-scene        model
+mesh         model
+scene        model mesh
 integrators
 contact      model kernels
 backends     model integrators kernels contact

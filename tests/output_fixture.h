@@ -1,49 +1,18 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <exception>
 #include <functional>
-#include <iterator>
-#include <stdexcept>
 #include <string>
 
 #include "model/grid_patch.h"
 #include "model/system.h"
+#include "temporary_folder.h"
 
 namespace mssim {
-
-/// A test with an empty folder of its own, removed afterwards.
-class OutputTest : public testing::Test {
- protected:
-  OutputTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "mssim-test-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
-    folder_ = name;
-  }
-  ~OutputTest() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  const std::filesystem::path& folder() const { return folder_; }
-
- private:
-  std::filesystem::path folder_;
-};
-
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-inline void write_text_file(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
 
 /// A rippled cloth; its springs are real, its state is whatever `state_at` says.
 inline System small_cloth(std::uint32_t rows, std::uint32_t columns) {

@@ -1,23 +1,17 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "temporary_folder.h"
 
 namespace mssim {
 
 /// The committed files, for tests.
 inline std::filesystem::path source_file(std::string_view relative) {
   return std::filesystem::path(MSSIM_SOURCE_DIR) / relative;
-}
-
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot open " + file.string());
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// `text` with its one `old_part` replaced; a test that replaces nothing would test nothing.

@@ -36,9 +36,27 @@ class SchemaWriter final : public FieldVisitor {
     add(key, presence,
         {{"type", "string"}, {"maxLength", longest_text}, {"pattern", "^[^\\u0000-\\u001f]*$"}});
   }
-  std::size_t choice(std::string_view key, std::span<const std::string_view> names) override {
+  void vector(std::string_view key, Presence presence, Vec3d& /*target*/, const Range& each) override {
+    add(key, presence,
+        {{"type", "array"}, {"items", number_schema("number", each)}, {"minItems", 3}, {"maxItems", 3}});
+  }
+  void one_of(std::string_view key, std::span<const Section> sections) override {
+    json names = json::array();
+    for (const Section& section : sections) {
+      names.push_back(section.name);
+      object(section.name, Presence::optional, section.fields);
+      const json present{{"required", {section.name}}};
+      schema_["allOf"].push_back({{"if", {{"properties", {{key, {{"const", section.name}}}}}}},
+                                  {"then", present},
+                                  {"else", {{"not", present}}}});
+    }
     add(key, Presence::required, {{"type", "string"}, {"enum", names}});
-    return 0;
+  }
+  void list(std::string_view key, std::size_t most, const FieldList& element) override {
+    SchemaWriter item;
+    element(item);
+    add(key, Presence::required,
+        {{"type", "array"}, {"minItems", 1}, {"maxItems", most}, {"items", item.schema()}});
   }
   void object(std::string_view key, Presence presence, const FieldList& fields) override {
     SchemaWriter nested;
@@ -73,6 +91,8 @@ json without_words(json schema, const std::string& place) {
   schema.erase("$schema");
   if (schema.contains("properties"))
     for (auto& [key, property] : schema["properties"].items()) property = without_words(property, key);
+  if (schema.contains("items") && schema["items"].contains("properties"))
+    schema["items"] = without_words(schema["items"], place + " element");
   return schema;
 }
 
@@ -89,12 +109,14 @@ TEST(SceneSchema, SaysExactlyWhatTheReaderAccepts) {
 TEST(SceneSchema, NamesTheUnitOfEveryFieldThatHasOne) {
   const json committed = json::parse(text_of(source_file("scenes/scene.schema.json")));
   const std::vector<std::pair<std::string, std::string>> units{
-      {"_kg_per_m2", "kg/m^2"}, {"_n_s_per_m", "N s/m"}, {"_n_per_m", "N/m"}, {"_m_per_s2", "m/s^2"},
-      {"_m_per_s", "m/s"},      {"_per_s", "1/s"},       {"_m", ", m"},       {"_s", ", s"}};
+      {"_kg_per_m2", "kg/m^2"}, {"_kg_per_m3", "kg/m^3"}, {"_m3", "m^3"},      {"_rad_per_s", "rad/s"},
+      {"_deg", "degrees"},      {"_n_s_per_m", "N s/m"},  {"_n_per_m", "N/m"}, {"_m_per_s2", "m/s^2"},
+      {"_m_per_s", "m/s"},      {"_per_s", "1/s"},        {"_m", ", m"},       {"_s", ", s"}};
   int checked = 0;
   const std::function<void(const json&)> check = [&](const json& schema) {
     for (const auto& [key, property] : schema.at("properties").items()) {
       if (property.contains("properties")) check(property);
+      if (property.contains("items") && property["items"].contains("properties")) check(property["items"]);
       const auto unit = std::find_if(
           units.begin(), units.end(),
           [&, name = std::string_view(key)](const auto& row) { return name.ends_with(row.first); });

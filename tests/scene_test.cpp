@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,22 +24,10 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// A folder of its own for every test, removed with it.
-class SceneFile : public testing::Test {
+class SceneFile : public TemporaryFolderTest {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "mssim-scene-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(std::string_view text) const {
-    std::ofstream(file(), std::ios::binary) << text;
-    return file();
-  }
-  const std::filesystem::path& folder() const { return folder_; }
-  std::filesystem::path file() const { return folder_ / "bad.json"; }
+  std::filesystem::path write(std::string_view text) const { return put(file().filename(), text); }
+  std::filesystem::path file() const { return folder() / "bad.json"; }
 
   static std::string error_of(const std::filesystem::path& path) {
     try {
@@ -51,9 +38,6 @@ class SceneFile : public testing::Test {
     ADD_FAILURE() << path << " was accepted";
     return {};
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 const std::string good = text_of(source_file("scenes/cloth2500.json"));
@@ -175,8 +159,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"\"height_m\": 0,", "\"height_m\": \"0\",", "/floor/height_m", "is the text \"0\"",
                  "a number"},
         BadScene{R"({"row": 0, "every_columns": 10})", "7", "/cloth/pins", "is 7", "give an object, { ... }"},
-        BadScene{"\"cloth\",", "5,", "/kind", "is 5", "give the text cloth"},
-        BadScene{"\"cloth\",", "\"clot\",", "/kind", "is the text \"clot\"", "give the text cloth"},
+        BadScene{"\"cloth\",", "5,", "/kind", "is 5", "give the text cloth or bodies"},
+        BadScene{"\"cloth\",", "\"clot\",", "/kind", "is the text \"clot\"", "give the text cloth or bodies"},
         BadScene{"Cotton", "Cot\\nton", "/description", "is the text \"Cot\\nton", "one line of text"},
         BadScene{"Cotton", long_words.c_str(), "/description", "is the text \"xxx",
                  "at most 200 characters"}));
@@ -194,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{rows, "\"rows\": 50, \"a/b~c\\n\": 1", "/cloth/a~1b~0c\\n ", "value is 1", "known here are"},
         BadScene{rows, long_key.c_str(), "/cloth/xxx", "value is 1", "known here are"},
         BadScene{"\"rows\": 50,", "", "/cloth/rows", "is missing", "add it as an integer from 2 to 1000000"},
-        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing", "add it as the text cloth"},
+        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing", "add it as the text cloth or bodies"},
         BadScene{"\"every_columns\": 10", "\"row\": 0", "/cloth/pins/row", "is given twice",
                  "keep one of the two"},
         BadScene{rows, "\"rows\": 50, \"rows\": 60", "/cloth/rows", "is given twice",
@@ -272,9 +256,12 @@ TEST_F(SceneFile, CutShortAnywhereIsRefusedWithoutACrash) {
     EXPECT_THAT(error_of(write(good.substr(0, length))), HasSubstr("malformed JSON")) << length;
 }
 
-TEST(SceneNames, AreTheCommittedOnesByTheirSize) {
-  EXPECT_THAT(scene_names(), testing::ElementsAre("cloth2500", "cloth4900", "cloth10k", "cloth40k",
-                                                  "cloth200k", "cloth350k"));
+TEST(SceneNames, AreTheCommittedOnesByKindAndSize) {
+  EXPECT_THAT(scene_names(),
+              testing::ElementsAre("cloth2500", "cloth4900", "cloth10k", "cloth40k", "cloth200k", "cloth350k",
+                                   "torus-small", "box-small", "sphere-small", "torus-medium", "box-medium",
+                                   "sphere-medium", "torus-large", "box-large", "sphere-large", "bodies3858",
+                                   "bodies4737", "bodies7282", "bodies10223", "bodies20587", "bodies38233"));
 }
 
 TEST(FindScene, FindsByNameAndByPath) {
@@ -294,10 +281,8 @@ TEST(FindScene, ListsTheKnownNamesForAnUnknownOne) {
       find_scene(name);
       ADD_FAILURE() << name << " was found";
     } catch (const SceneError& error) {
-      EXPECT_THAT(
-          error.what(),
-          AllOf(HasSubstr(hint),
-                EndsWith("a name: cloth2500, cloth4900, cloth10k, cloth40k, cloth200k or cloth350k")));
+      EXPECT_THAT(error.what(), AllOf(HasSubstr(hint), HasSubstr("a name: cloth2500, cloth4900, "),
+                                      EndsWith("bodies20587 or bodies38233")));
     }
   }
 }

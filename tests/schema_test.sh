@@ -11,7 +11,7 @@ if ! /usr/bin/python3 -c 'import jsonschema' 2>/dev/null; then
 fi
 
 /usr/bin/python3 - "$scenes" <<'PYTHON'
-import copy, glob, json, os, sys
+import glob, json, os, sys
 import jsonschema
 
 folder = sys.argv[1]
@@ -28,12 +28,11 @@ for file in files:
         failures.append(f"{file}: {error.json_path}: {error.message}")
 
 REMOVED = object()
-good = json.load(open(os.path.join(folder, "cloth2500.json")))
 
 
-def changed(pointer, value):
-    scene = copy.deepcopy(good)
-    *parents, key = pointer.split("/")[1:]
+def changed(name, pointer, value):
+    scene = json.load(open(os.path.join(folder, name + ".json")))
+    *parents, key = [int(word) if word.isdigit() else word for word in pointer.split("/")[1:]]
     part = scene
     for parent in parents:
         part = part[parent]
@@ -44,7 +43,7 @@ def changed(pointer, value):
     return scene
 
 
-bad = [
+bad = {"cloth2500": [
     ("/dt_s", 0), ("/dt_s", 2), ("/dt_s", "automatic"), ("/dt_s", None), ("/dt_s", REMOVED),
     ("/kind", "tent"), ("/kind", REMOVED), ("/description", "two\nlines"), ("/description", "x" * 201),
     ("/gravity", 9.81), ("/gravity_m_per_s2", -9.81), ("/gravity_m_per_s2", "9.81"), ("/viscous_damping_per_s", -1),
@@ -55,19 +54,33 @@ bad = [
     ("/cloth/ripple", REMOVED), ("/cloth/ripple/wavelength_m", 0), ("/cloth/ripple/height_m", -1),
     ("/cloth/springs/structural/stiffness_n_per_m", 0), ("/cloth/springs/shear", REMOVED),
     ("/cloth/springs/bending/damping_n_s_per_m", -1), ("/cloth/springs/bend", {}),
-]
-for pointer, value in bad:
-    if validator.is_valid(changed(pointer, value)):
-        shown = "removed" if value is REMOVED else f"set to {json.dumps(value)}"
-        failures.append(f"cloth2500 with {pointer} {shown} is valid by the schema")
+    ("/cloth", REMOVED), ("/kind", "bodies"), ("/bodies", {}),
+], "box-small": [
+    ("/bodies", REMOVED), ("/bodies/density_kg_per_m3", 0), ("/bodies/springs/stiffness_n_per_m", 0),
+    ("/bodies/list", []), ("/bodies/list", {}), ("/bodies/list/0", 5), ("/bodies/list/0/shape", "ball"),
+    ("/bodies/list/0/shape", "sphere"), ("/bodies/list/0/shape", REMOVED), ("/bodies/list/0/box", REMOVED),
+    ("/bodies/list/0/sphere", {"radius_m": 1}), ("/bodies/list/0/box/size_m", [1, 2]),
+    ("/bodies/list/0/box/size_m/1", 0), ("/bodies/list/0/box/cells_x", 0.5), ("/bodies/list/0/box/interior/jitter", 0.6),
+    ("/bodies/list/0/box/expected/nodes", 0), ("/bodies/list/0/centre_m", [0, 1, 2, 3]),
+    ("/bodies/list/0/turn/axis", REMOVED), ("/bodies/list/0/swell_per_s", REMOVED), ("/bodies/list/0/spin", 1),
+]}
+for name, changes in bad.items():
+    for pointer, value in changes:
+        if validator.is_valid(changed(name, pointer, value)):
+            shown = "removed" if value is REMOVED else f"set to {json.dumps(value)}"
+            failures.append(f"{name} with {pointer} {shown} is valid by the schema")
 
-good_too = [
+good_too = {"cloth2500": [
     ("/dt_s", "auto"), ("/cloth/pins", REMOVED), ("/$schema", REMOVED), ("/cloth/springs/shear/stiffness_n_per_m", 0),
     ("/cloth/rows", 5e1), ("/floor/height_m", -1),
-]
-for pointer, value in good_too:
-    if not validator.is_valid(changed(pointer, value)):
-        failures.append(f"cloth2500 with {pointer} changed to {value!r} is not valid by the schema")
+], "box-small": [
+    ("/bodies/list/0/turn", REMOVED), ("/bodies/list/0/box/expected", REMOVED), ("/bodies/list/0/swell_per_s", -1),
+    ("/bodies/list/0/centre_m/1", -3),
+]}
+for name, changes in good_too.items():
+    for pointer, value in changes:
+        if not validator.is_valid(changed(name, pointer, value)):
+            failures.append(f"{name} with {pointer} changed to {value!r} is not valid by the schema")
 
 for failure in failures:
     print("schema_test:", failure, file=sys.stderr)

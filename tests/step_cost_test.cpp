@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "cloth_system.h"
 #include "integrators/integrators.h"
+#include "solid_system.h"
 
 namespace mssim {
 namespace {
@@ -56,7 +58,7 @@ TEST(StepCost, CountsASpringAsTheLawIsWritten) {
 
 TEST(StepCost, OfSemiImplicitEulerIsTheHandCount) {
   // Reads x and v, writes both: 48 bytes. v + dt a and x + dt v: 2 operations in 3 components each.
-  const StepCost cost = step_cost(*find_integrator("semi-euler"), 350000, 2094002);
+  const StepCost cost = step_cost(*find_integrator("semi-euler"), {350000, 2094002});
   EXPECT_EQ(cost.bytes, 48.0 * 350000);
   EXPECT_EQ(cost.flops, 32.0 * 2094002 + (7.0 + 12.0) * 350000);
 }
@@ -64,7 +66,7 @@ TEST(StepCost, OfSemiImplicitEulerIsTheHandCount) {
 TEST(StepCost, OfTheMidpointRuleIsTheHandCount) {
   // Stage 1: x, v in; x_a, v_a out. Stage 2: x_a, v_a, x, v in; x_next, v_next out. Four lines of 2
   // operations.
-  const StepCost cost = step_cost(*find_integrator("midpoint"), 100, 500);
+  const StepCost cost = step_cost(*find_integrator("midpoint"), {100, 500});
   EXPECT_EQ(cost.bytes, (4 + 6) * 12.0 * 100);
   EXPECT_EQ(cost.flops, 2 * 32.0 * 500 + (2 * 7.0 + 4 * 6.0) * 100);
 }
@@ -72,7 +74,7 @@ TEST(StepCost, OfTheMidpointRuleIsTheHandCount) {
 TEST(StepCost, OfRungeKuttaIsTheHandCount) {
   // Stage 1: 2 in, 4 out. Stages 2 and 3: trial pair, state and next in, 4 out. Stage 4: trial pair and next
   // in, next out. Fourteen lines of 2 operations.
-  const StepCost cost = step_cost(*find_integrator("rk4"), 100, 500);
+  const StepCost cost = step_cost(*find_integrator("rk4"), {100, 500});
   EXPECT_EQ(cost.bytes, (6 + 10 + 10 + 6) * 12.0 * 100);
   EXPECT_EQ(cost.flops, 4 * 32.0 * 500 + (4 * 7.0 + 14 * 6.0) * 100);
 }
@@ -80,25 +82,50 @@ TEST(StepCost, OfRungeKuttaIsTheHandCount) {
 TEST(StepCost, OfFrozenIntegratorsMovesNoMoreThanEulerAndComputesOneForce) {
   // rk4-frozen: v_1 = v + dt/2 a, v_2 = v + dt a, v+ = v + dt a: 2 each; x+ from four terms: 3 products, 3
   // sums.
-  const StepCost cost = step_cost(*find_integrator("rk4-frozen"), 100, 500);
-  EXPECT_EQ(cost.bytes, step_cost(*find_integrator("semi-euler"), 100, 500).bytes);
+  const StepCost cost = step_cost(*find_integrator("rk4-frozen"), {100, 500});
+  EXPECT_EQ(cost.bytes, step_cost(*find_integrator("semi-euler"), {100, 500}).bytes);
   EXPECT_EQ(cost.flops, 32.0 * 500 + (7.0 + 3 * (3 * 2 + 6)) * 100);
 }
 
 TEST(StepCost, GrowsWithForceEvaluationsForEveryIntegrator) {
   for (const Integrator& integrator : integrators) {
     const double spring_flops =
-        step_cost(integrator, 1000, 6000).flops - step_cost(integrator, 1000, 0).flops;
+        step_cost(integrator, {1000, 6000}).flops - step_cost(integrator, {1000, 0}).flops;
     EXPECT_EQ(spring_flops, 6000.0 * flops_per_spring * static_cast<double>(integrator.stage_count))
         << integrator.name;
-    EXPECT_GE(step_cost(integrator, 1000, 0).bytes, 48.0 * 1000) << integrator.name;
+    EXPECT_GE(step_cost(integrator, {1000, 0}).bytes, 48.0 * 1000) << integrator.name;
   }
 }
 
 TEST(WorkingSet, HoldsThePairsThatAStepCannotDoWithout) {
-  EXPECT_EQ(working_set_bytes(*find_integrator("semi-euler"), 2500), 24.0 * 2500);
-  EXPECT_EQ(working_set_bytes(*find_integrator("midpoint"), 2500), 48.0 * 2500);
-  EXPECT_EQ(working_set_bytes(*find_integrator("rk4"), 2500), 72.0 * 2500);
+  EXPECT_EQ(working_set_bytes(*find_integrator("semi-euler"), {2500, 15000}), 24.0 * 2500);
+  EXPECT_EQ(working_set_bytes(*find_integrator("midpoint"), {2500, 15000}), 48.0 * 2500);
+  EXPECT_EQ(working_set_bytes(*find_integrator("rk4"), {2500, 15000}), 72.0 * 2500);
+}
+
+TEST(StepCost, OfABodyReadsItsSpringsInEveryStage) {
+  // Two indices and a rest length, 12 bytes, for each unique spring and force evaluation; nothing else
+  // changes.
+  for (const Integrator& integrator : integrators) {
+    const StepCost grid = step_cost(integrator, {1000, 6000}), body = step_cost(integrator, {1000, 6000, 12});
+    EXPECT_EQ(body.bytes - grid.bytes, 12.0 * 6000 * static_cast<double>(integrator.stage_count))
+        << integrator.name;
+    EXPECT_EQ(body.flops, grid.flops) << integrator.name;
+  }
+}
+
+TEST(WorkingSet, HoldsTheSpringsOfABodyOnce) {
+  EXPECT_EQ(working_set_bytes(*find_integrator("rk4"), {2500, 15000, 12}), 72.0 * 2500 + 12.0 * 15000);
+}
+
+TEST(StepSize, FollowsFromTheSystem) {
+  const System cloth = cloth_system(10, 20), body = solid_block(2, 2, 2);
+  EXPECT_EQ(step_size(cloth).nodes, 200U);
+  EXPECT_EQ(step_size(cloth).springs, count_springs(10, 20));
+  EXPECT_EQ(step_size(cloth).bytes_per_spring, 0U);
+  EXPECT_EQ(step_size(body).nodes, 8U);
+  EXPECT_EQ(step_size(body).springs, 19U);  // 12 edges, a diagonal in each of 6 faces, one through the cube
+  EXPECT_EQ(step_size(body).bytes_per_spring, 12U);
 }
 
 }  // namespace

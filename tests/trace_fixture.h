@@ -89,7 +89,7 @@ inline void expect_frames(const std::filesystem::path& trace, const System& syst
   EXPECT_EQ(doubles("/observables/total_energy/value"), total);
 }
 
-class Trace : public OutputTest {
+class Trace : public TemporaryFolderTest {
  protected:
   std::filesystem::path file() const { return folder() / "run.h5"; }
   std::filesystem::path part() const { return temporary_of(file()); }

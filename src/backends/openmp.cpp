@@ -2,15 +2,18 @@
 
 #include "backends/grid_bands/band_sheet.h"
 #include "backends/grid_bands/step_bands.h"
+#include "backends/sliced_graph/sliced_bodies.h"
+#include "backends/sliced_graph/step_slices.h"
 
 namespace mssim {
 namespace {
 
-class OpenMp final : public Backend {
+/// A cloth in bands.
+class OpenMpGrid final : public Backend {
  public:
-  OpenMp(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s, int threads)
-      : kernel_(best_band_kernel()),
-        sheet_(system, grid, integrator, dt_s, kernel_.lanes, static_cast<std::size_t>(threads)) {
+  OpenMpGrid(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
+             std::size_t threads)
+      : kernel_(best_band_kernel()), sheet_(system, grid, integrator, dt_s, kernel_.lanes, threads) {
     sheet_.set_state(system.start);
   }
 
@@ -25,12 +28,33 @@ class OpenMp final : public Backend {
   BandSheet sheet_;
 };
 
+/// Bodies in slices.
+class OpenMpBodies final : public Backend {
+ public:
+  OpenMpBodies(const System& system, const Integrator& integrator, double dt_s, std::size_t threads)
+      : kernel_(best_slice_kernel()), bodies_(system, integrator, dt_s, kernel_.lanes, threads) {
+    bodies_.set_state(system.start);
+  }
+
+  void set_state(const State& state) override { bodies_.set_state(state); }
+  State state() const override { return bodies_.state(); }
+  void step(int count) override { kernel_.step(bodies_, count); }
+  std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
+  int threads() const override { return static_cast<int>(bodies_.parts.size()); }
+
+ private:
+  SliceKernel kernel_;
+  SlicedBodies bodies_;
+};
+
 }  // namespace
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  return std::make_unique<OpenMp>(system, std::get<GridPatch>(system.topology), integrator, dt_s,
-                                  options.threads);
+  const auto threads = static_cast<std::size_t>(options.threads);
+  if (const auto* grid = std::get_if<GridPatch>(&system.topology))
+    return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads);
+  return std::make_unique<OpenMpBodies>(system, integrator, dt_s, threads);
 }
 
 }  // namespace mssim

@@ -51,6 +51,7 @@ Combination prepare(const SceneJob& job, const BackendInfo& info, const Integrat
   row.nodes = job.system->nodes();
   row.springs_unique = job.system->springs.size();
   row.springs_published = job.springs_published;
+  row.note = job.note;
   row.backend = info.name;
   row.integrator = integrator.name;
   row.dt_s = job.dt_s;
@@ -118,19 +119,20 @@ void summarise(Combination& combination, const ResultRow* serial) {
 
 /// Holds the rows' medians against the peaks of this machine, measured now for each working set and thread
 /// count.
-void compare_with_peaks(std::vector<Combination>& combinations, const Progress& progress) {
+void compare_with_peaks(std::vector<Combination>& combinations, const StepSize& size,
+                        const Progress& progress) {
   std::map<std::pair<const Integrator*, int>, MachinePeak> peaks;
   for (Combination& combination : combinations) {
     ResultRow& row = combination.row;
     if (!row.ms_per_step) continue;
-    const StepCost cost = step_cost(*combination.integrator, row.nodes, row.springs_unique);
+    const StepCost cost = step_cost(*combination.integrator, size);
     const double seconds = *row.ms_per_step / 1000;
     row.gigabytes_per_second = cost.bytes / seconds / 1e9;
     if (!combination.on_host) continue;
     const auto key = std::pair(combination.integrator, row.threads);
     if (!peaks.contains(key)) {
       progress("machine peak with " + std::to_string(row.threads) + " threads", 1);
-      const double bytes = working_set_bytes(*combination.integrator, row.nodes);
+      const double bytes = working_set_bytes(*combination.integrator, size);
       peaks[key] = measure_peak(row.threads, static_cast<std::size_t>(bytes));
     }
     row.roofline_fraction = roofline_fraction(cost, seconds, peaks[key]);
@@ -175,7 +177,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const Progress& progress
     });
     summarise(combination, serial == combinations.end() ? nullptr : &serial->row);
   }
-  compare_with_peaks(combinations, progress);
+  compare_with_peaks(combinations, step_size(*job.system), progress);
 
   std::vector<ResultRow> rows;
   rows.reserve(combinations.size());

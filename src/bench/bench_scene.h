@@ -14,6 +14,7 @@ struct SceneJob {
   std::string name;
   const System* system = nullptr;
   std::uint64_t springs_published = 0;
+  std::string note = {};  ///< for every row
   double dt_s = 0;
   std::vector<const BackendInfo*> backends;
   std::vector<const Integrator*> integrators;

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "model/fnv1a.h"
+
 namespace mssim {
 namespace {
 
@@ -64,13 +66,6 @@ std::string now_utc() {
   return text.data();
 }
 
-std::string hexadecimal(std::uint64_t value) {
-  std::string text(16, '0');
-  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, value >>= 4)
-    *digit = "0123456789abcdef"[value & 15];
-  return text;
-}
-
 json caches_json(const std::vector<Cache>& caches) {
   json list = json::array();
   for (const Cache& cache : caches)
@@ -83,15 +78,6 @@ json caches_json(const std::vector<Cache>& caches) {
 }
 
 }  // namespace
-
-std::uint64_t fnv1a_64(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char character : text) {
-    hash ^= static_cast<unsigned char>(character);
-    hash *= 0x100000001b3;
-  }
-  return hash;
-}
 
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads) {
   Provenance provenance;

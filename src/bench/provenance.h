@@ -18,11 +18,6 @@ struct SceneHash {
   std::uint64_t fnv1a_64 = 0;
 };
 
-/// FNV-1a of the text's bytes, 64 bits: tells files apart that differ by accident, not by intent.
-/// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, The FNV Non-Cryptographic Hash Algorithm, IETF
-/// draft.
-std::uint64_t fnv1a_64(std::string_view text);
-
 /// Where numbers come from: enough to judge them and to measure them again. Names neither the user nor the
 /// host, and of the environment only what steers threads.
 struct Provenance {

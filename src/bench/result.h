@@ -36,6 +36,7 @@ struct ResultRow {
       energy_drift;  ///< difference of total energy to the reference over the energy in motion
   bool verified = false;
   std::string status = "ok";       ///< ok, or failed/unsupported/unavailable with the reason after a colon
+  std::string note;                ///< what a reader of the numbers should know, or empty
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "integrators/integrator.h"
+#include "model/system.h"
 
 namespace mssim {
 
@@ -54,14 +55,27 @@ constexpr std::size_t slots_moved(const Stage& stage) {
   return count;
 }
 
-/// Cost of a step that makes one pass over the nodes per stage, for a regular cloth, whose springs take no
-/// memory. Left out, being small: pins, contact with the floor, what a cache line moves besides.
+/// What a step works on.
+struct StepSize {
+  std::uint64_t nodes = 0;
+  std::uint64_t springs = 0;         ///< unique ones
+  std::size_t bytes_per_spring = 0;  ///< memory that says which nodes a spring joins, and its rest length
+};
+
+/// Bytes that a spring takes in memory at least: none on a grid, where the place of a node says it all; two
+/// node indices and a rest length, as in the packed unit of Hong et al., in a body.
+std::size_t bytes_per_spring(const Topology& topology);
+
+StepSize step_size(const System& system);
+
+/// Cost of a step that makes one pass over the nodes, and where they take memory over the springs, per stage.
+/// Left out, being small: pins, contact with the floor, what a cache line moves besides.
 /// A backend that overlaps stages can move less than this through main memory, because trial values then
 /// never leave a cache.
-StepCost step_cost(const Integrator& integrator, std::uint64_t nodes, std::uint64_t springs_unique);
+StepCost step_cost(const Integrator& integrator, const StepSize& size);
 
-/// Bytes of all the slots that a step of the integrator touches, for `nodes` nodes: the working set whose
-/// cache level bounds the step.
-double working_set_bytes(const Integrator& integrator, std::uint64_t nodes);
+/// Bytes of all that a step of the integrator touches, slots and springs: the working set whose cache level
+/// bounds the step.
+double working_set_bytes(const Integrator& integrator, const StepSize& size);
 
 }  // namespace mssim

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -19,6 +18,8 @@
 #include "commands/prepared_scene.h"
 #include "commands/progress_line.h"
 #include "commands/run_provenance.h"
+#include "commands/structure.h"
+#include "commands/suites.h"
 #include "integrators/integrators.h"
 #include "output/listing.h"
 #include "output/result_folder.h"
@@ -28,14 +29,6 @@
 
 namespace mssim {
 namespace {
-
-/// The TABLE of suites: the scenes behind a table of a paper.
-struct Suite {
-  std::string_view name;
-  std::array<std::string_view, 6> scenes;
-};
-constexpr std::array<Suite, 1> suites{
-    {{"table1", {"cloth2500", "cloth4900", "cloth10k", "cloth40k", "cloth200k", "cloth350k"}}}};
 
 struct BenchOptions {
   std::vector<std::string> scenes;
@@ -48,13 +41,10 @@ struct BenchOptions {
   std::string out;
 };
 
-std::vector<std::string> scenes_of(const BenchOptions& options) {
-  std::vector<std::string> scenes;
-  for (const Suite& suite : suites)
-    if (suite.name == options.suite) scenes.assign(suite.scenes.begin(), suite.scenes.end());
+std::vector<std::string> timed_scenes_of(const BenchOptions& options) {
+  std::vector<std::string> scenes = scenes_of_suite(options.suite, true);
   for (const std::string& scene : options.scenes)
     if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
-  if (scenes.empty()) throw UsageError("there is nothing to measure: name a --scene or a --suite");
   return scenes;
 }
 
@@ -92,11 +82,13 @@ PaperLegend legend_of() {
   return legend;
 }
 
-void add_published_times(std::vector<ResultRow>& rows, const PublishedTable& published) {
+void add_published_times(std::vector<ResultRow>& rows, const std::vector<PublishedTable>& published) {
   for (ResultRow& row : rows)
-    row.paper_ms =
-        published.ms(find_integrator(row.integrator)->paper_name,
-                     find_backend(row.backend)->paper_configuration, row.nodes, row.springs_published);
+    for (const PublishedTable& table : published)
+      if (const auto ms =
+              table.ms(find_integrator(row.integrator)->paper_name,
+                       find_backend(row.backend)->paper_configuration, row.nodes, row.springs_published))
+        row.paper_ms = ms;
 }
 
 /// The rows for a reader: the columns that answer "how fast, how right".
@@ -123,6 +115,18 @@ Listing summary(const std::vector<ResultRow>& rows) {
   return listing;
 }
 
+Listing summary(const std::vector<StructureRow>& rows) {
+  Listing listing;
+  for (const StructureRow& row : rows)
+    listing.push_back({{"scene", row.scene},
+                       {"nodes", row.nodes},
+                       {"springs_unique", row.springs_unique},
+                       {"springs_published", row.springs_published},
+                       {"tetrahedra", row.tetrahedra},
+                       {"smallest_dihedral_angle_deg", row.smallest_dihedral_angle_deg}});
+  return listing;
+}
+
 /// 1 when a measured row is wrong; 3 when a backend that was asked for by name could not run.
 int exit_code_of(const std::vector<ResultRow>& rows, const BenchOptions& options) {
   int code = exit_ok;
@@ -135,6 +139,47 @@ int exit_code_of(const std::vector<ResultRow>& rows, const BenchOptions& options
   return code;
 }
 
+/// Says on stderr what a reader of the tables should know.
+void warn(const PreparedScene& scene) {
+  if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
+}
+
+std::vector<ResultRow> time_scenes(SceneJob job, const std::vector<std::string>& names,
+                                   const BenchOptions& options, const std::vector<PublishedTable>& published,
+                                   const ResultFolder* folder) {
+  std::vector<ResultRow> rows;
+  ProgressLine progress(names.size());
+  for (const std::string& name : names) {
+    const PreparedScene scene = prepare_scene(name);
+    warn(scene);
+    job.name = scene.spec.name;
+    job.system = &scene.system;
+    job.springs_published = scene.counts.springs_published;
+    job.note = scene.note;
+    job.dt_s = scene.dt_s;
+    progress.begin_scene(job.name);
+    std::vector<ResultRow> measured =
+        bench_scene(job, [&](const std::string& activity, double done) { progress.update(activity, done); });
+    add_published_times(measured, published);
+    rows.insert(rows.end(), measured.begin(), measured.end());
+    if (folder) folder->write(rows);
+    if (options.trace)
+      write_bench_traces(job, scene, measured, std::filesystem::path(options.out) / "traces",
+                         [&](const std::string& activity) { progress.update(activity, 1); });
+  }
+  return rows;
+}
+
+std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names) {
+  std::vector<StructureRow> rows;
+  for (const std::string& name : names) {
+    const PreparedScene scene = prepare_scene(name);
+    warn(scene);
+    rows.push_back(structure_of(scene));
+  }
+  return rows;
+}
+
 int run(const BenchOptions& options) {
   // Everything that can be wrong with the input is found before the first measurement.
   SceneJob job;
@@ -142,54 +187,47 @@ int run(const BenchOptions& options) {
   job.integrators = integrators_of(options);
   job.execution = complete(options.execution);
   job.rounds = options.rounds;
-  const std::vector<std::string> names = scenes_of(options);
+  const std::vector<std::string> timed = timed_scenes_of(options);
+  const std::vector<std::string> described = scenes_of_suite(options.suite, false);
+  if (timed.empty() && described.empty())
+    throw UsageError("there is nothing to measure: name a --scene or a --suite");
   if (options.trace && options.out.empty())
     throw UsageError("--trace writes into the result folder: give --out too");
   Provenance provenance = run_provenance(job.execution.threads);
-  for (const std::string& name : names) {
-    const SceneSpec spec = find_scene(name);
-    require_memory(spec);
-    add_scene(provenance, spec.name, spec.source);
-  }
-  const PublishedTable published = published_table1();
+  for (const auto* names : {&described, &timed})
+    for (const std::string& name : *names) {
+      const SceneSpec spec = find_scene(name);
+      require_memory(spec);
+      add_scene(provenance, spec.name, spec.source);
+    }
+  const std::vector<PublishedTable> published = published_tables();
   std::optional<ResultFolder> folder;
   if (!options.out.empty()) folder.emplace(options.out, provenance, legend_of(), published);
 
-  std::vector<ResultRow> rows;
-  {
-    ProgressLine progress(names.size());
-    for (const std::string& name : names) {
-      const PreparedScene scene = prepare_scene(name);
-      job.name = scene.spec.name;
-      job.system = &scene.system;
-      job.springs_published = counts_of(scene.spec).springs_published;
-      job.dt_s = scene.dt_s;
-      progress.begin_scene(job.name);
-      std::vector<ResultRow> measured = bench_scene(
-          job, [&](const std::string& activity, double done) { progress.update(activity, done); });
-      add_published_times(measured, published);
-      rows.insert(rows.end(), measured.begin(), measured.end());
-      if (folder) folder->write(rows);
-      if (options.trace)
-        write_bench_traces(job, scene, measured, std::filesystem::path(options.out) / "traces",
-                           [&](const std::string& activity) { progress.update(activity, 1); });
-    }
+  int code = exit_ok;
+  if (!described.empty()) {
+    const std::vector<StructureRow> rows = describe_scenes(described);
+    if (folder) folder->write(rows);
+    std::cout << to_text(summary(rows), ListingFormat::table);
   }
-  std::cout << to_text(summary(rows), ListingFormat::table);
+  if (!timed.empty()) {
+    const std::vector<ResultRow> rows =
+        time_scenes(job, timed, options, published, folder ? &*folder : nullptr);
+    std::cout << (described.empty() ? "" : "\n") << to_text(summary(rows), ListingFormat::table);
+    code = exit_code_of(rows, options);
+  }
   if (folder) std::cerr << "mssim: results are in " << options.out << '\n';
-  return exit_code_of(rows, options);
+  return code;
 }
 
 }  // namespace
 
 std::function<int()> declare_bench(CLI::App& app) {
   const auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> suite_names;
-  for (const Suite& suite : suites) suite_names.emplace_back(suite.name);
   app.add_option("--scene", options->scenes, "Scenes: names (see mssim list scenes) or files")
       ->delimiter(',');
-  app.add_option("--suite", options->suite, "All scenes of a published table")
-      ->check(CLI::IsMember(suite_names));
+  app.add_option("--suite", options->suite, "The scenes of a published table")
+      ->check(CLI::IsMember(suite_names()));
   app.add_option("--backend", options->backends, "Backends (default: all)")->delimiter(',');
   app.add_option("--integrator", options->integrators,
                  "Integrators, or all (default: semi-euler,midpoint,rk4)")

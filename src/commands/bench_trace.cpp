@@ -30,11 +30,13 @@ void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const s
     progress("trace " + row.backend + " " + row.integrator);
     const Integrator& integrator = *find_integrator(row.integrator);
     const auto backend = find_backend(row.backend)->make(scene.system, integrator, scene.dt_s, job.execution);
+    TraceHeader header = trace_header(scene, *backend, row.backend, integrator);
+    header.with_losses = true;
     H5mdTrace trace(folder / (row.scene + "-" + row.backend + "-" + row.integrator + ".h5"), scene.system,
-                    trace_header(scene, *backend, row.backend, integrator));
-    simulate(*backend, scene.system, {scene.dt_s, duration_s, frames / duration_s},
-             [&](std::int64_t step, double time_s, const State& state, const Energy& energy) {
-               trace.write_frame(step, time_s, state, energy);
+                    header);
+    simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s, true},
+             [&](const Frame& frame) {
+               trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
              });
     trace.close();
   }

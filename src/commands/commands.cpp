@@ -13,6 +13,7 @@
 #include "commands/list_command.h"
 #include "commands/run_command.h"
 #include "commands/run_provenance.h"
+#include "mesh/mesh_error.h"
 #include "output/write_error.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
@@ -43,6 +44,8 @@ int run_guarded(const std::function<int()>& run) {
     return fail(exit_bad_input, error.what());
   } catch (const SceneError& error) {
     return fail(exit_bad_input, error.what());
+  } catch (const MissingProgram& error) {
+    return fail(exit_unavailable, error.what());
   } catch (const Unsupported& error) {
     return fail(exit_bad_input, error.what());
   } catch (const Unavailable& error) {

@@ -12,6 +12,7 @@
 #include "commands/choices.h"
 #include "commands/exit_code.h"
 #include "integrators/integrators.h"
+#include "mesh/mesh_error.h"
 #include "output/listing.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -23,17 +24,30 @@ nlohmann::ordered_json or_null(const std::string& text) {
   return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
 }
 
+/// What the scene really has; where TetGen is missing, bodies have no counts, and stderr says why.
+std::optional<SceneCounts> listed_counts(const SceneSpec& spec) {
+  try {
+    return counts_of(spec);
+  } catch (const MissingProgram& reason) {
+    std::cerr << "mssim: " << spec.name << " cannot be counted: " << reason.what() << '\n';
+    return std::nullopt;
+  }
+}
+
 Listing list_scenes(const ExecutionOptions& /*options*/) {
   Listing listing;
   for (const std::string& name : scene_names()) {
     const SceneSpec spec = find_scene(name);
-    const SceneCounts counts = counts_of(spec);
+    const std::optional<SceneCounts> counts = listed_counts(spec);
+    const auto number = [&](std::uint64_t SceneCounts::*count) {
+      return counts ? nlohmann::ordered_json((*counts).*count) : nlohmann::ordered_json();
+    };
     listing.push_back(
         {{"scene", name},
          {"kind", kind_of(spec).name},
-         {"nodes", counts.nodes},
-         {"springs_unique", counts.springs_unique},
-         {"springs_published", counts.springs_published},
+         {"nodes", number(&SceneCounts::nodes)},
+         {"springs_unique", number(&SceneCounts::springs_unique)},
+         {"springs_published", number(&SceneCounts::springs_published)},
          {"dt_s", spec.dt_s ? nlohmann::ordered_json(*spec.dt_s) : nlohmann::ordered_json("auto")},
          {"description", spec.description}});
   }

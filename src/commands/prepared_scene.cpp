@@ -6,10 +6,27 @@
 
 namespace mssim {
 
+namespace {
+
+/// Meshes are the only part of a scene that does not follow from its file alone.
+std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
+  const auto stated = stated_counts(spec);
+  if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
+    return "";
+  return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
+         std::to_string(counts.springs_unique) + " springs where the scene states " +
+         std::to_string(stated->nodes) + " and " + std::to_string(stated->springs_unique) +
+         ": another TetGen makes another mesh";
+}
+
+}  // namespace
+
 PreparedScene prepare_scene(std::string_view name_or_file) {
   PreparedScene scene;
   scene.spec = find_scene(name_or_file);
   scene.system = build_system(scene.spec);
+  scene.counts = counts_of(scene.spec);
+  scene.note = difference(scene.spec, scene.counts);
   if (scene.spec.dt_s) {
     scene.dt_s = *scene.spec.dt_s;
   } else {

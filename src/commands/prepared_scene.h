@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "model/system.h"
@@ -11,10 +12,12 @@ namespace mssim {
 struct PreparedScene {
   SceneSpec spec;
   System system;
-  double dt_s = 0;  ///< the scene's, or the largest safe one for `auto`
+  SceneCounts counts;
+  double dt_s = 0;   ///< the scene's, or the largest safe one for `auto`
+  std::string note;  ///< how the scene differs from what its file states; empty where it does not
 };
 
-/// Reads, checks and builds the scene of that name or file. Throws SceneError.
+/// Reads, checks and builds the scene of that name or file. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(std::string_view name_or_file);
 
 }  // namespace mssim

@@ -1,6 +1,7 @@
 #include "commands/run_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -33,6 +34,7 @@ struct RunOptions {
   double fps = 60;
   std::string trace;
   std::string energy_curve;
+  bool no_losses = false;
   ExecutionOptions execution;
 };
 
@@ -47,29 +49,67 @@ std::unique_ptr<Backend> make_backend(const RunOptions& options, const PreparedS
   return make_reference(scene.system, integrator, scene.dt_s);
 }
 
+/// Tells who waits long for the accounting how to do without it.
+void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, const Integrator& integrator) {
+  constexpr double passes_for_energies = 4;
+  constexpr double springs_per_second = 1e8;  // of the double-precision reference, roughly
+  constexpr double patience_s = 10;
+  const double seconds = static_cast<double>(count_steps(plan)) * static_cast<double>(system.springs.size()) *
+                         (passes_for_energies + static_cast<double>(integrator.stage_count)) /
+                         springs_per_second;
+  if (seconds > patience_s)
+    std::cerr << "mssim: accounting for energy losses takes a double-precision step for every step, about "
+              << std::round(seconds) << " s in all; --no-losses leaves it out\n";
+}
+
+/// What the three kinds of energy and the losses add up to at the end, less what they did at the start, over
+/// the largest change that one kind of energy makes from frame to frame: zero in a perfect world.
+std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, const EnergyLosses& losses) {
+  double in_motion = 0;
+  for (const auto kind : {&Energy::kinetic, &Energy::elastic, &Energy::gravitational}) {
+    const auto [low, high] =
+        std::ranges::minmax(curve, {}, [&](const EnergySample& sample) { return sample.energy.*kind; });
+    in_motion = std::max(in_motion, high.energy.*kind - low.energy.*kind);
+  }
+  if (in_motion == 0) return std::nullopt;
+  return (curve.back().energy.total() + losses.total() - curve.front().energy.total()) / in_motion;
+}
+
+nlohmann::ordered_json or_null(const std::optional<double>& number) {
+  return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json();
+}
+
 int run(const RunOptions& options) {
   const Integrator& integrator = require_integrator(options.integrator);
   require_backend(options.backend);
   PreparedScene scene = prepare_scene(options.scene);
   if (options.dt_s) scene.dt_s = *options.dt_s;
+  const bool keeps_energies = !options.trace.empty() || !options.energy_curve.empty();
+  const SimulationPlan plan{scene.dt_s, options.duration_s, options.fps,
+                            keeps_energies && !options.no_losses};
   const auto backend = make_backend(options, scene, integrator);
+  if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
 
   std::optional<H5mdTrace> trace;
-  if (!options.trace.empty())
-    trace.emplace(options.trace, scene.system, trace_header(scene, *backend, options.backend, integrator));
+  if (!options.trace.empty()) {
+    TraceHeader header = trace_header(scene, *backend, options.backend, integrator);
+    header.with_losses = plan.accounts_for_losses;
+    trace.emplace(options.trace, scene.system, header);
+  }
   std::vector<EnergySample> curve;
   std::int64_t steps = 0;
+  std::optional<EnergyLosses> losses;
   const auto before = std::chrono::steady_clock::now();
   const auto finish = [&] {
     if (trace) trace->close();
   };
   try {
-    simulate(*backend, scene.system, {scene.dt_s, options.duration_s, options.fps},
-             [&](std::int64_t step, double time_s, const State& state, const Energy& energy) {
-               if (trace) trace->write_frame(step, time_s, state, energy);
-               curve.push_back({time_s, energy});
-               steps = step;
-             });
+    simulate(*backend, scene.system, integrator, plan, [&](const Frame& frame) {
+      if (trace) trace->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+      curve.push_back({frame.time_s, frame.energy});
+      steps = frame.step;
+      losses = frame.losses;
+    });
   } catch (const NotVerified&) {
     finish();  // the frames before it are good and show what happened
     throw;
@@ -78,20 +118,29 @@ int run(const RunOptions& options) {
   finish();
   if (!options.energy_curve.empty()) write_energy_curve(options.energy_curve, curve, command_line());
 
+  const auto loss = [&](double EnergyLosses::*kind) {
+    return losses ? or_null(*losses.*kind) : or_null(std::nullopt);
+  };
   const Energy &first = curve.front().energy, &last = curve.back().energy;
-  std::cout << to_text({{{"scene", scene.spec.name},
-                         {"backend", options.backend},
-                         {"device", backend->device()},
-                         {"integrator", options.integrator},
-                         {"dt_s", scene.dt_s},
-                         {"steps", steps},
-                         {"simulated_s", curve.back().time_s},
-                         {"wall_s", seconds},
-                         {"kinetic_j", last.kinetic},
-                         {"elastic_j", last.elastic},
-                         {"gravitational_j", last.gravitational},
-                         {"total_change_j", last.total() - first.total()}}},
-                       ListingFormat::table);
+  std::cout << to_text(
+      {{{"scene", scene.spec.name},
+        {"backend", options.backend},
+        {"device", backend->device()},
+        {"integrator", options.integrator},
+        {"dt_s", scene.dt_s},
+        {"steps", steps},
+        {"simulated_s", curve.back().time_s},
+        {"wall_s", seconds},
+        {"kinetic_j", last.kinetic},
+        {"elastic_j", last.elastic},
+        {"gravitational_j", last.gravitational},
+        {"total_change_j", last.total() - first.total()},
+        {"damping_loss_j", loss(&EnergyLosses::damping)},
+        {"friction_loss_j", loss(&EnergyLosses::friction)},
+        {"bounce_loss_j", loss(&EnergyLosses::bounce)},
+        {"integration_loss_j", loss(&EnergyLosses::integration)},
+        {"energy_imbalance", losses ? or_null(energy_imbalance(curve, *losses)) : or_null(std::nullopt)}}},
+      ListingFormat::table);
   return exit_ok;
 }
 
@@ -113,6 +162,9 @@ std::function<int()> declare_run(CLI::App& app) {
   app.add_option("--trace", options->trace, "Write an H5MD trace to this .h5 file, and an .xdmf beside it");
   app.add_option("--energy-curve", options->energy_curve,
                  "Write the energies of all frames to this CSV file");
+  app.add_flag("--no-losses", options->no_losses,
+               "Do not account for what damping, friction, bounces and the integrator take from the energy, "
+               "which a trace or an energy curve otherwise costs a double-precision step for every step");
   declare_execution(app, options->execution);
   return [options] { return run(*options); };
 }

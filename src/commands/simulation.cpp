@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "bench/blow_up.h"
+#include "bench/energy_ledger.h"
 #include "commands/exit_code.h"
 
 namespace mssim {
@@ -15,7 +16,7 @@ constexpr double most_steps = std::numeric_limits<int>::max();
 
 }  // namespace
 
-void simulate(Backend& backend, const System& system, const SimulationPlan& plan, const OnFrame& on_frame) {
+std::int64_t count_steps(const SimulationPlan& plan) {
   const double exact_steps = plan.duration_s / plan.dt_s;
   if (!(exact_steps >= 0.5 && exact_steps <= most_steps)) {
     std::ostringstream text;
@@ -23,7 +24,12 @@ void simulate(Backend& backend, const System& system, const SimulationPlan& plan
          << " s; --duration must give between one step and " << most_steps;
     throw UsageError(text.str());
   }
-  const auto steps = static_cast<std::int64_t>(std::llround(exact_steps));
+  return static_cast<std::int64_t>(std::llround(exact_steps));
+}
+
+void simulate(Backend& backend, const System& system, const Integrator& integrator,
+              const SimulationPlan& plan, const OnFrame& on_frame) {
+  const std::int64_t steps = count_steps(plan);
   const double steps_per_frame = 1 / (plan.frames_per_second * plan.dt_s);
   if (!(steps_per_frame >= 1)) {
     std::ostringstream text;
@@ -32,22 +38,29 @@ void simulate(Backend& backend, const System& system, const SimulationPlan& plan
     throw UsageError(text.str());
   }
 
+  std::optional<EnergyLedger> ledger;
+  if (plan.accounts_for_losses) ledger.emplace(system, integrator, plan.dt_s);
+  const auto losses = [&] { return ledger ? std::optional(ledger->losses()) : std::nullopt; };
   backend.set_state(system.start);
   State before = system.start;
-  on_frame(0, 0, before, energy_of(system, before));
+  on_frame({0, 0, before, energy_of(system, before), losses()});
   std::int64_t done = 0;
   for (std::int64_t frame = 1; done < steps; ++frame) {
     const std::int64_t next =
         std::min<std::int64_t>(steps, std::llround(static_cast<double>(frame) * steps_per_frame));
     const int count = static_cast<int>(next - done);
-    backend.step(count);
+    if (ledger) {
+      for (int step = 0; step < count; ++step) ledger->step(backend);
+    } else {
+      backend.step(count);
+    }
     State state = backend.state();
     if (const auto node = first_bad_node(state)) {
       const BlowUp blow_up = find_blow_up(backend, before, count).value_or(BlowUp{count, *node});
       throw NotVerified("the simulation " + describe(blow_up, plan.dt_s, done));
     }
     done = next;
-    on_frame(done, static_cast<double>(done) * plan.dt_s, state, energy_of(system, state));
+    on_frame({done, static_cast<double>(done) * plan.dt_s, state, energy_of(system, state), losses()});
     before = std::move(state);
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "backends/backend.h"
 #include "model/energy.h"
@@ -13,16 +14,30 @@ struct SimulationPlan {
   double dt_s = 0;
   double duration_s = 0;
   double frames_per_second = 0;  ///< of simulated time
+  /// Whether to account for energy losses (EnergyLedger), which makes a run several times slower.
+  bool accounts_for_losses = false;
 };
 
-/// Called with the start and then with every frame; `step` counts from 0.
-using OnFrame =
-    std::function<void(std::int64_t step, double time_s, const State& state, const Energy& energy)>;
+/// A moment of a simulation.
+struct Frame {
+  std::int64_t step = 0;  ///< counted from 0, the start
+  double time_s = 0;
+  const State& state;
+  Energy energy;
+  std::optional<EnergyLosses> losses;  ///< since the start, where the plan asks for them
+};
 
-/// Steps `backend` from the system's start through the whole duration, which is rounded to whole steps; a
-/// frame is the step nearest to its time. Throws NotVerified when the simulation blows up, naming step, time
-/// and node; frames up to then have been delivered. Throws UsageError for a plan of no steps or of more than
-/// one frame a step.
-void simulate(Backend& backend, const System& system, const SimulationPlan& plan, const OnFrame& on_frame);
+/// Called with the start and then with every frame.
+using OnFrame = std::function<void(const Frame& frame)>;
+
+/// Steps `backend`, which was made for `system` and `integrator`, from the system's start through the whole
+/// duration, which is rounded to whole steps; a frame is the step nearest to its time. Throws NotVerified
+/// when the simulation blows up, naming step, time and node; frames up to then have been delivered. Throws
+/// UsageError for a plan of no steps or of more than one frame a step.
+void simulate(Backend& backend, const System& system, const Integrator& integrator,
+              const SimulationPlan& plan, const OnFrame& on_frame);
+
+/// Steps of a plan. Throws UsageError like simulate().
+std::int64_t count_steps(const SimulationPlan& plan);
 
 }  // namespace mssim

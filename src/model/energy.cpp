@@ -11,12 +11,26 @@ Energy energy_of(const System& system, const State& state) {
     energy.kinetic += 0.5 * mass * dot(state.velocity[i], state.velocity[i]);
     energy.gravitational += mass * system.gravity * (state.position[i].y - system.floor.height);
   }
+  for (const Spring& spring : system.springs) energy.elastic += elastic_energy(system, spring, state);
+  return energy;
+}
+
+double elastic_energy(const System& system, const Spring& spring, const State& state) {
+  const Vec3d d = state.position[spring.second] - state.position[spring.first];
+  const double stretch = std::sqrt(dot(d, d)) - static_cast<double>(spring.rest_length);
+  return 0.5 * system.materials[spring.kind].stiffness * stretch * stretch;
+}
+
+double damping_power(const System& system, const State& state) {
+  double power = 0;
+  for (std::size_t i = 0; i < system.nodes(); ++i)
+    power += system.viscous_damping * system.node_mass[i] * dot(state.velocity[i], state.velocity[i]);
   for (const Spring& spring : system.springs) {
     const Vec3d d = state.position[spring.second] - state.position[spring.first];
-    const double stretch = std::sqrt(dot(d, d)) - static_cast<double>(spring.rest_length);
-    energy.elastic += 0.5 * system.materials[spring.kind].stiffness * stretch * stretch;
+    const double closing = dot(state.velocity[spring.second] - state.velocity[spring.first], d);
+    power += system.materials[spring.kind].damping * closing * closing / dot(d, d);
   }
-  return energy;
+  return power;
 }
 
 }  // namespace mssim

@@ -12,7 +12,24 @@ struct Energy {
   double total() const { return kinetic + elastic + gravitational; }
 };
 
+/// What has been taken from the mechanical energy since the start, J.
+struct EnergyLosses {
+  double damping = 0;      ///< by the springs and by the air
+  double friction = 0;     ///< by sliding on the floor
+  double bounce = 0;       ///< by the floor in its normal direction, less what lifting nodes onto it gave
+  double integration = 0;  ///< by the integrator's error; below zero where it feeds energy in
+  double total() const { return damping + friction + bounce + integration; }
+};
+
 /// Energy of `state` in double precision. Pinned nodes count, at their constant height.
 Energy energy_of(const System& system, const State& state);
+
+/// Energy of one spring, J.
+double elastic_energy(const System& system, const Spring& spring, const State& state);
+
+/// What damping of the springs and of the air takes in `state`, W: the sum of c ((u . d) / |d|)^2 over all
+/// springs, d and u the differences of positions and velocities of their ends, and of viscous_damping m v^2
+/// over all nodes.
+double damping_power(const System& system, const State& state);
 
 }  // namespace mssim

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 
@@ -10,7 +11,6 @@
 #include "output/file_space.h"
 #include "output/hdf5_write.h"
 #include "output/write_error.h"
-#include "output/xdmf.h"
 
 namespace mssim {
 namespace {
@@ -19,15 +19,22 @@ constexpr std::size_t dimensions = 3;
 /// What HDF5 itself adds to a file at a time, at most: a few index nodes and chunks of numbers.
 constexpr std::size_t room_for_metadata = 65536;
 
-struct EnergyInfo {
+struct ObservableInfo {
   const char* path;
-  double (*value)(const Energy&);
+  bool is_loss;
+  double (*value)(const Energy&, const EnergyLosses&);
 };
-constexpr std::array<EnergyInfo, 4> energy_kinds{{
-    {"/observables/kinetic_energy", [](const Energy& energy) { return energy.kinetic; }},
-    {"/observables/elastic_energy", [](const Energy& energy) { return energy.elastic; }},
-    {"/observables/gravitational_energy", [](const Energy& energy) { return energy.gravitational; }},
-    {"/observables/total_energy", [](const Energy& energy) { return energy.total(); }},
+constexpr std::array<ObservableInfo, 8> observable_kinds{{
+    {"/observables/kinetic_energy", false, [](const Energy& energy, auto&) { return energy.kinetic; }},
+    {"/observables/elastic_energy", false, [](const Energy& energy, auto&) { return energy.elastic; }},
+    {"/observables/gravitational_energy", false,
+     [](const Energy& energy, auto&) { return energy.gravitational; }},
+    {"/observables/total_energy", false, [](const Energy& energy, auto&) { return energy.total(); }},
+    {"/observables/damping_loss", true, [](auto&, const EnergyLosses& losses) { return losses.damping; }},
+    {"/observables/friction_loss", true, [](auto&, const EnergyLosses& losses) { return losses.friction; }},
+    {"/observables/bounce_loss", true, [](auto&, const EnergyLosses& losses) { return losses.bounce; }},
+    {"/observables/integration_loss", true,
+     [](auto&, const EnergyLosses& losses) { return losses.integration; }},
 }};
 
 struct UnitInfo {
@@ -55,51 +62,74 @@ void write_metadata(hid_t file, const TraceHeader& header) {
   write_attribute(creator.get(), "version", std::string_view(header.creator_version));
 }
 
-void write_parameters(hid_t file, const GridPatch& grid, const TraceHeader& header) {
+void write_parameters(hid_t file, const Topology& topology, const TraceHeader& header) {
   const Hdf5Group parameters = create_group(file, "/parameters");
   write_text(file, "/parameters/scene", header.scene_json);
   write_text(file, "/parameters/provenance", header.provenance_json);
   write_attribute(parameters.get(), "backend", std::string_view(header.backend));
   write_attribute(parameters.get(), "integrator", std::string_view(header.integrator));
   write_attribute(parameters.get(), "dt_s", header.dt_s);
-  write_attribute(parameters.get(), "rows", std::int64_t{grid.rows});
-  write_attribute(parameters.get(), "columns", std::int64_t{grid.columns});
+  if (const auto* grid = std::get_if<GridPatch>(&topology)) {
+    write_attribute(parameters.get(), "rows", std::int64_t{grid->rows});
+    write_attribute(parameters.get(), "columns", std::int64_t{grid->columns});
+  }
   const Hdf5Group units_group = create_group(file, "/parameters/units");
   for (const auto& [quantity, unit] : units)
     write_attribute(units_group.get(), quantity, std::string_view(unit));
 }
 
-void write_mass(hid_t file, const System& system) {
+void write_mass(hid_t file, const std::string& particles, const System& system) {
   const std::array<hsize_t, 1> shape{system.nodes()};
-  Hdf5Dataset mass = create_dataset(file, "/particles/cloth/mass", H5T_IEEE_F64LE, shape, false,
+  Hdf5Dataset mass = create_dataset(file, particles + "/mass", H5T_IEEE_F64LE, shape, false,
                                     chunked(shape, Packing::deflated));
   checked(H5Dwrite(mass.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, system.node_mass.data()),
           "writing masses");
   mass.close("writing masses");
 }
 
-void write_springs(hid_t file, const System& system) {
-  const Hdf5Group connectivity = create_group(file, "/connectivity");
-  if (system.springs.empty()) return;
-  std::vector<std::uint32_t> ends;
-  ends.reserve(2 * system.springs.size());
-  for (const Spring& spring : system.springs) {
-    ends.push_back(spring.first);
-    ends.push_back(spring.second);
-  }
-  constexpr hsize_t springs_per_chunk = 65536;
-  const std::array<hsize_t, 2> shape{system.springs.size(), 2};
-  const std::array<hsize_t, 2> chunk{std::min(shape[0], springs_per_chunk), 2};
+/// Tuples of nodes: an empty list has no dataset.
+template <std::size_t size>
+void write_tuples(hid_t file, const std::string& path, const std::string& particles,
+                  std::span<const std::array<std::uint32_t, size>> tuples) {
+  if (tuples.empty()) return;
+  const std::string action = "writing " + path;
+  constexpr hsize_t tuples_per_chunk = 65536;
+  const std::array<hsize_t, 2> shape{tuples.size(), size};
+  const std::array<hsize_t, 2> chunk{std::min(shape[0], tuples_per_chunk), size};
   const Hdf5Properties properties = chunked(chunk, Packing::deflated);
   // Readers of H5MD pass over tuples that hold the fill value. HDF5's own is 0, a real node.
   constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
   checked(H5Pset_fill_value(properties.get(), H5T_NATIVE_UINT32, &no_node), "setting a fill value");
-  Hdf5Dataset springs =
-      create_dataset(file, "/connectivity/springs", H5T_STD_U32LE, shape, false, properties);
-  checked(H5Dwrite(springs.get(), H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, ends.data()),
-          "writing springs");
-  write_reference(springs.get(), "particles_group", file, "/particles/cloth");
-  springs.close("writing springs");
+  Hdf5Dataset dataset = create_dataset(file, path, H5T_STD_U32LE, shape, false, properties);
+  checked(H5Dwrite(dataset.get(), H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, tuples.data()), action);
+  write_reference(dataset.get(), "particles_group", file, particles);
+  dataset.close(action);
+}
+
+void write_connectivity(hid_t file, const std::string& particles, const System& system) {
+  const Hdf5Group connectivity = create_group(file, "/connectivity");
+  std::vector<std::array<std::uint32_t, 2>> ends;
+  ends.reserve(system.springs.size());
+  for (const Spring& spring : system.springs) ends.push_back({spring.first, spring.second});
+  write_tuples<2>(file, "/connectivity/springs", particles, ends);
+  if (const auto* mesh = std::get_if<TetrahedralMesh>(&system.topology))
+    write_tuples<4>(file, tetrahedra_dataset, particles, mesh->tetrahedra);
+}
+
+/// A file that points beyond its nodes would crash who reads it.
+void require_fitting_topology(const System& system) {
+  const std::size_t nodes = system.nodes();
+  if (nodes == 0) throw std::invalid_argument("a trace needs a system with nodes");
+  if (const auto* grid = std::get_if<GridPatch>(&system.topology)) {
+    if (grid->nodes() != nodes) throw std::invalid_argument("a trace needs a grid of all nodes");
+    return;
+  }
+  const auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
+  const bool fits = std::ranges::all_of(tetrahedra, [&](const Tetrahedron& corners) {
+    return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });
+  });
+  if (tetrahedra.empty() || !fits)
+    throw std::invalid_argument("a trace of bodies needs tetrahedra between its nodes");
 }
 
 /// Series of single numbers. Their chunks hold many frames and are rewritten in place at every flush, which
@@ -114,18 +144,18 @@ Hdf5Dataset create_vector_series(hid_t file, const std::string& path, hsize_t no
                         chunked(std::array<hsize_t, 3>{1, nodes, dimensions}, Packing::deflated));
 }
 
-void link_step_and_time(hid_t file, const std::string& element) {
+void link_step_and_time(hid_t file, const std::string& from, const std::string& to) {
   for (const char* name : {"/step", "/time"})
-    checked(H5Lcreate_hard(file, ("/particles/cloth/position" + std::string(name)).c_str(), H5L_SAME_LOC,
-                           (element + name).c_str(), H5P_DEFAULT, H5P_DEFAULT),
-            "linking " + element + name);
+    checked(H5Lcreate_hard(file, (from + name).c_str(), H5L_SAME_LOC, (to + name).c_str(), H5P_DEFAULT,
+                           H5P_DEFAULT),
+            "linking " + to + name);
 }
 
 /// Frames that can be found in a trace, 0 when it cannot be opened.
 std::size_t count_frames(const std::filesystem::path& trace) {
   try {
     const Hdf5File file(H5Fopen(trace.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening");
-    const Hdf5Dataset step(H5Dopen2(file.get(), "/particles/cloth/position/step", H5P_DEFAULT), "opening");
+    const Hdf5Dataset step(H5Dopen2(file.get(), "/observables/total_energy/step", H5P_DEFAULT), "opening");
     const Hdf5Space space(H5Dget_space(step.get()), "opening");
     return static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space.get()), "counting"));
   } catch (const Hdf5Error&) {
@@ -137,10 +167,10 @@ std::size_t count_frames(const std::filesystem::path& trace) {
 
 H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header)
     : file_name_(std::move(file)),
-      grid_(std::get<GridPatch>(system.topology)),
+      mesh_(xdmf_mesh_of(system)),
+      with_losses_(header.with_losses),
       buffer_(dimensions * system.nodes()) {
-  if (system.nodes() == 0 || system.nodes() != grid_.nodes())
-    throw std::invalid_argument("a trace needs a system whose nodes form a grid");
+  require_fitting_topology(system);
   prepare_hdf5();
   require_replaceable(file_name_);
   require_replaceable(temporary_of(file_name_));
@@ -160,50 +190,57 @@ void H5mdTrace::create(const System& system, const TraceHeader& header) {
                    "creating " + temporary);
   owns_temporary_ = true;
   write_metadata(file_.get(), header);
-  write_parameters(file_.get(), grid_, header);
-  create_series(system);
-  write_mass(file_.get(), system);
-  write_springs(file_.get(), system);
+  write_parameters(file_.get(), system.topology, header);
+  create_series(system.nodes());
+  write_mass(file_.get(), particles(), system);
+  write_connectivity(file_.get(), particles(), system);
   checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing the head of the trace");
 }
 
-void H5mdTrace::create_series(const System& system) {
+void H5mdTrace::create_series(std::size_t nodes) {
   const hid_t file = file_.get();
+  const std::string position = particles() + "/position", velocity = particles() + "/velocity";
   create_group(file, "/particles");
-  create_group(file, "/particles/cloth");
-  const Hdf5Group box = create_group(file, "/particles/cloth/box");
+  create_group(file, particles());
+  const Hdf5Group box = create_group(file, particles() + "/box");
   constexpr std::array<std::string_view, dimensions> boundary{"none", "none", "none"};
   write_attribute(box.get(), "dimension", std::int64_t{dimensions});
   write_attribute(box.get(), "boundary", boundary);
 
-  create_group(file, "/particles/cloth/position");
-  create_group(file, "/particles/cloth/velocity");
-  step_ = create_number_series(file, "/particles/cloth/position/step", H5T_STD_I64LE);
-  time_ = create_number_series(file, "/particles/cloth/position/time", H5T_IEEE_F64LE);
-  position_ = create_vector_series(file, "/particles/cloth/position/value", system.nodes());
-  velocity_ = create_vector_series(file, "/particles/cloth/velocity/value", system.nodes());
-  link_step_and_time(file, "/particles/cloth/velocity");
+  create_group(file, position);
+  create_group(file, velocity);
+  step_ = create_number_series(file, position + "/step", H5T_STD_I64LE);
+  time_ = create_number_series(file, position + "/time", H5T_IEEE_F64LE);
+  position_ = create_vector_series(file, position + "/value", nodes);
+  velocity_ = create_vector_series(file, velocity + "/value", nodes);
+  link_step_and_time(file, position, velocity);
 
   create_group(file, "/observables");
-  for (const EnergyInfo& energy : energy_kinds) {
-    create_group(file, energy.path);
-    energies_.push_back(create_number_series(file, energy.path + std::string("/value"), H5T_IEEE_F64LE));
-    link_step_and_time(file, energy.path);
+  for (const ObservableInfo& observable : observable_kinds) {
+    if (observable.is_loss && !with_losses_) continue;
+    create_group(file, observable.path);
+    observables_.push_back(
+        create_number_series(file, observable.path + std::string("/value"), H5T_IEEE_F64LE));
+    link_step_and_time(file, position, observable.path);
   }
 }
 
-void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy) {
-  const std::size_t nodes = grid_.nodes();
-  if (state.position.size() != nodes || state.velocity.size() != nodes)
+void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy,
+                            const std::optional<EnergyLosses>& losses) {
+  if (dimensions * state.position.size() != buffer_.size() ||
+      dimensions * state.velocity.size() != buffer_.size())
     throw std::invalid_argument("a frame's state has another size than the trace's system");
   if (!times_s_.empty() && !(step > last_step_ && time_s > times_s_.back()))
     throw std::invalid_argument("a trace's steps and times must increase");
-  guard([&] { append(step, time_s, state, energy); });
+  if (losses.has_value() != with_losses_)
+    throw std::invalid_argument("a frame has losses where the trace's header says otherwise, or has none");
+  guard([&] { append(step, time_s, state, energy, losses.value_or(EnergyLosses{})); });
   last_step_ = step;
   times_s_.push_back(time_s);
 }
 
-void H5mdTrace::append(std::int64_t step, double time_s, const State& state, const Energy& energy) {
+void H5mdTrace::append(std::int64_t step, double time_s, const State& state, const Energy& energy,
+                       const EnergyLosses& losses) {
   const hsize_t frame = times_s_.size();
   reserve(2 * buffer_.size() * sizeof(float) + room_for_metadata);
   const auto write_vectors = [&](const Hdf5Dataset& dataset, const std::string& name,
@@ -216,9 +253,9 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
   };
   write_vectors(position_, "positions", state.position);
   write_vectors(velocity_, "velocities", state.velocity);
-  for (std::size_t kind = 0; kind < energy_kinds.size(); ++kind) {
-    const double value = energy_kinds[kind].value(energy);
-    write_row(energies_[kind], "energies", frame, H5T_NATIVE_DOUBLE, &value);
+  for (std::size_t kind = 0; kind < observables_.size(); ++kind) {
+    const double value = observable_kinds[kind].value(energy, losses);
+    write_row(observables_[kind], "energies", frame, H5T_NATIVE_DOUBLE, &value);
   }
   write_row(time_, "times", frame, H5T_NATIVE_DOUBLE, &time_s);
   write_row(step_, "steps", frame, H5T_NATIVE_INT64, &step);
@@ -230,16 +267,16 @@ void H5mdTrace::close() {
   guard([&] {
     const std::string action = "finishing the trace";
     reserve(room_for_metadata + times_s_.size() * xdmf_bytes_per_frame);
-    map_frames_for_xdmf(file_.get(), grid_, times_s_.size());
+    map_frames_for_xdmf(file_.get(), mesh_, times_s_.size());
     checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), action);
     for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) dataset->close(action);
-    for (Hdf5Dataset& dataset : energies_) dataset.close(action);
+    for (Hdf5Dataset& observable : observables_) observable.close(action);
     file_.close(action);
     release_reserved_space(temporary_of(file_name_));
     move_into_place(file_name_);
     owns_temporary_ = false;
   });
-  write_xdmf(file_name_, grid_, times_s_);
+  write_xdmf(file_name_, mesh_, times_s_);
 }
 
 void H5mdTrace::reserve(std::size_t bytes) {
@@ -275,7 +312,7 @@ std::size_t H5mdTrace::give_up() {
   if (!owns_temporary_) return 0;
   owns_temporary_ = false;
   for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) *dataset = {};
-  energies_.clear();
+  observables_.clear();
   file_ = {};
   const std::filesystem::path temporary = temporary_of(file_name_);
   release_reserved_space(temporary);

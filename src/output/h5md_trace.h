@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/energy.h"
 #include "model/system.h"
 #include "output/hdf5_handle.h"
+#include "output/xdmf.h"
 
 namespace mssim {
 
@@ -21,19 +23,24 @@ struct TraceHeader {
   std::string backend;
   std::string integrator;
   double dt_s = 0;
+  bool with_losses = false;  ///< whether its frames say what has been taken from the energy
 };
 
 /// A trace: the frames of one simulation in an HDF5 file after H5MD 1.1 (https://www.nongnu.org/h5md), with
-/// an XDMF file beside it for viewers. SI units throughout, listed in /parameters/units.
+/// an XDMF file beside it for viewers. SI units throughout, listed in /parameters/units. PARTICLES is `cloth`
+/// for a system on a grid and `bodies` for one of tetrahedra.
 ///
-///     /h5md                                       author, creator, version of H5MD
-///     /particles/cloth/{position,velocity}/value  [frames][nodes][3] float32, in the scene's node order
-///     /particles/cloth/mass                       [nodes] float64
-///     /observables/{kinetic,elastic,gravitational,total}_energy/value   [frames] float64
-///     .../step, .../time                          [frames] int64, float64: the same two datasets everywhere
-///     /connectivity/springs                       [springs][2] uint32, each unique spring once
-///     /parameters                                 scene and provenance as JSON, and how it was stepped
-///     /xdmf/{position,velocity}/FRAME             [1][rows][columns][3] virtual datasets, one frame each
+///     /h5md                                   author, creator, version of H5MD
+///     /particles/PARTICLES/{position,velocity}/value  [frames][nodes][3] float32, in the scene's node order
+///     /particles/PARTICLES/mass               [nodes] float64
+///     /observables/{kinetic,elastic,gravitational,total}_energy/value        [frames] float64
+///     /observables/{damping,friction,bounce,integration}_loss/value   since the start, with_losses only
+///     .../step, .../time                      [frames] int64, float64: the same two datasets everywhere
+///     /connectivity/springs                   [springs][2] uint32, each unique spring once
+///     /connectivity/tetrahedra                [tetrahedra][4] uint32, of bodies
+///     /parameters                             scene and provenance as JSON, and how it was stepped
+///     /xdmf/{position,velocity}/FRAME         virtual datasets, one frame each: [1][rows][columns][3] for
+///                                             a cloth, [nodes][3] for bodies
 ///
 /// Positions are single precision, as most backends compute them, which halves the file; energies are double.
 ///
@@ -42,34 +49,39 @@ struct TraceHeader {
 /// /xdmf. Not for use from several threads at a time, even on different traces: the HDF5 library is not.
 class H5mdTrace {
  public:
-  /// Creates NAME.part with everything but frames. The grid of `system` must have nodes. Throws WriteError.
+  /// Creates NAME.part with everything but frames. The topology of `system` must fit its nodes, of which
+  /// there is one at least (else std::invalid_argument). Throws WriteError.
   H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header);
   H5mdTrace(const H5mdTrace&) = delete;
   H5mdTrace& operator=(const H5mdTrace&) = delete;
   /// Without close(): gives up, keeping NAME.part when it holds frames.
   ~H5mdTrace();
 
-  /// Appends a frame. `step` and `time_s` increase from frame to frame, `state` has the system's size (else
-  /// std::invalid_argument). Throws WriteError, which says what became of the frames before; the trace can
-  /// then only be destroyed.
-  void write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy);
+  /// Appends a frame. `step` and `time_s` increase from frame to frame, `state` has the system's size, and
+  /// `losses` are there if the header says so (else std::invalid_argument). Throws WriteError, which says
+  /// what became of the frames before; the trace can then only be destroyed.
+  void write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy,
+                   const std::optional<EnergyLosses>& losses = {});
 
   /// Finishes the trace, gives it its name and writes the XDMF. Throws WriteError.
   void close();
 
  private:
   void create(const System& system, const TraceHeader& header);
-  void create_series(const System& system);
-  void append(std::int64_t step, double time_s, const State& state, const Energy& energy);
+  void create_series(std::size_t nodes);
+  std::string particles() const { return "/particles/" + mesh_.particles; }
+  void append(std::int64_t step, double time_s, const State& state, const Energy& energy,
+              const EnergyLosses& losses);
   void reserve(std::size_t bytes);
   void guard(const std::function<void()>& write);
   std::size_t give_up();
 
   std::filesystem::path file_name_;
-  GridPatch grid_;
+  XdmfMesh mesh_;
+  bool with_losses_;
   Hdf5File file_;
-  Hdf5Dataset step_, time_, position_, velocity_;  // /particles/cloth
-  std::vector<Hdf5Dataset> energies_;              // in the order of the table of energies
+  Hdf5Dataset step_, time_, position_, velocity_;  // of the particles
+  std::vector<Hdf5Dataset> observables_;           // in the order of their table
   std::vector<float> buffer_;                      // [nodes][3]
   std::vector<double> times_s_;                    // [frames]
   std::int64_t last_step_ = 0;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "output/csv.h"
+#include "output/markdown.h"
 
 namespace mssim {
 namespace {
@@ -21,8 +20,7 @@ constexpr std::string_view baseline_configuration = "cpu-only";
 constexpr std::string_view how_to_read =
     "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are the "
     "paper's numbers, from its authors' mobile device, compared with its *CPU only*; **measured** lines are "
-    "ours, medians, compared with `serial`. Springs are counted as in the paper: twice the unique ones, by "
-    "inference from its numbers.\n\n";
+    "ours, medians, compared with `serial`. Springs are counted as in the paper: ";
 constexpr std::string_view why_frozen =
     "The published midpoint and Runge-Kutta steps cost hardly more than an Euler step. *Inferred from those "
     "times, not stated in the paper:* they evaluated the forces once and reused them in the trial steps. "
@@ -132,31 +130,6 @@ std::string table_csv(const Measured& measured, const PaperLegend& legend, const
   return csv;
 }
 
-/// 4188004 as 4,188,004.
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
-  return text;
-}
-
-/// Three significant digits, without an exponent.
-std::string three_digits(double value) {
-  const int before_point = value > 0 ? static_cast<int>(std::floor(std::log10(value))) + 1 : 1;
-  std::array<char, 340> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::fixed, std::max(0, 3 - before_point))
-                       .ptr;
-  return {buffer.data(), end};
-}
-
-/// Text that cannot end a cell or a line of a Markdown table.
-std::string one_cell(std::string_view text) {
-  std::string cell;
-  for (const char character : text)
-    cell += character == '|' ? std::string("\\|") : std::string(1, character == '\n' ? ' ' : character);
-  return cell;
-}
-
 /// Empty for the configuration that the speed-ups are measured against.
 std::string speedup_suffix(const Timing& timing, std::string_view configuration) {
   if (!timing.speedup || configuration == baseline_configuration) return {};
@@ -169,7 +142,7 @@ class Markdown {
       : measured_(measured), legend_(legend), published_(published) {}
 
   std::string text(const Provenance& provenance) {
-    out_ << "# Cloth: Table 1 of Hong et al. (2016), published and measured\n\n";
+    out_ << "# " << published_.info().title << ", published and measured\n\n";
     add_origin(provenance);
     add_legend();
     for (const auto& integrator : legend_.integrators)
@@ -196,7 +169,9 @@ class Markdown {
     const bool has_frozen =
         std::any_of(legend_.integrators.begin(), legend_.integrators.end(),
                     [&](const auto& row) { return row.name != row.paper_name && measured_.has(row.name); });
-    out_ << how_to_read << why_frozen << (has_frozen ? "" : " (`--integrator all`)")
+    out_ << how_to_read << published_.info().springs_counted
+         << " the unique ones, by inference from its numbers.\n\n"
+         << why_frozen << (has_frozen ? "" : " (`--integrator all`)")
          << " hold them as the paper seems to, and reproduce its ratio of costs.\n";
   }
 
@@ -263,8 +238,8 @@ class Markdown {
 
 }  // namespace
 
-PaperTable paper_table1(std::span<const ResultRow> rows, const PaperLegend& legend,
-                        const PublishedTable& published, const Provenance& provenance) {
+PaperTable paper_table(std::span<const ResultRow> rows, const PaperLegend& legend,
+                       const PublishedTable& published, const Provenance& provenance) {
   const Measured measured(rows, published);
   if (measured.rows().empty()) return {};
   return {false, table_csv(measured, legend, published),

@@ -26,9 +26,9 @@ struct PaperLegend {
   std::vector<Integrator> integrators;
 };
 
-/// Table 1 of Hong et al. with our measurements in it, laid out as published: scenes are columns,
+/// A table of Hong et al. with our measurements in it, laid out as published: scenes are columns,
 /// configurations are lines, one block an integrator. Shown is what was measured: scenes, integrators and
-/// backends without a row are left out, and so are scenes that are not the paper's.
+/// backends without a row are left out, and so are scenes that are not the table's.
 struct PaperTable {
   bool empty = true;     ///< no row belongs into the table
   std::string csv;       ///< for every integrator and backend the lines published_ms, measured_ms,
@@ -37,7 +37,7 @@ struct PaperTable {
 };
 
 /// Speed-ups are over one thread, published ones over CPU only and measured ones over `serial`.
-PaperTable paper_table1(std::span<const ResultRow> rows, const PaperLegend& legend,
-                        const PublishedTable& published, const Provenance& provenance);
+PaperTable paper_table(std::span<const ResultRow> rows, const PaperLegend& legend,
+                       const PublishedTable& published, const Provenance& provenance);
 
 }  // namespace mssim

@@ -7,8 +7,8 @@
 
 namespace mssim {
 
-PublishedTable::PublishedTable(const std::filesystem::path& csv_file) {
-  const CsvTable table(csv_file);
+PublishedTable::PublishedTable(const PublishedTableInfo& table_info) : info_(table_info) {
+  const CsvTable table(data_folder() / "published" / ("hong2016_" + std::string(info_.name) + ".csv"));
   // Table 3 calls its fourth column springs_published, because there the count is not the springs themselves.
   const bool counts_apart = table.header().size() > 3 && table.header()[3] == "springs_published";
   table.require_columns({"integrator", "configuration", "nodes",
@@ -34,6 +34,8 @@ bool PublishedTable::has_scene(std::uint64_t nodes, std::uint64_t springs_publis
   });
 }
 
-PublishedTable published_table1() { return PublishedTable(data_folder() / "published/hong2016_table1.csv"); }
+std::vector<PublishedTable> published_tables() {
+  return {published_table_kinds.begin(), published_table_kinds.end()};
+}
 
 }  // namespace mssim

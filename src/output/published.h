@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,11 +21,25 @@ inline constexpr std::array<PaperConfiguration, 4> paper_configurations{{
     {"gpu+multi-thread-cpu", "GPU + multi-thread CPU"},
 }};
 
-/// One published table of times (Hong et al. 2016, Table 1 or 3). The numbers stand in data files only.
+/// A row of the TABLE of published tables of times (Hong et al. 2016).
+struct PublishedTableInfo {
+  std::string_view name;             ///< of our files, and in that of the data file, hong2016_NAME.csv
+  std::string_view title;            ///< what it measures, and its number in the paper
+  std::string_view springs_counted;  ///< how often the published counts contain a unique spring
+};
+inline constexpr std::array<PublishedTableInfo, 2> published_table_kinds{{
+    {"table1", "Cloth: Table 1 of Hong et al. (2016)", "twice"},
+    {"table3", "Bodies: Table 3 of Hong et al. (2016)", "three times"},
+}};
+
+/// One published table of times. The numbers stand in data files only.
 class PublishedTable {
  public:
-  /// Reads integrator, configuration, nodes, springs, ms_per_step. Throws CsvError.
-  explicit PublishedTable(const std::filesystem::path& csv_file);
+  /// Reads integrator, configuration, nodes, springs, ms_per_step from the data folder. Throws CsvError, and
+  /// std::runtime_error when the folder is missing.
+  explicit PublishedTable(const PublishedTableInfo& table);
+
+  const PublishedTableInfo& info() const { return info_; }
 
   /// Milliseconds per step, none where the table has none. A scene is told by its nodes and its springs as
   /// the paper counts them, so that another scene of as many nodes has no published time.
@@ -41,10 +54,11 @@ class PublishedTable {
     std::uint64_t nodes = 0, springs = 0;
     double ms = 0;
   };
+  PublishedTableInfo info_;
   std::vector<Time> times_;
 };
 
-/// Table 1 (cloth) from the data folder. Throws CsvError, and std::runtime_error when the folder is missing.
-PublishedTable published_table1();
+/// All of them, read. Throws like the constructor.
+std::vector<PublishedTable> published_tables();
 
 }  // namespace mssim

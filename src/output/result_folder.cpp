@@ -27,7 +27,7 @@ std::string text_of(const Json& json) {
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path folder, Provenance provenance, PaperLegend legend,
-                           PublishedTable published)
+                           std::vector<PublishedTable> published)
     : folder_(std::move(folder)),
       provenance_(std::move(provenance)),
       legend_(std::move(legend)),
@@ -41,14 +41,25 @@ ResultFolder::ResultFolder(fs::path folder, Provenance provenance, PaperLegend l
 void ResultFolder::write(std::span<const ResultRow> rows) const {
   const std::string timings = timings_csv(rows), samples = samples_csv(rows);
   const std::string benchmark = text_of(benchmark_json(rows, provenance_));
-  const PaperTable table1 = paper_table1(rows, legend_, published_, provenance_);
+  std::vector<PaperTable> tables;
+  tables.reserve(published_.size());
+  for (const PublishedTable& published : published_)
+    tables.push_back(paper_table(rows, legend_, published, provenance_));
   write_file_atomically(folder_ / samples_name, samples);
   write_file_atomically(folder_ / "benchmark.json", benchmark);
-  if (!table1.empty) {
-    write_file_atomically(folder_ / "table1.csv", table1.csv);
-    write_file_atomically(folder_ / "table1.md", table1.markdown);
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    if (tables[i].empty) continue;
+    const std::string name(published_[i].info().name);
+    write_file_atomically(folder_ / (name + ".csv"), tables[i].csv);
+    write_file_atomically(folder_ / (name + ".md"), tables[i].markdown);
   }
   write_file_atomically(folder_ / timings_name, timings);
+}
+
+void ResultFolder::write(std::span<const StructureRow> rows) const {
+  const StructureTable table = structure_table(rows, provenance_);
+  write_file_atomically(folder_ / "table2.csv", table.csv);
+  write_file_atomically(folder_ / "table2.md", table.markdown);
 }
 
 std::vector<ResultRow> read_results(const fs::path& folder) {

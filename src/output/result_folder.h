@@ -8,28 +8,32 @@
 #include "bench/result.h"
 #include "output/paper_table.h"
 #include "output/published.h"
+#include "output/structure_table.h"
 
 namespace mssim {
 
 /// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, benchmark.json,
-/// provenance.json and, where cloths of the paper were measured, table1.csv and table1.md.
+/// provenance.json and, where scenes of the paper were measured, its tables as NAME.csv and NAME.md.
 class ResultFolder {
  public:
   /// Creates the folder and those above it and writes provenance.json, so that a folder that cannot be
   /// written is found before anything is measured. Throws WriteError.
   ResultFolder(std::filesystem::path folder, Provenance provenance, PaperLegend legend,
-               PublishedTable published);
+               std::vector<PublishedTable> published);
 
   /// Writes all that follows from the rows, each file whole or not at all, timings.csv last: what stands
   /// there has its samples. To be called after every finished combination. Throws WriteError, and
   /// std::invalid_argument for a number that is not finite, then before any file is touched.
   void write(std::span<const ResultRow> rows) const;
 
+  /// Writes table2.csv and table2.md. Throws WriteError.
+  void write(std::span<const StructureRow> rows) const;
+
  private:
   std::filesystem::path folder_;
   Provenance provenance_;
   PaperLegend legend_;
-  PublishedTable published_;
+  std::vector<PublishedTable> published_;
 };
 
 /// The rows, with their samples, that an earlier run left in a folder; none when it has no timings.csv.

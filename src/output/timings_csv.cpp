@@ -94,6 +94,7 @@ const std::vector<Column>& columns() {
       number("energy_drift", &Row::energy_drift),
       truth("verified", &Row::verified),
       text("status", &Row::status),
+      text("note", &Row::note),
   };
   return table;
 }

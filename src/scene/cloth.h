@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "model/system.h"
 #include "scene/field_visitor.h"
 #include "scene/scene_spec.h"
@@ -18,6 +20,9 @@ void check_cloth(const SceneSpec& spec);
 /// springs_published = 2 springs_unique: Hong et al. count the 12-neighbour stencil of every node, and so
 /// each spring once from each of its ends.
 SceneCounts cloth_counts(const SceneSpec& spec);
+
+/// The same: a cloth is as its file says.
+std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec);
 
 /// The cloth as spec describes it: node (r, c) has the index r * columns + c and starts at
 /// (c spacing, ceiling height, r spacing) plus the ripple, a standing wave of given amplitude in position and

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "model/vec3.h"
+
 namespace mssim {
 
 class FieldVisitor;
@@ -28,11 +30,17 @@ constexpr Range above(double minimum, double maximum) { return {minimum, true, m
 
 enum class Presence { required, optional };
 
+/// A section that an object may have instead of others.
+struct Section {
+  std::string_view name;
+  FieldList fields;
+};
+
 /// Longest text of a scene file, in characters.
 inline constexpr std::size_t longest_text = 200;
 
-/// Is told the fields of one JSON object. Numbers, choices and objects marked so must be there; keys that no
-/// call names are not allowed.
+/// Is told the fields of one JSON object. What is not marked optional must be there; keys that no call names
+/// are not allowed.
 class FieldVisitor {
  public:
   FieldVisitor() = default;
@@ -47,8 +55,12 @@ class FieldVisitor {
                        std::uint32_t maximum) = 0;
   /// One line of at most `longest_text` characters.
   virtual void text(std::string_view key, Presence presence, std::string& target) = 0;
-  /// One of `names`; returns its index.
-  virtual std::size_t choice(std::string_view key, std::span<const std::string_view> names) = 0;
+  /// Three numbers, [x, y, z].
+  virtual void vector(std::string_view key, Presence presence, Vec3d& target, const Range& each) = 0;
+  /// One of several sections: the text at `key` names it, and the object of that name holds it.
+  virtual void one_of(std::string_view key, std::span<const Section> sections) = 0;
+  /// A list of 1 to `most` objects; `element` is called for each of them, or once where there is no file.
+  virtual void list(std::string_view key, std::size_t most, const FieldList& element) = 0;
   /// A nested object; `fields` is called only when it is there.
   virtual void object(std::string_view key, Presence presence, const FieldList& fields) = 0;
 };

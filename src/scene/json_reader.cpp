@@ -55,7 +55,7 @@ class JsonReader final : public FieldVisitor {
   void number(std::string_view key, double& target, const Range& range) override {
     const std::string wanted = "a number " + described(range);
     if (const json* value = find(key, Presence::required, wanted))
-      target = number_of(key, *value, range, wanted);
+      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
   }
 
   void number_or_auto(std::string_view key, std::optional<double>& target, const Range& range) override {
@@ -65,7 +65,7 @@ class JsonReader final : public FieldVisitor {
     if (*value == "auto")
       target.reset();
     else
-      target = number_of(key, *value, range, wanted);
+      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
   }
 
   void integer(std::string_view key, std::uint32_t& target, std::uint32_t minimum,
@@ -74,7 +74,7 @@ class JsonReader final : public FieldVisitor {
     const std::string wanted = "an integer " + described(range);
     const json* value = find(key, Presence::required, wanted);
     if (value == nullptr) return;
-    const double number = number_of(key, *value, range, wanted);
+    const double number = number_of(json_pointer(pointer_, key), *value, range, wanted);
     if (number != std::floor(number)) refuse(key, *value, wanted);
     target = static_cast<std::uint32_t>(number);
   }
@@ -91,10 +91,29 @@ class JsonReader final : public FieldVisitor {
     target = words;
   }
 
-  std::size_t choice(std::string_view key, std::span<const std::string_view> names) override {
+  void vector(std::string_view key, Presence presence, Vec3d& target, const Range& each) override {
+    const std::string wanted = "a list of three numbers " + described(each);
+    const json* value = find(key, presence, wanted);
+    if (value == nullptr) return;
+    if (!value->is_array() || value->size() != 3) refuse(key, *value, wanted);
+    const std::string list = json_pointer(pointer_, key);
+    const auto component = [&](std::size_t i) {
+      return number_of(json_pointer(list, std::to_string(i)), (*value)[i], each,
+                       "a number " + described(each));
+    };
+    target = {component(0), component(1), component(2)};
+  }
+
+  void one_of(std::string_view key, std::span<const Section> sections) override {
+    std::vector<std::string_view> names;
+    names.reserve(sections.size());
+    for (const Section& section : sections) names.push_back(section.name);
     std::string wanted = "the text " + listed(names, "or");
     const json* value = find(key, Presence::required, wanted);
-    if (value == nullptr) return 0;  // finish() throws
+    if (value == nullptr) {
+      known_.insert(known_.end(), names.begin(), names.end());
+      return;
+    }
     if (!value->is_string()) refuse(key, *value, wanted);
     const auto& word = value->get_ref<const std::string&>();
     const auto match = std::find(names.begin(), names.end(), word);
@@ -103,7 +122,22 @@ class JsonReader final : public FieldVisitor {
       if (!nearest.empty() && names.size() > 1) wanted += ", perhaps " + std::string(nearest);
       refuse(key, *value, wanted);
     }
-    return static_cast<std::size_t>(match - names.begin());
+    object(*match, Presence::required, sections[static_cast<std::size_t>(match - names.begin())].fields);
+  }
+
+  void list(std::string_view key, std::size_t most, const FieldList& element) override {
+    const std::string wanted = "a list, [ ... ], of 1 to " + std::to_string(most) + " objects";
+    const json* value = find(key, Presence::required, wanted);
+    if (value == nullptr) return;
+    const std::string pointer = json_pointer(pointer_, key);
+    if (value->is_array() && (value->empty() || value->size() > most))
+      fail(pointer, "has " + std::to_string(value->size()) + " elements: give " + wanted);
+    if (!value->is_array()) refuse(key, *value, wanted);
+    for (std::size_t i = 0; i < value->size(); ++i) {
+      JsonReader nested(file_, json_pointer(pointer, std::to_string(i)), (*value)[i]);
+      element(nested);
+      nested.finish();
+    }
   }
 
   void object(std::string_view key, Presence presence, const FieldList& fields) override {
@@ -149,12 +183,11 @@ class JsonReader final : public FieldVisitor {
     return nullptr;
   }
 
-  double number_of(std::string_view key, const json& value, const Range& range,
+  double number_of(std::string_view pointer, const json& value, const Range& range,
                    const std::string& wanted) const {
-    if (!value.is_number()) refuse(key, value, wanted);
-    const auto number = value.get<double>();
-    if (!contains(range, number)) refuse(key, value, wanted);
-    return number;
+    if (value.is_number())
+      if (const auto number = value.get<double>(); contains(range, number)) return number;
+    fail(pointer, "is " + described(value) + ": give " + wanted);
   }
 
   const std::filesystem::path& file_;

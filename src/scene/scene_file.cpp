@@ -1,6 +1,7 @@
 #include "scene/scene_file.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "model/data_folder.h"
@@ -40,16 +41,15 @@ std::vector<std::string> names_in_folder() {
 void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
   std::string schema;  // for editors; says nothing about the scene
   fields.text("$schema", Presence::optional, schema);
-  std::vector<std::string_view> kind_names;
-  kind_names.reserve(scene_kinds().size());
-  for (const SceneKind& kind : scene_kinds()) kind_names.push_back(kind.name);
-  const SceneKind& kind = scene_kinds()[fields.choice("kind", kind_names)];
+  std::vector<Section> kinds;
+  for (const SceneKind& kind : scene_kinds())
+    kinds.push_back({kind.name, [&](FieldVisitor& body) { kind.visit_fields(body, spec); }});
+  fields.one_of("kind", kinds);
   fields.text("description", Presence::required, spec.description);
   fields.number_or_auto("dt_s", spec.dt_s, above(0, 1));
   fields.number("gravity_m_per_s2", spec.gravity_m_per_s2, from(0, 1000));
   fields.number("viscous_damping_per_s", spec.viscous_damping_per_s, from(0, 1e6));
   fields.object("floor", Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
-  fields.object(kind.name, Presence::required, [&](FieldVisitor& body) { kind.visit_fields(body, spec); });
 }
 
 SceneSpec load_scene(const std::filesystem::path& file) {
@@ -64,13 +64,16 @@ SceneSpec load_scene(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> scene_names() {
-  std::vector<std::pair<std::uint64_t, std::string>> scenes;
-  for (std::string& name : names_in_folder())
-    scenes.emplace_back(counts_of(load_scene(file_of(name))).nodes, std::move(name));
+  std::vector<std::tuple<std::size_t, std::uint64_t, std::string>> scenes;
+  for (std::string& name : names_in_folder()) {
+    const SceneSpec spec = load_scene(file_of(name));
+    scenes.emplace_back(spec.body.index(), stated_counts(spec).value_or(SceneCounts{}).nodes,
+                        std::move(name));
+  }
   std::sort(scenes.begin(), scenes.end());
   std::vector<std::string> names;
   names.reserve(scenes.size());
-  for (auto& [nodes, name] : scenes) names.push_back(std::move(name));
+  for (auto& [kind, nodes, name] : scenes) names.push_back(std::move(name));
   return names;
 }
 

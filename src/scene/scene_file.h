@@ -20,8 +20,8 @@ SceneSpec load_scene(const std::filesystem::path& file);
 /// contains a slash or ends in .json. Throws SceneError; for an unknown name it lists the known ones.
 SceneSpec find_scene(std::string_view name_or_path);
 
-/// The names of the scenes in the data folder, the smallest (in nodes) first. Throws SceneError when one of
-/// them cannot be read.
+/// The names of the scenes in the data folder, kind by kind, the smallest (in nodes, as stated) first. Throws
+/// SceneError when one of them cannot be read.
 std::vector<std::string> scene_names();
 
 }  // namespace mssim

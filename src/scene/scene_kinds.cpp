@@ -4,14 +4,16 @@
 #include <string>
 #include <variant>
 
+#include "scene/bodies.h"
 #include "scene/cloth.h"
 #include "scene/memory.h"
 
 namespace mssim {
 namespace {
 
-constexpr std::array<SceneKind, 1> kinds{{
-    {"cloth", visit_cloth_fields, check_cloth, cloth_counts, build_cloth},
+constexpr std::array<SceneKind, 2> kinds{{
+    {"cloth", visit_cloth_fields, check_cloth, stated_cloth_counts, cloth_counts, build_cloth},
+    {"bodies", visit_bodies_fields, check_bodies, stated_bodies_counts, bodies_counts, build_bodies},
 }};
 static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);
 
@@ -20,6 +22,8 @@ static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);
 std::span<const SceneKind> scene_kinds() { return kinds; }
 
 const SceneKind& kind_of(const SceneSpec& spec) { return kinds.at(spec.body.index()); }
+
+std::optional<SceneCounts> stated_counts(const SceneSpec& spec) { return kind_of(spec).stated(spec); }
 
 SceneCounts counts_of(const SceneSpec& spec) { return kind_of(spec).counts(spec); }
 

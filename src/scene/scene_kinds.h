@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -16,6 +17,8 @@ struct SceneKind {
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
   /// Checks what one field alone cannot show. Throws SceneError.
   void (*check)(const SceneSpec& spec);
+  /// What the file says about the size, none where it says nothing.
+  std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
   SceneCounts (*counts)(const SceneSpec& spec);
   System (*build)(const SceneSpec& spec);
 };
@@ -27,13 +30,18 @@ std::span<const SceneKind> scene_kinds();
 /// The row of the scene's kind.
 const SceneKind& kind_of(const SceneSpec& spec);
 
-/// Nodes and springs of the scene, without building it.
+/// Nodes and springs as the scene's file states them, which costs nothing; none where it does not.
+std::optional<SceneCounts> stated_counts(const SceneSpec& spec);
+
+/// Nodes and springs that the scene has. Bodies have to be meshed for that: throws MeshError and
+/// MissingProgram.
 SceneCounts counts_of(const SceneSpec& spec);
 
 /// Throws SceneError when the scene needs more memory than there is, naming both amounts.
 void require_memory(const SceneSpec& spec);
 
-/// The System of the scene. Throws SceneError when it needs more memory than there is, before allocating any.
+/// The System of the scene. Throws SceneError when it needs more memory than there is, before allocating any,
+/// and like counts_of.
 System build_system(const SceneSpec& spec);
 
 }  // namespace mssim

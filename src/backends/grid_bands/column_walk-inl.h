@@ -14,7 +14,7 @@
 #endif
 
 #include "backends/grid_bands/band_sheet.h"
-#include "backends/grid_bands/lanes-inl.h"
+#include "backends/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
@@ -83,17 +83,6 @@ HWY_INLINE void apply_spring(const NodeLanes& node, const float* other, const Sp
   on_other = on_other - force;
 }
 
-/// What the floor does to the new state of the lanes below it (the other lanes keep theirs).
-HWY_INLINE void touch_floor(const BandSheet& sheet, Lanes3& x, Lanes3& v) {
-  const Lanes height(sheet.floor_height);
-  const Mask under = hn::Lt(x.y.v, height.v);
-  if (HWY_LIKELY(hn::AllFalse(FloatTag(), under))) return;
-  const Lanes rebound = floor_rebound(v.y, Lanes(sheet.restitution));
-  const Lanes grip = floor_grip(rebound - v.y, mul_add(v.z, v.z, v.x * v.x), Lanes(sheet.friction));
-  x.y = select(under, height, x.y);
-  v = {select(under, grip * v.x, v.x), select(under, rebound, v.y), select(under, grip * v.z, v.z)};
-}
-
 /// One row: the springs of `set` that it owns and, if `update`, the nodes' new values.
 template <std::size_t method, std::size_t stage, unsigned set, bool update>
 HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3>& spring,
@@ -157,7 +146,10 @@ HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3
         sheet.coefficients, node.x, node.v, a,
         [&](auto slot) MSSIM_INLINE_LAMBDA { return load3(address(slot)); },
         [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { store3(address(slot), value); },
-        [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA { touch_floor(sheet, x, v); });
+        [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
+          const Lanes height(sheet.floor_height);
+          touch_floor(hn::Lt(x.y.v, height.v), height, Lanes(sheet.restitution), Lanes(sheet.friction), x, v);
+        });
   }
 }
 

@@ -25,7 +25,7 @@ using Index = hn::Vec<IndexTag>;
 #define MSSIM_INLINE HWY_INLINE
 #define MSSIM_INLINE_LAMBDA HWY_ATTR __attribute__((always_inline))
 
-/// Floats, one of each band.
+/// Floats side by side, one of each node of a vector.
 struct Lanes {
   hn::Vec<FloatTag> v;
   Lanes() = default;
@@ -89,6 +89,16 @@ HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
 #include "kernels/floor_law.h"
 #include "kernels/spring_law.h"
 #undef MSSIM_LAW
+
+/// What the floor does to the new state of the lanes `under` it (the other lanes keep theirs).
+HWY_INLINE void touch_floor(Mask under, Lanes height, Lanes restitution, Lanes friction, Lanes3& x,
+                            Lanes3& v) {
+  if (HWY_LIKELY(hn::AllFalse(FloatTag(), under))) return;
+  const Lanes rebound = floor_rebound(v.y, restitution);
+  const Lanes grip = floor_grip(rebound - v.y, mul_add(v.z, v.z, v.x * v.x), friction);
+  x.y = select(under, height, x.y);
+  v = {select(under, grip * v.x, v.x), select(under, rebound, v.y), select(under, grip * v.z, v.z)};
+}
 
 #include "integrators/stage_update-inl.h"
 

@@ -1,0 +1,95 @@
+#include "backends/sliced_graph/sliced_bodies.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <string>
+
+#include "backends/backend.h"
+
+namespace mssim {
+namespace {
+
+/// What a slice costs beside its entries, in entries.
+constexpr std::size_t slice_cost = 4;
+
+/// Cuts the slices into `count` ranges of about the same number of entries.
+std::vector<SlicedBodies::Part> balanced_parts(const std::vector<std::uint32_t>& first_entry,
+                                               std::size_t count) {
+  const std::size_t slices = first_entry.size() - 1;
+  const auto cost_before = [&](std::size_t slice) { return first_entry[slice] + slice * slice_cost; };
+  std::vector<SlicedBodies::Part> parts;
+  std::size_t slice = 0;
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::size_t begin = slice, target = cost_before(slices) * (p + 1) / count;
+    while (slice < slices && cost_before(slice + 1) <= target) ++slice;
+    parts.push_back({begin, slice});
+  }
+  return parts;
+}
+
+}  // namespace
+
+SlicedBodies::SlicedBodies(const System& system, const Integrator& method, double dt_s,
+                           std::size_t slice_lanes, std::size_t threads)
+    : lanes(slice_lanes),
+      integrator(&method),
+      coefficients(coefficients_of<float>(method, dt_s)),
+      viscous_damping(static_cast<float>(system.viscous_damping)),
+      gravity(static_cast<float>(system.gravity)),
+      floor_height(static_cast<float>(system.floor.height)),
+      restitution(static_cast<float>(system.floor.restitution)),
+      friction(static_cast<float>(system.floor.friction)) {
+  constexpr std::size_t offsets = record_floats / offset_floats;
+  constexpr std::size_t most_nodes =
+      std::numeric_limits<std::uint32_t>::max() / offsets - SlicedGraph::window;
+  if (system.nodes() > most_nodes)
+    throw Unsupported("the scene has " + std::to_string(system.nodes()) +
+                      " nodes, openmp steps bodies of at most " + std::to_string(most_nodes));
+  SlicedGraph graph(system, lanes);
+  entries = AlignedArray(graph.entries() * 2 * lanes);
+  for (std::size_t entry = 0; entry < graph.entries(); ++entry)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      float* row = entries.data() + entry * 2 * lanes;
+      const std::size_t element = entry * lanes + lane;
+      row[lane] = std::bit_cast<float>(static_cast<std::uint32_t>(graph.neighbour[element] * offsets));
+      row[lanes + lane] = graph.stiffness_rest[element];
+    }
+  constants = AlignedArray(graph.places() * 3);
+  for (std::size_t i = 0; i < graph.places(); ++i) {
+    float* slice = constants.data() + i / lanes * 3 * lanes + i % lanes;
+    slice[0] = graph.stiffness[i];
+    slice[lanes] = graph.damping[i];
+    slice[2 * lanes] = static_cast<float>(graph.held[i]);
+  }
+  for (std::size_t pair = 0; pair < pair_kinds; ++pair) {
+    if (!stores(method, static_cast<Pair>(pair), Storage::separate)) continue;
+    pairs[pair] = AlignedArray(graph.places() * record_floats);
+    base[pair] = pairs[pair].data();
+  }
+  place = std::move(graph.place);
+  first_entry = std::move(graph.first_entry);
+  parts =
+      balanced_parts(first_entry, std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, slices())));
+}
+
+void SlicedBodies::set_state(const State& state) {
+  for (std::size_t node = 0; node < place.size(); ++node) {
+    float* record = base[index(Pair::state)] + place[node] * record_floats;
+    const Vec3<float> x = vec3_cast<float>(state.position[node]), v = vec3_cast<float>(state.velocity[node]);
+    const std::array<float, record_floats> values{x.x, x.y, x.z, 0, v.x, v.y, v.z, 0};
+    std::copy(values.begin(), values.end(), record);
+  }
+}
+
+State SlicedBodies::state() const {
+  State state;
+  for (std::size_t node = 0; node < place.size(); ++node) {
+    const float* record = base[index(Pair::state)] + place[node] * record_floats;
+    state.position.push_back(vec3_cast<double>(Vec3<float>{record[0], record[1], record[2]}));
+    state.velocity.push_back(vec3_cast<double>(Vec3<float>{record[4], record[5], record[6]}));
+  }
+  return state;
+}
+
+}  // namespace mssim

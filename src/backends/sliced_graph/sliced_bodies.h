@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "backends/aligned_array.h"
+#include "backends/sliced_graph/sliced_graph.h"
+#include "integrators/coefficients.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// Bodies laid out for vectors of `lanes` floats: what the vector code needs to take steps, with one
+/// integrator and one dt.
+///
+/// A node is a record of eight floats, x y z _ u v w _ (u v w: velocity), half a cache line: a vector of
+/// neighbours is gathered by loading whole records and transposing them in registers. Measured on two Zen 4
+/// cores with 38,148 nodes, that is 3.6 times as fast as gather instructions on separate components.
+struct SlicedBodies {
+  static constexpr std::size_t record_floats = 8;
+  /// Slices [begin, end), the work of one thread.
+  struct Part {
+    std::size_t begin, end;
+  };
+
+  std::size_t lanes = 0;
+  std::vector<std::uint32_t> place;        ///< SlicedGraph::place
+  std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
+  /// [entries][2][lanes] in one stream: where the neighbours' records start, in units of offset_floats and as
+  /// std::uint32_t, then SlicedGraph::stiffness_rest.
+  AlignedArray entries;
+  /// [slices][3][lanes] SlicedGraph's stiffness, damping and `held`, the last as 0 or 1.
+  AlignedArray constants;
+  static constexpr std::size_t offset_floats = 2;
+
+  const Integrator* integrator = nullptr;
+  Coefficients<float> coefficients{};
+  float viscous_damping = 0, gravity = 0;
+  float floor_height = 0, restitution = 0, friction = 0;
+  std::vector<Part> parts;
+  std::array<AlignedArray, pair_kinds> pairs;  ///< [slices][lanes][record_floats]; empty where not stored
+  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
+
+  /// Cuts the bodies into slices of `slice_lanes` nodes and at most `threads` parts of about the same work.
+  /// Throws Unsupported like SlicedGraph, and for more nodes than offsets can name.
+  SlicedBodies(const System& system, const Integrator& method, double dt_s, std::size_t slice_lanes,
+               std::size_t threads);
+  void set_state(const State& state);
+  State state() const;
+
+  std::size_t slices() const { return first_entry.size() - 1; }
+};
+
+}  // namespace mssim

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "mesh/surface.h"
+
+namespace mssim {
+
+/// A box around the origin, its sides along the axes.
+struct BoxShape {
+  Vec3d size;  ///< m, length of the sides
+  std::array<std::uint32_t, 3>
+      cells;  ///< squares of the surface along x, y and z, each cut into two triangles
+
+  bool operator==(const BoxShape&) const = default;
+};
+
+/// The surface with 2 (ab + bc + ca) + 2 points for a x b x c cells. Throws MeshError for a size that is not
+/// positive or for less than one cell.
+Surface surface_of(const BoxShape& box);
+
+/// Distance of a point inside from the nearest side, m; not positive outside.
+double depth_in(const BoxShape& box, const Vec3d& point);
+
+}  // namespace mssim

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mssim {
+
+/// How a program that was run ended.
+struct ChildResult {
+  int exit_code = 0;   ///< what it returned, when signal is 0
+  int signal = 0;      ///< what ended it, or 0
+  std::string output;  ///< what it wrote to stdout and stderr, the last 64 KiB
+};
+
+/// What a program is run with.
+struct ChildProcess {
+  std::filesystem::path program;
+  std::vector<std::string> arguments;    ///< without the program's name
+  std::vector<std::string> environment;  ///< NAME=VALUE, added to this process's or replacing what it has
+  std::filesystem::path folder;          ///< the folder it runs in
+  unsigned cpu_seconds = 0;              ///< processor time after which the system ends it with SIGXCPU
+};
+
+/// Runs a program to its end: no shell, empty stdin, no core file. Throws std::runtime_error with one
+/// sentence when it cannot be started.
+ChildResult run(const ChildProcess& child);
+
+}  // namespace mssim

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "mesh/point_merger.h"
+#include "mesh/surface_file.h"
+#include "mesh/text_lines.h"
+
+namespace mssim {
+namespace {
+
+/// Lines that say nothing about the surface's shape.
+constexpr std::array<std::string_view, 14> left_out{"vt",     "vn", "vp", "g",  "o",   "s",      "usemtl",
+                                                    "mtllib", "l",  "p",  "mg", "lod", "usemap", "maplib"};
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& name, std::string_view text) : lines_(name, text), merger_(surface_) {}
+
+  Surface read() {
+    while (lines_.next()) {
+      const std::string_view keyword = lines_.words().front();
+      if (lines_.words().back() == "\\")
+        lines_.fail("the line goes on after a backslash; join it with the next");
+      if (keyword == "v")
+        vertex();
+      else if (keyword == "f")
+        face();
+      else if (std::find(left_out.begin(), left_out.end(), keyword) == left_out.end())
+        lines_.fail("it begins with " + TextLines::quoted(keyword) +
+                    ", which is no line of a surface of triangles or polygons; export v and f lines only");
+    }
+    if (faces_.empty()) lines_.fail("the file ends without an f line; give a surface");
+    for (const Face& face : faces_) add(face);
+    return std::move(surface_);
+  }
+
+ private:
+  struct Face {
+    std::size_t line;
+    std::vector<std::int64_t> vertices;  ///< from 1
+  };
+
+  void vertex() {
+    vertices_.push_back({lines_.number(1, "x"), lines_.number(2, "y"), lines_.number(3, "z")});
+  }
+
+  /// A corner reads V, V/VT, V//VN or V/VT/VN; negative numbers count back from the latest.
+  std::int64_t corner(std::string_view word) const {
+    std::array<std::int64_t, 3> number{};
+    std::size_t part = 0;
+    for (std::string_view rest = word;; ++part) {
+      const std::size_t slash = std::min(rest.find('/'), rest.size());
+      const bool may_be_empty = part == 1 && slash < rest.size();
+      const bool is_empty = may_be_empty && slash == 0;
+      if (part >= number.size() || (!is_empty && !TextLines::parse(rest.substr(0, slash), number[part])))
+        lines_.fail("the corner " + TextLines::quoted(word) +
+                    " of a face cannot be read; write V, V/VT, V//VN or V/VT/VN");
+      if (slash == rest.size()) break;
+      rest.remove_prefix(slash + 1);
+    }
+    const auto latest = static_cast<std::int64_t>(vertices_.size());
+    const std::int64_t vertex = number[0] < 0 ? latest + 1 + number[0] : number[0];
+    if (vertex < 1)
+      lines_.fail("the corner " + TextLines::quoted(word) +
+                  " of a face names no vertex; they count from 1, or -1 for the latest");
+    return vertex;
+  }
+
+  void face() {
+    Face face{lines_.line(), {}};
+    for (std::size_t i = 1; i < lines_.words().size(); ++i)
+      face.vertices.push_back(corner(lines_.words()[i]));
+    if (face.vertices.size() < 3)
+      lines_.fail("the face has " + std::to_string(face.vertices.size()) + " corners; give three or more");
+    faces_.push_back(std::move(face));
+  }
+
+  /// Faces may name vertices that come later, so they are looked up at the end.
+  void add(const Face& face) {
+    std::vector<std::uint32_t> points;
+    for (const std::int64_t vertex : face.vertices) {
+      if (vertex > static_cast<std::int64_t>(vertices_.size()))
+        lines_.fail_at(face.line, "the face names vertex " + std::to_string(vertex) + " of " +
+                                      std::to_string(vertices_.size()) +
+                                      "; the file is truncated or the number wrong");
+      points.push_back(merger_.add(vertices_[static_cast<std::size_t>(vertex - 1)]));
+    }
+    for (std::size_t i = 2; i < points.size(); ++i)
+      surface_.triangles.push_back({points[0], points[i - 1], points[i]});
+  }
+
+  TextLines lines_;
+  std::vector<Vec3d> vertices_;
+  std::vector<Face> faces_;
+  Surface surface_;
+  PointMerger merger_;
+};
+
+}  // namespace
+
+Surface parse_obj(const std::string& name, std::string_view text) { return ObjReader(name, text).read(); }
+
+}  // namespace mssim

@@ -1,0 +1,122 @@
+#include "mesh/surface.h"
+
+#include <algorithm>
+#include <string>
+
+#include "mesh/geometry.h"
+#include "mesh/mesh_error.h"
+
+namespace mssim {
+namespace {
+
+/// One side of a triangle, in the triangle's direction of travel.
+struct Side {
+  std::uint32_t low = 0, high = 0;
+  bool upwards = false;  ///< from low to high
+  std::size_t triangle = 0;
+};
+
+class Check {
+ public:
+  Check(const Surface& surface, std::string_view name) : surface_(surface), name_(name) {}
+
+  void all() const {
+    if (surface_.triangles.empty()) fail("it has no triangles; give a closed surface");
+    points();
+    triangles();
+    sides();
+    if (!(volume_of(surface_) > 0))
+      fail("it encloses a volume of " + decimal(volume_of(surface_)) +
+           " m^3; turn its triangles round so that they run counter-clockwise seen from outside");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw MeshError(std::string(name_) + ": " + what); }
+
+  /// Files number points and triangles in their own ways, so messages give coordinates.
+  std::string at(std::uint32_t point) const { return place(surface_.points[point]); }
+  std::string corners(std::size_t triangle) const {
+    const auto& [a, b, c] = surface_.triangles[triangle];
+    return "the triangle " + at(a) + ", " + at(b) + ", " + at(c);
+  }
+
+  void points() const {
+    for (std::size_t p = 0; p < surface_.points.size(); ++p)
+      if (!is_finite(surface_.points[p]))
+        fail("point " + std::to_string(p) + " (from 0) has the coordinates " + place(surface_.points[p]) +
+             "; give finite numbers");
+  }
+
+  void triangles() const {
+    std::vector<bool> used(surface_.points.size());
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      const auto& triangle = surface_.triangles[t];
+      for (const std::uint32_t point : triangle) {
+        if (point >= surface_.points.size())
+          fail("triangle " + std::to_string(t) + " (from 0) names point " + std::to_string(point) +
+               " but there are only " + std::to_string(surface_.points.size()) + " points, counted from 0");
+        used[point] = true;
+      }
+      const Vec3d& a = surface_.points[triangle[0]];
+      const Vec3d ab = surface_.points[triangle[1]] - a;
+      const Vec3d ac = surface_.points[triangle[2]] - a;
+      if (length(cross(ab, ac)) <= flat * std::max(dot(ab, ab), dot(ac, ac)))
+        fail(corners(t) + " has no area; remove it or move its points apart");
+    }
+    const auto unused = std::find(used.begin(), used.end(), false);
+    if (unused != used.end())
+      fail("the point " + at(static_cast<std::uint32_t>(unused - used.begin())) +
+           " belongs to no triangle; remove it");
+  }
+
+  void sides() const {
+    std::vector<Side> sides;
+    sides.reserve(3 * surface_.triangles.size());
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::uint32_t from = surface_.triangles[t][corner];
+        const std::uint32_t to = surface_.triangles[t][(corner + 1) % 3];
+        sides.push_back({std::min(from, to), std::max(from, to), from < to, t});
+      }
+    const auto key = [](const Side& side) { return std::pair(side.low, side.high); };
+    std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+      return std::pair(key(a), a.triangle) < std::pair(key(b), b.triangle);
+    });
+    for (std::size_t first = 0; first < sides.size();) {
+      std::size_t end = first + 1;
+      while (end < sides.size() && key(sides[end]) == key(sides[first])) ++end;
+      const Side& side = sides[first];
+      const std::string edge = "the edge from " + at(side.low) + " to " + at(side.high);
+      if (end - first == 1) fail(edge + " belongs to one triangle only; close the hole there");
+      if (end - first > 2)
+        fail(edge + " belongs to " + std::to_string(end - first) +
+             " triangles; an edge of a closed surface joins two, so separate the parts that meet there");
+      if (side.upwards == sides[first + 1].upwards)
+        fail(corners(side.triangle) + " and " + corners(sides[first + 1].triangle) + " both run along " +
+             edge + " in the same direction; turn one of them round");
+      first = end;
+    }
+  }
+
+  /// Twice the area over the square of a side below which a triangle counts as a line.
+  static constexpr double flat = 1e-9;
+
+  const Surface& surface_;
+  std::string_view name_;
+};
+
+}  // namespace
+
+void validate_surface(const Surface& surface, std::string_view name) { Check(surface, name).all(); }
+
+double volume_of(const Surface& surface) {
+  if (surface.points.empty()) return 0;
+  // Measured from a point of the surface rather than the origin, so that a body far away loses no digits.
+  const Vec3d& apex = surface.points.front();
+  double six_times = 0;
+  for (const auto& [a, b, c] : surface.triangles)
+    six_times += six_volumes(apex, surface.points[a], surface.points[b], surface.points[c]);
+  return six_times / 6;
+}
+
+}  // namespace mssim

@@ -1,0 +1,135 @@
+#include "mesh/tetgen.h"
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "mesh/child_process.h"
+#include "mesh/geometry.h"
+#include "mesh/mesh_error.h"
+#include "mesh/temporary_folder.h"
+#include "mesh/tetgen_files.h"
+#include "mesh/text_lines.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The mesh of the largest committed body takes 0.2 s; what takes this long never ends.
+constexpr unsigned cpu_seconds = 300;
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    throw std::runtime_error("cannot write " + file.string() +
+                             "; make room in the folder of temporary files");
+}
+
+std::string corners_of(const Surface& surface, std::size_t triangle) {
+  const auto& [a, b, c] = surface.triangles[triangle];
+  return place(surface.points[a]) + ", " + place(surface.points[b]) + ", " + place(surface.points[c]);
+}
+
+/// One run of TetGen on files of its folder.
+class Run {
+ public:
+  Run(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior)
+      : program_(program), surface_(surface), has_interior_(!interior.empty()) {
+    write_text(folder_.path() / "body.smesh", smesh_text(surface));
+    // The name under which TetGen looks for the points of its switch i.
+    if (has_interior_) write_text(folder_.path() / "body.a.node", node_text(interior));
+  }
+
+  TetMesh mesh(const std::string& switches) const {
+    const ChildResult ended = tetgen(switches + (has_interior_ ? "i" : ""));
+    const fs::path nodes = folder_.path() / "body.1.node";
+    const fs::path tetrahedra = folder_.path() / "body.1.ele";
+    if (ended.signal != 0 || ended.exit_code != 0 || !fs::exists(nodes) || !fs::exists(tetrahedra))
+      fail(ended);
+    const std::string node_file = read_text(nodes);
+    const std::string ele_file = read_text(tetrahedra);
+    TetMesh mesh = parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
+    require_volume(mesh);
+    return mesh;
+  }
+
+ private:
+  ChildResult tetgen(const std::string& switches) const {
+    return run({program_.executable, {switches, "body.smesh"}, {}, folder_.path(), cpu_seconds});
+  }
+
+  [[noreturn]] void fail(const ChildResult& ended) const {
+    if (ended.signal == SIGXCPU || ended.signal == SIGKILL)
+      throw MeshError(
+          "TetGen was stopped after " + std::to_string(cpu_seconds) +
+          " s of processor time or for want of memory; give a surface of fewer triangles or a larger "
+          "largest volume");
+    if (const auto crossing = crossing_triangles()) throw MeshError(*crossing);
+    std::string how = "without writing a mesh";
+    if (ended.signal != 0)
+      how = "with signal " + std::to_string(ended.signal);
+    else if (ended.exit_code != 0)
+      how = "with exit code " + std::to_string(ended.exit_code);
+    throw MeshError(
+        "TetGen " + program_.version + " ended " + how + last_words(ended.output) +
+        " though it finds no triangles that cross; change the surface or the points inside a little");
+  }
+
+  static std::string last_words(const std::string& output) {
+    std::istringstream lines(output);
+    std::string last;
+    for (std::string line; std::getline(lines, line);)
+      if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+    return last.empty() ? last : " after writing \"" + last + "\"";
+  }
+
+  /// Asks TetGen which triangles cross (it prints "Facet #3 intersects facet #17", counted from 1); a run
+  /// that is to make a mesh just crashes on them.
+  std::optional<std::string> crossing_triangles() const {
+    const ChildResult search = tetgen("-d");
+    std::istringstream lines(search.output);
+    for (std::string line; std::getline(lines, line);) {
+      std::size_t first = 0;
+      std::size_t second = 0;
+      if (std::sscanf(line.c_str(), " Facet #%zu intersects facet #%zu", &first, &second) != 2) continue;
+      const std::size_t count = surface_.triangles.size();
+      if (first < 1 || second < 1 || first > count || second > count) continue;
+      return "the surface crosses or touches itself: the triangle " + corners_of(surface_, first - 1) +
+             " meets the triangle " + corners_of(surface_, second - 1) +
+             "; move them apart or join their parts";
+    }
+    return std::nullopt;
+  }
+
+  /// TetGen fills what lies inside the outermost triangles, holes and parts within parts included.
+  void require_volume(const TetMesh& mesh) const {
+    const double enclosed = volume_of(surface_);
+    const double filled = volume_of(mesh);
+    constexpr double rounding = 1e-6;
+    if (std::abs(filled - enclosed) > rounding * enclosed)
+      throw MeshError(
+          "the surface encloses " + decimal(enclosed) + " m^3 but TetGen filled " + decimal(filled) +
+          " m^3: a closed part lies inside another one; remove the inner part, since bodies are solid");
+  }
+
+  const TetgenProgram& program_;
+  const Surface& surface_;
+  bool has_interior_;
+  TemporaryFolder folder_;
+};
+
+}  // namespace
+
+TetMesh run_tetgen(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior,
+                   const std::string& switches) {
+  return Run(program, surface, interior).mesh(switches);
+}
+
+}  // namespace mssim

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/surface.h"
+#include "mesh/tet_mesh.h"
+#include "mesh/tetgen_program.h"
+
+namespace mssim {
+
+/// Has TetGen fill a surface with tetrahedra. `switches` are TetGen's, beginning "-p"; `interior` points
+/// become nodes (the switch i is added for them). Runs it as a process in a folder of its own. Throws
+/// MeshError when TetGen cannot fill the surface: triangles cross each other (both are named), one closed
+/// part lies inside another, it crashes or runs out of time; std::runtime_error when it cannot be run.
+TetMesh run_tetgen(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior,
+                   const std::string& switches);
+
+}  // namespace mssim

@@ -1,0 +1,77 @@
+#include "mesh/tetgen_program.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <sstream>
+
+#include "mesh/child_process.h"
+#include "mesh/text_lines.h"
+#include "model/fnv1a.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> find_in_path(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path candidate = fs::path(folder.empty() ? "." : folder) / program;
+    std::error_code error;
+    if (fs::is_regular_file(candidate, error) && ::access(candidate.c_str(), X_OK) == 0)
+      return fs::absolute(candidate);
+  }
+  return std::nullopt;
+}
+
+/// TetGen's own shared libraries, which hold most of it in Debian's package. Asked of the dynamic loader the
+/// way ldd does: it then prints what it would load, one "NAME => FILE (ADDRESS)" a line, and runs nothing.
+std::vector<fs::path> libraries_of(const fs::path& executable) {
+  constexpr unsigned cpu_seconds = 5;
+  const ChildResult listing = run({executable, {}, {"LD_TRACE_LOADED_OBJECTS=1"}, "/", cpu_seconds});
+  std::vector<fs::path> libraries;
+  std::istringstream lines(listing.output);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name, arrow, file;
+    if (words >> name >> arrow >> file && name.starts_with("libtet") && arrow == "=>")
+      libraries.emplace_back(file);
+  }
+  return libraries;
+}
+
+/// TetGen prints its version only with its help, after which Debian's crashes; the text of that help stands
+/// in the program as a string that begins "Version".
+std::optional<std::string> version_in(std::string_view program) {
+  using namespace std::string_view_literals;
+  constexpr auto before = "\0Version "sv;
+  for (std::size_t at = 0; (at = program.find(before, at)) != std::string_view::npos;) {
+    at += before.size();
+    const std::string_view rest = program.substr(at);
+    const std::string_view number = rest.substr(0, rest.find_first_not_of("0123456789."));
+    if (!number.empty()) return std::string(number);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<TetgenProgram> find_tetgen() {
+  const std::optional<fs::path> executable = find_in_path("tetgen");
+  if (!executable) return std::nullopt;
+  TetgenProgram program{*executable, "unknown", 0};
+  std::vector<fs::path> files = libraries_of(*executable);
+  files.insert(files.begin(), *executable);
+  std::string hashes;
+  for (const fs::path& file : files) {
+    const std::string bytes = read_text(file);
+    hashes += hexadecimal(fnv1a_64(bytes));
+    if (const auto version = version_in(bytes)) program.version = *version;
+  }
+  program.fnv1a_64 = fnv1a_64(hashes);
+  return program;
+}
+
+}  // namespace mssim

@@ -1,0 +1,100 @@
+#include "mesh/text_lines.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+#include "mesh/mesh_error.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\f\v";
+
+template <class Number>
+bool parse_number(std::string_view word, Number& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const char* end = word.data() + word.size();
+  const auto [stopped, error] = std::from_chars(word.data(), end, value);
+  return error == std::errc{} && stopped == end;
+}
+
+}  // namespace
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw MeshError(file.string() +
+                    (std::filesystem::exists(file, error) ? " is not a regular file" : " is missing") +
+                    "; name the file of a mesh");
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw MeshError(file.string() + " cannot be read; check its permissions");
+  return text;
+}
+
+TextLines::TextLines(std::string file, std::string_view text, char comment)
+    : file_(std::move(file)), text_(text), comment_(comment) {}
+
+bool TextLines::next() {
+  words_.clear();
+  while (words_.empty()) {
+    if (at_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    std::string_view rest = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    ++line_;
+    rest = rest.substr(0, rest.find(comment_));
+    while (true) {
+      const std::size_t first = rest.find_first_not_of(blanks);
+      if (first == std::string_view::npos) break;
+      rest.remove_prefix(first);
+      const std::size_t length = std::min(rest.find_first_of(blanks), rest.size());
+      words_.push_back(rest.substr(0, length));
+      rest.remove_prefix(length);
+    }
+  }
+  return true;
+}
+
+void TextLines::require_next(const std::string& expected) {
+  if (!next()) fail("the file ends before " + expected + "; it is truncated, so write it again");
+}
+
+bool TextLines::parse(std::string_view word, double& value) { return parse_number(word, value); }
+bool TextLines::parse(std::string_view word, std::int64_t& value) { return parse_number(word, value); }
+
+std::string TextLines::quoted(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  std::string text = "\"";
+  for (const char c : word.substr(0, longest)) text += (c < ' ' || c == 0x7f) ? '?' : c;
+  return text + (word.size() > longest ? "...\"" : "\"");
+}
+
+double TextLines::number(std::size_t index, std::string_view what) const {
+  double value = 0;
+  const std::string_view text = word(index, what);
+  if (!parse(text, value) || !std::isfinite(value))
+    fail(std::string(what) + " is " + quoted(text) + "; give a finite number");
+  return value;
+}
+
+std::int64_t TextLines::integer(std::size_t index, std::string_view what) const {
+  std::int64_t value = 0;
+  const std::string_view text = word(index, what);
+  if (!parse(text, value)) fail(std::string(what) + " is " + quoted(text) + "; give a whole number");
+  return value;
+}
+
+void TextLines::fail_at(std::size_t line, const std::string& what) const {
+  throw MeshError(file_ + ", line " + std::to_string(std::max<std::size_t>(line, 1)) + ": " + what);
+}
+
+std::string_view TextLines::word(std::size_t index, std::string_view what) const {
+  if (index >= words_.size()) fail(std::string(what) + " is missing; the line is cut off");
+  return words_[index];
+}
+
+}  // namespace mssim

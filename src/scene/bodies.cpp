@@ -1,0 +1,176 @@
+#include "scene/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/geometry.h"
+#include "mesh/mesh_error.h"
+#include "scene/body_shapes.h"
+#include "scene/json_document.h"
+#include "scene/scene_error.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t most_bodies = 10'000;
+
+const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.body); }
+
+void visit_body(FieldVisitor& fields, BodySpec& body) {
+  visit_shape_fields(fields, body);
+  fields.vector("centre_m", Presence::required, body.centre_m, from(-1e6, 1e6));
+  fields.object("turn", Presence::optional, [&](FieldVisitor& turn) {
+    turn.vector("axis", Presence::required, body.turn_axis, from(-1, 1));
+    turn.number("angle_deg", body.turn_deg, from(-360, 360));
+  });
+  fields.vector("velocity_m_per_s", Presence::required, body.velocity_m_per_s, from(-1000, 1000));
+  fields.vector("spin_rad_per_s", Presence::required, body.spin_rad_per_s, from(-1000, 1000));
+  fields.number("swell_per_s", body.swell_per_s, from(-100, 100));
+}
+
+std::string pointer_to(std::size_t body) { return "/bodies/list/" + std::to_string(body); }
+
+[[noreturn]] void refuse(const SceneSpec& spec, const std::string& pointer, const std::string& problem) {
+  throw SceneError(printable(spec.file.string(), 1000) + ": " + pointer + ' ' + problem);
+}
+
+/// A mesh and what follows from it, for all bodies of that shape.
+struct MeshedShape {
+  TetMesh mesh;  ///< its centre is the origin
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  double volume = 0;  ///< m^3
+};
+
+/// The shapes of a scene, each meshed once.
+class MeshedShapes {
+ public:
+  explicit MeshedShapes(const SceneSpec& spec) : spec_(spec) {}
+
+  const MeshedShape& of_body(std::size_t body) {
+    const BodyShape& shape = bodies_of(spec_).list[body].shape;
+    const auto known =
+        std::find_if(shapes_.begin(), shapes_.end(), [&](const auto& entry) { return entry.first == shape; });
+    if (known != shapes_.end()) return known->second;
+    MeshedShape meshed;
+    try {
+      meshed.mesh = mesh_of(shape, spec_.file.parent_path());
+    } catch (const MeshError& error) {
+      refuse(spec_, pointer_to(body), std::string("has no mesh: ") + error.what());
+    }
+    Vec3d centre;
+    for (const Vec3d& node : meshed.mesh.nodes) centre += node;
+    centre = 1 / static_cast<double>(meshed.mesh.nodes.size()) * centre;
+    for (Vec3d& node : meshed.mesh.nodes) node -= centre;
+    meshed.edges = edges_of(meshed.mesh);
+    meshed.volume = volume_of(meshed.mesh);
+    return shapes_.emplace_back(shape, std::move(meshed)).second;
+  }
+
+ private:
+  const SceneSpec& spec_;
+  std::vector<std::pair<BodyShape, MeshedShape>> shapes_;
+};
+
+/// Rodrigues' rotation by `angle` (radians) about the unit vector `axis`.
+Vec3d turned(const Vec3d& r, const Vec3d& axis, double angle) {
+  const double c = std::cos(angle);
+  return c * r + std::sin(angle) * cross(axis, r) + (1 - c) * dot(axis, r) * axis;
+}
+
+void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const MeshedShape& shape,
+              const BodiesSpec& bodies, const BodySpec& body) {
+  const auto first = static_cast<std::uint32_t>(system.nodes());
+  const Vec3d axis = 1 / length(body.turn_axis) * body.turn_axis;
+  for (const Vec3d& node : shape.mesh.nodes) {
+    const Vec3d r = turned(node, axis, body.turn_deg * std::numbers::pi / 180);
+    system.start.position.push_back(body.centre_m + r);
+    system.start.velocity.push_back(body.velocity_m_per_s + cross(body.spin_rad_per_s, r) +
+                                    body.swell_per_s * r);
+  }
+  for (const auto& [a, b] : shape.edges)
+    system.springs.push_back(
+        {first + a, first + b, static_cast<float>(length(shape.mesh.nodes[b] - shape.mesh.nodes[a])), 0});
+  for (Tetrahedron corners : shape.mesh.tetrahedra) {
+    for (std::uint32_t& corner : corners) corner += first;
+    tetrahedra.push_back(corners);
+  }
+  const std::size_t nodes = shape.mesh.nodes.size();
+  system.node_mass.insert(system.node_mass.end(), nodes,
+                          bodies.density_kg_per_m3 * shape.volume / static_cast<double>(nodes));
+}
+
+}  // namespace
+
+void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
+  BodiesSpec& bodies = spec.body.emplace<BodiesSpec>();
+  fields.number("density_kg_per_m3", bodies.density_kg_per_m3, from(1e-3, 1e6));
+  fields.object("springs", Presence::required, [&](FieldVisitor& springs) {
+    springs.number("stiffness_n_per_m", bodies.springs.stiffness, above(0, 1e9));
+    springs.number("damping_n_s_per_m", bodies.springs.damping, from(0, 1e6));
+  });
+  fields.list("list", most_bodies,
+              [&](FieldVisitor& element) { visit_body(element, bodies.list.emplace_back()); });
+}
+
+void check_bodies(const SceneSpec& spec) {
+  const BodiesSpec& bodies = bodies_of(spec);
+  for (std::size_t i = 0; i < bodies.list.size(); ++i)
+    if (!(length(bodies.list[i].turn_axis) > 1e-6))
+      refuse(spec, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
+}
+
+std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
+  SceneCounts counts;
+  for (const BodySpec& body : bodies_of(spec).list) {
+    const std::optional<MeshSize> size = stated_size(body);
+    if (!size) return std::nullopt;
+    counts.nodes += size->nodes;
+    counts.springs_unique += size->springs;
+  }
+  counts.springs_published = 3 * counts.springs_unique;
+  return counts;
+}
+
+SceneCounts bodies_counts(const SceneSpec& spec) {
+  MeshedShapes shapes(spec);
+  SceneCounts counts;
+  for (std::size_t i = 0; i < bodies_of(spec).list.size(); ++i) {
+    const MeshedShape& shape = shapes.of_body(i);
+    counts.nodes += shape.mesh.nodes.size();
+    counts.springs_unique += shape.edges.size();
+  }
+  counts.springs_published = 3 * counts.springs_unique;
+  return counts;
+}
+
+System build_bodies(const SceneSpec& spec) {
+  const BodiesSpec& bodies = bodies_of(spec);
+  MeshedShapes shapes(spec);
+  System system;
+  system.materials = {bodies.springs};
+  system.gravity = spec.gravity_m_per_s2;
+  system.viscous_damping = spec.viscous_damping_per_s;
+  system.floor = spec.floor;
+  TetrahedralMesh mesh;
+  for (std::size_t i = 0; i < bodies.list.size(); ++i) {
+    const std::size_t first = system.nodes();
+    add_body(system, mesh.tetrahedra, shapes.of_body(i), bodies, bodies.list[i]);
+    double lowest = std::numeric_limits<double>::infinity();
+    for (std::size_t node = first; node < system.nodes(); ++node)
+      lowest = std::min(lowest, system.start.position[node].y);
+    if (!(lowest > spec.floor.height))
+      refuse(spec, pointer_to(i) + "/centre_m/1",
+             "is " + shown_number(bodies.list[i].centre_m.y) +
+                 ", so that the body's lowest node would start at " + shown_number(lowest) +
+                 ", not above the floor at " + shown_number(spec.floor.height) + ": raise it");
+  }
+  system.topology = std::move(mesh);
+  return system;
+}
+
+}  // namespace mssim

@@ -1,0 +1,152 @@
+#include "scene/body_shapes.h"
+
+#include <array>
+#include <vector>
+
+#include "mesh/shape_mesh.h"
+#include "mesh/surface_mesh.h"
+#include "mesh/tetgen_files.h"
+#include "scene/scene_error.h"
+#include "scene/scene_file.h"
+#include "scene/scene_spec.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::uint32_t most_nodes = 100'000'000;
+
+void visit_expected(FieldVisitor& fields, BodySpec& body) {
+  fields.object("expected", Presence::optional, [&](FieldVisitor& expected) {
+    MeshSize& size = body.expected.emplace();
+    expected.integer("nodes", size.nodes, 4, most_nodes);
+    expected.integer("springs", size.springs, 6, most_nodes);
+  });
+}
+
+void visit_interior(FieldVisitor& fields, InteriorPoints& interior) {
+  fields.object("interior", Presence::required, [&](FieldVisitor& points) {
+    points.integer("points", interior.count, 0, 1'000'000);
+    points.integer("seed", interior.seed, 0, 0xffff'ffff);
+    points.number("jitter", interior.jitter, from(0, 0.5));
+    points.number("margin", interior.margin, from(0, 1));
+  });
+}
+
+void visit_box(FieldVisitor& fields, BodySpec& body) {
+  auto& [box, interior] = body.shape.emplace<GeneratedShape<BoxShape>>();
+  fields.vector("size_m", Presence::required, box.size, above(0, 1000));
+  fields.integer("cells_x", box.cells[0], 1, 1000);
+  fields.integer("cells_y", box.cells[1], 1, 1000);
+  fields.integer("cells_z", box.cells[2], 1, 1000);
+  visit_interior(fields, interior);
+  visit_expected(fields, body);
+}
+
+void visit_sphere(FieldVisitor& fields, BodySpec& body) {
+  auto& [sphere, interior] = body.shape.emplace<GeneratedShape<SphereShape>>();
+  fields.number("radius_m", sphere.radius_m, above(0, 1000));
+  fields.integer("frequency", sphere.frequency, 1, 1000);
+  visit_interior(fields, interior);
+  visit_expected(fields, body);
+}
+
+void visit_torus(FieldVisitor& fields, BodySpec& body) {
+  auto& [torus, interior] = body.shape.emplace<GeneratedShape<TorusShape>>();
+  fields.number("major_radius_m", torus.major_radius_m, above(0, 1000));
+  fields.number("minor_radius_m", torus.minor_radius_m, above(0, 1000));
+  fields.integer("cells_around", torus.cells_around, 3, 1000);
+  fields.integer("cells_across", torus.cells_across, 3, 1000);
+  visit_interior(fields, interior);
+  visit_expected(fields, body);
+}
+
+void visit_mesh_files(FieldVisitor& fields, BodySpec& body) {
+  auto& files = body.shape.emplace<MeshFiles>();
+  fields.text("node_file", Presence::required, files.node_file);
+  fields.text("ele_file", Presence::required, files.ele_file);
+  fields.number("unit_m", files.unit_m, above(0, 1e6));
+  visit_expected(fields, body);
+}
+
+void visit_surface_file(FieldVisitor& fields, BodySpec& body) {
+  auto& surface = body.shape.emplace<SurfaceFile>();
+  fields.text("file", Presence::required, surface.file);
+  fields.number("unit_m", surface.unit_m, above(0, 1e6));
+  fields.number("largest_tetrahedron_m3", surface.largest_tetrahedron_m3, from(0, 1e9));
+  visit_expected(fields, body);
+}
+
+void visit_scene_shape(FieldVisitor& fields, BodySpec& body) {
+  fields.text("name", Presence::required, body.shape.emplace<ShapeOfScene>().name);
+}
+
+/// The TABLE of shapes, in the order of BodyShape's alternatives: the value of `shape`, and what names the
+/// fields of its section.
+struct ShapeKind {
+  std::string_view name;
+  void (*visit_fields)(FieldVisitor& fields, BodySpec& body);
+};
+constexpr std::array<ShapeKind, 6> kinds{{
+    {"box", visit_box},
+    {"sphere", visit_sphere},
+    {"torus", visit_torus},
+    {"tetgen", visit_mesh_files},
+    {"surface", visit_surface_file},
+    {"scene", visit_scene_shape},
+}};
+static_assert(kinds.size() == std::variant_size_v<BodyShape>);
+
+/// The body whose shape is meant. Throws SceneError unless it has one of its own.
+BodySpec first_body(const ShapeOfScene& shape) {
+  const SceneSpec scene = find_scene(shape.name);
+  const auto* bodies = std::get_if<BodiesSpec>(&scene.body);
+  if (bodies == nullptr)
+    throw SceneError("the scene \"" + shape.name +
+                     "\" has no bodies whose shape could be taken: name one that has");
+  if (std::holds_alternative<ShapeOfScene>(bodies->list.front().shape))
+    throw SceneError("the first body of the scene \"" + shape.name +
+                     "\" takes its shape from another scene: name that one");
+  return bodies->list.front();
+}
+
+/// How a shape becomes a mesh, one overload a kind.
+struct Mesher {
+  const std::filesystem::path& folder;
+
+  template <class Solid>
+  TetMesh operator()(const GeneratedShape<Solid>& shape) const {
+    return shape_mesh(shape.solid, shape.interior);
+  }
+  TetMesh operator()(const MeshFiles& files) const {
+    TetMesh mesh = read_tetgen_files(folder / files.node_file, folder / files.ele_file);
+    for (Vec3d& node : mesh.nodes) node = files.unit_m * node;
+    return mesh;
+  }
+  TetMesh operator()(const SurfaceFile& surface) const {
+    return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
+  }
+  TetMesh operator()(const ShapeOfScene& shape) const {
+    const SceneSpec scene = find_scene(shape.name);
+    return mesh_of(first_body(shape).shape, scene.file.parent_path());
+  }
+};
+
+}  // namespace
+
+void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
+  std::vector<Section> sections;
+  for (const ShapeKind& kind : kinds)
+    sections.push_back({kind.name, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
+  fields.one_of("shape", sections);
+}
+
+std::optional<MeshSize> stated_size(const BodySpec& body) {
+  if (const auto* other = std::get_if<ShapeOfScene>(&body.shape)) return first_body(*other).expected;
+  return body.expected;
+}
+
+TetMesh mesh_of(const BodyShape& shape, const std::filesystem::path& folder) {
+  return std::visit(Mesher{folder}, shape);
+}
+
+}  // namespace mssim

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include "mesh/tet_mesh.h"
+#include "scene/bodies_spec.h"
+#include "scene/field_visitor.h"
+
+namespace mssim {
+
+/// Names the fields that say what shape a body has: the text `shape` and the section of that name, with their
+/// targets in `body`. The TABLE of shapes stands in body_shapes.cpp.
+void visit_shape_fields(FieldVisitor& fields, BodySpec& body);
+
+/// What the scene's file, or the other scene that it names, states about the mesh. Throws SceneError when
+/// there is no such scene.
+std::optional<MeshSize> stated_size(const BodySpec& body);
+
+/// The mesh of the shape, m, wherever its origin is. `folder` is the scene file's. Throws SceneError when the
+/// shape is that of a scene that cannot be used, MeshError and MissingProgram.
+TetMesh mesh_of(const BodyShape& shape, const std::filesystem::path& folder);
+
+}  // namespace mssim

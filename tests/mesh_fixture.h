@@ -1,0 +1,59 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "mesh/box_shape.h"
+#include "mesh/mesh_error.h"
+#include "output_fixture.h"
+
+namespace mssim {
+
+/// A test whose mesh cache lies in a folder of its own. (Every test runs in a process of its own, so that it
+/// may change the environment.)
+class MeshTest : public OutputTest {
+ protected:
+  MeshTest() { ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1); }
+  std::filesystem::path cache() const { return folder() / "cache" / "mssim" / "meshes"; }
+
+  /// Puts a program named tetgen that runs this shell script before all others.
+  void install_tetgen(const std::string& script) const {
+    const std::filesystem::path programs = folder() / "programs";
+    std::filesystem::create_directories(programs);
+    write_text_file(programs / "tetgen", "#!/bin/sh\n" + script);
+    std::filesystem::permissions(programs / "tetgen", std::filesystem::perms::owner_all);
+    ::setenv("PATH", (programs.string() + ":" + ::getenv("PATH")).c_str(), 1);
+  }
+};
+
+/// What a MeshError that `body` throws says, or "" when it throws none.
+inline std::string mesh_error_of(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const MeshError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A cube with sides of 1 m and one cell, its lowest corner at `corner`.
+inline Surface unit_cube(const Vec3d& corner = {}) {
+  Surface cube = surface_of(BoxShape{{1, 1, 1}, {1, 1, 1}});
+  for (Vec3d& point : cube.points) point += corner + Vec3d{0.5, 0.5, 0.5};
+  return cube;
+}
+
+/// Both surfaces as one.
+inline Surface both(Surface first, const Surface& second) {
+  const auto offset = static_cast<std::uint32_t>(first.points.size());
+  first.points.insert(first.points.end(), second.points.begin(), second.points.end());
+  for (const auto& [a, b, c] : second.triangles)
+    first.triangles.push_back({a + offset, b + offset, c + offset});
+  return first;
+}
+
+}  // namespace mssim
