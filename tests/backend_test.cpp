@@ -3,7 +3,6 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -117,12 +116,9 @@ TEST_P(EachBackendAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
   }
 }
 
-/// The backends that step bodies.
-constexpr std::array<std::string_view, 4> body_backends{"serial", "threads-mutex", "openmp", "hybrid"};
-
 class EachBackendAndIntegratorOnBodies : public EachBackendAndIntegrator {};
 INSTANTIATE_TEST_SUITE_P(Tables, EachBackendAndIntegratorOnBodies,
-                         testing::Combine(testing::ValuesIn(body_backends),
+                         testing::Combine(testing::ValuesIn(names_of(backends())),
                                           testing::ValuesIn(names_of(integrators))),
                          [](const auto& test) {
                            return plain(std::get<0>(test.param)) + "__" + plain(std::get<1>(test.param));
