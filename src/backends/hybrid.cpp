@@ -18,6 +18,7 @@
 #include "backends/opencl_buffer.h"
 #include "backends/opencl_call.h"
 #include "backends/opencl_device.h"
+#include "backends/opencl_lots.h"
 #include "backends/opencl_program.h"
 #include "backends/packed_springs.h"
 #include "backends/quad.h"
@@ -37,22 +38,6 @@ struct Material {
   float damping;    // N s/m
 };
 
-/// Work-items of a launch. For a CPU few, each taking many units in turn, and yet enough that one that was
-/// held up leaves some of its share to the others; else one per unit.
-struct Range {
-  std::size_t global, local;
-  std::size_t count;  // of times that a work-item takes `lanes` units
-
-  Range(std::size_t units, const OpenclDevice& device, int lanes) {
-    const auto width = static_cast<std::size_t>(lanes);
-    constexpr std::size_t good_items_per_unit = 4, good_group = 64;
-    const std::size_t lots = std::max<std::size_t>(1, units / width);
-    local = width > 1 ? 1 : good_group;
-    count = width > 1 ? std::max<std::size_t>(1, lots / (good_items_per_unit * device.compute_units)) : 1;
-    global = ((lots + count - 1) / count + local - 1) / local * local;
-  }
-};
-
 /// Between calls the host owns all pairs; the device owns the gathered pair and the forces while it computes.
 class Hybrid final : public Backend {
  public:
@@ -70,7 +55,7 @@ class Hybrid final : public Backend {
         floor_height_(static_cast<float>(system.floor.height)),
         restitution_(static_cast<float>(system.floor.restitution)),
         friction_(static_cast<float>(system.floor.friction)),
-        range_(packed_.unit_count(), device, lanes) {
+        lots_(packed_.unit_count() / static_cast<std::size_t>(lanes), device, lanes) {
     // All forces are there before a node is written, so that pairs may share memory.
     std::vector<Pair> stored;
     for (std::size_t i = 0; i < pair_kinds; ++i)
@@ -163,7 +148,7 @@ class Hybrid final : public Backend {
     kernel_->setArg(3, kinds_->buffer());
     kernel_->setArg(4, materials_->buffer());
     kernel_->setArg(5, static_cast<cl_uint>(packed_.unit_count()));
-    kernel_->setArg(6, static_cast<cl_uint>(range_.count));
+    kernel_->setArg(6, static_cast<cl_uint>(lots_.per_item));
   }
 
   /// Where a pair's records are when the state lies at `present`: an index into pairs_ and host_.
@@ -182,8 +167,7 @@ class Hybrid final : public Backend {
     forces_->unmap(queue_, host_forces_);
     pair.unmap(queue_, host_[place]);
     kernel_->setArg(1, pair.buffer());
-    queue_.enqueueNDRangeKernel(*kernel_, cl::NullRange, cl::NDRange(range_.global),
-                                cl::NDRange(range_.local));
+    queue_.enqueueNDRangeKernel(*kernel_, cl::NullRange, cl::NDRange(lots_.global), cl::NDRange(lots_.local));
     host_forces_ = forces_->map(queue_, CL_MAP_READ, false);
     host_[place] = pair.map(queue_, CL_MAP_READ | CL_MAP_WRITE);
   }
@@ -307,7 +291,7 @@ class Hybrid final : public Backend {
   float viscous_damping_;
   Quad gravity_;
   float floor_height_, restitution_, friction_;
-  Range range_;
+  OpenclLots lots_;  // of units
   cl::Context context_;
   cl::CommandQueue queue_;
   std::array<std::optional<OpenclBuffer<NodeRecord>>, pair_kinds> pairs_;  // [Pair], those that are stored

@@ -18,25 +18,14 @@ namespace {
 
 /// The scene's node at each place.
 std::vector<std::uint32_t> node_order(const System& system) {
+  if (!std::holds_alternative<GridPatch>(system.topology))
+    return reverse_cuthill_mckee(system.nodes(), system.springs);
   std::vector<std::uint32_t> order(system.nodes());
   std::iota(order.begin(), order.end(), 0U);
-  if (std::holds_alternative<GridPatch>(system.topology)) return order;
-
-  std::vector<std::uint32_t> degree(system.nodes(), 0);
-  for (const Spring& spring : system.springs) {
-    ++degree[spring.first];
-    ++degree[spring.second];
-  }
-  order = reverse_cuthill_mckee(system.nodes(), system.springs);
-  constexpr std::size_t window = 64;  // nodes: nine tenths of the fill-up gone, and the locality kept
-  for (std::size_t begin = 0; begin < order.size(); begin += window)
-    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
-                     order.begin() + static_cast<std::ptrdiff_t>(std::min(begin + window, order.size())),
-                     [&](std::uint32_t a, std::uint32_t b) { return degree[a] > degree[b]; });
   return order;
 }
 
-/// A spring between places.
+/// A spring between places, the lower one first.
 struct Unit {
   std::uint32_t kind, first, second;
   float rest_length;
@@ -49,13 +38,6 @@ std::vector<Unit> sorted_units(const System& system, const std::vector<std::uint
   for (const Spring& spring : system.springs) {
     const auto [low, high] = std::minmax(place[spring.first], place[spring.second]);
     units.push_back({spring.kind, low, high, spring.rest_length});
-  }
-  std::sort(units.begin(), units.end());
-  std::vector<int> surplus(system.nodes(), 0);  // how much more often first than second
-  for (Unit& unit : units) {
-    if (surplus[unit.first] > surplus[unit.second]) std::swap(unit.first, unit.second);
-    ++surplus[unit.first];
-    --surplus[unit.second];
   }
   std::sort(units.begin(), units.end());
   return units;

@@ -13,9 +13,9 @@ namespace mssim {
 /// computes one force each, and for every node the forces that the host sums.
 ///
 /// The nodes are numbered for it: a grid's as they are, those of bodies so that neighbours stand near each
-/// other, and within windows by their degree. Which end of a spring comes first is chosen so that every node
-/// is about as often first as second. The units are sorted by kind, then by their first node, and laid out as
-/// kernels/packed_springs.cl reads them.
+/// other. A unit's first end is the lower one, and the units are sorted by kind, then by their first and
+/// second end: what a node adds then lies in a row, and what it subtracts was added by nodes shortly before.
+/// They are laid out as kernels/packed_springs.cl reads them.
 struct PackedSprings {
   static constexpr std::size_t side_by_side = 16;  ///< units, of one kind
   static constexpr std::size_t slice_nodes = 4;
