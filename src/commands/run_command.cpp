@@ -88,7 +88,6 @@ int run(const RunOptions& options) {
   const SimulationPlan plan{scene.dt_s, options.duration_s, options.fps,
                             keeps_energies && !options.no_losses};
   const auto backend = make_backend(options, scene, integrator);
-  if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
 
   std::optional<H5mdTrace> trace;
   if (!options.trace.empty()) {
@@ -96,6 +95,7 @@ int run(const RunOptions& options) {
     header.with_losses = plan.accounts_for_losses;
     trace.emplace(options.trace, scene.system, header);
   }
+  if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
   std::vector<EnergySample> curve;
   std::int64_t steps = 0;
   std::optional<EnergyLosses> losses;

@@ -9,22 +9,11 @@
 
 #include "model/energy.h"
 #include "model/system.h"
+#include "output/h5md_head.h"
 #include "output/hdf5_handle.h"
 #include "output/xdmf.h"
 
 namespace mssim {
-
-/// What a trace says about how it came about.
-struct TraceHeader {
-  std::string author = "unknown";  ///< who ran the simulation
-  std::string creator_version;     ///< of mssim
-  std::string scene_json;          ///< the scene file's text
-  std::string provenance_json;     ///< the text of provenance.json
-  std::string backend;
-  std::string integrator;
-  double dt_s = 0;
-  bool with_losses = false;  ///< whether its frames say what has been taken from the energy
-};
 
 /// A trace: the frames of one simulation in an HDF5 file after H5MD 1.1 (https://www.nongnu.org/h5md), with
 /// an XDMF file beside it for viewers. SI units throughout, listed in /parameters/units. PARTICLES is `cloth`

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <string>
+
+#include "model/system.h"
+
+namespace mssim {
+
+/// What a trace says about how it came about.
+struct TraceHeader {
+  std::string author = "unknown";  ///< who ran the simulation
+  std::string creator_version;     ///< of mssim
+  std::string scene_json;          ///< the scene file's text
+  std::string provenance_json;     ///< the text of provenance.json
+  std::string backend;
+  std::string integrator;
+  double dt_s = 0;
+  bool with_losses = false;  ///< whether its frames say what has been taken from the energy
+};
+
+/// Throws std::invalid_argument unless the system has nodes and its topology fits them: a file that points
+/// beyond its nodes would crash who reads it.
+void require_fitting_topology(const System& system);
+
+/// Writes what a trace holds beside its frames: /h5md, /parameters, the group of particles (for example
+/// /particles/cloth) with its box and masses, and /connectivity. Throws Hdf5Error.
+void write_h5md_head(hid_t file, const std::string& particles, const System& system,
+                     const TraceHeader& header);
+
+}  // namespace mssim

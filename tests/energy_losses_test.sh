@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# `mssim run` says what has been taken from the energy, in its row and in a trace, and that the sum stays constant.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+fail() {
+  echo "FAILED: $1"
+  failures=$((failures + 1))
+}
+
+# run ARGUMENTS...: the row goes to $work/row, nothing may be said on stderr
+run() {
+  "$mssim" run --backend serial --duration 0.06 --fps 200 "$@" >"$work/row" 2>"$work/err" || fail "mssim run $* exits with $?"
+  cat "$work/row"
+  [ ! -s "$work/err" ] || fail "stderr says $(cat "$work/err")"
+}
+
+# column NAME: that column of the row
+column() {
+  awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$work/row"
+}
+
+# values DATASET: of the trace, one a line
+values() {
+  h5dump -y -w 1 -m %.17g -d "$1" "$work/trace.h5" |
+    awk '/DATA [{]/ { inside = 1; next } inside && /}/ { exit } inside { gsub(/[ \t,]/, ""); if ($0 != "") print }'
+}
+
+# A small cloth without pins that soon lands on the floor, sliding for its ripple.
+sed 's/"rows": 50/"rows": 10/; s/"columns": 50/"columns": 12/; s/"ceiling_height_m": [0-9.]*/"ceiling_height_m": 0.003/; /"pins"/d' \
+  "$source/scenes/cloth2500.json" >"$work/cloth.json"
+
+run --scene "$work/cloth.json" --integrator rk4 --trace "$work/trace.h5"
+losses=(damping friction bounce integration)
+for loss in "${losses[@]}"; do
+  [ "$(values "/observables/${loss}_loss/value" | wc -l)" -eq 13 ] || fail "the trace has not 13 values of ${loss}_loss"
+  in_trace=$(values "/observables/${loss}_loss/value" | tail -1)
+  awk -v a="$in_trace" -v b="$(column "${loss}_loss_j")" 'BEGIN { exit !(a - b <= 1e-3 * (b < 0 ? -b : b) && b - a <= 1e-3 * (b < 0 ? -b : b)) }' ||
+    fail "${loss}_loss ends with $in_trace in the trace and $(column "${loss}_loss_j") in the row"
+done
+for loss in damping friction bounce; do
+  awk -v x="$(column "${loss}_loss_j")" 'BEGIN { exit !(x > 0) }' || fail "no ${loss}_loss"
+done
+awk -v x="$(column energy_imbalance)" 'BEGIN { exit !(x < 1e-3 && x > -1e-3) }' || fail "energy_imbalance"
+paste <(values /observables/total_energy/value) <(values /observables/damping_loss/value) \
+  <(values /observables/friction_loss/value) <(values /observables/bounce_loss/value) \
+  <(values /observables/integration_loss/value) <(values /observables/kinetic_energy/value) |
+  awk '{ sum = $1 + $2 + $3 + $4 + $5
+         if (NR == 1) first = sum
+         off = sum - first; if (off < 0) off = -off
+         if (off > worst) worst = off
+         if ($6 > kinetic) kinetic = $6 }
+       END { print "largest imbalance " worst " J beside " kinetic " J of kinetic energy"; exit !(worst < 1e-3 * kinetic) }' ||
+  fail "the sum over the trace does not stay constant"
+
+run --scene "$work/cloth.json" --energy-curve "$work/curve.csv"
+[ "$(column damping_loss_j)" != - ] || fail "an energy curve goes without losses"
+[ "$(sed -n 2p "$work/curve.csv")" = time_s,kinetic_j,elastic_j,gravitational_j,total_j ] || fail "the curve's header"
+run --scene "$work/cloth.json" --trace "$work/trace.h5" --no-losses
+if h5dump -n "$work/trace.h5" | grep -q _loss; then fail "--no-losses leaves losses in the trace"; fi
+[ "$(column damping_loss_j) $(column energy_imbalance)" = '- -' ] || fail "--no-losses leaves losses in the row"
+run --scene "$work/cloth.json"
+[ "$(column damping_loss_j)" = - ] || fail "losses without a trace"
+
+# Who would wait long learns what it costs, and how to do without. The run itself is cut short.
+"$mssim" run --scene cloth2500 --duration 1000 --trace "$work/long.h5" >"$work/row" 2>"$work/err" &
+long=$!
+for ((i = 0; i < 600; ++i)); do
+  grep -q -- '--no-losses leaves it out' "$work/err" && break
+  sleep 0.1
+done
+kill "$long" 2>/dev/null || true
+wait "$long" || true
+grep -q 'about [0-9]* s in all; --no-losses leaves it out' "$work/err" || fail "no word of the cost"
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
