@@ -126,7 +126,7 @@ TEST(SceneSchema, NamesTheUnitOfEveryFieldThatHasOne) {
     }
   };
   check(committed);
-  EXPECT_EQ(checked, 16);
+  EXPECT_EQ(checked, 31);
 }
 
 }  // namespace
