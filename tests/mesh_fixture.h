@@ -21,16 +21,16 @@ namespace mssim {
 class MeshTest : public TemporaryFolderTest {
  protected:
   MeshTest() {
-    for (const char* name : variables_)
+    for (const char* name : variables)
       before_.push_back(::getenv(name) ? std::optional<std::string>(::getenv(name)) : std::nullopt);
     ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1);
   }
   ~MeshTest() override {
-    for (std::size_t i = 0; i < variables_.size(); ++i)
+    for (std::size_t i = 0; i < variables.size(); ++i)
       if (before_[i])
-        ::setenv(variables_[i], before_[i]->c_str(), 1);
+        ::setenv(variables[i], before_[i]->c_str(), 1);
       else
-        ::unsetenv(variables_[i]);
+        ::unsetenv(variables[i]);
   }
   std::filesystem::path cache() const { return folder() / "cache" / "mssim" / "meshes"; }
 
@@ -42,7 +42,7 @@ class MeshTest : public TemporaryFolderTest {
   }
 
  private:
-  static constexpr std::array variables_{"HOME", "PATH", "TMPDIR", "XDG_CACHE_HOME"};
+  static constexpr std::array variables{"HOME", "PATH", "TMPDIR", "XDG_CACHE_HOME"};
   std::vector<std::optional<std::string>> before_;
 };
 
