@@ -13,6 +13,7 @@
 #include "bench/blow_up.h"
 #include "cloth_system.h"
 #include "integrators/integrators.h"
+#include "scene/scene_file.h"
 
 namespace mssim {
 namespace {
@@ -71,6 +72,37 @@ TEST(Verification, FindsEveryMistake) {
       mistake.make(wrong);
       const auto backend = make_serial(wrong, integrator, dt_s, {});
       const Verification verification = verify(*backend, system, reference, dt_s);
+      EXPECT_TRUE(verification.failure) << mistake.name << ", " << integrator.name << ": error "
+                                        << verification.position_error << " of " << reference.tolerance;
+    }
+  }
+}
+
+const std::vector<Mistake> body_mistakes{
+    {"spring damping left out", [](System& s) { s.materials[0].damping = 0; }},
+    {"stiffness 1 % off", [](System& s) { s.materials[0].stiffness *= 1.01; }},
+    {"one spring in the middle missing", [](System& s) { s.springs.erase(s.springs.begin() + 2000); }},
+    {"the last spring missing", [](System& s) { s.springs.pop_back(); }},
+    {"one rest length 1 % off", [](System& s) { s.springs[1000].rest_length *= 1.01F; }},
+    {"no gravity", [](System& s) { s.gravity = 0; }},
+    {"mass 1 % off",
+     [](System& s) {
+       for (double& mass : s.node_mass) mass *= 1.01;
+     }},
+};
+
+TEST(Verification, FindsEveryMistakeWithABodyOfThePaper) {
+  const System system = build_system(find_scene("box-small"));
+  constexpr double scene_dt_s = 5e-5;
+  for (const Integrator& integrator : integrators) {
+    const Reference reference = run_reference(system, integrator, scene_dt_s);
+    ASSERT_FALSE(
+        verify(*make_serial(system, integrator, scene_dt_s, {}), system, reference, scene_dt_s).failure);
+    for (const Mistake& mistake : body_mistakes) {
+      System wrong = system;
+      mistake.make(wrong);
+      const auto backend = make_serial(wrong, integrator, scene_dt_s, {});
+      const Verification verification = verify(*backend, system, reference, scene_dt_s);
       EXPECT_TRUE(verification.failure) << mistake.name << ", " << integrator.name << ": error "
                                         << verification.position_error << " of " << reference.tolerance;
     }

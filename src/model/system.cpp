@@ -19,18 +19,19 @@ double mean_rest_length(const System& system) {
   return system.springs.empty() ? 0 : sum / static_cast<double>(system.springs.size());
 }
 
-void round_to_single(State& state) {
+void round_to_single(double& value) {
   // Through memory: g++ 12 vectorises a conversion to float and back to double into nothing at all (-O2, no
   // fast-math).
-  const auto round = [](double& value) {
-    const volatile float single = static_cast<float>(value);
-    value = static_cast<double>(single);
-  };
+  const volatile float single = static_cast<float>(value);
+  value = static_cast<double>(single);
+}
+
+void round_to_single(State& state) {
   for (std::vector<Vec3d>* vectors : {&state.position, &state.velocity})
     for (Vec3d& vector : *vectors) {
-      round(vector.x);
-      round(vector.y);
-      round(vector.z);
+      round_to_single(vector.x);
+      round_to_single(vector.y);
+      round_to_single(vector.z);
     }
 }
 

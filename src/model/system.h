@@ -42,7 +42,7 @@ struct System {
   std::vector<double> node_mass;          ///< [nodes] kg
   double gravity = 0;                     ///< m/s^2, downwards
   double viscous_damping = 0;             ///< 1/s
-  Floor floor;
+  Floor floor;  ///< its height in single precision, like the start
   /// Pinned nodes are at rest. The numbers are single precision, for the reason given at Spring::rest_length.
   State start;
 
@@ -55,7 +55,10 @@ std::optional<double> uniform_node_mass(const System& system);
 /// Mean rest length over all springs, m: the unit of position errors.
 double mean_rest_length(const System& system);
 
-/// Rounds all numbers of a state to single precision.
+/// Rounds to single precision.
+void round_to_single(double& value);
+
+/// Rounds all numbers of a state.
 void round_to_single(State& state);
 
 /// Bounds on what the springs can do to one node, for the stability limit.

@@ -35,6 +35,7 @@ System build_system(const SceneSpec& spec) {
   require_memory(spec);
   System system = kind_of(spec).build(spec);
   round_to_single(system.start);
+  round_to_single(system.floor.height);
   return system;
 }
 

@@ -1,0 +1,33 @@
+# Functions of the tests that hold traces against the reference curves. Needs $mssim and $source; sets $work (a folder that
+# goes away), $backends and $failures.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export POCL_CACHE_DIR=$work/pocl
+failures=0
+
+# trace SCENE BACKEND INTEGRATOR DURATION: writes $work/trace.h5
+trace() {
+  "$mssim" run --scene "$1" --backend "$2" --integrator "$3" --threads 2 --duration "$4" --fps 100 \
+    --trace "$work/trace.h5" --no-losses >"$work/log" || { echo "FAILED: mssim run of $*"; failures=$((failures + 1)); }
+}
+
+# expect STATUS CURVE TOLERANCE WHAT: check-energy on $work/trace.h5 and that curve must exit with STATUS
+expect() {
+  local status=0
+  "$source/scripts/check-energy" "$work/trace.h5" "$source/results/reference/$2.csv" "$3" >"$work/verdict" 2>&1 ||
+    status=$?
+  echo "$4: $(cat "$work/verdict")"
+  [ "$status" -eq "$1" ] || { echo "FAILED: exit status $status instead of $1"; failures=$((failures + 1)); }
+}
+
+# wrong_scene SCENE CHANGE: writes $work/wrong.json, the scene changed by a sed expression
+wrong_scene() {
+  sed "$2" "$source/scenes/$1.json" >"$work/wrong.json"
+  if cmp -s "$source/scenes/$1.json" "$work/wrong.json"; then
+    echo "FAILED: $2 changes nothing"
+    exit 1
+  fi
+}
+
+mapfile -t backends < <("$mssim" list backends --format csv | awk -F, 'NR > 1 { print $1 }')
+[ "${#backends[@]}" -eq 5 ] || { echo "FAILED: ${#backends[@]} backends"; exit 1; }
