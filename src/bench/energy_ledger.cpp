@@ -33,12 +33,12 @@ void EnergyLedger::step(Backend& backend) {
   const State landing = reference_->state();
   const double damping = dt_s_ / 2 * (damping_power(system_, before) + damping_power(system_, landing));
   losses_.damping += damping;
-  losses_.integration += energy_of(system_, before).total() - energy_of(system_, landing).total() - damping;
-  account_for_contact(landing);
+  double& rest = account_for_contact(landing) ? losses_.bounce : losses_.integration;
+  rest += energy_of(system_, before).total() - energy_of(system_, landing).total() - damping;
   backend.step(1);
 }
 
-void EnergyLedger::account_for_contact(const State& landing) {
+bool EnergyLedger::account_for_contact(const State& landing) {
   const Floor& floor = system_.floor;
   State after = landing;
   bool contact = false;
@@ -54,10 +54,11 @@ void EnergyLedger::account_for_contact(const State& landing) {
     losses_.friction += mass / 2 * (falling.x * falling.x + falling.z * falling.z - v.x * v.x - v.z * v.z);
     losses_.bounce += mass / 2 * (falling.y * falling.y - v.y * v.y) - mass * system_.gravity * depth;
   }
-  if (!contact) return;
+  if (!contact) return false;
   for (const Spring& spring : system_.springs)
     if (touches_[spring.first] != 0 || touches_[spring.second] != 0)
       losses_.bounce += elastic_energy(system_, spring, landing) - elastic_energy(system_, spring, after);
+  return true;
 }
 
 }  // namespace mssim

@@ -16,20 +16,22 @@ namespace mssim {
 /// the backend's result. A double-precision reference of the same integrator takes the same step with the
 /// floor out of reach; then the floor's law is applied to the nodes that have fallen below it. So
 ///   damping      the trapezoidal rule over damping_power before and after the reference's step,
-///   integration  what else the total energy loses in the reference's step: the integrator's error,
 ///   friction     the kinetic energy of sliding that the floor's law takes,
-///   bounce       that of falling, less the gravitational and with the elastic energy that lifting the nodes
-///                onto the floor changes.
+///   bounce       in a step in which a node meets the floor, what else the step loses: the kinetic energy of
+///                falling that the law takes, less what lifting nodes onto the floor gives them,
+///   integration  in all other steps, what else they lose: the integrator's error.
+/// (An integrator's error cannot be told from the floor's taking while a node is on it: falling through the
+/// floor for a step and being put back is how a floor holds a node, and for semi-implicit Euler both are of
+/// the same order and of unlike signs.)
 /// A backend with another force or floor, or with another integrator, makes the balance fail. One in single
 /// precision that is right keeps it, in shares of the largest change of the kinetic energy and over ten
 /// thousand steps, to some 1e-6 for bodies on a floor at height 0, to some 1e-4 for cloths, and to some 1e-3
 /// on a floor so high that the steps of nodes at rest on it are of the size of a rounding.
 ///
-/// `integration` has the error of the trapezoidal rule in it, too. With the second- and fourth-order methods
-/// both come to less than 1e-3 for bodies at usual steps, so that there the other three losses balance by
-/// themselves. Semi-implicit Euler's error, of first order, is some per cent and grows while a body lies on
-/// the floor, since each contact breaks the shadow energy that the method conserves; the frozen methods,
-/// which take damping and stiffness from the start of the step, feed in as much or more.
+/// `integration` has the error of the trapezoidal rule in it, too. For the bodies of the paper it is below
+/// 1e-3 with the second- and fourth-order methods, so that the other three losses balance by themselves, and
+/// below 1e-2 with semi-implicit Euler; the frozen methods, which take damping and stiffness from the start
+/// of the step, feed energy in, up to a tenth.
 class EnergyLedger {
  public:
   /// `system` and `integrator` must outlive the ledger; `dt_s` is the step of the backends that it follows.
@@ -41,7 +43,8 @@ class EnergyLedger {
   const EnergyLosses& losses() const { return losses_; }
 
  private:
-  void account_for_contact(const State& landing);
+  /// Returns whether any node meets the floor.
+  bool account_for_contact(const State& landing);
 
   const System& system_;
   System floorless_;  // the same with the floor out of reach

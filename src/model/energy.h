@@ -16,8 +16,8 @@ struct Energy {
 struct EnergyLosses {
   double damping = 0;      ///< by the springs and by the air
   double friction = 0;     ///< by sliding on the floor
-  double bounce = 0;       ///< by the floor in its normal direction, less what lifting nodes onto it gave
-  double integration = 0;  ///< by the integrator's error; below zero where it feeds energy in
+  double bounce = 0;       ///< by the floor otherwise; below zero where putting nodes back onto it gives more
+  double integration = 0;  ///< by the integrator's error off the floor; below zero where it feeds energy in
   double total() const { return damping + friction + bounce + integration; }
 };
 
