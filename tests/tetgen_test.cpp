@@ -2,11 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <thread>
 
 #include "mesh/child_process.h"
+#include "mesh/interruption.h"
 #include "mesh/shape_mesh.h"
 #include "mesh/tetrahedralise.h"
 #include "mesh_fixture.h"
@@ -32,6 +34,26 @@ TEST(ChildProcess, ReturnsHowItEndedAndWhatItWrote) {
   EXPECT_EQ(ended.output.size(), 64U * 1024);
   EXPECT_THAT(ended.output, testing::EndsWith("\nend\n"));
   EXPECT_EQ(shell("while :; do :; done", 1).signal, SIGXCPU);
+}
+
+TEST(ChildProcess, IsEndedWithAllThatItStartedWhenThisProcessIsToldToEnd) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const std::string script = "sleep 60 & kill -" + std::to_string(signal) + " $PPID; wait";
+    const auto before = std::chrono::steady_clock::now();
+    try {
+      run({"/bin/sh", {"-c", script}, {}, "/", 5});
+      ADD_FAILURE() << "the signal " << signal << " is lost";
+    } catch (const Interrupted& interrupted) {
+      EXPECT_EQ(interrupted.signal, signal);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(30));
+  }
+}
+
+TEST(ChildProcess, LeavesIgnoredSignalsIgnored) {
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  EXPECT_EQ(run({"/bin/sh", {"-c", "kill -HUP $PPID; kill -HUP $$; exit 4"}, {}, "/", 5}).exit_code, 4);
+  std::signal(SIGHUP, before);
 }
 
 TEST(ChildProcess, ThatCannotStartIsAnError) {
@@ -89,7 +111,9 @@ TEST_F(TetgenTest, ACrashAFailureAndNoMeshAreErrors) {
   EXPECT_THAT(complaint_about(unit_cube()),
               HasSubstr("ended with exit code 1 after writing \"out of luck\""));
   install_tetgen("exit 0\n");
-  EXPECT_THAT(complaint_about(unit_cube()), HasSubstr("ended without writing a mesh"));
+  EXPECT_THAT(complaint_about(unit_cube()),
+              AllOf(HasSubstr("ended without writing a mesh"),
+                    HasSubstr("make sure that " + (folder() / "programs").string())));
   install_tetgen("echo 1 3 0 0 >body.1.node; echo 1 4 0 >body.1.ele\n");
   EXPECT_THAT(complaint_about(unit_cube()),
               HasSubstr("TetGen's .node file, line 1: the file ends before node 1 of 1"));

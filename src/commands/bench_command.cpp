@@ -139,11 +139,6 @@ int exit_code_of(const std::vector<ResultRow>& rows, const BenchOptions& options
   return code;
 }
 
-/// Says on stderr what a reader of the tables should know.
-void warn(const PreparedScene& scene) {
-  if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
-}
-
 std::vector<ResultRow> time_scenes(SceneJob job, const std::vector<std::string>& names,
                                    const BenchOptions& options, const std::vector<PublishedTable>& published,
                                    const ResultFolder* folder) {
@@ -151,7 +146,7 @@ std::vector<ResultRow> time_scenes(SceneJob job, const std::vector<std::string>&
   ProgressLine progress(names.size());
   for (const std::string& name : names) {
     const PreparedScene scene = prepare_scene(name);
-    warn(scene);
+    warn_of_difference(scene);
     job.name = scene.spec.name;
     job.system = &scene.system;
     job.springs_published = scene.counts.springs_published;
@@ -174,7 +169,7 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
   std::vector<StructureRow> rows;
   for (const std::string& name : names) {
     const PreparedScene scene = prepare_scene(name);
-    warn(scene);
+    warn_of_difference(scene);
     rows.push_back(structure_of(scene));
   }
   return rows;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <iostream>
 #include <new>
 #include <string>
@@ -13,6 +14,7 @@
 #include "commands/list_command.h"
 #include "commands/run_command.h"
 #include "commands/run_provenance.h"
+#include "mesh/interruption.h"
 #include "mesh/mesh_error.h"
 #include "output/write_error.h"
 #include "scene/nearest_name.h"
@@ -38,6 +40,10 @@ int fail(int code, const std::string& sentence) {
 int run_guarded(const std::function<int()>& run) {
   try {
     return run();
+  } catch (const Interrupted& interrupted) {
+    std::signal(interrupted.signal, SIG_DFL);
+    std::raise(interrupted.signal);
+    return 128 + interrupted.signal;  // where the signal is blocked
   } catch (const NotVerified& error) {
     return fail(exit_not_verified, error.what());
   } catch (const UsageError& error) {

@@ -6,6 +6,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "backends/backends.h"
 #include "backends/opencl_device.h"
@@ -14,6 +16,8 @@
 #include "integrators/integrators.h"
 #include "mesh/mesh_error.h"
 #include "output/listing.h"
+#include "scene/nearest_name.h"
+#include "scene/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 
@@ -24,21 +28,44 @@ nlohmann::ordered_json or_null(const std::string& text) {
   return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
 }
 
-/// What the scene really has; where TetGen is missing, bodies have no counts, and stderr says why.
-std::optional<SceneCounts> listed_counts(const SceneSpec& spec) {
-  try {
-    return counts_of(spec);
-  } catch (const MissingProgram& reason) {
-    std::cerr << "mssim: " << spec.name << " cannot be counted: " << reason.what() << '\n';
+/// Counts what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why:
+/// once, since one cause (TetGen is missing) is behind all of them.
+class SceneCounter {
+ public:
+  std::optional<SceneCounts> count(const SceneSpec& spec) {
+    try {
+      return counts_of(spec);
+    } catch (const MissingProgram& reason) {
+      note(spec.name, reason.what());
+    } catch (const SceneError& reason) {
+      note(spec.name, reason.what());
+    }
     return std::nullopt;
   }
-}
+
+  void report() const {
+    if (uncounted_.empty()) return;
+    const std::vector<std::string_view> names(uncounted_.begin(), uncounted_.end());
+    std::cerr << "mssim: nodes and springs of " << listed(names) << " are left out: " << first_reason_
+              << '\n';
+  }
+
+ private:
+  void note(std::string_view scene, std::string_view reason) {
+    if (uncounted_.empty()) first_reason_ = reason;
+    uncounted_.emplace_back(scene);
+  }
+
+  std::vector<std::string> uncounted_;
+  std::string first_reason_;
+};
 
 Listing list_scenes(const ExecutionOptions& /*options*/) {
   Listing listing;
+  SceneCounter counter;
   for (const std::string& name : scene_names()) {
     const SceneSpec spec = find_scene(name);
-    const std::optional<SceneCounts> counts = listed_counts(spec);
+    const std::optional<SceneCounts> counts = counter.count(spec);
     const auto number = [&](std::uint64_t SceneCounts::*count) {
       return counts ? nlohmann::ordered_json((*counts).*count) : nlohmann::ordered_json();
     };
@@ -51,6 +78,7 @@ Listing list_scenes(const ExecutionOptions& /*options*/) {
          {"dt_s", spec.dt_s ? nlohmann::ordered_json(*spec.dt_s) : nlohmann::ordered_json("auto")},
          {"description", spec.description}});
   }
+  counter.report();
   return listing;
 }
 

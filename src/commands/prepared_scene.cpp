@@ -1,5 +1,7 @@
 #include "commands/prepared_scene.h"
 
+#include <iostream>
+
 #include "integrators/stability.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -16,7 +18,7 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
   return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
          std::to_string(counts.springs_unique) + " springs where the scene states " +
          std::to_string(stated->nodes) + " and " + std::to_string(stated->springs_unique) +
-         ": another TetGen makes another mesh";
+         ": another TetGen, or another file, makes another mesh";
 }
 
 }  // namespace
@@ -34,6 +36,10 @@ PreparedScene prepare_scene(std::string_view name_or_file) {
     scene.dt_s = auto_dt({bound.stiffness, bound.damping, scene.system.viscous_damping});
   }
   return scene;
+}
+
+void warn_of_difference(const PreparedScene& scene) {
+  if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
 }
 
 }  // namespace mssim

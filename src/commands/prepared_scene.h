@@ -20,4 +20,7 @@ struct PreparedScene {
 /// Reads, checks and builds the scene of that name or file. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(std::string_view name_or_file);
 
+/// Says the note, if there is one, on stderr.
+void warn_of_difference(const PreparedScene& scene);
+
 }  // namespace mssim

@@ -83,6 +83,7 @@ int run(const RunOptions& options) {
   const Integrator& integrator = require_integrator(options.integrator);
   require_backend(options.backend);
   PreparedScene scene = prepare_scene(options.scene);
+  warn_of_difference(scene);
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const bool keeps_energies = !options.trace.empty() || !options.energy_curve.empty();
   const SimulationPlan plan{scene.dt_s, options.duration_s, options.fps,

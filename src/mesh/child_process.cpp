@@ -1,6 +1,7 @@
 #include "mesh/child_process.h"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,6 +10,8 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+
+#include "mesh/interruption.h"
 
 namespace mssim {
 namespace {
@@ -70,6 +73,9 @@ void limit(int resource, rlim_t soft, rlim_t hard) {
 /// may have threads. Returns errno when something fails.
 int become(const char* program, char* const* arguments, char* const* environment, const char* folder,
            unsigned cpu_seconds, int output) {
+  // A group of its own, so that what it starts in turn can be ended with it; and no orphan if this process is
+  // killed.
+  if (::setpgid(0, 0) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return errno;
   if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0) return errno;
@@ -107,14 +113,18 @@ ChildResult run(const ChildProcess& child) {
 
   Pipe output(child);
   Pipe start_error(child);  // stays empty when the program starts: exec closes it
+  InterruptionGuard interruption;
   const pid_t process = ::fork();
   if (process < 0) fail(child, "fork", errno);
   if (process == 0) {
+    interruption.release_child();
     const int error = become(child.program.c_str(), argument_pointers.data(), environment_pointers.data(),
                              child.folder.c_str(), child.cpu_seconds, output.writer());
     [[maybe_unused]] const ssize_t written = ::write(start_error.writer(), &error, sizeof error);
     ::_exit(127);
   }
+  ::setpgid(process, process);  // here as well, so that the group exists before it is watched
+  interruption.watch(process);
   output.close_writer();
   start_error.close_writer();
 
@@ -125,6 +135,7 @@ ChildResult run(const ChildProcess& child) {
   int status = 0;
   while (::waitpid(process, &status, 0) < 0)
     if (errno != EINTR) fail(child, "waiting for it", errno);
+  interruption.throw_if_interrupted();
   if (failed_to_start) fail(child, "starting it", error);
   if (WIFSIGNALED(status))
     result.signal = WTERMSIG(status);

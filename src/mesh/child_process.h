@@ -23,7 +23,8 @@ struct ChildProcess {
 };
 
 /// Runs a program to its end: no shell, empty stdin, no core file. Throws std::runtime_error with one
-/// sentence when it cannot be started.
+/// sentence when it cannot be started, Interrupted (interruption.h) when this process was told to end
+/// meanwhile: then the program and all that it started have been killed.
 ChildResult run(const ChildProcess& child);
 
 }  // namespace mssim

@@ -10,8 +10,16 @@ std::string decimal(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
+std::string shown(double computed) {
+  std::array<char, 32> text;
+  constexpr int digits = 12;
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), computed, std::chars_format::general, digits)
+              .ptr};
+}
+
 std::string place(const Vec3d& point) {
-  return "(" + decimal(point.x) + ", " + decimal(point.y) + ", " + decimal(point.z) + ")";
+  return "(" + shown(point.x) + ", " + shown(point.y) + ", " + shown(point.z) + ")";
 }
 
 }  // namespace mssim

@@ -34,6 +34,9 @@ inline Vec3d rounded(const Vec3d& point) {
 /// The shortest decimal text that reads back as the same number, in every locale.
 std::string decimal(double value);
 
+/// A number for messages that has been computed, without the last digits, which rounding has made.
+std::string shown(double computed);
+
 /// "(x, y, z)" for messages.
 std::string place(const Vec3d& point);
 

@@ -115,7 +115,7 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
   std::vector<LatticePoint> chosen = points_at(enough);
   if (chosen.size() < parameters.count)
     throw MeshError(std::to_string(parameters.count) + " interior points do not fit into a volume of " +
-                    decimal(space.volume) + " m^3 at a margin of " + decimal(parameters.margin) +
+                    shown(space.volume) + " m^3 at a margin of " + decimal(parameters.margin) +
                     " spacings from its surface; give fewer points or a smaller margin");
   // The few too many lie at the surface, where they are missed least.
   std::stable_sort(chosen.begin(), chosen.end(),

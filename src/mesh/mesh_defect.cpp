@@ -55,7 +55,7 @@ std::optional<MeshDefect> bad_volume(const TetMesh& mesh) {
     const bool is_flat = volume >= -flat;
     return MeshDefect{
         MeshDefect::tetrahedron, t,
-        "the tetrahedron's volume is " + decimal(volume) + " m^3" +
+        "the tetrahedron's volume is " + shown(volume) + " m^3" +
             (is_flat ? ": it is flat; move its nodes apart or remove it"
                      : " while others' are positive; list its nodes in the same sense as theirs")};
   }

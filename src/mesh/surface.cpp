@@ -26,7 +26,7 @@ class Check {
     triangles();
     sides();
     if (!(volume_of(surface_) > 0))
-      fail("it encloses a volume of " + decimal(volume_of(surface_)) +
+      fail("it encloses a volume of " + shown(volume_of(surface_)) +
            " m^3; turn its triangles round so that they run counter-clockwise seen from outside");
   }
 

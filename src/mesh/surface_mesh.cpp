@@ -44,7 +44,7 @@ TetMesh surface_mesh(const SurfaceBody& body) {
   constexpr double most_tetrahedra = 1e7;
   if (body.largest_volume_m3 > 0 && volume_of(surface) / body.largest_volume_m3 > most_tetrahedra)
     throw MeshError(name + ": tetrahedra of at most " + decimal(body.largest_volume_m3) +
-                    " m^3 in a body of " + decimal(volume_of(surface)) +
+                    " m^3 in a body of " + shown(volume_of(surface)) +
                     " m^3 would be more than ten million; give a larger volume");
   try {
     return tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3));

@@ -55,12 +55,20 @@ class Run {
       fail(ended);
     const std::string node_file = read_text(nodes);
     const std::string ele_file = read_text(tetrahedra);
-    TetMesh mesh = parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
+    TetMesh mesh = parsed(node_file, ele_file);
     require_volume(mesh);
     return mesh;
   }
 
  private:
+  TetMesh parsed(const std::string& node_file, const std::string& ele_file) const {
+    try {
+      return parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
+    } catch (const MeshError& error) {
+      throw MeshError("what " + program_.executable.string() + " made cannot be used: " + error.what());
+    }
+  }
+
   ChildResult tetgen(const std::string& switches) const {
     return run({program_.executable, {switches, "body.smesh"}, {}, folder_.path(), cpu_seconds});
   }
@@ -71,15 +79,20 @@ class Run {
           "TetGen was stopped after " + std::to_string(cpu_seconds) +
           " s of processor time or for want of memory; give a surface of fewer triangles or a larger "
           "largest volume");
-    if (const auto crossing = crossing_triangles()) throw MeshError(*crossing);
+    const std::string search = tetgen("-d").output;
+    if (const auto crossing = crossing_triangles(search)) throw MeshError(*crossing);
     std::string how = "without writing a mesh";
     if (ended.signal != 0)
       how = "with signal " + std::to_string(ended.signal);
     else if (ended.exit_code != 0)
       how = "with exit code " + std::to_string(ended.exit_code);
-    throw MeshError(
-        "TetGen " + program_.version + " ended " + how + last_words(ended.output) +
-        " though it finds no triangles that cross; change the surface or the points inside a little");
+    const std::string ending = "TetGen " + program_.version + " ended " + how + last_words(ended.output);
+    if (search.find("No faces are intersecting") == std::string::npos)
+      throw MeshError(ending + " and does not say whether triangles cross; make sure that " +
+                      program_.executable.string() + " is TetGen, or change the surface");
+    throw MeshError(ending +
+                    " though it finds no triangles that cross; change the surface or the points inside a "
+                    "little");
   }
 
   static std::string last_words(const std::string& output) {
@@ -90,11 +103,10 @@ class Run {
     return last.empty() ? last : " after writing \"" + last + "\"";
   }
 
-  /// Asks TetGen which triangles cross (it prints "Facet #3 intersects facet #17", counted from 1); a run
-  /// that is to make a mesh just crashes on them.
-  std::optional<std::string> crossing_triangles() const {
-    const ChildResult search = tetgen("-d");
-    std::istringstream lines(search.output);
+  /// Which triangles cross, from what TetGen prints when it is asked with -d: "Facet #3 intersects facet
+  /// #17", counted from 1. (A run that is to make a mesh just crashes on them.)
+  std::optional<std::string> crossing_triangles(const std::string& search) const {
+    std::istringstream lines(search);
     for (std::string line; std::getline(lines, line);) {
       std::size_t first = 0;
       std::size_t second = 0;
@@ -115,7 +127,7 @@ class Run {
     constexpr double rounding = 1e-6;
     if (std::abs(filled - enclosed) > rounding * enclosed)
       throw MeshError(
-          "the surface encloses " + decimal(enclosed) + " m^3 but TetGen filled " + decimal(filled) +
+          "the surface encloses " + shown(enclosed) + " m^3 but TetGen filled " + shown(filled) +
           " m^3: a closed part lies inside another one; remove the inner part, since bodies are solid");
   }
 

@@ -29,6 +29,11 @@ std::string read_text(const std::filesystem::path& file) {
     throw MeshError(file.string() +
                     (std::filesystem::exists(file, error) ? " is not a regular file" : " is missing") +
                     "; name the file of a mesh");
+  // The texts of ten million tetrahedra take half of this.
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 30;
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file, error); !error && bytes > most_bytes)
+    throw MeshError(file.string() + " has " + std::to_string(bytes) + " bytes and at most " +
+                    std::to_string(most_bytes) + " are read; give a smaller mesh");
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw MeshError(file.string() + " cannot be read; check its permissions");

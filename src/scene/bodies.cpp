@@ -39,6 +39,9 @@ std::string pointer_to(std::size_t body) { return "/bodies/list/" + std::to_stri
   throw SceneError(printable(spec.file.string(), 1000) + ": " + pointer + ' ' + problem);
 }
 
+/// A length for a message, m, without the digits that rounding has made.
+std::string shown_length(double length_m) { return shown_number(std::round(length_m * 1e6) / 1e6); }
+
 /// A mesh and what follows from it, for all bodies of that shape.
 struct MeshedShape {
   TetMesh mesh;  ///< its centre is the origin
@@ -60,6 +63,8 @@ class MeshedShapes {
     try {
       meshed.mesh = mesh_of(shape, spec_.file.parent_path());
     } catch (const MeshError& error) {
+      refuse(spec_, pointer_to(body), std::string("has no mesh: ") + error.what());
+    } catch (const SceneError& error) {  // of another scene whose shape it takes
       refuse(spec_, pointer_to(body), std::string("has no mesh: ") + error.what());
     }
     Vec3d centre;
@@ -127,7 +132,7 @@ void check_bodies(const SceneSpec& spec) {
 std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
   SceneCounts counts;
   for (const BodySpec& body : bodies_of(spec).list) {
-    const std::optional<MeshSize> size = stated_size(body);
+    const std::optional<MeshSize> size = stated_size(body, spec.file.parent_path());
     if (!size) return std::nullopt;
     counts.nodes += size->nodes;
     counts.springs_unique += size->springs;
@@ -160,14 +165,18 @@ System build_bodies(const SceneSpec& spec) {
   for (std::size_t i = 0; i < bodies.list.size(); ++i) {
     const std::size_t first = system.nodes();
     add_body(system, mesh.tetrahedra, shapes.of_body(i), bodies, bodies.list[i]);
-    double lowest = std::numeric_limits<double>::infinity();
-    for (std::size_t node = first; node < system.nodes(); ++node)
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (std::size_t node = first; node < system.nodes(); ++node) {
       lowest = std::min(lowest, system.start.position[node].y);
+      highest = std::max(highest, system.start.position[node].y);
+    }
+    // The height shows a mesh in another unit than its unit_m says.
     if (!(lowest > spec.floor.height))
       refuse(spec, pointer_to(i) + "/centre_m/1",
              "is " + shown_number(bodies.list[i].centre_m.y) +
-                 ", so that the body's lowest node would start at " + shown_number(lowest) +
-                 ", not above the floor at " + shown_number(spec.floor.height) + ": raise it");
+                 ", so that the lowest node of the body, which is " + shown_length(highest - lowest) +
+                 " m high, would start at " + shown_length(lowest) + ", not above the floor at " +
+                 shown_number(spec.floor.height) + ": raise it");
   }
   system.topology = std::move(mesh);
   return system;

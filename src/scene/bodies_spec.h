@@ -53,7 +53,8 @@ struct SurfaceFile {
   bool operator==(const SurfaceFile&) const = default;
 };
 
-/// The first body's shape of another scene.
+/// The first body's shape of another scene: of that name, or of the file with that path, which, if not
+/// absolute, starts at the scene file's folder.
 struct ShapeOfScene {
   std::string name;
 

@@ -96,9 +96,13 @@ constexpr std::array<ShapeKind, 6> kinds{{
 }};
 static_assert(kinds.size() == std::variant_size_v<BodyShape>);
 
-/// The body whose shape is meant. Throws SceneError unless it has one of its own.
-BodySpec first_body(const ShapeOfScene& shape) {
-  const SceneSpec scene = find_scene(shape.name);
+/// The scene whose shape is meant; a path that is not absolute starts at `folder`.
+SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folder) {
+  return find_scene(is_path_of_scene(shape.name) ? (folder / shape.name).string() : shape.name);
+}
+
+/// The body of it whose shape is meant. Throws SceneError unless it has one of its own.
+BodySpec first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
   const auto* bodies = std::get_if<BodiesSpec>(&scene.body);
   if (bodies == nullptr)
     throw SceneError("the scene \"" + shape.name +
@@ -126,8 +130,8 @@ struct Mesher {
     return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
   }
   TetMesh operator()(const ShapeOfScene& shape) const {
-    const SceneSpec scene = find_scene(shape.name);
-    return mesh_of(first_body(shape).shape, scene.file.parent_path());
+    const SceneSpec scene = scene_of(shape, folder);
+    return mesh_of(first_body(shape, scene).shape, scene.file.parent_path());
   }
 };
 
@@ -140,8 +144,9 @@ void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
   fields.one_of("shape", sections);
 }
 
-std::optional<MeshSize> stated_size(const BodySpec& body) {
-  if (const auto* other = std::get_if<ShapeOfScene>(&body.shape)) return first_body(*other).expected;
+std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem::path& folder) {
+  if (const auto* other = std::get_if<ShapeOfScene>(&body.shape))
+    return first_body(*other, scene_of(*other, folder)).expected;
   return body.expected;
 }
 

@@ -12,9 +12,9 @@ namespace mssim {
 /// targets in `body`. The TABLE of shapes stands in body_shapes.cpp.
 void visit_shape_fields(FieldVisitor& fields, BodySpec& body);
 
-/// What the scene's file, or the other scene that it names, states about the mesh. Throws SceneError when
-/// there is no such scene.
-std::optional<MeshSize> stated_size(const BodySpec& body);
+/// What the scene's file, or the other scene that it names, states about the mesh. `folder` is the scene
+/// file's. Throws SceneError when there is no such scene.
+std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem::path& folder);
 
 /// The mesh of the shape, m, wherever its origin is. `folder` is the scene file's. Throws SceneError when the
 /// shape is that of a scene that cannot be used, MeshError and MissingProgram.

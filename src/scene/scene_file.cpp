@@ -77,9 +77,12 @@ std::vector<std::string> scene_names() {
   return names;
 }
 
+bool is_path_of_scene(std::string_view name_or_path) {
+  return name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".json");
+}
+
 SceneSpec find_scene(std::string_view name_or_path) {
-  if (name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".json"))
-    return load_scene(name_or_path);
+  if (is_path_of_scene(name_or_path)) return load_scene(name_or_path);
   const std::vector<std::string> names = names_in_folder();
   if (std::find(names.begin(), names.end(), name_or_path) != names.end())
     return load_scene(file_of(name_or_path));

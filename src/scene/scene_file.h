@@ -16,8 +16,11 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec);
 /// Reads and checks a scene file. Throws SceneError.
 SceneSpec load_scene(const std::filesystem::path& file);
 
-/// The scene of that name (NAME.json in the data folder's scenes/), or of that file when `name_or_path`
-/// contains a slash or ends in .json. Throws SceneError; for an unknown name it lists the known ones.
+/// Is it a path, which contains a slash or ends in .json, rather than the name of a scene?
+bool is_path_of_scene(std::string_view name_or_path);
+
+/// The scene of that name (NAME.json in the data folder's scenes/), or of that file when it is a path. Throws
+/// SceneError; for an unknown name it lists the known ones.
 SceneSpec find_scene(std::string_view name_or_path);
 
 /// The names of the scenes in the data folder, kind by kind, the smallest (in nodes, as stated) first. Throws
