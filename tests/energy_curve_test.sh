@@ -12,19 +12,19 @@ for curve in cloth2500 cloth4900; do
   for backend in "${backends[@]}"; do
     for integrator in semi-euler midpoint rk4; do
       trace "$curve" "$backend" "$integrator" 0.1
-      expect 0 "$curve" $tolerance "$curve $backend $integrator"
+      expect 0 "$source/results/reference/$curve.csv" $tolerance "$curve $backend $integrator"
     done
   done
 done
 
 # Wrong on purpose: another cloth, and the same with a little more drag, less damping, weaker bending.
 trace cloth4900 openmp rk4 0.1
-expect 1 cloth2500 $tolerance "another cloth"
+expect 1 "$source/results/reference/cloth2500.csv" $tolerance "another cloth"
 for change in 's/"viscous_damping_per_s": 0.1/"viscous_damping_per_s": 0.5/' \
   's/"damping_n_s_per_m": 0.01}/"damping_n_s_per_m": 0.009}/' \
   's/"stiffness_n_per_m": 8,/"stiffness_n_per_m": 4,/'; do
   wrong_scene cloth2500 "$change"
   trace "$work/wrong.json" openmp rk4 0.1
-  expect 1 cloth2500 $tolerance "$change"
+  expect 1 "$source/results/reference/cloth2500.csv" $tolerance "$change"
 done
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

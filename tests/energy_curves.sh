@@ -11,10 +11,10 @@ trace() {
     --trace "$work/trace.h5" --no-losses >"$work/log" || { echo "FAILED: mssim run of $*"; failures=$((failures + 1)); }
 }
 
-# expect STATUS CURVE TOLERANCE WHAT: check-energy on $work/trace.h5 and that curve must exit with STATUS
+# expect STATUS CURVE.csv TOLERANCE WHAT: check-energy on $work/trace.h5 and that curve must exit with STATUS
 expect() {
   local status=0
-  "$source/scripts/check-energy" "$work/trace.h5" "$source/results/reference/$2.csv" "$3" >"$work/verdict" 2>&1 ||
+  "$source/scripts/check-energy" "$work/trace.h5" "$2" "$3" >"$work/verdict" 2>&1 ||
     status=$?
   echo "$4: $(cat "$work/verdict")"
   [ "$status" -eq "$1" ] || { echo "FAILED: exit status $status instead of $1"; failures=$((failures + 1)); }

@@ -91,6 +91,7 @@ TEST(Provenance, TellsWhatRanWhereAndHow) {
   unsetenv("OMP_PLACES");
   add_scene(provenance, "cloth2500", "foobar");
   provenance.opencl_devices = {"platform / device / driver"};
+  provenance.tetgen = "1.5";
   const nlohmann::json json = nlohmann::json::parse(to_json(provenance).dump());
   EXPECT_THAT(json["command_line"], ElementsAre("mssim", "bench", "--threads", "2"));
   EXPECT_EQ(json["build"]["commit"], build_info().commit);
@@ -102,6 +103,7 @@ TEST(Provenance, TellsWhatRanWhereAndHow) {
   EXPECT_GT(json["memory_bytes"], 1 << 20);
   EXPECT_EQ(json["scenes_fnv1a_64"]["cloth2500"], "85944171f73967e8");
   EXPECT_EQ(json["opencl_devices"][0], "platform / device / driver");
+  EXPECT_EQ(json["tetgen"], "1.5");
   EXPECT_THAT(json["started_utc"].get<std::string>(),
               testing::MatchesRegex("20[0-9]{2}-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"));
   expect_finite_numbers(json);
@@ -127,9 +129,9 @@ TEST(Provenance, HoldsTheseFactsAndNoOthers) {
   std::vector<std::string> facts;
   const nlohmann::json json = to_json(gather_provenance({"mssim"}, 1));
   for (const auto& [name, value] : json.items()) facts.push_back(name);
-  EXPECT_THAT(facts,
-              ElementsAre("build", "command_line", "cpu", "kernel", "load_average", "memory_bytes",
-                          "opencl_devices", "operating_system", "scenes_fnv1a_64", "started_utc", "threads"));
+  EXPECT_THAT(facts, ElementsAre("build", "command_line", "cpu", "kernel", "load_average", "memory_bytes",
+                                 "opencl_devices", "operating_system", "scenes_fnv1a_64", "started_utc",
+                                 "tetgen", "threads"));
 }
 
 }  // namespace

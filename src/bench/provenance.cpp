@@ -128,6 +128,7 @@ json to_json(const Provenance& provenance) {
             {"allowed_cpus", provenance.allowed_cpus},
             {"environment", environment}}},
           {"opencl_devices", provenance.opencl_devices},
+          {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
           {"scenes_fnv1a_64", scenes}};
 }
 

@@ -28,12 +28,13 @@ struct Provenance {
   /// OMP_ and GOMP_ variables, by name.
   std::vector<std::pair<std::string, std::string>> thread_environment;
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
+  std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
   std::vector<SceneHash> scenes;
   std::vector<std::string> command_line;  ///< the program without its folder; the home folder reads ~
   std::string started_utc;                ///< ISO 8601, for example "2026-01-31T12:00:00Z"
 };
 
-/// Gathers all that can be known at the start; scenes and OpenCL devices are the caller's to add.
+/// Gathers all that can be known at the start; scenes, OpenCL devices and TetGen are the caller's to add.
 /// `arguments` are main's.
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
 

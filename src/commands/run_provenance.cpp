@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "backends/opencl_device.h"
+#include "mesh/tetgen_program.h"
+#include "model/fnv1a.h"
 
 namespace mssim {
 namespace {
@@ -49,6 +51,8 @@ Provenance run_provenance(int threads) {
   } catch (const Unavailable& reason) {
     provenance.opencl_devices.emplace_back(reason.what());  // rows that need a device say the same
   }
+  if (const auto tetgen = find_tetgen())
+    provenance.tetgen = tetgen->version + ", fnv1a_64 " + hexadecimal(tetgen->fnv1a_64);
   return provenance;
 }
 
