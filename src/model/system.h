@@ -42,7 +42,7 @@ struct System {
   std::vector<double> node_mass;          ///< [nodes] kg
   double gravity = 0;                     ///< m/s^2, downwards
   double viscous_damping = 0;             ///< 1/s
-  Floor floor;  ///< its height in single precision, like the start
+  Floor floor;                            ///< its height in single precision, like the start
   /// Pinned nodes are at rest. The numbers are single precision, for the reason given at Spring::rest_length.
   State start;
 
