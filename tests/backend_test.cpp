@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -257,6 +258,29 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreadsOnBodies) 
         std::any_of(end.velocity.begin(), end.velocity.end(), [](const Vec3d& v) { return v.y > 0; }));
     SCOPED_TRACE(std::to_string(system.nodes()) + " nodes");
     expect_same_bits(system, integrator());
+  }
+}
+
+TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
+  System system = solid_block(9, 9, 9);
+  system.floor.height = 0.49;
+  const auto alone = make_openmp(system, integrator(), dt_s, {1, ""});
+  // More threads than cores, with lots for each, and other work on all cores.
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const auto crowd =
+      make_openmp(system, integrator(), dt_s, {static_cast<int>(std::min(3 * cores, 16U)), ""});
+  std::vector<std::jthread> neighbours;
+  for (unsigned i = 0; i < cores; ++i)
+    neighbours.emplace_back([](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+      }
+    });
+  for (const int steps : {1, 200, 99}) {
+    alone->step(steps);
+    crowd->step(steps);
+    const State expected = alone->state(), state = crowd->state();
+    EXPECT_EQ(state.position, expected.position);
+    EXPECT_EQ(state.velocity, expected.velocity);
   }
 }
 

@@ -199,19 +199,21 @@ TEST(SlicedGraph, RefusesSpringsOfUnlikeMaterialsInOneNode) {
   }
 }
 
-TEST(SlicedBodies, GiveEverySliceToOneThreadInFairShares) {
+TEST(SlicedBodies, GiveEverySliceToOneLotInFairShares) {
   const System system = solid_block(9, 9, 9);
   for (const std::size_t threads : {1U, 2U, 3U, 7U, 46U, 1000U}) {
     const SlicedBodies bodies(system, integrators[0], 1e-4, 16, threads);
-    ASSERT_EQ(bodies.parts.size(), std::min(threads, bodies.slices()));
+    ASSERT_EQ(bodies.threads, std::min(threads, bodies.slices()));
+    ASSERT_EQ(bodies.lots.size(), std::min(4 * threads, bodies.slices()));
     std::size_t next = 0;
-    for (const SlicedBodies::Part& part : bodies.parts) {
-      EXPECT_EQ(part.begin, next);
-      next = part.end;
-      if (threads > 7) continue;  // a slice more or less is then a large share
-      const auto entries = static_cast<double>(bodies.first_entry[part.end] - bodies.first_entry[part.begin]);
-      EXPECT_NEAR(entries * static_cast<double>(threads) / static_cast<double>(bodies.first_entry.back()), 1,
-                  0.25);
+    for (const SlicedBodies::Lot& lot : bodies.lots) {
+      EXPECT_EQ(lot.begin, next);
+      next = lot.end;
+      if (threads > 2) continue;  // a slice more or less is then a large share
+      const auto entries = static_cast<double>(bodies.first_entry[lot.end] - bodies.first_entry[lot.begin]);
+      EXPECT_NEAR(
+          entries * static_cast<double>(bodies.lots.size()) / static_cast<double>(bodies.first_entry.back()),
+          1, 0.25);
     }
     EXPECT_EQ(next, bodies.slices());
   }

@@ -2,87 +2,128 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <thread>
+#include <vector>
+
+#include "backends/spin_wait.h"
 
 namespace mssim {
 
-/// Shares phases of work among threads, chunk by chunk, for a leader that must wait for something else (a
-/// device) between any two phases and for helpers that sleep meanwhile. Whoever is awake takes the next
-/// chunk, so that the leader never waits for a helper to wake up: in a phase that is over before one does,
-/// the leader has done all of it.
+/// Shares phases of work among threads, chunk by chunk: whoever is awake takes the next one, so that nobody
+/// waits for a thread that sleeps without one, and a thread that wakes up late joins in the present phase.
 ///
-/// The leader: open(), then take() and finish_one() until there is nothing to take, then
-/// wait_until_finished(); at last close(). Helpers: while wait_for_work(), the same two.
+/// The chunks are cut into shares. A thread takes from the front of its own share and, when that is empty,
+/// from the back of others, so that most of its work is what its caches hold from the phase before.
+///
+/// With a leader, who waits for something else (a device) between any two phases: the leader calls open(),
+/// work() and wait_until_finished() for each, at last close(); its helpers call work_until_closed(). Without
+/// one: open(), then all threads call work_until_closed(), and whoever ends a phase opens the next or closes.
 class ChunkTickets {
  public:
   struct Ticket {
     std::uint32_t phase;  ///< from 0, the next one at every open()
     std::uint32_t chunk;
   };
+  static constexpr std::uint32_t most_phases = (1U << 24) - 1;
+  static constexpr std::uint32_t most_chunks = (1U << 20) - 1;
 
-  /// Every phase has the chunks 0 to chunks - 1.
-  explicit ChunkTickets(std::uint32_t chunks) : chunks_(chunks), next_(pack({closed_phase - 1, chunks})) {}
+  /// Every phase has the chunks 0 to chunks - 1, share s of n those from chunks s / n on. There may be
+  /// most_chunks, and open() may be called most_phases times.
+  explicit ChunkTickets(std::uint32_t chunks, std::uint32_t shares = 1) : chunks_(chunks), shares_(shares) {}
 
-  /// Begins the next phase. What the leader wrote before is visible to who takes a ticket.
+  /// Begins the next phase. What was written before is visible to who takes a ticket.
   void open() {
-    const std::uint32_t phase = unpack(next_.load(std::memory_order_relaxed)).phase + 1;
     finished_.store(0, std::memory_order_relaxed);
-    publish({phase == closed_phase ? 0 : phase, 0});
+    publish(opened_.load(std::memory_order_relaxed) + 1);
   }
   /// Ends it all.
-  void close() { publish({closed_phase, chunks_}); }
+  void close() { publish(closed); }
 
-  /// A chunk that nobody else has, or nothing.
-  std::optional<Ticket> take() {
-    std::uint64_t next = next_.load(std::memory_order_acquire);
-    while (unpack(next).chunk < chunks_)
-      if (next_.compare_exchange_weak(next, next + 1, std::memory_order_acq_rel, std::memory_order_acquire))
-        return unpack(next);
-    return std::nullopt;
+  /// Calls act(ticket) for every chunk that it can get, those of `share` first; whether the phase is finished
+  /// with them.
+  template <class Act>
+  bool work(std::uint32_t share, Act&& act) {
+    const std::uint32_t opened = opened_.load(std::memory_order_acquire);
+    if (opened == closed) return false;
+    for (std::uint32_t i = 0; i < shares_.size(); ++i) {
+      std::uint32_t done = 0;
+      for (; const auto ticket = take(share, i == 0, opened); ++done) act(*ticket);
+      // Said before others' shares are looked at: who is the last need not look.
+      if (done > 0 && finished_.fetch_add(done, std::memory_order_acq_rel) + done == chunks_) return true;
+      if (++share == shares_.size()) share = 0;
+    }
+    return false;
   }
-  /// The work of a ticket is done.
-  void finish_one() { finished_.fetch_add(1, std::memory_order_acq_rel); }
-
-  /// Waits until the work of all the phase's tickets is done. It is under way, so this is short, unless a
-  /// thread was interrupted: then its core may be this one.
+  /// The same in every phase until all is over. Calls finished() whenever it has finished one. Between phases
+  /// it spins `spins` times before it offers its core.
+  template <class Act, class Finished>
+  void work_until_closed(std::uint32_t share, int spins, Act&& act, Finished&& finished) {
+    for (std::uint32_t opened = opened_.load(std::memory_order_acquire); opened != closed;) {
+      if (work(share, act)) {
+        finished();
+        opened = opened_.load(std::memory_order_acquire);
+      } else {
+        opened = wait_for_change(opened_, opened, spins);
+      }
+    }
+  }
+  /// Waits until all chunks of the phase are done. Their work is under way, so this is short, unless a thread
+  /// was interrupted: then its core may be this one.
   void wait_until_finished() const {
     while (finished_.load(std::memory_order_acquire) != chunks_) std::this_thread::yield();
   }
-  /// Waits until there may be something to take; false once it is all over.
-  bool wait_for_work() const {
-    std::uint64_t next = next_.load(std::memory_order_acquire);
-    // A device on the same cores runs in place of a thread that yields.
-    for (int tries = 0; tries < yields && unpack(next).chunk >= chunks_ && !is_closed(next); ++tries) {
-      std::this_thread::yield();
-      next = next_.load(std::memory_order_acquire);
-    }
-    while (unpack(next).chunk >= chunks_ && !is_closed(next)) {
-      next_.wait(next, std::memory_order_acquire);
-      next = next_.load(std::memory_order_acquire);
-    }
-    return !is_closed(next);
-  }
 
  private:
-  static constexpr std::uint32_t closed_phase = 0xffffffff;
-  static constexpr int yields = 100;
+  static constexpr std::uint32_t closed = std::numeric_limits<std::uint32_t>::max();
 
-  static std::uint64_t pack(const Ticket& ticket) {
-    return (std::uint64_t{ticket.phase} << 32) | ticket.chunk;
+  /// The chunks of a share that nobody has taken.
+  struct Left {
+    std::uint32_t opened;  // of which phase: how many had been opened with it
+    std::uint32_t begin, end;
+  };
+  struct alignas(64) Share {             // a cache line
+    std::atomic<std::uint64_t> left{0};  // a Left
+  };
+
+  static std::uint64_t pack(const Left& left) {
+    return (std::uint64_t{left.opened} << 40) | (std::uint64_t{left.begin} << 20) | left.end;
   }
-  static Ticket unpack(std::uint64_t bits) {
-    return {static_cast<std::uint32_t>(bits >> 32), static_cast<std::uint32_t>(bits)};
+  static Left unpack(std::uint64_t bits) {
+    return {static_cast<std::uint32_t>(bits >> 40), static_cast<std::uint32_t>(bits >> 20) & most_chunks,
+            static_cast<std::uint32_t>(bits) & most_chunks};
   }
-  static bool is_closed(std::uint64_t bits) { return unpack(bits).phase == closed_phase; }
-  void publish(const Ticket& ticket) {
-    next_.store(pack(ticket), std::memory_order_release);
-    next_.notify_all();
+  Left whole(std::uint32_t share, std::uint32_t opened) const {
+    const auto bound = [&](std::uint64_t s) {
+      return static_cast<std::uint32_t>(chunks_ * s / shares_.size());
+    };
+    return {opened, bound(share), bound(share + 1)};
+  }
+  /// A chunk of a share that nobody else has, or nothing. A share still left from an older phase than the one
+  /// opened is whole again: all of it was taken, else that phase would not have ended.
+  std::optional<Ticket> take(std::uint32_t share, bool own, std::uint32_t opened) {
+    std::atomic<std::uint64_t>& stored = shares_[share].left;
+    std::uint64_t bits = stored.load(std::memory_order_acquire);
+    while (true) {
+      Left left = unpack(bits);
+      if (left.opened < opened) left = whole(share, opened);
+      if (left.begin == left.end) return std::nullopt;
+      const std::uint32_t chunk = own ? left.begin++ : --left.end;
+      if (stored.compare_exchange_weak(bits, pack(left), std::memory_order_acq_rel,
+                                       std::memory_order_acquire))
+        return Ticket{left.opened - 1, chunk};
+    }
+  }
+  void publish(std::uint32_t opened) {
+    opened_.store(opened, std::memory_order_release);
+    opened_.notify_all();
   }
 
   const std::uint32_t chunks_;
-  std::atomic<std::uint64_t> next_;         // a Ticket
-  std::atomic<std::uint32_t> finished_{0};  // chunks of the phase
+  std::vector<Share> shares_;
+  alignas(64) std::atomic<std::uint32_t> opened_{0};    // phases, or closed
+  alignas(64) std::atomic<std::uint32_t> finished_{0};  // chunks of the phase
 };
 
 }  // namespace mssim

@@ -101,7 +101,8 @@ class Hybrid final : public Backend {
 
   void step(int count) override {
     with_integrator(integrator_, [&]<std::size_t row>(std::integral_constant<std::size_t, row>) {
-      constexpr int most = 1 << 20;  // a ticket numbers a call's phases in 32 bits
+      constexpr int most = 1 << 20;  // a ticket numbers a call's phases
+      static_assert(most * integrators[row].stage_count <= ChunkTickets::most_phases);
       for (; count > most; count -= most) take_steps<row>(most);
       take_steps<row>(count);
     });
@@ -131,8 +132,11 @@ class Hybrid final : public Backend {
     return buffer;
   }
 
-  /// Slices that a thread integrates between two looks at what is left.
-  static constexpr std::size_t chunk_slices = 64;
+  /// Slices that a thread integrates between two looks at what is left: 64, unless those were too many
+  /// chunks.
+  std::size_t chunk_slices() const {
+    return std::max<std::size_t>(64, packed_.slices() / ChunkTickets::most_chunks + 1);
+  }
 
   void make_kernel(const System& system, const cl::Device& cl_device, int lanes) {
     std::vector<Material> materials;
@@ -232,8 +236,8 @@ class Hybrid final : public Backend {
   template <std::size_t row>
   void work_on(const ChunkTickets::Ticket& ticket) {
     constexpr std::size_t stages = integrators[row].stage_count;
-    const std::size_t begin = ticket.chunk * chunk_slices;
-    const std::size_t end = std::min(begin + chunk_slices, packed_.slices());
+    const std::size_t begin = ticket.chunk * chunk_slices();
+    const std::size_t end = std::min(begin + chunk_slices(), packed_.slices());
     for_each_stage<row>([&]<std::size_t stage>(std::integral_constant<std::size_t, stage>) {
       if (ticket.phase % stages == stage)
         integrate<row, stage>(begin, end, present_at<row>(ticket.phase / stages));
@@ -250,13 +254,9 @@ class Hybrid final : public Backend {
   template <std::size_t row>
   void take_steps(int count) {
     constexpr std::size_t stages = integrators[row].stage_count;
-    ChunkTickets tickets(static_cast<std::uint32_t>((packed_.slices() + chunk_slices - 1) / chunk_slices));
-    const auto work = [&] {
-      while (const auto ticket = tickets.take()) {
-        work_on<row>(*ticket);
-        tickets.finish_one();
-      }
-    };
+    ChunkTickets tickets(
+        static_cast<std::uint32_t>((packed_.slices() + chunk_slices() - 1) / chunk_slices()));
+    const auto act = [&](const ChunkTickets::Ticket& ticket) { work_on<row>(ticket); };
     std::exception_ptr failure;  // of thread 0; none may leave the region
 #pragma omp parallel num_threads(threads_)
     {
@@ -266,7 +266,7 @@ class Hybrid final : public Backend {
             compute_forces(place_of<row>(integrators[row].stages[phase % stages].gather,
                                          present_at<row>(phase / stages)));
             tickets.open();
-            work();
+            tickets.work(0, act);
             tickets.wait_until_finished();
           }
         } catch (...) {
@@ -274,7 +274,7 @@ class Hybrid final : public Backend {
         }
         tickets.close();
       } else {
-        while (tickets.wait_for_work()) work();
+        tickets.work_until_closed(0, 0, act, [] {});  // a device on the same cores: no spinning
       }
     }
     present_ = present_at<row>(static_cast<std::size_t>(count));

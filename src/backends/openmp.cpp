@@ -40,7 +40,7 @@ class OpenMpBodies final : public Backend {
   State state() const override { return bodies_.state(); }
   void step(int count) override { kernel_.step(bodies_, count); }
   std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
-  int threads() const override { return static_cast<int>(bodies_.parts.size()); }
+  int threads() const override { return static_cast<int>(bodies_.threads); }
 
  private:
   SliceKernel kernel_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "backends/backend.h"
+#include "backends/chunk_tickets.h"
 
 namespace mssim {
 namespace {
@@ -13,25 +14,36 @@ namespace {
 /// What a slice costs beside its entries, in entries.
 constexpr std::size_t slice_cost = 4;
 
+/// A lot is not to cost more, in entries, unless there are too many: some microseconds of work.
+constexpr std::size_t lot_cost = 1024;
+
+/// Lots for each thread where lots of that cost would be fewer: who is awake can then take work of who is
+/// not in small parts. More lots cost time in a scene whose stage takes microseconds.
+constexpr std::size_t least_lots = 4;
+
+/// What the slices before `slice` cost, in entries.
+std::size_t cost_before(const std::vector<std::uint32_t>& first_entry, std::size_t slice) {
+  return first_entry[slice] + slice * slice_cost;
+}
+
 /// Cuts the slices into `count` ranges of about the same number of entries.
-std::vector<SlicedBodies::Part> balanced_parts(const std::vector<std::uint32_t>& first_entry,
-                                               std::size_t count) {
+std::vector<SlicedBodies::Lot> balanced_lots(const std::vector<std::uint32_t>& first_entry,
+                                             std::size_t count) {
   const std::size_t slices = first_entry.size() - 1;
-  const auto cost_before = [&](std::size_t slice) { return first_entry[slice] + slice * slice_cost; };
-  std::vector<SlicedBodies::Part> parts;
+  std::vector<SlicedBodies::Lot> lots;
   std::size_t slice = 0;
   for (std::size_t p = 0; p < count; ++p) {
-    const std::size_t begin = slice, target = cost_before(slices) * (p + 1) / count;
-    while (slice < slices && cost_before(slice + 1) <= target) ++slice;
-    parts.push_back({begin, slice});
+    const std::size_t begin = slice, target = cost_before(first_entry, slices) * (p + 1) / count;
+    while (slice < slices && cost_before(first_entry, slice + 1) <= target) ++slice;
+    lots.push_back({begin, slice});
   }
-  return parts;
+  return lots;
 }
 
 }  // namespace
 
 SlicedBodies::SlicedBodies(const System& system, const Integrator& method, double dt_s,
-                           std::size_t slice_lanes, std::size_t threads)
+                           std::size_t slice_lanes, std::size_t thread_count)
     : lanes(slice_lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
@@ -69,8 +81,10 @@ SlicedBodies::SlicedBodies(const System& system, const Integrator& method, doubl
   }
   place = std::move(graph.place);
   first_entry = std::move(graph.first_entry);
-  parts =
-      balanced_parts(first_entry, std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, slices())));
+  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slices()));
+  const std::size_t by_cost = cost_before(first_entry, slices()) / lot_cost;
+  lots = balanced_lots(first_entry, std::min({std::max(least_lots * threads, by_cost), slices(),
+                                              std::size_t{ChunkTickets::most_chunks}}));
 }
 
 void SlicedBodies::set_state(const State& state) {

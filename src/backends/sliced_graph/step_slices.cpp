@@ -8,16 +8,18 @@
 #include <omp.h>
 
 #include <bit>
-#include <optional>
 #include <utility>
 
+#include "backends/chunk_tickets.h"
 #include "backends/sliced_graph/records-inl.h"
-#include "backends/spin_barrier.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
 constexpr std::size_t slice_lanes = hn::MaxLanes(FloatTag());
+
+/// Some microseconds: about as long as a lot takes.
+constexpr int spins = 300;
 
 /// Where each pair's records start, by role.
 using Pairs = std::array<float*, pair_kinds>;
@@ -101,33 +103,53 @@ HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::s
 }
 
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void step_part(const SlicedBodies& bodies, const Pairs& base, SlicedBodies::Part part) {
-  for (std::size_t slice = part.begin; slice < part.end; ++slice)
+HWY_NOINLINE void step_lot(const SlicedBodies& bodies, const Pairs& base, SlicedBodies::Lot lot) {
+  for (std::size_t slice = lot.begin; slice < lot.end; ++slice)
     step_slice<method, stage>(bodies, base, slice);
+}
+
+/// Works on a lot in the stage that the ticket's phase stands for.
+template <std::size_t method>
+HWY_INLINE void work_on(const SlicedBodies& bodies, const ChunkTickets::Ticket& ticket) {
+  constexpr std::size_t stages = integrators[method].stage_count;
+  Pairs base = bodies.base;
+  if (ticket.phase / stages % 2 != 0) std::swap(base[index(Pair::state)], base[index(Pair::next)]);
+  for_each_stage<method>([&](auto stage) HWY_ATTR {
+    if (ticket.phase % stages == stage) step_lot<method, stage>(bodies, base, bodies.lots[ticket.chunk]);
+  });
+}
+
+template <std::size_t method>
+HWY_INLINE void take_steps(SlicedBodies& bodies, int count) {
+  // A node's sums have the order of its entries, whichever thread computes them: the result is the same to
+  // the last bit for any number of threads.
+  constexpr std::size_t stages = integrators[method].stage_count;
+  const auto phases = static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(stages);
+  if (phases == 0 || bodies.lots.empty()) return;
+  ChunkTickets tickets(static_cast<std::uint32_t>(bodies.lots.size()),
+                       static_cast<std::uint32_t>(bodies.threads));
+  std::uint32_t opened = 1;  // only whoever has finished a phase touches it
+  tickets.open();
+#pragma omp parallel num_threads(static_cast <int>(bodies.threads))
+  {
+    const auto thread = static_cast<std::uint32_t>(omp_get_thread_num());
+    tickets.work_until_closed(
+        thread, spins, [&](const ChunkTickets::Ticket& ticket) HWY_ATTR { work_on<method>(bodies, ticket); },
+        [&] {
+          if (opened == phases) return tickets.close();
+          ++opened;
+          tickets.open();
+        });
+  }
+  if (count % 2 != 0) std::swap(bodies.base[index(Pair::state)], bodies.base[index(Pair::next)]);
 }
 
 template <std::size_t method>
 HWY_INLINE void step_method(SlicedBodies& bodies, int count) {
-  // A node's sums have the order of its entries, whichever thread computes them: the result is the same to
-  // the last bit for any number of threads.
-  std::optional<SpinBarrier> barrier;
-#pragma omp parallel num_threads(static_cast <int>(bodies.parts.size()))
-  {
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
-#pragma omp single
-    barrier.emplace(threads);
-    Pairs base = bodies.base;
-    for (int step = 0; step < count; ++step) {
-      for_each_stage<method>([&](auto stage) HWY_ATTR {
-        for (std::size_t p = thread; p < bodies.parts.size(); p += threads)
-          step_part<method, stage>(bodies, base, bodies.parts[p]);
-        barrier->wait();
-      });
-      std::swap(base[index(Pair::state)], base[index(Pair::next)]);
-    }
-  }
-  if (count % 2 != 0) std::swap(bodies.base[index(Pair::state)], bodies.base[index(Pair::next)]);
+  constexpr int most = 1 << 20;  // a ticket numbers a call's phases
+  static_assert(most * integrators[method].stage_count <= ChunkTickets::most_phases);
+  for (; count > most; count -= most) take_steps<method>(bodies, most);
+  take_steps<method>(bodies, count);
 }
 
 void step_slices(SlicedBodies& bodies, int count) {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <atomic>
+#include <thread>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace mssim {
+
+/// Waits until an atomic has another value than `old` and returns it, for threads that meet every few
+/// microseconds: spins `spins` times, then offers its core some times, then sleeps until it is notified.
+///
+/// OpenMP's own barrier spins for milliseconds by default, which is right on an idle machine. When another
+/// process takes one core, though, the waiting thread burns the other one, on which the thread it waits for
+/// could run: a step of a 2,500-node cloth then took milliseconds instead of 6 microseconds.
+template <class T>
+T wait_for_change(const std::atomic<T>& value, T old, int spins) {
+  /// If both threads have come to share a core, the other one runs at the first of these.
+  constexpr int yields = 100;
+  for (int tries = 0; tries < spins + yields; ++tries) {
+    if (const T now = value.load(std::memory_order_acquire); now != old) return now;
+    if (tries >= spins) {
+      std::this_thread::yield();
+    } else {
+      // Leaves the core's resources to its other thread.
+#if defined(__x86_64__)
+      _mm_pause();
+#elif defined(__aarch64__)
+      asm volatile("yield");
+#endif
+    }
+  }
+  value.wait(old, std::memory_order_acquire);
+  return value.load(std::memory_order_acquire);
+}
+
+}  // namespace mssim
