@@ -1,5 +1,5 @@
 /* What the stage kernels of a grid have in common. The kernels themselves are generated from the tables of
- * integrators and of the stencil (src/backends/opencl_grid_program.cpp) and follow this text. They come in
+ * integrators and of the stencil (src/backends/opencl/grid_program.cpp) and follow this text. They come in
  * two shapes:
  * - one lane: a work-item owns one node, gathers the forces of all its springs and runs the stage's lines on
  * it;

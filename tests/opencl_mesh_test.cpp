@@ -13,8 +13,8 @@
 
 #include "backends/hybrid.h"
 #include "backends/opencl.h"
-#include "backends/opencl_mesh_program.h"
-#include "backends/opencl_program.h"
+#include "backends/opencl/mesh_program.h"
+#include "backends/opencl/program.h"
 #include "backends/packed_springs.h"
 #include "backends/serial.h"
 #include "bench/verification.h"

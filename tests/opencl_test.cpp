@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "backends/hybrid.h"
-#include "backends/opencl_device.h"
-#include "backends/opencl_grid_program.h"
-#include "backends/opencl_program.h"
+#include "backends/opencl/device.h"
+#include "backends/opencl/grid_program.h"
+#include "backends/opencl/program.h"
 #include "integrators/integrators.h"
 #include "model/grid_patch.h"
 #include "model/system.h"

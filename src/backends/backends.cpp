@@ -4,7 +4,7 @@
 
 #include "backends/hybrid.h"
 #include "backends/opencl.h"
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 #include "backends/openmp.h"
 #include "backends/serial.h"
 #include "backends/threads_mutex.h"

@@ -15,11 +15,11 @@
 
 #include "backends/chunk_tickets.h"
 #include "backends/host_lines.h"
-#include "backends/opencl_buffer.h"
-#include "backends/opencl_call.h"
-#include "backends/opencl_device.h"
-#include "backends/opencl_lots.h"
-#include "backends/opencl_program.h"
+#include "backends/opencl/buffer.h"
+#include "backends/opencl/call.h"
+#include "backends/opencl/device.h"
+#include "backends/opencl/lots.h"
+#include "backends/opencl/program.h"
 #include "backends/packed_springs.h"
 #include "backends/quad.h"
 

@@ -1,8 +1,8 @@
 #include "backends/opencl.h"
 
-#include "backends/opencl_call.h"
-#include "backends/opencl_grid.h"
-#include "backends/opencl_mesh.h"
+#include "backends/opencl/call.h"
+#include "backends/opencl/grid.h"
+#include "backends/opencl/mesh.h"
 
 namespace mssim {
 

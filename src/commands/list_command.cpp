@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 #include "commands/choices.h"
 #include "commands/exit_code.h"
 #include "integrators/integrators.h"

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 #include "mesh/tetgen_program.h"
 #include "model/fnv1a.h"
 

@@ -1,4 +1,4 @@
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 
 #include <CL/cl_ext.h>
 

@@ -1,8 +1,8 @@
-#include "backends/opencl_mesh_program.h"
+#include "backends/opencl/mesh_program.h"
 
 #include <sstream>
 
-#include "backends/opencl_program.h"
+#include "backends/opencl/program.h"
 
 namespace mssim {
 namespace {

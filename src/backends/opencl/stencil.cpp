@@ -1,4 +1,4 @@
-#include "backends/opencl_stencil.h"
+#include "backends/opencl/stencil.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "backends/backend.h"
-#include "backends/opencl_buffer.h"
-#include "backends/opencl_device.h"
+#include "backends/opencl/buffer.h"
+#include "backends/opencl/device.h"
 #include "kernels/step_parameters.h"
 
 namespace mssim {

@@ -1,13 +1,13 @@
-#include "backends/opencl_mesh.h"
+#include "backends/opencl/mesh.h"
 
 #include <CL/opencl.hpp>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "backends/opencl_lots.h"
-#include "backends/opencl_mesh_program.h"
-#include "backends/opencl_stages.h"
+#include "backends/opencl/lots.h"
+#include "backends/opencl/mesh_program.h"
+#include "backends/opencl/stages.h"
 #include "backends/sliced_graph/sliced_graph.h"
 #include "kernels/mesh_parameters.h"
 

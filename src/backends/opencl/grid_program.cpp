@@ -1,9 +1,9 @@
-#include "backends/opencl_grid_program.h"
+#include "backends/opencl/grid_program.h"
 
 #include <sstream>
 
-#include "backends/opencl_program.h"
-#include "backends/opencl_stencil.h"
+#include "backends/opencl/program.h"
+#include "backends/opencl/stencil.h"
 
 namespace mssim {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "backends/backend.h"
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 
 namespace mssim {
 

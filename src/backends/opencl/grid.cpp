@@ -1,4 +1,4 @@
-#include "backends/opencl_grid.h"
+#include "backends/opencl/grid.h"
 
 #include <CL/opencl.hpp>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "backends/opencl_grid_program.h"
-#include "backends/opencl_stages.h"
+#include "backends/opencl/grid_program.h"
+#include "backends/opencl/stages.h"
 #include "kernels/grid_parameters.h"
 
 namespace mssim {

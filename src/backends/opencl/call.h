@@ -3,7 +3,7 @@
 #include <CL/opencl.hpp>
 #include <utility>
 
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 
 namespace mssim {
 

@@ -1,4 +1,4 @@
-#include "backends/opencl_program.h"
+#include "backends/opencl/program.h"
 
 #include <array>
 #include <fstream>

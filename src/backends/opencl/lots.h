@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 
 namespace mssim {
 

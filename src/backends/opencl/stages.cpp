@@ -1,12 +1,12 @@
-#include "backends/opencl_stages.h"
+#include "backends/opencl/stages.h"
 
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
 
-#include "backends/opencl_call.h"
-#include "backends/opencl_program.h"
+#include "backends/opencl/call.h"
+#include "backends/opencl/program.h"
 #include "integrators/coefficients.h"
 
 namespace mssim {

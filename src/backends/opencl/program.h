@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/opencl_device.h"
+#include "backends/opencl/device.h"
 #include "integrators/integrator.h"
 
 namespace mssim {
