@@ -1,31 +1,13 @@
 #!/usr/bin/env bash
 # What a user of tetrahedral bodies meets at the command line: scenes, meshes of his own, TetGen missing, broken, of another
 # make, or interrupted.
-# $1: mssim
+# $1: mssim, $2: the source folder
 set -euo pipefail
 mssim=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export XDG_CACHE_HOME=$work/cache POCL_CACHE_DIR=$work/pocl TMPDIR=$work/temporary
+# shellcheck source=tests/command_line.sh
+. "$2/tests/command_line.sh"
+export XDG_CACHE_HOME=$work/cache TMPDIR=$work/temporary
 mkdir "$TMPDIR" "$work/no-programs"
-failures=0
-
-fail() {
-  echo "FAILED: $1"
-  failures=$((failures + 1))
-}
-
-# expect STATUS PATTERN ARGUMENTS...: mssim must exit with STATUS and say PATTERN on stderr, in one line, with nothing on stdout
-expect() {
-  local wanted=$1 pattern=$2 status=0
-  shift 2
-  timeout 30 "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null || status=$?
-  echo "mssim $*: $status $(cat "$work/err")"
-  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
-  grep -q -- "$pattern" "$work/err" || fail "stderr does not say \"$pattern\""
-  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "stderr has not one line"
-  [ ! -s "$work/out" ] || fail "stdout is not empty"
-}
 
 # succeed ARGUMENTS...: mssim must exit with 0 and say nothing on stderr
 succeed() {

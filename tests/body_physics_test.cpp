@@ -51,11 +51,6 @@ struct Momenta {
   Vec3d angular{};  // kg m^2/s, around the centre
 };
 
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
-
 Momenta momenta_of(const System& system, const State& state) {
   Momenta sum;
   for (std::size_t i = 0; i < system.nodes(); ++i) {

@@ -4,27 +4,8 @@
 set -euo pipefail
 mssim=$1
 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export POCL_CACHE_DIR=$work/pocl
-failures=0
-
-fail() {
-  echo "FAILED: $1"
-  failures=$((failures + 1))
-}
-
-# expect STATUS PATTERN ARGUMENTS...: mssim must exit with STATUS and say PATTERN on stderr, in one line, with nothing on stdout
-expect() {
-  local wanted=$1 pattern=$2 status=0
-  shift 2
-  "$mssim" "$@" >"$work/out" 2>"$work/err" || status=$?
-  echo "mssim $*: $status $(cat "$work/err")"
-  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
-  grep -q -- "$pattern" "$work/err" || fail "stderr does not say \"$pattern\""
-  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "stderr has not one line"
-  [ ! -s "$work/out" ] || fail "stdout is not empty"
-}
+# shellcheck source=tests/command_line.sh
+. "$2/tests/command_line.sh"
 
 # column NAME: that column of $work/results/timings.csv (no field before it may hold a comma)
 column() {

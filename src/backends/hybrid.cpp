@@ -22,6 +22,7 @@
 #include "backends/opencl/program.h"
 #include "backends/packed_springs.h"
 #include "backends/quad.h"
+#include "backends/surroundings.h"
 
 namespace mssim {
 namespace {
@@ -50,16 +51,10 @@ class Hybrid final : public Backend {
         packed_(system),
         held_(packed_.places(), true),
         inverse_mass_(packed_.places(), 0.0F),
-        viscous_damping_(static_cast<float>(system.viscous_damping)),
-        gravity_(quad_of({0, static_cast<float>(system.gravity), 0})),
-        floor_height_(static_cast<float>(system.floor.height)),
-        restitution_(static_cast<float>(system.floor.restitution)),
-        friction_(static_cast<float>(system.floor.friction)),
+        surroundings_(surroundings_of(system)),
         lots_(packed_.unit_count() / static_cast<std::size_t>(lanes), device, lanes) {
     // All forces are there before a node is written, so that pairs may share memory.
-    std::vector<Pair> stored;
-    for (std::size_t i = 0; i < pair_kinds; ++i)
-      if (stores(integrator, static_cast<Pair>(i), Storage::in_place)) stored.push_back(static_cast<Pair>(i));
+    const std::vector<Pair> stored = stored_pairs(integrator, Storage::in_place);
     const std::size_t forces = packed_.unit_count() + 1;
     std::vector<std::uint64_t> buffers(stored.size(), packed_.places() * sizeof(NodeRecord));
     buffers.insert(buffers.end(), {packed_.units.size() * sizeof(cl_uint), forces * sizeof(Quad)});
@@ -201,8 +196,8 @@ class Hybrid final : public Backend {
       pairs[i] = host_[place_of<row>(static_cast<Pair>(i), present)].data();
     // Copies, because the compiler must take every node written for a change of the members.
     const Coefficients<float> coefficients = coefficients_;
-    const Quad gravity = gravity_;
-    const float viscous_damping = viscous_damping_, floor_height = floor_height_;
+    const Surroundings around = surroundings_;
+    const Quad gravity = quad_of({0, around.gravity, 0});
     const std::uint8_t* held = held_.data();
     const float* inverse_mass = inverse_mass_.data();
     for (std::size_t slice = begin; slice < end; ++slice) {
@@ -215,16 +210,17 @@ class Hybrid final : public Backend {
         };
         const Quad x = pairs[index(gather)][node].position, v = pairs[index(gather)][node].velocity;
         const bool free = held[node] == 0;
-        const Quad a = free ? mul_add(-viscous_damping, v, inverse_mass[node] * forces[i]) - gravity : Quad{};
+        const Quad a =
+            free ? mul_add(-around.viscous_damping, v, inverse_mass[node] * forces[i]) - gravity : Quad{};
         update_stage<row, stage>(
             coefficients, x, v, a, record,
             [&]<Slot slot>(std::integral_constant<Slot, slot> which, const Quad& value) {
               record(which) = value;
             },
             [&](Quad& next_x, Quad& next_v) {
-              if (!free || !(next_x.lanes[1] < floor_height)) return;
+              if (!free || !(next_x.lanes[1] < around.floor_height)) return;
               Vec3<float> on_floor = vec3_of(next_x), bounced = vec3_of(next_v);
-              touch_floor(on_floor, bounced, floor_height, restitution_, friction_);
+              touch_floor(on_floor, bounced, around.floor_height, around.restitution, around.friction);
               next_x = quad_of(on_floor);
               next_v = quad_of(bounced);
             });
@@ -288,9 +284,7 @@ class Hybrid final : public Backend {
   PackedSprings packed_;
   std::vector<std::uint8_t> held_;   // [places] pinned, or no node
   std::vector<float> inverse_mass_;  // [places] 1/kg
-  float viscous_damping_;
-  Quad gravity_;
-  float floor_height_, restitution_, friction_;
+  Surroundings surroundings_;
   OpenclLots lots_;  // of units
   cl::Context context_;
   cl::CommandQueue queue_;

@@ -1,15 +1,8 @@
 #include "bench/blow_up.h"
 
-#include <cmath>
 #include <sstream>
 
 namespace mssim {
-namespace {
-
-bool is_finite(const Vec3d& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
-
-}  // namespace
-
 std::optional<std::size_t> first_bad_node(const State& state) {
   for (std::size_t i = 0; i < state.position.size(); ++i)
     if (!is_finite(state.position[i]) || !is_finite(state.velocity[i])) return i;

@@ -7,7 +7,6 @@
 #include "scene/scene_kinds.h"
 
 namespace mssim {
-
 namespace {
 
 /// Meshes are the only part of a scene that does not follow from its file alone.
@@ -27,7 +26,7 @@ PreparedScene prepare_scene(std::string_view name_or_file) {
   PreparedScene scene;
   scene.spec = find_scene(name_or_file);
   scene.system = build_system(scene.spec);
-  scene.counts = counts_of(scene.spec);
+  scene.counts = counts_of(scene.spec, scene.system);
   scene.note = difference(scene.spec, scene.counts);
   if (scene.spec.dt_s) {
     scene.dt_s = *scene.spec.dt_s;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace mssim {
 
@@ -134,6 +135,14 @@ constexpr bool swaps_state(const Integrator& integrator, Storage storage) {
 /// Does this storage need arrays for the pair?
 constexpr bool stores(const Integrator& integrator, Pair pair, Storage storage) {
   return touches(integrator, pair) && storage_of(integrator, pair, storage) == pair;
+}
+
+/// The pairs that this storage needs arrays for.
+inline std::vector<Pair> stored_pairs(const Integrator& integrator, Storage storage) {
+  std::vector<Pair> stored;
+  for (std::size_t i = 0; i < pair_kinds; ++i)
+    if (stores(integrator, static_cast<Pair>(i), storage)) stored.push_back(static_cast<Pair>(i));
+  return stored;
 }
 
 /// Does a later stage, or the next step's first, gather from what this stage writes into `pair`?

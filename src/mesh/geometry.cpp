@@ -5,11 +5,6 @@
 
 namespace mssim {
 
-std::string decimal(double value) {
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 std::string shown(double computed) {
   std::array<char, 32> text;
   constexpr int digits = 12;

@@ -17,7 +17,7 @@ Energy energy_of(const System& system, const State& state) {
 
 double elastic_energy(const System& system, const Spring& spring, const State& state) {
   const Vec3d d = state.position[spring.second] - state.position[spring.first];
-  const double stretch = std::sqrt(dot(d, d)) - static_cast<double>(spring.rest_length);
+  const double stretch = length(d) - static_cast<double>(spring.rest_length);
   return 0.5 * system.materials[spring.kind].stiffness * stretch * stretch;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 namespace mssim {
 
 /// A vector in space; y points up. Units stand where a Vec3 is declared.
@@ -20,7 +22,18 @@ constexpr Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+template <class Real>
+constexpr Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 using Vec3d = Vec3<double>;
+
+inline double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
+
+inline bool is_finite(const Vec3d& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 /// The same vector in another precision.
 template <class To, class From>

@@ -1,10 +1,11 @@
 #include "output/csv.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
+
+#include "model/decimal.h"
 
 namespace mssim {
 namespace {
@@ -50,8 +51,7 @@ std::string csv_line(const std::vector<std::string>& fields) {
 
 std::string csv_number(double value) {
   if (!std::isfinite(value)) throw std::invalid_argument("CSV: a number is not finite");
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+  return decimal(value);
 }
 
 std::string csv_number(const std::optional<double>& value) {

@@ -1,10 +1,10 @@
 #include "output/xdmf.h"
 
 #include <array>
-#include <charconv>
 #include <functional>
 #include <numeric>
 
+#include "model/decimal.h"
 #include "output/atomic_file.h"
 #include "output/hdf5_write.h"
 
@@ -30,12 +30,6 @@ std::string escape_xml(std::string_view text) {
         escaped += character;
     }
   return escaped;
-}
-
-/// The shortest text that reads back as the same number, in any locale.
-std::string exact(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
 
 /// The extents, separated by blanks.
@@ -119,7 +113,7 @@ void write_xdmf(const std::filesystem::path& trace, const XdmfMesh& mesh, std::s
       "    <Grid Name=\"trace\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (std::size_t frame = 0; frame < times_s.size(); ++frame) {
     text += "      <Grid Name=\"" + mesh.particles + "\" GridType=\"Uniform\">\n";
-    text += "        <Time Value=\"" + exact(times_s[frame]) + "\"/>\n";
+    text += "        <Time Value=\"" + decimal(times_s[frame]) + "\"/>\n";
     text += "        " + topology + "\n";
     text += "        <Geometry GeometryType=\"XYZ\">" + vectors("position", frame) + "</Geometry>\n";
     text += "        <Attribute Name=\"velocity\" AttributeType=\"Vector\" Center=\"Node\">" +

@@ -12,6 +12,7 @@
 #include "mesh/mesh_error.h"
 #include "scene/body_shapes.h"
 #include "scene/json_document.h"
+#include "scene/material_fields.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -35,13 +36,6 @@ void visit_body(FieldVisitor& fields, BodySpec& body) {
 
 std::string pointer_to(std::size_t body) { return "/bodies/list/" + std::to_string(body); }
 
-[[noreturn]] void refuse(const SceneSpec& spec, const std::string& pointer, const std::string& problem) {
-  throw SceneError(printable(spec.file.string(), 1000) + ": " + pointer + ' ' + problem);
-}
-
-/// A length for a message, m, without the digits that rounding has made.
-std::string shown_length(double length_m) { return shown_number(std::round(length_m * 1e6) / 1e6); }
-
 /// A mesh and what follows from it, for all bodies of that shape.
 struct MeshedShape {
   TetMesh mesh;  ///< its centre is the origin
@@ -63,9 +57,9 @@ class MeshedShapes {
     try {
       meshed.mesh = mesh_of(shape, spec_.file.parent_path());
     } catch (const MeshError& error) {
-      refuse(spec_, pointer_to(body), std::string("has no mesh: ") + error.what());
+      refuse(spec_.file, pointer_to(body), std::string("has no mesh: ") + error.what());
     } catch (const SceneError& error) {  // of another scene whose shape it takes
-      refuse(spec_, pointer_to(body), std::string("has no mesh: ") + error.what());
+      refuse(spec_.file, pointer_to(body), std::string("has no mesh: ") + error.what());
     }
     Vec3d centre;
     for (const Vec3d& node : meshed.mesh.nodes) centre += node;
@@ -115,8 +109,7 @@ void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
   BodiesSpec& bodies = spec.body.emplace<BodiesSpec>();
   fields.number("density_kg_per_m3", bodies.density_kg_per_m3, from(1e-3, 1e6));
   fields.object("springs", Presence::required, [&](FieldVisitor& springs) {
-    springs.number("stiffness_n_per_m", bodies.springs.stiffness, above(0, 1e9));
-    springs.number("damping_n_s_per_m", bodies.springs.damping, from(0, 1e6));
+    visit_material(springs, bodies.springs, above(0, largest_stiffness));
   });
   fields.list("list", most_bodies,
               [&](FieldVisitor& element) { visit_body(element, bodies.list.emplace_back()); });
@@ -126,7 +119,7 @@ void check_bodies(const SceneSpec& spec) {
   const BodiesSpec& bodies = bodies_of(spec);
   for (std::size_t i = 0; i < bodies.list.size(); ++i)
     if (!(length(bodies.list[i].turn_axis) > 1e-6))
-      refuse(spec, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
+      refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
 }
 
 std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
@@ -137,7 +130,6 @@ std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
     counts.nodes += size->nodes;
     counts.springs_unique += size->springs;
   }
-  counts.springs_published = 3 * counts.springs_unique;
   return counts;
 }
 
@@ -149,7 +141,6 @@ SceneCounts bodies_counts(const SceneSpec& spec) {
     counts.nodes += shape.mesh.nodes.size();
     counts.springs_unique += shape.edges.size();
   }
-  counts.springs_published = 3 * counts.springs_unique;
   return counts;
 }
 
@@ -172,10 +163,10 @@ System build_bodies(const SceneSpec& spec) {
     }
     // The height shows a mesh in another unit than its unit_m says.
     if (!(lowest > spec.floor.height))
-      refuse(spec, pointer_to(i) + "/centre_m/1",
+      refuse(spec.file, pointer_to(i) + "/centre_m/1",
              "is " + shown_number(bodies.list[i].centre_m.y) +
-                 ", so that the lowest node of the body, which is " + shown_length(highest - lowest) +
-                 " m high, would start at " + shown_length(lowest) + ", not above the floor at " +
+                 ", so that the lowest node of the body, which is " + shown(highest - lowest) +
+                 " m high, would start at " + shown(lowest) + ", not above the floor at " +
                  shown_number(spec.floor.height) + ": raise it");
   }
   system.topology = std::move(mesh);

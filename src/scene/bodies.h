@@ -19,15 +19,13 @@ void check_bodies(const SceneSpec& spec);
 /// The sum over the bodies; none unless all of them state their size.
 std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec);
 
-/// Meshes every body. springs_published = 3 springs_unique: Hong et al. seem to give the length of their
-/// array of packed springs, three values each (an inference: all nine of their counts can be divided by
-/// three, and the thirds fit tetrahedral meshes). Throws SceneError and MissingProgram.
+/// Meshes every body. Throws SceneError and MissingProgram.
 SceneCounts bodies_counts(const SceneSpec& spec);
 
 /// The bodies one after the other, each in its mesh's node order, its springs the edges of its tetrahedra at
 /// their length in the mesh. A body starts turned, as a rigid body that flies and spins, and grows at its
-/// swell rate. Deterministic. Throws SceneError when a body starts below the floor, MeshError and
-/// MissingProgram.
+/// swell rate. Deterministic. Throws SceneError when a body has no mesh or starts below the floor,
+/// and MissingProgram.
 System build_bodies(const SceneSpec& spec);
 
 }  // namespace mssim

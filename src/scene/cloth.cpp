@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scene/json_document.h"
+#include "scene/material_fields.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -38,9 +39,8 @@ void visit_springs(FieldVisitor& fields, ClothSpec& cloth) {
     fields.object(grid_spring_kinds[kind].name, Presence::required, [&](FieldVisitor& material) {
       // Without structural springs nothing would hold the cloth together; the other two kinds can be left
       // out.
-      const Range stiffness = kind == structural ? above(0, 1e9) : from(0, 1e9);
-      material.number("stiffness_n_per_m", cloth.springs[kind].stiffness, stiffness);
-      material.number("damping_n_s_per_m", cloth.springs[kind].damping, from(0, 1e6));
+      visit_material(material, cloth.springs[kind],
+                     kind == structural ? above(0, largest_stiffness) : from(0, largest_stiffness));
     });
 }
 
@@ -72,32 +72,30 @@ void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
 
 void check_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
-  const auto refuse = [&](const std::string& pointer, const std::string& problem) {
-    throw SceneError(printable(spec.file.string(), 1000) + ": " + pointer + ' ' + problem);
-  };
   constexpr std::uint64_t most_nodes = std::numeric_limits<std::uint32_t>::max();
   if (const std::uint64_t nodes = std::uint64_t{cloth.rows} * cloth.columns; nodes > most_nodes)
-    refuse("/cloth/rows", "is " + std::to_string(cloth.rows) + ", which with " +
-                              std::to_string(cloth.columns) + " columns makes " + std::to_string(nodes) +
-                              " nodes: keep the product at or below " + std::to_string(most_nodes));
+    refuse(spec.file, "/cloth/rows",
+           "is " + std::to_string(cloth.rows) + ", which with " + std::to_string(cloth.columns) +
+               " columns makes " + std::to_string(nodes) + " nodes: keep the product at or below " +
+               std::to_string(most_nodes));
   if (cloth.pins && cloth.pins->row >= cloth.rows)
-    refuse("/cloth/pins/row", "is " + std::to_string(cloth.pins->row) +
-                                  ", but the rows are numbered from 0 to " + std::to_string(cloth.rows - 1) +
-                                  ": name one of them");
+    refuse(spec.file, "/cloth/pins/row",
+           "is " + std::to_string(cloth.pins->row) + ", but the rows are numbered from 0 to " +
+               std::to_string(cloth.rows - 1) + ": name one of them");
   const double lowest_start = cloth.ceiling_height_m - cloth.ripple.height_m;
   if (!(lowest_start > spec.floor.height))
-    refuse("/cloth/ceiling_height_m",
+    refuse(spec.file, "/cloth/ceiling_height_m",
            "is " + shown_number(cloth.ceiling_height_m) + ", so that the ripple would start at " +
                shown_number(lowest_start) + ", not above the floor at " + shown_number(spec.floor.height) +
                ": raise it or lower /floor/height_m");
   if (cloth.ripple.height_m > steepest_ripple * cloth.ripple.wavelength_m)
-    refuse("/cloth/ripple/height_m",
+    refuse(spec.file, "/cloth/ripple/height_m",
            "is " + shown_number(cloth.ripple.height_m) +
                ", more than a tenth of the wavelength, and could fold springs: give at most " +
                shown_number(steepest_ripple * cloth.ripple.wavelength_m) +
                " or raise /cloth/ripple/wavelength_m");
   if (cloth.pins && cloth.ripple.height_m > cloth.spacing_m)
-    refuse("/cloth/ripple/height_m",
+    refuse(spec.file, "/cloth/ripple/height_m",
            "is " + shown_number(cloth.ripple.height_m) +
                ", more than the spacing, and could fold springs at the pins: give at most " +
                shown_number(cloth.spacing_m) + " or take /cloth/pins away");
@@ -106,7 +104,7 @@ void check_cloth(const SceneSpec& spec) {
 SceneCounts cloth_counts(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   const std::uint64_t springs = count_springs(cloth.rows, cloth.columns);
-  return {std::uint64_t{cloth.rows} * cloth.columns, springs, 2 * springs};
+  return {std::uint64_t{cloth.rows} * cloth.columns, springs};
 }
 
 std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec) { return cloth_counts(spec); }

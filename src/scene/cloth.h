@@ -17,8 +17,7 @@ void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec);
 /// no spring to length zero. Throws SceneError.
 void check_cloth(const SceneSpec& spec);
 
-/// springs_published = 2 springs_unique: Hong et al. count the 12-neighbour stencil of every node, and so
-/// each spring once from each of its ends.
+/// Without building the cloth.
 SceneCounts cloth_counts(const SceneSpec& spec);
 
 /// The same: a cloth is as its file says.

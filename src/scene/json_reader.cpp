@@ -164,7 +164,7 @@ class JsonReader final : public FieldVisitor {
 
  private:
   [[noreturn]] void fail(std::string_view pointer, const std::string& problem) const {
-    throw SceneError(printable(file_.string(), 1000) + ": " + printable(pointer, 200) + ' ' + problem);
+    mssim::refuse(file_, pointer, problem);
   }
 
   [[noreturn]] void refuse(std::string_view key, const json& value, const std::string& wanted) const {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace mssim {
 
@@ -10,5 +13,9 @@ namespace mssim {
 struct SceneError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// Throws SceneError: "FILE: POINTER PROBLEM".
+[[noreturn]] void refuse(const std::filesystem::path& file, std::string_view pointer,
+                         const std::string& problem);
 
 }  // namespace mssim

@@ -12,10 +12,21 @@ namespace mssim {
 namespace {
 
 constexpr std::array<SceneKind, 2> kinds{{
-    {"cloth", visit_cloth_fields, check_cloth, stated_cloth_counts, cloth_counts, build_cloth},
-    {"bodies", visit_bodies_fields, check_bodies, stated_bodies_counts, bodies_counts, build_bodies},
+    // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
+    // both
+    // of its ends.
+    {"cloth", visit_cloth_fields, check_cloth, 2, stated_cloth_counts, cloth_counts, build_cloth},
+    // Those of bodies seem to be the length of the array of packed springs, three values each: all nine can
+    // be
+    // divided by three, and the thirds fit tetrahedral meshes.
+    {"bodies", visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts, build_bodies},
 }};
 static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);
+
+SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
+  counts.springs_published = kind_of(spec).published_per_spring * counts.springs_unique;
+  return counts;
+}
 
 }  // namespace
 
@@ -23,9 +34,16 @@ std::span<const SceneKind> scene_kinds() { return kinds; }
 
 const SceneKind& kind_of(const SceneSpec& spec) { return kinds.at(spec.body.index()); }
 
-std::optional<SceneCounts> stated_counts(const SceneSpec& spec) { return kind_of(spec).stated(spec); }
+std::optional<SceneCounts> stated_counts(const SceneSpec& spec) {
+  const auto stated = kind_of(spec).stated(spec);
+  return stated ? std::optional(with_published(spec, *stated)) : std::nullopt;
+}
 
-SceneCounts counts_of(const SceneSpec& spec) { return kind_of(spec).counts(spec); }
+SceneCounts counts_of(const SceneSpec& spec) { return with_published(spec, kind_of(spec).counts(spec)); }
+
+SceneCounts counts_of(const SceneSpec& spec, const System& system) {
+  return with_published(spec, {system.nodes(), system.springs.size()});
+}
 
 void require_memory(const SceneSpec& spec) {
   require_memory(spec, "/" + std::string(kind_of(spec).name), counts_of(spec));

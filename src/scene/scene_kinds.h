@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -17,8 +18,11 @@ struct SceneKind {
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
   /// Checks what one field alone cannot show. Throws SceneError.
   void (*check)(const SceneSpec& spec);
-  /// What the file says about the size, none where it says nothing.
+  /// How often a spring is counted in Hong et al.'s tables, by inference from their numbers.
+  std::uint64_t published_per_spring;
+  /// What the file says about nodes and unique springs, none where it says nothing.
   std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
+  /// What the scene has of both.
   SceneCounts (*counts)(const SceneSpec& spec);
   System (*build)(const SceneSpec& spec);
 };
@@ -33,9 +37,12 @@ const SceneKind& kind_of(const SceneSpec& spec);
 /// Nodes and springs as the scene's file states them, which costs nothing; none where it does not.
 std::optional<SceneCounts> stated_counts(const SceneSpec& spec);
 
-/// Nodes and springs that the scene has. Bodies have to be meshed for that: throws MeshError and
+/// Nodes and springs that the scene has. Bodies have to be meshed for that: throws SceneError and
 /// MissingProgram.
 SceneCounts counts_of(const SceneSpec& spec);
+
+/// The same, of the scene's System.
+SceneCounts counts_of(const SceneSpec& spec, const System& system);
 
 /// Throws SceneError when the scene needs more memory than there is, naming both amounts.
 void require_memory(const SceneSpec& spec);

@@ -30,11 +30,7 @@ BandSheet::BandSheet(const System& system, const GridPatch& grid, const Integrat
     : layout(layout_for(grid, lanes)),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
-      viscous_damping(static_cast<float>(system.viscous_damping)),
-      gravity(static_cast<float>(system.gravity)),
-      floor_height(static_cast<float>(system.floor.height)),
-      restitution(static_cast<float>(system.floor.restitution)),
-      friction(static_cast<float>(system.floor.friction)),
+      surroundings(surroundings_of(system)),
       spacing_(grid.spacing) {
   const double mass = require_uniform_mass(system);
   for (std::size_t kind = 0; kind < materials.size(); ++kind) {
@@ -88,7 +84,7 @@ void BandSheet::fill_part(BandPart& part, const State& state) const {
           const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lane) * height + r;
           // Dummies keep the spacing of a cloth at rest, above the floor: their springs give small finite
           // numbers.
-          Vec3d x{static_cast<double>(column) * spacing_, static_cast<double>(floor_height) + 1,
+          Vec3d x{static_cast<double>(column) * spacing_, static_cast<double>(surroundings.floor_height) + 1,
                   static_cast<double>(row) * spacing_};
           Vec3d v{};
           if (row >= 0 && row < rows && column >= 0 && column < columns) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backends/aligned_array.h"
+#include "backends/surroundings.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
@@ -69,8 +70,7 @@ struct BandSheet {
     float stiffness, stiffness_rest, damping;
   };
   std::array<Material, grid_spring_kinds.size()> materials{};
-  float viscous_damping = 0, gravity = 0;
-  float floor_height = 0, restitution = 0, friction = 0;
+  Surroundings surroundings{};
   std::vector<BandPart> parts;
 
   /// Cuts the cloth for `lanes` lanes and at most `threads` parts. Arrays stay untouched until set_state.

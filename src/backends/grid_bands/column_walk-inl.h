@@ -135,8 +135,8 @@ HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3
 
   if constexpr (update) {
     // The forces are accelerations already; dummies get none and stay where they are.
-    Lanes3 a = mul_add(Lanes(-sheet.viscous_damping), node.v, force);
-    a.y = a.y - Lanes(sheet.gravity);
+    Lanes3 a = mul_add(Lanes(-sheet.surroundings.viscous_damping), node.v, force);
+    a.y = a.y - Lanes(sheet.surroundings.gravity);
     a = keep(below(cloth_row, rows), a);
     const auto address = [&](auto slot) MSSIM_INLINE_LAMBDA {
       constexpr std::size_t i = index(decltype(slot)::value);
@@ -147,8 +147,9 @@ HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3
         [&](auto slot) MSSIM_INLINE_LAMBDA { return load3(address(slot)); },
         [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { store3(address(slot), value); },
         [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
-          const Lanes height(sheet.floor_height);
-          touch_floor(hn::Lt(x.y.v, height.v), height, Lanes(sheet.restitution), Lanes(sheet.friction), x, v);
+          const Lanes height(sheet.surroundings.floor_height);
+          touch_floor(hn::Lt(x.y.v, height.v), height, Lanes(sheet.surroundings.restitution),
+                      Lanes(sheet.surroundings.friction), x, v);
         });
   }
 }

@@ -48,8 +48,9 @@ std::string kernel_text(const Stage& stage, std::size_t number, bool walks) {
 bool grid_program_walks(int lanes) { return lanes > 1; }
 
 std::string grid_program_text(const Integrator& integrator, int lanes) {
-  std::string text = program_text(lanes, {"lanes.h", "spring_law.h", "floor_law.h", "step_parameters.h",
-                                          "stage.h", "grid_parameters.h", "grid_stage.cl"});
+  std::string text =
+      program_text(lanes, {"lanes.h", "spring_law.h", "floor_law.h", "surroundings.h", "step_parameters.h",
+                           "stage.h", "grid_parameters.h", "grid_stage.cl"});
   const bool walks = grid_program_walks(lanes);
   text += walks ? walk_springs_text() : gather_springs_text();
   for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)

@@ -39,8 +39,8 @@ std::size_t mesh_slice_lanes(int lanes) {
 std::string mesh_program_text(const Integrator& integrator, int lanes) {
   std::string text =
       "#define MSSIM_SLICE " + std::to_string(mesh_slice_lanes(lanes)) + "\n" +
-      program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "floor_law.h", "step_parameters.h",
-                           "stage.h", "mesh_parameters.h", "mesh_stage.cl"});
+      program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "floor_law.h", "surroundings.h",
+                           "step_parameters.h", "stage.h", "mesh_parameters.h", "mesh_stage.cl"});
   for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
     text += update_text(integrator, stage) + kernel_text(integrator.stages[stage], stage);
   return text;

@@ -23,13 +23,6 @@ constexpr bool all_swap_state() {
 }
 static_assert(all_swap_state(), "step() swaps the two pairs after every step");
 
-std::vector<Pair> stored_pairs(const Integrator& integrator) {
-  std::vector<Pair> stored;
-  for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (stores(integrator, static_cast<Pair>(i), Storage::separate)) stored.push_back(static_cast<Pair>(i));
-  return stored;
-}
-
 /// `state` and `next` change roles after every step.
 Pair role(Pair pair, bool swapped) {
   if (swapped && pair == Pair::state) return Pair::next;
@@ -39,11 +32,7 @@ Pair role(Pair pair, bool swapped) {
 
 StepParameters step_parameters_of(const System& system, const Integrator& integrator, double dt_s) {
   StepParameters step{};
-  step.viscous_damping = static_cast<float>(system.viscous_damping);
-  step.gravity = static_cast<float>(system.gravity);
-  step.floor_height = static_cast<float>(system.floor.height);
-  step.restitution = static_cast<float>(system.floor.restitution);
-  step.friction = static_cast<float>(system.floor.friction);
+  step.surroundings = surroundings_of(system);
   const Coefficients<float> coefficients = coefficients_of<float>(integrator, dt_s);
   static_assert(sizeof(coefficients) == sizeof(step.coefficients));
   std::memcpy(step.coefficients, coefficients.data(), sizeof(step.coefficients));
@@ -55,7 +44,7 @@ StepParameters step_parameters_of(const System& system, const Integrator& integr
 OpenclStages::OpenclStages(const System& system, const Integrator& integrator, double dt_s,
                            const OpenclDevice& device, PairLayout layout, std::vector<std::uint64_t> others)
     : integrator_(integrator), device_(device), layout_(std::move(layout)) {
-  const std::vector<Pair> stored = stored_pairs(integrator);
+  const std::vector<Pair> stored = stored_pairs(integrator, Storage::separate);
   others.insert(others.end(), stored.size(), layout_.floats * sizeof(float));
   require_memory(device, others);
 

@@ -14,6 +14,7 @@
 #include "backends/backend.h"
 #include "backends/opencl/buffer.h"
 #include "backends/opencl/device.h"
+#include "backends/surroundings.h"
 #include "kernels/step_parameters.h"
 
 namespace mssim {

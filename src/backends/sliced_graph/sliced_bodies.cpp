@@ -47,11 +47,7 @@ SlicedBodies::SlicedBodies(const System& system, const Integrator& method, doubl
     : lanes(slice_lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
-      viscous_damping(static_cast<float>(system.viscous_damping)),
-      gravity(static_cast<float>(system.gravity)),
-      floor_height(static_cast<float>(system.floor.height)),
-      restitution(static_cast<float>(system.floor.restitution)),
-      friction(static_cast<float>(system.floor.friction)) {
+      surroundings(surroundings_of(system)) {
   constexpr std::size_t offsets = record_floats / offset_floats;
   constexpr std::size_t most_nodes =
       std::numeric_limits<std::uint32_t>::max() / offsets - SlicedGraph::window;

@@ -7,6 +7,7 @@
 
 #include "backends/aligned_array.h"
 #include "backends/sliced_graph/sliced_graph.h"
+#include "backends/surroundings.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
@@ -37,8 +38,7 @@ struct SlicedBodies {
 
   const Integrator* integrator = nullptr;
   Coefficients<float> coefficients{};
-  float viscous_damping = 0, gravity = 0;
-  float floor_height = 0, restitution = 0, friction = 0;
+  Surroundings surroundings{};
   std::size_t threads = 1;
   std::vector<Lot> lots;                       ///< of about the same work
   std::array<AlignedArray, pair_kinds> pairs;  ///< [slices][lanes][record_floats]; empty where not stored

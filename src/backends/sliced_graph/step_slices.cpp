@@ -64,8 +64,8 @@ HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::s
 
   Lanes3 a = spring_acceleration(bodies, gathered, slice, node, Lanes(hn::Load(FloatTag(), constants)),
                                  Lanes(hn::Load(FloatTag(), constants + slice_lanes)));
-  a = mul_add(Lanes(-bodies.viscous_damping), node.v, a);
-  a.y = a.y - Lanes(bodies.gravity);
+  a = mul_add(Lanes(-bodies.surroundings.viscous_damping), node.v, a);
+  a.y = a.y - Lanes(bodies.surroundings.gravity);
   // What is held is at rest; without acceleration every line gives it back as it was.
   a = keep(free, a);
 
@@ -92,9 +92,9 @@ HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::s
       bodies.coefficients, node.x, node.v, a, half,
       [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { half(slot) = value; },
       [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
-        const Lanes height(bodies.floor_height);
-        touch_floor(hn::And(free, hn::Lt(x.y.v, height.v)), height, Lanes(bodies.restitution),
-                    Lanes(bodies.friction), x, v);
+        const Lanes height(bodies.surroundings.floor_height);
+        touch_floor(hn::And(free, hn::Lt(x.y.v, height.v)), height, Lanes(bodies.surroundings.restitution),
+                    Lanes(bodies.surroundings.friction), x, v);
       });
   for_each_pair([&](auto i) MSSIM_INLINE_LAMBDA {
     if constexpr (writes(table, position_slot(static_cast<Pair>(decltype(i)::value))))

@@ -1,0 +1,22 @@
+# Functions of the tests at the command line. Needs $mssim; sets $work (a folder that goes away) and $failures.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export POCL_CACHE_DIR=$work/pocl
+failures=0
+
+fail() {
+  echo "FAILED: $1"
+  failures=$((failures + 1))
+}
+
+# expect STATUS PATTERN ARGUMENTS...: mssim must exit with STATUS and say PATTERN on stderr, in one line, with nothing on stdout
+expect() {
+  local wanted=$1 pattern=$2 status=0
+  shift 2
+  timeout 30 "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null || status=$?
+  echo "mssim $*: $status $(cat "$work/err")"
+  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
+  grep -q -- "$pattern" "$work/err" || fail "stderr does not say \"$pattern\""
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "stderr has not one line"
+  [ ! -s "$work/out" ] || fail "stdout is not empty"
+}
