@@ -55,6 +55,9 @@ class Backend {
   virtual std::string device() const = 0;
   /// Host threads that take part in a step.
   virtual int threads() const = 0;
+  /// Whole steps that one pass over the state in memory takes, where stages overlap; 0 where every stage
+  /// makes a pass of its own. What a step moves through memory is counted by it.
+  virtual int steps_per_pass() const { return 0; }
   /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
   virtual bool runs_on_host() const { return true; }
 };
