@@ -1,6 +1,5 @@
 // Every backend against the double-precision reference, for every integrator.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/grid_bands/step_bands.h"
 #include "backends/openmp.h"
 #include "backends/serial.h"
 #include "bench/verification.h"
@@ -281,25 +279,6 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
     const State expected = alone->state(), state = crowd->state();
     EXPECT_EQ(state.position, expected.position);
     EXPECT_EQ(state.velocity, expected.velocity);
-  }
-}
-
-TEST_P(EachIntegratorOnOpenMp, IsVerifiedForEveryInstructionSetOfThisProcessor) {
-  for (const System& system : {cloth_system(37, 23), solid_block(9, 9, 9), two_solid_blocks()}) {
-    const Reference reference = run_reference(system, integrator(), dt_s);
-    const std::int64_t all = hwy::SupportedTargets();
-    int tried = 0;
-    for (std::int64_t rest = all & HWY_TARGETS; rest != 0; rest &= rest - 1) {
-      hwy::SetSupportedTargetsForTest(rest & -rest);
-      hwy::GetChosenTarget().Update(rest & -rest);
-      const auto simulation = make_openmp(system, integrator(), dt_s, {2, ""});
-      const Verification verification = verify(*simulation, system, reference, dt_s);
-      EXPECT_FALSE(verification.failure) << simulation->device() << ": " << verification.failure.value_or("");
-      ++tried;
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(all);
-    EXPECT_GE(tried, 1);
   }
 }
 
