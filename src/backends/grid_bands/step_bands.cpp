@@ -188,6 +188,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mssim {
 HWY_EXPORT(band_kernel);
-BandKernel best_band_kernel() { return HWY_DYNAMIC_DISPATCH(band_kernel)(); }
+std::vector<BandKernel> band_kernels() { return kernels_of_this_processor(HWY_DISPATCH_TABLE(band_kernel)); }
 }  // namespace mssim
 #endif

@@ -164,6 +164,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mssim {
 HWY_EXPORT(slice_kernel);
-SliceKernel best_slice_kernel() { return HWY_DYNAMIC_DISPATCH(slice_kernel)(); }
+std::vector<SliceKernel> slice_kernels() {
+  return kernels_of_this_processor(HWY_DISPATCH_TABLE(slice_kernel));
+}
 }  // namespace mssim
 #endif
