@@ -12,11 +12,21 @@
 
 namespace mssim {
 
+/// How host and OpenCL device exchange data.
+enum class DeviceMemory : std::uint8_t {
+  /// Both work on the same arrays in turn. Where the device shares the host's memory nothing is copied;
+  /// elsewhere the driver copies an array each time it changes hands.
+  shared,
+  /// Each has arrays of its own, and what changed is copied from one to the other.
+  copy
+};
+
 /// What the user chose about where a backend runs.
 struct ExecutionOptions {
   int threads = 0;  ///< host threads, at least 1
   std::string device =
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
+  DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.
@@ -56,6 +66,9 @@ class Backend {
   virtual std::string device() const = 0;
   /// Host threads that take part in a step.
   virtual int threads() const = 0;
+  /// Whole steps that one pass over the state in memory takes, where stages overlap; 0 where every stage
+  /// makes a pass of its own. What a step moves through memory is counted by it.
+  virtual int steps_per_pass() const { return 0; }
   /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
   virtual bool runs_on_host() const { return true; }
 };
