@@ -47,7 +47,7 @@ std::vector<BackendInfo> backends_and_ways() {
 }
 
 const ExecutionOptions two_threads{2, {}};
-constexpr double small_change = 12e6;  // of the runtimes, whatever the scene
+constexpr double small_change = 20e6;  // of the runtimes and the heap, whatever the scene
 
 /// Expects that making a backend, a step and reading its state back take about as much as its row says.
 void expect_as_stated(const BackendInfo& backend, const MemoryUse& use, const System& system) {
@@ -60,8 +60,8 @@ void expect_as_stated(const BackendInfo& backend, const MemoryUse& use, const Sy
   });
   const double state = 2 * sizeof(Vec3d) * static_cast<double>(system.nodes());
   const double stated = use.bytes(rk4, system.nodes(), system.springs.size(), two_threads.threads) + state;
-  EXPECT_LT(grown, 1.1 * stated + small_change) << backend.name;
-  EXPECT_GT(grown, 0.7 * stated - small_change) << backend.name;
+  EXPECT_LT(grown, 1.25 * stated + small_change) << backend.name;
+  EXPECT_GT(grown, 0.75 * stated - small_change) << backend.name;
 }
 
 TEST(MemoryUse, IsWhatEveryBackendAndWayTakesForACloth) {
