@@ -34,7 +34,9 @@ struct Team {
 /// differ in the accumulation alone:
 ///
 ///     Accumulation(const System& system, SpringList<float>& list, std::size_t threads)
-///     void prepare(const Team& team)           writes what belongs to this thread alone, reads no node
+///     void prepare(const Team& team)           writes what only this thread touches in `finish` and update,
+///     and
+///                                              reads no node: others may still be in both for the last stage
 ///     void add(const Team& team, Pair gather)  computes and adds forces, after all have prepared
 ///     void finish(const Team& team)            completes the forces of this thread's share of the nodes,
 ///                                              after all have added

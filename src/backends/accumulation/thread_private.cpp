@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <vector>
 
 #include "backends/accumulation/list_way.h"
@@ -12,7 +11,7 @@ class ThreadPrivate {
   ThreadPrivate(const System& system, SpringList<float>& list, std::size_t threads)
       : list_(list), forces_(threads, std::vector<Vec3<float>>(system.nodes())) {}
 
-  void prepare(const Team& team) { std::ranges::fill(forces_[team.thread], Vec3<float>{}); }
+  void prepare(const Team& /*team*/) {}
 
   void add(const Team& team, Pair gather) {
     std::vector<Vec3<float>>& forces = forces_[team.thread];
@@ -25,15 +24,18 @@ class ThreadPrivate {
 
   void finish(const Team& team) {
     for (std::size_t node = team.begin(list_.nodes()); node < team.end(list_.nodes()); ++node) {
-      Vec3<float> sum = forces_.front()[node];
-      for (std::size_t thread = 1; thread < team.threads; ++thread) sum += forces_[thread][node];
+      Vec3<float> sum;
+      for (std::size_t thread = 0; thread < team.threads; ++thread) {
+        sum += forces_[thread][node];
+        forces_[thread][node] = {};  // for the next stage: its owner may not, while others still sum
+      }
       list_.force(node) = sum;
     }
   }
 
  private:
   SpringList<float>& list_;
-  std::vector<std::vector<Vec3<float>>> forces_;  // [threads][nodes] N
+  std::vector<std::vector<Vec3<float>>> forces_;  // [threads][nodes] N, zero between stages
 };
 
 }  // namespace
