@@ -18,6 +18,8 @@ expect 2 'nothing to measure' bench
 expect 2 'known are bench, run and list' frobnicate
 expect 2 'rounds' bench --rounds 0 --scene cloth2500
 expect 2 'threads' bench --threads -3 --scene cloth2500
+expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
+expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
 expect 2 'Did you mean openmp\|did you mean openmp' bench --scene cloth2500 --backend openpm
 expect 2 'Known are serial, threads-mutex, openmp, opencl and hybrid' bench --scene cloth2500 --backend cuda
 expect 2 'rk4-frozen' bench --scene cloth2500 --integrator verlet
@@ -66,6 +68,12 @@ done
 [ "$(find "$work/results/traces" -name '*.h5' | wc -l)" -eq 15 ] || fail "not 15 traces"
 [ "$(awk -F, 'NR > 1' "$work/results/samples.csv" | wc -l)" -eq 45 ] || fail "not 45 samples"
 column roofline_fraction | awk '!($1 > 0 && $1 <= 1.05) { bad = 1 } END { exit bad }' || fail "a roofline fraction"
+
+# Data copied between host and device: the rows that do so say it.
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" \
+  >"$work/out" 2>"$work/err" || fail "bench --memory copy exits with $?"
+[ "$(column verified | grep -c true)" -eq 5 ] || fail "not 5 verified rows with copied memory"
+[ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
 
 # A device that is missing: its rows say so; asked for by name it is an error.
 status=0

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -11,11 +12,21 @@
 
 namespace mssim {
 
+/// How host and OpenCL device exchange data.
+enum class DeviceMemory : std::uint8_t {
+  /// Both work on the same arrays in turn. Where the device shares the host's memory nothing is copied;
+  /// elsewhere the driver copies an array each time it changes hands.
+  shared,
+  /// Each has arrays of its own, and what changed is copied from one to the other.
+  copy
+};
+
 /// What the user chose about where a backend runs.
 struct ExecutionOptions {
   int threads = 0;  ///< host threads, at least 1
   std::string device =
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
+  DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.

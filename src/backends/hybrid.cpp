@@ -23,14 +23,15 @@ namespace {
 class Hybrid final : public Backend {
  public:
   Hybrid(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-         int threads, int lanes)
+         int threads, int lanes, DeviceMemory memory)
       : integrator_(integrator),
-        device_info_(device),
+        device_label_(label_of(device, memory)),
+        runs_on_host_(device.type == OpenclDeviceType::cpu),
         threads_(threads),
         kernel_(best_node_kernel()),
         nodes_(system, integrator, dt_s),
         // All forces are there before a node is written, so that pairs may share memory.
-        device_(system, nodes_.packed, stored_pairs(integrator, Storage::in_place), device, lanes) {
+        device_(system, nodes_.packed, stored_pairs(integrator, Storage::in_place), device, lanes, memory) {
     nodes_.packed.units = {};
     nodes_.packed.entries = {};
     // Drivers finish compiling at a kernel's first launch with a range.
@@ -67,9 +68,9 @@ class Hybrid final : public Backend {
     return state;
   }
 
-  std::string device() const override { return device_info_.name; }
+  std::string device() const override { return device_label_; }
   int threads() const override { return threads_; }
-  bool runs_on_host() const override { return device_info_.type == OpenclDeviceType::cpu; }
+  bool runs_on_host() const override { return runs_on_host_; }
 
  private:
   /// Slices that a thread integrates between two looks at what is left: 16, unless those were too many
@@ -133,7 +134,8 @@ class Hybrid final : public Backend {
   }
 
   const Integrator& integrator_;
-  OpenclDevice device_info_;
+  std::string device_label_;
+  bool runs_on_host_;
   int threads_;
   NodeKernel kernel_;
   HostNodes nodes_;
@@ -144,18 +146,19 @@ class Hybrid final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
-                                     const OpenclDevice& device, int threads, int lanes) {
+                                     const OpenclDevice& device, int threads, int lanes,
+                                     DeviceMemory memory) {
   if (threads < 1)
     throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    return std::make_unique<Hybrid>(system, integrator, dt_s, device, threads, lanes);
+    return std::make_unique<Hybrid>(system, integrator, dt_s, device, threads, lanes, memory);
   });
 }
 
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
   const OpenclDevice device = choose_opencl_device(opencl_devices(), options.device);
-  return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device));
+  return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory);
 }
 
 }  // namespace mssim

@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <cmath>
+#include <map>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ namespace {
 
 /// More threads than this are a typing error, and would only fail later and less clearly.
 constexpr int most_threads = 4096;
+
+const std::map<std::string, DeviceMemory> device_memories{{"copy", DeviceMemory::copy},
+                                                          {"shared", DeviceMemory::shared}};
 
 template <class Rows>
 UsageError unknown(const std::string& what, const std::string& name, const Rows& rows) {
@@ -54,6 +58,11 @@ void declare_execution(CLI::App& app, ExecutionOptions& options) {
       ->check(CLI::Range(1, most_threads));
   app.add_option("--device", options.device,
                  "OpenCL device: its number or a part of its name (see mssim list devices)");
+  app.add_option_function<std::string>(
+         "--memory", [&options](const std::string& name) { options.memory = device_memories.at(name); },
+         "How host and OpenCL device exchange data: shared, without copying where the device can, or copy "
+         "(default: shared)")
+      ->check(CLI::IsMember(&device_memories));
 }
 
 ExecutionOptions complete(ExecutionOptions options) {

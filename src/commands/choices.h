@@ -17,7 +17,7 @@ const Integrator& require_integrator(const std::string& name);
 /// Accepts finite numbers above zero, and says so in words.
 CLI::Validator positive_number();
 
-/// Declares --threads and --device. `options` must outlive the parsing.
+/// Declares --threads, --device and --memory. `options` must outlive the parsing.
 void declare_execution(CLI::App& app, ExecutionOptions& options);
 
 /// `threads` as given or, for 0, one for every processor that this process may use.

@@ -14,8 +14,8 @@ std::size_t units_at_a_time(int lanes) { return lanes == 1 ? 1 : PackedSprings::
 }  // namespace
 
 SpringDevice::SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
-                           const OpenclDevice& device, int lanes)
-    : device_(device), lots_(packed.unit_count() / units_at_a_time(lanes), device, lanes) {
+                           const OpenclDevice& device, int lanes, DeviceMemory memory)
+    : device_(device), memory_(memory), lots_(packed.unit_count() / units_at_a_time(lanes), device, lanes) {
   const std::size_t pair_floats = packed.places() * record_floats;
   const std::size_t force_floats = 4 * (packed.unit_count() + 1);
   std::vector<std::uint64_t> buffers(stored.size(), pair_floats * sizeof(float));
@@ -27,23 +27,25 @@ SpringDevice::SpringDevice(const System& system, const PackedSprings& packed, co
   const cl::Device cl_device(device.id, true);
   context_ = cl::Context(cl_device);
   queue_ = cl::CommandQueue(context_, cl_device);
-  const auto zeros = [&](std::optional<OpenclBuffer<float>>& buffer, std::size_t floats) {
-    buffer.emplace(context_, floats, device.shares_host_memory);
-    const auto memory = buffer->map(queue_, CL_MAP_READ | CL_MAP_WRITE);
-    std::fill(memory.begin(), memory.end(), 0.0F);
-    return memory;
-  };
-  for (const Pair pair : stored) host_pairs_[index(pair)] = zeros(pairs_[index(pair)], pair_floats);
-  host_forces_ = zeros(forces_, force_floats);  // what lies behind those of the units stays so
+  for (const Pair pair : stored) {
+    auto& buffer = pairs_[index(pair)];
+    buffer.emplace(context_, device_, memory_, pair_floats);
+    host_pairs_[index(pair)] = buffer->map(queue_, CL_MAP_WRITE);
+    std::fill(host_pairs_[index(pair)].begin(), host_pairs_[index(pair)].end(), 0.0F);
+  }
+  // What lies behind the forces of the units stays zero.
+  forces_ = filled_buffer(std::span<const float>(std::vector<float>(force_floats)));
+  host_forces_ = forces_->map(queue_, CL_MAP_READ);
   if (packed.unit_count() > 0) make_kernel(system, packed, lanes);
 }
 
 template <class T>
 OpenclBuffer<T> SpringDevice::filled_buffer(std::span<const T> values) const {
-  OpenclBuffer<T> buffer(context_, values.size(), device_.shares_host_memory);
-  const auto memory = buffer.map(queue_, CL_MAP_WRITE);
-  std::copy(values.begin(), values.end(), memory.begin());
-  buffer.unmap(queue_, memory);
+  OpenclBuffer<T> buffer(context_, device_, memory_, values.size());
+  const auto mapped = buffer.map(queue_, CL_MAP_WRITE);
+  std::copy(values.begin(), values.end(), mapped.begin());
+  buffer.unmap(queue_, mapped, CL_MAP_WRITE);
+  queue_.finish();
   return buffer;
 }
 
@@ -68,12 +70,12 @@ void SpringDevice::compute_forces(Pair stored) {
   if (!kernel_) return;
   const auto& pair = *pairs_[index(stored)];
   auto& host_pair = host_pairs_[index(stored)];
-  forces_->unmap(queue_, host_forces_);
-  pair.unmap(queue_, host_pair);
+  forces_->unmap(queue_, host_forces_, CL_MAP_READ);
+  pair.unmap(queue_, host_pair, CL_MAP_WRITE);
   kernel_->setArg(1, pair.buffer());
   queue_.enqueueNDRangeKernel(*kernel_, cl::NullRange, cl::NDRange(lots_.global), cl::NDRange(lots_.local));
-  host_forces_ = forces_->map(queue_, CL_MAP_READ, false);
-  host_pair = pair.map(queue_, CL_MAP_READ | CL_MAP_WRITE);
+  host_pair = pair.map(queue_, CL_MAP_WRITE, false);
+  host_forces_ = forces_->map(queue_, CL_MAP_READ);
 }
 
 }  // namespace mssim

@@ -24,7 +24,7 @@ class SpringDevice {
   /// Takes `lanes` springs side by side (1, 4, 8 or 16). `stored`: the pairs that the integrator needs; all
   /// are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
   SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
-               const OpenclDevice& device, int lanes);
+               const OpenclDevice& device, int lanes, DeviceMemory memory);
 
   /// The records of a stored pair, [places][record_floats].
   std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }
@@ -40,6 +40,7 @@ class SpringDevice {
   void make_kernel(const System& system, const PackedSprings& packed, int lanes);
 
   OpenclDevice device_;
+  DeviceMemory memory_;
   OpenclLots lots_;
   cl::Context context_;
   cl::CommandQueue queue_;
