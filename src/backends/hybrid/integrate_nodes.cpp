@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "backends/hybrid/host_nodes.h"
-#include "backends/quad.h"
 #include "backends/sliced_graph/update_nodes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -15,6 +14,9 @@ namespace mssim::HWY_NAMESPACE {
 
 constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
 constexpr std::size_t slice_floats = 4 * slice_nodes;  // of forces
+
+/// A force and a zero in one 128-bit register, which every x86-64 and ARM64 processor has.
+using Quad = float __attribute__((vector_size(16)));
 
 /// Minus the sum of what the slice's nodes are to subtract, placed as forces are.
 HWY_INLINE void subtract_forces(const PackedSprings& packed, const float* forces, std::size_t slice,
