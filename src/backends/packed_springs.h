@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -63,6 +62,12 @@ struct PackedSprings {
   static constexpr std::size_t force_place(std::size_t node) { return node % 4 * 4 + node / 4; }
   /// Where a force of zero is to lie: behind all others.
   std::uint32_t no_force() const { return static_cast<std::uint32_t>(unit_count()); }
+
+ private:
+  /// Fills entries and units. `rank`: [nodes] how far ahead each of the scene's nodes is.
+  void pack_units(const System& system, const std::vector<std::uint32_t>& rank);
+  /// Fills the lists of what is subtracted from the units.
+  void list_subtracted();
 };
 
 }  // namespace mssim
