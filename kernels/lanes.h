@@ -53,7 +53,8 @@ static inline int any_lane(int16 mask) {
 /* A scalar condition in every lane. */
 #define all_lanes(condition) ((Mask)((condition) ? -1 : 0))
 
-#define MSSIM_LAW static inline Real
+#define MSSIM_INLINE static inline __attribute__((always_inline))
+#define MSSIM_LAW MSSIM_INLINE Real
 #define mul_add(a, b, c) fma(a, b, c)
 #define inverse_sqrt(a) (1.0f / sqrt(a))
 #define where_less(a, b, yes, no) select(no, yes, (a) < (b))
@@ -96,26 +97,14 @@ static inline Vector where(Mask condition, Vector yes, Vector no) {
   return chosen;
 }
 
-/* All lanes move to the right by one or two; what falls in from the left were the last lanes of `before`.
- * Written as a choice between two permutations, which compilers make one instruction of. */
+/* What the neighbouring lane holds; the first, and the last, keep their own. */
 #if MSSIM_LANES == 4
-#define shifted_1(before, now) (lane_number == 0 ? (before).s3333 : (now).s0012)
-#define shifted_2(before, now) (lane_number < 2 ? (before).s2323 : (now).s0001)
+#define from_lane_before(a) (a).s0012
+#define from_lane_after(a) (a).s1233
 #elif MSSIM_LANES == 8
-#define shifted_1(before, now) (lane_number == 0 ? (before).s77777777 : (now).s00123456)
-#define shifted_2(before, now) (lane_number < 2 ? (before).s67676767 : (now).s00012345)
+#define from_lane_before(a) (a).s00123456
+#define from_lane_after(a) (a).s12345677
 #elif MSSIM_LANES == 16
-#define shifted_1(before, now) (lane_number == 0 ? (before).sffffffffffffffff : (now).s00123456789abcde)
-#define shifted_2(before, now) (lane_number < 2 ? (before).sefefefefefefefef : (now).s000123456789abcd)
-#endif
-
-#if MSSIM_LANES > 1
-static inline Vector shifted_vector_1(Vector before, Vector now) {
-  Vector moved = {shifted_1(before.x, now.x), shifted_1(before.y, now.y), shifted_1(before.z, now.z)};
-  return moved;
-}
-static inline Vector shifted_vector_2(Vector before, Vector now) {
-  Vector moved = {shifted_2(before.x, now.x), shifted_2(before.y, now.y), shifted_2(before.z, now.z)};
-  return moved;
-}
+#define from_lane_before(a) (a).s00123456789abcde
+#define from_lane_after(a) (a).s123456789abcdeff
 #endif

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/mman.h>
+
 #include <CL/opencl.hpp>
 #include <cstddef>
 #include <cstdlib>
@@ -23,12 +25,15 @@ class OpenclBuffer {
  public:
   OpenclBuffer(const cl::Context& context, const OpenclDevice& device, DeviceMemory memory, std::size_t size)
       : size_(size), copies_(memory == DeviceMemory::copy) {
-    // A page: drivers copy what begins or ends within a cache line.
-    constexpr std::size_t alignment = 4096;
+    // Whole pages, because drivers copy what begins or ends within a cache line.
+    constexpr std::size_t page = 4096, huge_page = std::size_t{2} << 20;
+    const std::size_t alignment = size * sizeof(T) >= huge_page ? huge_page : page;
     const std::size_t bytes = (size * sizeof(T) + alignment - 1) / alignment * alignment;
     if (copies_ || device.shares_host_memory) {
       memory_.reset(static_cast<T*>(std::aligned_alloc(alignment, bytes)));
       if (!memory_) throw std::bad_alloc();
+      if (alignment == huge_page)
+        madvise(memory_.get(), bytes, MADV_HUGEPAGE);  // a wish: without it the array is only slower
     }
     if (memory_ && !copies_) {
       buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory_.get());

@@ -3,43 +3,90 @@
 #include <sstream>
 
 #include "backends/opencl/program.h"
-#include "backends/opencl/stencil.h"
+#include "model/spring.h"
 
 namespace mssim {
 namespace {
 
-std::string kernel_text(const Stage& stage, std::size_t number, bool walks) {
-  const std::string gathered = gathered_name(stage);
-  const std::string update = "update_" + std::to_string(number) + "(" + pair_names_of(stage) + "site, node, ";
+constexpr bool is(const GridSpring& spring, int rows, int columns, GridSpringKind kind) {
+  return spring.rows == rows && spring.columns == columns && spring.kind == kind;
+}
+static_assert(grid_stencil.size() == 6 && is(grid_stencil[0], 1, 0, structural) &&
+                  is(grid_stencil[1], 0, 1, structural) && is(grid_stencil[2], 1, 1, shear) &&
+                  is(grid_stencil[3], -1, 1, shear) && is(grid_stencil[4], 2, 0, bending) &&
+                  is(grid_stencil[5], 0, 2, bending),
+              "kernels/grid_bands.cl walks over these springs");
+
+/// Both ends of every spring of the stencil, each for itself.
+std::string gather_springs_text() {
   std::ostringstream text;
-  text << "__kernel void " << stage_kernel_name(number) << "(" << pair_parameters(stage)
-       << "__constant struct StepParameters* step,\n"
-          "    __constant struct GridParameters* grid, __global const int* restrict pin_rows,\n"
-          "    __global const int* restrict pins"
-       << (walks ? ", __global float* restrict sums" : "") << ") {\n";
-  if (walks)
-    text << "  const int block = (int)get_global_id(0);\n"
-            "  const int first_row = block * grid->block_rows;\n"
-            "  const int end_row = min(first_row + grid->block_rows, grid->rows);\n"
-            "  sums += block * 9 * grid->stride;\n"
-            "  int row = max(first_row - 2, 0);\n"
-            "  clear_sums(sums, row, grid);\n"
-            "  for (; row < end_row; ++row) {\n"
-            "    Carry carry;\n"
-            "    clear_carry(&carry);\n"
-            "    for (int column = 0; column < grid->columns; column += MSSIM_LANES) {\n"
-            "      const Site site = site_at(row, column, grid, pin_rows, pins);\n"
-         << "      const Node node = load_node(" << gathered << ", site, 0, 0, grid);\n"
-         << "      const Vector forces = walk_springs(" << gathered << ", site, node, &carry, sums, grid);\n"
-         << "      if (row >= first_row) " << update << "forces, grid, step);\n"
-         << "    }\n"
-            "  }\n";
-  else
-    text << "  const Site site = site_at((int)get_global_id(1), (int)get_global_id(0), grid, pin_rows, "
-            "pins);\n"
-         << "  const Node node = load_node(" << gathered << ", site, 0, 0, grid);\n"
-         << "  " << update << "gather_springs(" << gathered << ", site, node, grid), grid, step);\n";
-  text << "}\n";
+  text << "static inline Vector gather_springs(__global const float* restrict pair, Site site, Node node, "
+          "Shape grid) {\n"
+          "  Vector sum = no_vector(), on_other = no_vector();\n";
+  for (const GridSpring& spring : grid_stencil)
+    for (const int end : {1, -1}) {
+      const std::string other =
+          std::to_string(end * spring.rows) + ", " + std::to_string(end * spring.columns);
+      text << "  add_spring(&sum, &on_other, node, load_node(pair, site, " << other
+           << ", grid), is_on_cloth(site, " << other << ", grid), " << grid_spring_kinds[spring.kind].name
+           << ", grid);\n";
+    }
+  text << "  return sum;\n}\n";
+  return text.str();
+}
+
+std::string kernel_head(const Stage& stage, std::size_t number) {
+  return "__kernel void " + stage_kernel_name(number) + "(" + pair_parameters(stage) +
+         "__constant struct StepParameters* step,\n    __constant struct GridParameters* grid, ";
+}
+
+/// "update_N(pairs, site, node, ", to which the forces are added.
+std::string update_call(const Stage& stage, std::size_t number) {
+  return "update_" + std::to_string(number) + "(" + pair_names_of(stage) + "site, node, ";
+}
+
+std::string nodes_kernel_text(const Integrator& integrator, std::size_t number) {
+  const Stage& stage = integrator.stages[number];
+  const std::string gathered = gathered_name(stage);
+  std::ostringstream text;
+  text << kernel_head(stage, number)
+       << "__global const int* restrict pin_rows,\n    __global const int* restrict pins) {\n"
+          "  const Site site = site_at((int)get_global_id(1), (int)get_global_id(0), grid, pin_rows, pins);\n"
+       << "  const Node node = load_node(" << gathered << ", site, 0, 0, grid);\n"
+       << "  " << update_call(stage, number) << "gather_springs(" << gathered
+       << ", site, node, grid), grid, step);\n"
+       << "}\n";
+  return text.str();
+}
+
+std::string bands_kernel_text(const Integrator& integrator, std::size_t number) {
+  const Stage& stage = integrator.stages[number];
+  std::ostringstream text;
+  text << kernel_head(stage, number)
+       << "__global const int* restrict free_lines,\n"
+          "    __global const int* restrict is_free, __global float* restrict sums) {\n"
+          "  const int first = (int)get_global_id(0) * grid->item_columns;\n"
+          "  const int end = min(first + grid->item_columns, grid->columns);\n"
+          "  sums += get_global_id(0) * 3 * sums_floats(grid);\n"
+          "  int column = max(first - 2, 0);\n"
+          "  clear_sums(sums, column, grid);\n"
+          "  for (; column < end; ++column) {\n"
+       << "    const Column at = column_at(column, " << gathered_name(stage) << ", sums, grid);\n"
+       << "    __global const int* line = is_free + free_lines[column] * grid->height * MSSIM_LANES;\n"
+          "    Carry carry = begin_column(&at, grid);\n"
+          "    for (int row = 0; row < grid->height; ++row) {\n"
+          "      const Node node = load_node(at.here, row);\n"
+          "      const Vector forces = walk_row(&at, node, row, &carry, grid);\n"
+          "      if (column < first) continue;\n"
+          "      const Site site = {column_start(column, grid) + row * row_floats,\n"
+          "                         load_aligned_mask(line + row * MSSIM_LANES)};\n"
+       << "      " << update_call(stage, number) << "forces, grid, step);\n"
+       << "    }\n"
+          "    end_column(&at, &carry, grid);\n"
+          "    if (column < first) continue;\n";
+  for (const Pair pair : written_pairs(stage))
+    if (is_gathered(integrator, pair)) text << "    renew_halo(" << name_of(pair) << ", column, grid);\n";
+  text << "  }\n}\n";
   return text.str();
 }
 
@@ -48,13 +95,18 @@ std::string kernel_text(const Stage& stage, std::size_t number, bool walks) {
 bool grid_program_walks(int lanes) { return lanes > 1; }
 
 std::string grid_program_text(const Integrator& integrator, int lanes) {
-  std::string text =
-      program_text(lanes, {"lanes.h", "spring_law.h", "floor_law.h", "surroundings.h", "step_parameters.h",
-                           "stage.h", "grid_parameters.h", "grid_stage.cl"});
   const bool walks = grid_program_walks(lanes);
-  text += walks ? walk_springs_text() : gather_springs_text();
+  std::string text = program_text(
+      lanes, {"lanes.h", "spring_law.h", "floor_law.h", "surroundings.h", "step_parameters.h", "stage.h",
+              "grid_parameters.h", "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
+  std::string kinds;
+  for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
+    kinds += "#define " + std::string(grid_spring_kinds[kind].name) + " " + std::to_string(kind) + "\n";
+  text = kinds + text;
+  if (!walks) text += gather_springs_text();
   for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
-    text += update_text(integrator, stage) + kernel_text(integrator.stages[stage], stage, walks);
+    text += update_text(integrator, stage) +
+            (walks ? bands_kernel_text(integrator, stage) : nodes_kernel_text(integrator, stage));
   return text;
 }
 

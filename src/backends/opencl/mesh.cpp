@@ -17,7 +17,8 @@ namespace {
 /// Records of eight floats (kernels/records.h).
 PairLayout record_layout(const SlicedGraph& graph) {
   constexpr std::size_t record_floats = 8;
-  PairLayout pair{.floats = record_floats * graph.places(), .node = {}, .component = {0, 1, 2, 4, 5, 6}};
+  PairLayout pair{
+      .floats = record_floats * graph.places(), .node = {}, .copies = {}, .component = {0, 1, 2, 4, 5, 6}};
   for (const std::uint32_t place : graph.place) pair.node.push_back(record_floats * place);
   return pair;
 }

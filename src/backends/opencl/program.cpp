@@ -75,6 +75,15 @@ std::string pair_names_of(const Stage& stage) {
   return text;
 }
 
+std::vector<Pair> written_pairs(const Stage& stage) {
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < pair_kinds; ++i)
+    if (writes_pair(stage, static_cast<Pair>(i))) pairs.push_back(static_cast<Pair>(i));
+  return pairs;
+}
+
+std::string name_of(Pair pair) { return name(pair); }
+
 std::string gathered_name(const Stage& stage) { return name(stage.gather); }
 
 std::string update_text(const Integrator& integrator, std::size_t number) {
@@ -82,7 +91,7 @@ std::string update_text(const Integrator& integrator, std::size_t number) {
   const Slot x = position_slot(stage.gather), v = velocity_slot(stage.gather);
   std::ostringstream text;
   text << "\n/* " << integrator.name << ", stage " << number << " */\n"
-       << "static inline void update_" << number << "(" << pair_parameters(stage)
+       << "MSSIM_INLINE void update_" << number << "(" << pair_parameters(stage)
        << "Site site, Node node, Vector spring_forces, Shape shape, __constant struct StepParameters* step) "
           "{\n"
        << "  Vector " << name(x) << " = node.x, " << name(v) << " = node.v;\n"

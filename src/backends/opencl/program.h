@@ -30,6 +30,12 @@ std::vector<Pair> stage_arguments(const Stage& stage);
 std::string pair_parameters(const Stage& stage);
 std::string pair_names_of(const Stage& stage);
 
+/// The pairs that the stage writes.
+std::vector<Pair> written_pairs(const Stage& stage);
+
+/// A pair's name as a parameter.
+std::string name_of(Pair pair);
+
 /// The name of the pair that the stage gathers from.
 std::string gathered_name(const Stage& stage);
 

@@ -90,12 +90,14 @@ const OpenclBuffer<float>& OpenclStages::present() const {
 void OpenclStages::set_state(const State& state) {
   opencl_call<std::runtime_error>([&] {
     const auto memory = present().map(queue_, CL_MAP_WRITE);
-    for (std::size_t node = 0; node < layout_.node.size(); ++node) {
+    const auto put = [&](std::size_t place, std::size_t node) {
       const Vec3d &x = state.position[node], &v = state.velocity[node];
       const std::array values{x.x, x.y, x.z, v.x, v.y, v.z};
       for (std::size_t i = 0; i < values.size(); ++i)
-        memory[layout_.node[node] + layout_.component[i]] = static_cast<float>(values[i]);
-    }
+        memory[place + layout_.component[i]] = static_cast<float>(values[i]);
+    };
+    for (std::size_t node = 0; node < layout_.node.size(); ++node) put(layout_.node[node], node);
+    for (const auto& [place, node] : layout_.copies) put(place, node);
     present().unmap(queue_, memory, CL_MAP_WRITE);
     queue_.finish();
   });

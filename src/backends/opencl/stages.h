@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "backends/backend.h"
@@ -21,8 +22,10 @@ namespace mssim {
 
 /// How a topology's nodes lie in the buffer of a pair.
 struct PairLayout {
-  std::size_t floats = 0;                  ///< in the buffer
-  std::vector<std::size_t> node;           ///< [nodes] where the node's numbers begin
+  std::size_t floats = 0;         ///< in the buffer
+  std::vector<std::size_t> node;  ///< [nodes] where the node's numbers begin
+  /// Where a node's numbers stand besides: where they begin, and the node. Kernels keep them up to date.
+  std::vector<std::pair<std::size_t, std::size_t>> copies;
   std::array<std::size_t, 6> component{};  ///< from there on x, y, z, u, v, w
 };
 

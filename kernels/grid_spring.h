@@ -1,0 +1,16 @@
+/* A spring of a cloth, whatever the shape of its kernels. Needs lanes.h, spring_law.h and grid_parameters.h.
+ */
+typedef __constant struct GridParameters* Shape;
+
+/* Adds the force of one spring in every lane to what acts on its ends, m/s^2. Where there is no spring,
+ * because the cloth ends, whatever the padding holds is computed with and then left out. */
+MSSIM_INLINE void add_spring(Vector* on_first, Vector* on_second, Node first, Node second, Mask there,
+                             int kind, Shape grid) {
+  Vector d = minus(second.x, first.x);
+  Real pull =
+      spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d), (Real)(grid->stiffness[kind]),
+                  (Real)(grid->stiffness_rest[kind]), (Real)(grid->damping[kind]));
+  pull = select((Real)(0.0f), pull, there);
+  *on_first = times_plus(pull, d, *on_first);
+  *on_second = times_plus(-pull, d, *on_second);
+}
