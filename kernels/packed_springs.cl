@@ -2,60 +2,71 @@
  * the packed spring units, the host sums them at the nodes and integrates.
  *
  * A unit is what Hong et al., Figure 6, pack for each spring: its two nodes and its rest length (m). Sixteen
- * of them lie side by side (sixteen first nodes, sixteen second nodes, sixteen rest lengths), so that
- * neighbouring work-items, or the lanes of one, read neighbouring memory. They share stiffness and damping.
+ * units of one kind are an entry; their first nodes follow each other and are those of a slice, so that the
+ * number of the slice stands for them (PackedSprings in src/backends/packed_springs.h).
  */
-#define units_side_by_side 16
+#define slice_nodes 16
 
-/* In which order MSSIM_LANES units are taken into the lanes: so that their forces, transposed back, follow
- * each other in memory. */
-#define unit_of(lane) ((lane) % 4 * (MSSIM_LANES / 4) + (lane) / 4)
-#if MSSIM_LANES == 8
-#define in_lane_order(numbers) (numbers).s02461357
-#elif MSSIM_LANES == 16
-#define in_lane_order(numbers) (numbers).s048c159d26ae37bf
-#else
-#define in_lane_order(numbers) (numbers)
-#endif
-
-/* Force on the first end of MSSIM_LANES units, N, as (x, y, z, 0) each; on the other end it is the opposite.
- * units: the first one's place among the sixteen; material: stiffness (N/m), damping (N s/m). */
-static inline void forces_of_units(__global const uint* restrict units, __global const float* restrict nodes,
-                                   __global float* restrict forces, float2 material) {
+/* Lanes share a work-item where there are several; it then takes whole entries, else one unit at a time. */
 #if MSSIM_LANES == 1
-#define first_node(lane) units[0]
-#define second_node(lane) units[units_side_by_side]
+#define parts_at_a_time 1
 #else
-#define first_node(lane) units[unit_of(lane)]
-#define second_node(lane) units[units_side_by_side + unit_of(lane)]
+#define parts_at_a_time (slice_nodes / MSSIM_LANES)
 #endif
-  const Node first = load_records(nodes, first_node), second = load_records(nodes, second_node);
-  const Real rest_length = in_lane_order(load_aligned((__global const float*)units + 2 * units_side_by_side));
-  const Vector d = minus(second.x, first.x);
-  const Real pull = spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d),
-                                (Real)(material.x), material.x * rest_length, (Real)(material.y));
+#define units_at_a_time (parts_at_a_time * MSSIM_LANES)
+
+/* Forces on the first nodes of MSSIM_LANES units, N, as (x, y, z, 0) each; on the second node it is the
+ * opposite. second, rest_length: those of the first of the units; material: stiffness (N/m), damping
+ * (N s/m); forces: where the entry's forces begin, lane: the first unit's number in the entry. */
+#define second_node(lane) second[lane]
+static inline void forces_of_units(Node first, __global const uint* restrict second,
+                                   __global const float* restrict rest_lengths,
+                                   __global const float* restrict nodes, __global float* restrict forces,
+                                   size_t lane, float2 material) {
+  const Node other = load_records(nodes, second_node);
+  const Real rest_length = load_aligned(rest_lengths);
+  const Vector d = minus(other.x, first.x);
+  Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, first.v), d), (Real)(material.x),
+                          material.x * rest_length, (Real)(material.y));
+  pull = select(pull, (Real)(0.0f), rest_length < 0.0f); /* no unit there, and a distance of 0 */
   const Vector force = times(pull, d);
 #if MSSIM_LANES == 1
-  store_quads(force, forces, 4);
+  store_quads(force, forces + 4 * (lane % 4 * 4 + lane / 4), 4);
 #else
   const Quads quads = quads_of(force);
-  store_aligned(quads.from_0, forces);
-  store_aligned(quads.from_1, forces + MSSIM_LANES);
-  store_aligned(quads.from_2, forces + 2 * MSSIM_LANES);
-  store_aligned(quads.from_3, forces + 3 * MSSIM_LANES);
+  store_aligned(quads.from_0, forces + lane);
+  store_aligned(quads.from_1, forces + 16 + lane);
+  store_aligned(quads.from_2, forces + 32 + lane);
+  store_aligned(quads.from_3, forces + 48 + lane);
 #endif
 }
 
-/* nodes: records (records.h). kinds: of each sixteen units, an index into `materials`.
- * A work-item takes `count` times MSSIM_LANES units, one lot after the other, up to `units_end`. */
+/* nodes: records (records.h). entries: the slice of each entry, and an index into `materials`. units:
+ * [entries][second node, rest length][16]. forces: [entries][16] of four floats, those of nodes 0, 4, 8 and
+ * 12 first, then of 1, 5 and so on.
+ * A work-item takes `count` times units_at_a_time units, up to units_end. */
+#define first_node(lane) first_number + (lane)
 __kernel void packed_spring_forces(__global const uint* restrict units, __global const float* restrict nodes,
-                                   __global float* restrict forces, __global const uint* restrict kinds,
+                                   __global float* restrict forces, __global const uint2* restrict entries,
                                    __global const float2* restrict materials, uint units_end, uint count) {
-  const size_t begin = get_global_id(0) * count * MSSIM_LANES;
-  const size_t end = min(begin + count * MSSIM_LANES, (size_t)units_end);
-  for (size_t unit = begin; unit < end; unit += MSSIM_LANES) {
-    const size_t group = unit / units_side_by_side;
-    forces_of_units(units + group * 3 * units_side_by_side + unit % units_side_by_side, nodes,
-                    forces + 4 * unit, materials[kinds[group]]);
+  const size_t begin = get_global_id(0) * count * units_at_a_time;
+  const size_t end = min(begin + count * units_at_a_time, (size_t)units_end);
+  uint slice = 0xffffffffu;
+  Node first[parts_at_a_time];
+  for (size_t unit = begin; unit < end; unit += units_at_a_time) {
+    const size_t entry = unit / slice_nodes, lane = unit % slice_nodes;
+    if (entries[entry].x != slice) {
+      slice = entries[entry].x;
+      for (int part = 0; part < parts_at_a_time; ++part) {
+        const size_t first_number = (size_t)slice * slice_nodes + lane + part * MSSIM_LANES;
+        first[part] = load_records(nodes, first_node);
+      }
+    }
+    __global const uint* second = units + entry * 2 * slice_nodes + lane;
+    for (int part = 0; part < parts_at_a_time; ++part)
+      forces_of_units(first[part], second + part * MSSIM_LANES,
+                      (__global const float*)second + slice_nodes + part * MSSIM_LANES, nodes,
+                      forces + entry * 4 * slice_nodes, lane + part * MSSIM_LANES,
+                      materials[entries[entry].y]);
   }
 }

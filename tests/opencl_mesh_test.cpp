@@ -164,6 +164,20 @@ TEST_P(EachWidthAndIntegrator, StepsNodesThatHaveNoSpringsAtAll) {
     EXPECT_NEAR(state.velocity[node].y, system.start.velocity[node].y - 9.81 * dt_s * 10, 1e-6);
 }
 
+TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
+  System system = solid_block(7, 5, 6);
+  system.materials.push_back({50, 0.2});
+  for (std::size_t i = 0; i < system.springs.size(); i += 3) system.springs[i].kind = 1;
+  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
+  for (const Integrator& integrator : integrators)
+    for (const int lanes : {1, 16}) {
+      const Reference reference = run_reference(system, integrator, dt_s);
+      const auto hybrid = make_hybrid(system, integrator, dt_s, device, 2, lanes);
+      const Verification verification = verify(*hybrid, system, reference, dt_s);
+      EXPECT_FALSE(verification.failure) << integrator.name << ": " << verification.failure.value_or("");
+    }
+}
+
 TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
   const System system = solid_block(7, 5, 6);
   const OpenclDevice device = choose_opencl_device(opencl_devices(), "");

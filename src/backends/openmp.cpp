@@ -1,5 +1,8 @@
 #include "backends/openmp.h"
 
+#include <stdexcept>
+#include <string>
+
 #include "backends/grid_bands/band_sheet.h"
 #include "backends/grid_bands/step_bands.h"
 #include "backends/sliced_graph/sliced_bodies.h"
@@ -12,8 +15,8 @@ namespace {
 class OpenMpGrid final : public Backend {
  public:
   OpenMpGrid(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
-             std::size_t threads)
-      : kernel_(best_band_kernel()), sheet_(system, grid, integrator, dt_s, kernel_.lanes, threads) {
+             std::size_t threads, const BandKernel& kernel)
+      : kernel_(kernel), sheet_(system, grid, integrator, dt_s, kernel_.lanes, threads) {
     sheet_.set_state(system.start);
   }
 
@@ -22,6 +25,7 @@ class OpenMpGrid final : public Backend {
   void step(int count) override { kernel_.step(sheet_, count); }
   std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
   int threads() const override { return static_cast<int>(sheet_.parts.size()); }
+  int steps_per_pass() const override { return static_cast<int>(sheet_.steps_per_pass); }
 
  private:
   BandKernel kernel_;
@@ -31,8 +35,9 @@ class OpenMpGrid final : public Backend {
 /// Bodies in slices.
 class OpenMpBodies final : public Backend {
  public:
-  OpenMpBodies(const System& system, const Integrator& integrator, double dt_s, std::size_t threads)
-      : kernel_(best_slice_kernel()), bodies_(system, integrator, dt_s, kernel_.lanes, threads) {
+  OpenMpBodies(const System& system, const Integrator& integrator, double dt_s, std::size_t threads,
+               const SliceKernel& kernel)
+      : kernel_(kernel), bodies_(system, integrator, dt_s, kernel_.lanes, threads) {
     bodies_.set_state(system.start);
   }
 
@@ -47,14 +52,36 @@ class OpenMpBodies final : public Backend {
   SlicedBodies bodies_;
 };
 
+/// The kernel for an instruction set.
+template <class Kernel>
+Kernel kernel_for(const std::vector<Kernel>& kernels, std::string_view instruction_set) {
+  for (const Kernel& kernel : kernels)
+    if (kernel.instruction_set == instruction_set) return kernel;
+  throw std::invalid_argument("openmp has no vector code for " + std::string(instruction_set) +
+                              " that this processor can run");
+}
+
 }  // namespace
+
+std::vector<std::string_view> openmp_instruction_sets() {
+  std::vector<std::string_view> names;
+  for (const BandKernel& kernel : band_kernels()) names.emplace_back(kernel.instruction_set);
+  return names;
+}
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
+  return make_openmp(system, integrator, dt_s, options, openmp_instruction_sets().front());
+}
+
+std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options, std::string_view instruction_set) {
   const auto threads = static_cast<std::size_t>(options.threads);
   if (const auto* grid = std::get_if<GridPatch>(&system.topology))
-    return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads);
-  return std::make_unique<OpenMpBodies>(system, integrator, dt_s, threads);
+    return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads,
+                                        kernel_for(band_kernels(), instruction_set));
+  return std::make_unique<OpenMpBodies>(system, integrator, dt_s, threads,
+                                        kernel_for(slice_kernels(), instruction_set));
 }
 
 }  // namespace mssim

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
+#include <vector>
 
 #include "backends/backend.h"
 
@@ -12,5 +14,17 @@ namespace mssim {
 /// of different materials meet.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
+
+/// The instruction sets that its vector code is compiled for and this processor has, by Highway's names, the
+/// best first: make_openmp takes that. The order of every sum is the scene's (a column's nodes from the top,
+/// a body's neighbours by their number) and has nothing to do with lanes. So all that fuse a multiplication
+/// and an addition (AVX-512, AVX2, NEON) give the same bits, and all that round twice (SSSE3, SSE4, plain
+/// floats) give the same bits.
+std::vector<std::string_view> openmp_instruction_sets();
+
+/// make_openmp with the vector code for another of those instruction sets. Throws std::invalid_argument for
+/// one that is not among them.
+std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options, std::string_view instruction_set);
 
 }  // namespace mssim

@@ -22,10 +22,8 @@ constexpr int most_threads = 4096;
 const std::map<std::string, DeviceMemory> device_memories{{"copy", DeviceMemory::copy},
                                                           {"shared", DeviceMemory::shared}};
 
-template <class Rows>
-UsageError unknown(const std::string& what, const std::string& name, const Rows& rows) {
-  std::vector<std::string_view> known;
-  for (const auto& row : rows) known.push_back(row.name);
+UsageError unknown(const std::string& what, const std::string& name,
+                   const std::vector<std::string_view>& known) {
   const std::string_view nearest = nearest_name(name, known);
   const std::string remedy = nearest.empty() ? "" : "did you mean " + std::string(nearest) + "? ";
   return UsageError("unknown " + what + " \"" + name + "\": " + remedy + "Known are " + listed(known));
@@ -34,13 +32,25 @@ UsageError unknown(const std::string& what, const std::string& name, const Rows&
 }  // namespace
 
 const BackendInfo& require_backend(const std::string& name) {
-  if (const BackendInfo* backend = find_backend(name)) return *backend;
-  throw unknown("backend", name, backends());
+  std::vector<const BackendInfo*> known;
+  for (const BackendInfo& backend : backends()) known.push_back(&backend);
+  return require_backend(name, known);
+}
+
+const BackendInfo& require_backend(const std::string& name, const std::vector<const BackendInfo*>& known) {
+  std::vector<std::string_view> names;
+  for (const BackendInfo* backend : known) {
+    if (backend->name == name) return *backend;
+    names.push_back(backend->name);
+  }
+  throw unknown("backend", name, names);
 }
 
 const Integrator& require_integrator(const std::string& name) {
   if (const Integrator* integrator = find_integrator(name)) return *integrator;
-  throw unknown("integrator", name, integrators);
+  std::vector<std::string_view> names;
+  for (const Integrator& integrator : integrators) names.push_back(integrator.name);
+  throw unknown("integrator", name, names);
 }
 
 CLI::Validator positive_number() {

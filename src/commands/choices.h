@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "backends/backend.h"
 #include "integrators/integrator.h"
@@ -10,6 +11,9 @@ namespace mssim {
 
 /// The backend of that name. Throws UsageError naming the nearest or listing the known.
 const BackendInfo& require_backend(const std::string& name);
+
+/// The same among `known` ones.
+const BackendInfo& require_backend(const std::string& name, const std::vector<const BackendInfo*>& known);
 
 /// The integrator of that name. Throws like require_backend.
 const Integrator& require_integrator(const std::string& name);

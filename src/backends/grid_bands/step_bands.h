@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
+#include <vector>
 
 #include "backends/grid_bands/band_sheet.h"
+#include "backends/instruction_sets.h"
 
 namespace mssim {
 
@@ -14,7 +15,7 @@ struct BandKernel {
   void (*step)(BandSheet& sheet, int count);  ///< takes `count` steps
 };
 
-/// The kernel for the best instruction set of this processor.
-BandKernel best_band_kernel();
+/// The kernels for the instruction sets of this processor, at least one, the best first.
+std::vector<BandKernel> band_kernels();
 
 }  // namespace mssim

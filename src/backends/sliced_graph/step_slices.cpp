@@ -11,25 +11,13 @@
 #include <utility>
 
 #include "backends/chunk_tickets.h"
-#include "backends/sliced_graph/records-inl.h"
+#include "backends/sliced_graph/update_nodes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-constexpr std::size_t slice_lanes = hn::MaxLanes(FloatTag());
-
 /// Some microseconds: about as long as a lot takes.
 constexpr int spins = 300;
-
-/// Where each pair's records start, by role.
-using Pairs = std::array<float*, pair_kinds>;
-
-/// The nodes of a slice in a pair.
-HWY_INLINE NodeLanes load_slice(const float* pair, std::size_t slice) {
-  const float* first = pair + slice * slice_lanes * SlicedBodies::record_floats;
-  return load_records<slice_lanes>(
-      [&](std::size_t i) MSSIM_INLINE_LAMBDA { return first + i * SlicedBodies::record_floats; });
-}
 
 /// Acceleration that the springs of a slice's nodes give them, neighbour by neighbour in the order of
 /// entries.
@@ -37,13 +25,13 @@ HWY_INLINE Lanes3 spring_acceleration(const SlicedBodies& bodies, const float* p
                                       const NodeLanes& node, Lanes stiffness, Lanes damping) {
   const FloatTag d;
   Lanes3 sum = zero3();
-  const float* end = bodies.entries.data() + bodies.first_entry[slice + 1] * 2 * slice_lanes;
-  for (const float* entry = bodies.entries.data() + bodies.first_entry[slice] * 2 * slice_lanes; entry < end;
-       entry += 2 * slice_lanes) {
-    const NodeLanes other = load_records<slice_lanes>([&](std::size_t i) MSSIM_INLINE_LAMBDA {
+  const float* end = bodies.entries.data() + bodies.first_entry[slice + 1] * 2 * vector_nodes;
+  for (const float* entry = bodies.entries.data() + bodies.first_entry[slice] * 2 * vector_nodes; entry < end;
+       entry += 2 * vector_nodes) {
+    const NodeLanes other = load_records<vector_nodes>([&](std::size_t i) MSSIM_INLINE_LAMBDA {
       return pair + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * SlicedBodies::offset_floats;
     });
-    const Lanes stiffness_rest = hn::Load(d, entry + slice_lanes);
+    const Lanes stiffness_rest = hn::Load(d, entry + vector_nodes);
     const Lanes3 to_other = other.x - node.x;
     const Lanes pull = spring_pull(dot(to_other, to_other), dot(other.v - node.v, to_other), stiffness,
                                    stiffness_rest, damping);
@@ -56,50 +44,14 @@ HWY_INLINE Lanes3 spring_acceleration(const SlicedBodies& bodies, const float* p
 /// One stage at the nodes of one slice.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::size_t slice) {
-  constexpr Stage table = integrators[method].stages[stage];
-  const float* gathered = base[index(table.gather)];
-  const NodeLanes node = load_slice(gathered, slice);
-  const float* constants = bodies.constants.data() + slice * 3 * slice_lanes;
-  const Mask free = hn::Eq(hn::Load(FloatTag(), constants + 2 * slice_lanes), hn::Zero(FloatTag()));
-
-  Lanes3 a = spring_acceleration(bodies, gathered, slice, node, Lanes(hn::Load(FloatTag(), constants)),
-                                 Lanes(hn::Load(FloatTag(), constants + slice_lanes)));
-  a = mul_add(Lanes(-bodies.surroundings.viscous_damping), node.v, a);
-  a.y = a.y - Lanes(bodies.surroundings.gravity);
-  // What is held is at rest; without acceleration every line gives it back as it was.
-  a = keep(free, a);
-
-  NodeLanes pairs[pair_kinds];
-  const auto half = [&](auto slot) MSSIM_INLINE_LAMBDA -> Lanes3& {
-    constexpr std::size_t i = index(decltype(slot)::value);
-    return i % 2 == 0 ? pairs[i / 2].x : pairs[i / 2].v;
-  };
-  const auto for_each_pair = [](auto&& act) MSSIM_INLINE_LAMBDA {
-    [&]<std::size_t... pair>(std::index_sequence<pair...>) MSSIM_INLINE_LAMBDA {
-      (act(std::integral_constant<std::size_t, pair>{}), ...);
-    }
-    (std::make_index_sequence<pair_kinds>{});
-  };
-  for_each_pair([&](auto i) MSSIM_INLINE_LAMBDA {
-    constexpr Pair pair = static_cast<Pair>(decltype(i)::value);
-    static_assert(writes(table, position_slot(pair)) == writes(table, velocity_slot(pair)),
-                  "a record is written whole");
-    if constexpr (pair != table.gather &&
-                  (reads(table, position_slot(pair)) || reads(table, velocity_slot(pair))))
-      pairs[i] = load_slice(base[i], slice);
-  });
-  update_stage<method, stage>(
-      bodies.coefficients, node.x, node.v, a, half,
-      [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { half(slot) = value; },
-      [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
-        const Lanes height(bodies.surroundings.floor_height);
-        touch_floor(hn::And(free, hn::Lt(x.y.v, height.v)), height, Lanes(bodies.surroundings.restitution),
-                    Lanes(bodies.surroundings.friction), x, v);
-      });
-  for_each_pair([&](auto i) MSSIM_INLINE_LAMBDA {
-    if constexpr (writes(table, position_slot(static_cast<Pair>(decltype(i)::value))))
-      store_records<slice_lanes>(base[i] + slice * slice_lanes * SlicedBodies::record_floats, pairs[i]);
-  });
+  const float* gathered = base[index(integrators[method].stages[stage].gather)];
+  const std::size_t offset = slice * vector_nodes * record_floats;
+  const NodeLanes node = load_nodes(gathered + offset);
+  const float* constants = bodies.constants.data() + slice * 3 * vector_nodes;
+  const Mask free = hn::Eq(hn::Load(FloatTag(), constants + 2 * vector_nodes), hn::Zero(FloatTag()));
+  const Lanes3 a = spring_acceleration(bodies, gathered, slice, node, Lanes(hn::Load(FloatTag(), constants)),
+                                       Lanes(hn::Load(FloatTag(), constants + vector_nodes)));
+  update_nodes<method, stage>(base, offset, node, a, free, bodies.coefficients, bodies.surroundings);
 }
 
 template <std::size_t method, std::size_t stage>
@@ -156,7 +108,7 @@ void step_slices(SlicedBodies& bodies, int count) {
   with_integrator(*bodies.integrator, [&](auto method) HWY_ATTR { step_method<method>(bodies, count); });
 }
 
-SliceKernel slice_kernel() { return {slice_lanes, hwy::TargetName(HWY_TARGET), &step_slices}; }
+SliceKernel slice_kernel() { return {vector_nodes, hwy::TargetName(HWY_TARGET), &step_slices}; }
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -164,6 +116,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mssim {
 HWY_EXPORT(slice_kernel);
-SliceKernel best_slice_kernel() { return HWY_DYNAMIC_DISPATCH(slice_kernel)(); }
+std::vector<SliceKernel> slice_kernels() {
+  return kernels_of_this_processor(HWY_DISPATCH_TABLE(slice_kernel));
+}
 }  // namespace mssim
 #endif

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
+#include "backends/instruction_sets.h"
 #include "backends/sliced_graph/sliced_bodies.h"
 
 namespace mssim {
@@ -13,7 +15,7 @@ struct SliceKernel {
   void (*step)(SlicedBodies& bodies, int count);  ///< takes `count` steps
 };
 
-/// The kernel for the best instruction set of this processor.
-SliceKernel best_slice_kernel();
+/// The kernels for the instruction sets of this processor, at least one, the best first.
+std::vector<SliceKernel> slice_kernels();
 
 }  // namespace mssim

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "backends/opencl/buffer.h"
+#include "backends/opencl/device.h"
+#include "backends/opencl/lots.h"
+#include "backends/packed_springs.h"
+#include "integrators/integrator.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// What of `hybrid` lives on the device: the springs for good; the nodes and the forces in memory that it
+/// takes turns with the host to use. Between calls the host has them.
+class SpringDevice {
+ public:
+  static constexpr std::size_t record_floats = 8;  ///< of a node in a pair, as kernels/records.h has them
+
+  /// Takes `lanes` springs side by side (1, 4, 8 or 16). `stored`: the pairs that the integrator needs; all
+  /// are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
+  SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
+               const OpenclDevice& device, int lanes, DeviceMemory memory);
+
+  /// The records of a stored pair, [places][record_floats].
+  std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }
+  /// Forces as PackedSprings places them, four floats each, N.
+  const float* forces() const { return host_forces_.data(); }
+
+  /// Computes the forces of all springs in a stored pair, and waits for them. Throws cl::Error.
+  void compute_forces(Pair stored);
+
+ private:
+  template <class T>
+  OpenclBuffer<T> filled_buffer(std::span<const T> values) const;
+  void make_kernel(const System& system, const PackedSprings& packed, int lanes);
+
+  OpenclDevice device_;
+  DeviceMemory memory_;
+  OpenclLots lots_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are stored
+  std::array<std::span<float>, pair_kinds> host_pairs_;               // as mapped
+  std::optional<OpenclBuffer<float>> forces_;
+  std::span<float> host_forces_;  // as mapped
+  std::optional<OpenclBuffer<cl_uint>> units_;
+  std::optional<OpenclBuffer<PackedSprings::Entry>> entries_;
+  struct Material {
+    float stiffness;  // N/m
+    float damping;    // N s/m
+  };
+  std::optional<OpenclBuffer<Material>> materials_;
+  std::optional<cl::Kernel> kernel_;  // none without springs
+};
+
+}  // namespace mssim
