@@ -86,8 +86,7 @@ std::string bands_kernel_text(const StoredStage& stage) {
           "    end_column(&at, &carry, grid);\n"
           "    if (column < part.first) continue;\n";
   for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (const Pair pair = static_cast<Pair>(i);
-        writes(stage.stage(), pair) && is_gathered(stage.integrator, pair))
+    if (const Pair pair = static_cast<Pair>(i); writes_to_gather(stage.integrator, stage.number, pair))
       text << "    finish_column(column, " << name_of(stage, pair) << ", " << ghosts_of(pair)
            << ", &part, grid);\n";
   text << "  }\n}\n";
