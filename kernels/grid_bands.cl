@@ -5,7 +5,7 @@
  * The layout is that of BandLayout (src/backends/grid_bands/band_sheet.h): the rows are cut into MSSIM_LANES
  * bands of `height` rows, lane b holds band b, and a pair is
  *
- *     [column -2 .. columns + 1][row -2 .. height + 1][x y z u v w][lane],
+ *     [column][row -2 .. height + 1][x y z u v w][lane],
  *
  * so that every neighbour is an aligned load of the same lane. Two halo rows above and below repeat rows of
  * the neighbouring bands.
@@ -13,7 +13,11 @@
  * A work-item walks over its columns from the left, down the rows in each, and computes every spring once, at
  * its left or upper end. What a spring does to the other end waits: in registers for the rows below, in
  * `sums` for the next two columns. The two columns left of its own it walks over too, for what they do to
- * them. A stage writes another pair than it gathers from, because another work-item may still gather.
+ * them.
+ *
+ * No spring points back, so that a stage may write over what it gathers from: half the memory, which decides
+ * the speed of a cloth that fills a cache. Columns of another work-item, which may be written already, are
+ * gathered from its part's ghosts, and each pair has ghosts of its own, whatever memory it shares.
  */
 #define row_floats (6 * MSSIM_LANES)
 
@@ -27,8 +31,35 @@ typedef struct {
 
 static inline size_t column_floats(Shape grid) { return (size_t)(grid->height + 4) * row_floats; }
 /* Offset of row 0 of a column in a pair. */
-static inline size_t column_start(int column, Shape grid) {
-  return (size_t)(column + 2) * column_floats(grid) + 2 * row_floats;
+static inline size_t column_start(size_t column, Shape grid) {
+  return column * column_floats(grid) + 2 * row_floats;
+}
+
+/* The columns of a work-item. */
+typedef struct {
+  int number, count; /* of this part, and of all */
+  int first, end;    /* columns; at least two */
+} Part;
+static inline Part part_of(int number, int count, Shape grid) {
+  Part part = {number, count, (int)((long)grid->columns * number / count),
+               (int)((long)grid->columns * (number + 1) / count)};
+  return part;
+}
+
+/* The ghosts of a pair: [part][column first - 2, first - 1, end, end + 1], columns as in a pair. */
+static inline __global float* ghosts_of(int pair, __global float* ghosts, const Part* part, Shape grid) {
+  return ghosts + (size_t)pair * part->count * 4 * column_floats(grid);
+}
+static inline __global float* ghost(__global float* ghosts, int part, int number, Shape grid) {
+  return ghosts + (size_t)(4 * part + number) * column_floats(grid) + 2 * row_floats;
+}
+
+/* Row 0 of a column that the part gathers. */
+static inline __global const float* gathered_column(int column, __global const float* pair,
+                                                    __global float* ghosts, const Part* part, Shape grid) {
+  if (column < part->first) return ghost(ghosts, part->number, column - part->first + 2, grid);
+  if (column >= part->end) return ghost(ghosts, part->number, column - part->end + 2, grid);
+  return pair + column_start(column, grid);
 }
 
 static inline Vector load_vector(__global const float* from) {
@@ -66,22 +97,23 @@ static inline Node load_node(__global const float* column, int row) {
 typedef struct {
   /* Row 0 in the gathered pair, and of the two columns to the right. */
   __global const float *here, *next, *next_2;
-  /* What acts on rows 0 .. height of these columns so far, three vectors each; row `height` is scratch. */
+  /* What acts on the rows of these columns so far, three vectors each. */
   __global float *on_here, *on_next, *on_next_2;
   /* Rows of the cloth that have a spring of each kind in this column. */
   uint down_rows, down_2_rows, right_rows, diagonal_rows, right_2_rows;
 } Column;
 
-static inline size_t sums_floats(Shape grid) { return (size_t)(grid->height + 1) * 3 * MSSIM_LANES; }
+static inline size_t sums_floats(Shape grid) { return (size_t)grid->height * 3 * MSSIM_LANES; }
 
 /* `sums` are three columns, used in turn. */
-static inline Column column_at(int column, __global const float* pair, __global float* sums, Shape grid) {
+static inline Column column_at(int column, __global const float* pair, __global float* ghosts,
+                               __global float* sums, const Part* part, Shape grid) {
   const bool has_next = column + 1 < grid->columns, has_next_2 = column + 2 < grid->columns;
   const uint rows = grid->rows;
   Column at;
-  at.here = pair + column_start(column, grid);
-  at.next = at.here + column_floats(grid);
-  at.next_2 = at.next + column_floats(grid);
+  at.here = gathered_column(column, pair, ghosts, part, grid);
+  at.next = gathered_column(column + 1, pair, ghosts, part, grid);
+  at.next_2 = gathered_column(column + 2, pair, ghosts, part, grid);
   at.on_here = sums + column % 3 * sums_floats(grid);
   at.on_next = sums + (column + 1) % 3 * sums_floats(grid);
   at.on_next_2 = sums + (column + 2) % 3 * sums_floats(grid);
@@ -157,9 +189,15 @@ MSSIM_INLINE void end_column(const Column* at, Carry* carry, Shape grid) {
   store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES);
 }
 
-/* Repeats the rows at the ends of the bands of a column that is written in the halo rows of their neighbours.
- */
-static inline void renew_halo(__global float* pair, int column, Shape grid) {
+static inline void copy_column(__global const float* from, __global float* to, Shape grid) {
+  for (int i = -2 * row_floats; i < (grid->height + 2) * row_floats; i += MSSIM_LANES)
+    store_aligned(load_aligned(from + i), to + i);
+}
+
+/* Makes a column that is written ready to be gathered: repeats the rows at the ends of the bands in the halo
+ * rows of their neighbours, and the column in the ghosts of the parts beside this one. */
+static inline void finish_column(int column, __global float* pair, __global float* ghosts, const Part* part,
+                                 Shape grid) {
   __global float* start = pair + column_start(column, grid);
   const int height = grid->height * row_floats;
   for (int i = 0; i < 2 * row_floats; i += MSSIM_LANES) {
@@ -167,4 +205,8 @@ static inline void renew_halo(__global float* pair, int column, Shape grid) {
                   start - 2 * row_floats + i);
     store_aligned(from_lane_after(load_aligned(start + i)), start + height + i);
   }
+  if (column < part->first + 2 && part->number > 0)
+    copy_column(start, ghost(ghosts, part->number - 1, column - part->first + 2, grid), grid);
+  if (column >= part->end - 2 && part->number + 1 < part->count)
+    copy_column(start, ghost(ghosts, part->number + 1, column - part->end + 2, grid), grid);
 }

@@ -11,6 +11,5 @@ struct GridParameters {
   int stride; /* floats from one row to the next */
   int plane;  /* floats from one plane to the next */
   /* For grid_bands.cl, where it owns columns of several bands. */
-  int height;       /* rows of a band, at least 2 */
-  int item_columns; /* of a work-item */
+  int height; /* rows of a band, at least 2 */
 };

@@ -79,6 +79,10 @@ constexpr bool writes(const Stage& stage, Slot slot) {
   return false;
 }
 
+constexpr bool writes(const Stage& stage, Pair pair) {
+  return writes(stage, position_slot(pair)) || writes(stage, velocity_slot(pair));
+}
+
 /// Does the stage need the slot's value from memory, because a line reads it before one has written it?
 /// The gathered pair is read by the force in any case.
 constexpr bool reads(const Stage& stage, Slot slot) {

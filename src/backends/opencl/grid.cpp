@@ -77,7 +77,8 @@ struct NodeShape {
   }
 
   PairLayout pair_layout() const {
-    PairLayout pair{.floats = 6 * plane, .node = {}, .copies = {}, .component = {}};
+    PairLayout pair;
+    pair.floats = 6 * plane;
     for (std::size_t node = 0; node < grid.nodes(); ++node)
       pair.node.push_back((node / grid.columns + halo_rows) * stride + left_halo + node % grid.columns);
     for (std::size_t i = 0; i < pair.component.size(); ++i) pair.component[i] = i * plane;
@@ -89,7 +90,7 @@ class OpenclGridNodes final : public OpenclStages {
  public:
   OpenclGridNodes(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
                   DeviceMemory memory, const NodeShape& shape)
-      : OpenclStages(system, integrator, dt_s, device, memory, shape.pair_layout(), {}) {
+      : OpenclStages(system, integrator, dt_s, device, memory, Storage::separate, shape.pair_layout(), {}) {
     GridParameters parameters = parameters_of(system, shape.grid);
     parameters.stride = static_cast<int>(shape.stride);
     parameters.plane = static_cast<int>(shape.plane);
@@ -109,56 +110,76 @@ class OpenclGridNodes final : public OpenclStages {
 /// Few work-items, each a walk over columns of bands (kernels/grid_bands.cl).
 struct BandShape {
   BandLayout bands;
-  std::size_t item_columns;
+  std::size_t parts;  ///< work-items
+
+  static constexpr std::size_t halo = BandLayout::halo;
+  static constexpr std::size_t part_ghosts = 2 * halo;  // columns
 
   BandShape(const GridPatch& grid, const OpenclDevice& device, int lanes) {
     bands.lanes = static_cast<std::size_t>(lanes);
     bands.rows = grid.rows;
     bands.columns = grid.columns;
-    bands.height = std::max(BandLayout::halo, (bands.rows + bands.lanes - 1) / bands.lanes);
-    // The two further columns that each item walks over shall be a small share, and yet every compute unit
-    // shall have an item, or better several, so that one that was held up leaves some of its share to the
-    // others.
-    constexpr std::size_t good_columns = 40, good_items_per_unit = 4;
+    bands.height = std::max(halo, (bands.rows + bands.lanes - 1) / bands.lanes);
+    // A few parts for every compute unit, so that one that was held up leaves some of its share to the
+    // others, unless the two further columns that each part walks over were more than a small share of it.
+    constexpr std::size_t good_columns = 40, most_parts_per_unit = 4;
     const std::size_t units = device.compute_units;
-    const std::size_t items = std::clamp(bands.columns / good_columns, units, good_items_per_unit * units);
-    item_columns = (bands.columns + items - 1) / items;
+    parts = units * std::clamp<std::size_t>(bands.columns / (good_columns * units), 1, most_parts_per_unit);
+    // A part's ghosts belong to the parts beside it.
+    parts = std::clamp<std::size_t>(bands.columns / halo, 1, parts);
   }
 
-  std::size_t items() const { return (bands.columns + item_columns - 1) / item_columns; }
+  /// First column of a part.
+  std::size_t first(std::size_t part) const { return bands.columns * part / parts; }
 
   PairLayout pair_layout() const {
-    PairLayout pair{.floats = (bands.columns + 2 * BandLayout::halo) * bands.column_floats(),
-                    .node = {},
-                    .copies = {},
-                    .component = {}};
-    const auto offset = [&](std::size_t column, std::size_t halo_row, std::size_t lane) {
-      return (column + BandLayout::halo) * bands.column_floats() + halo_row * bands.row_floats() + lane;
-    };
-    for (std::size_t row = 0; row < bands.rows; ++row)
-      for (std::size_t column = 0; column < bands.columns; ++column) {
-        const std::size_t lane = row / bands.height, in_band = row % bands.height;
-        const std::size_t node = pair.node.size();
-        pair.node.push_back(offset(column, in_band + BandLayout::halo, lane));
-        if (in_band < BandLayout::halo && lane > 0)
-          pair.copies.push_back({offset(column, in_band + BandLayout::halo + bands.height, lane - 1), node});
-        if (in_band + BandLayout::halo >= bands.height && lane + 1 < bands.lanes)
-          pair.copies.push_back({offset(column, in_band + BandLayout::halo - bands.height, lane + 1), node});
-      }
+    PairLayout pair;
+    pair.floats = bands.columns * bands.column_floats();
+    pair.ghost_floats = parts * part_ghosts * bands.column_floats();
     for (std::size_t i = 0; i < pair.component.size(); ++i) pair.component[i] = i * bands.lanes;
+    // Places in a column of each row of the cloth: in its band, and where that repeats it in a halo row of
+    // the band above or below.
+    Copies in_bands, in_halos;
+    for (std::size_t row = 0; row < bands.rows; ++row) {
+      const std::size_t lane = row / bands.height, in_band = row % bands.height + halo;
+      const auto place = [&](std::size_t layout_row, std::size_t in_lane) {
+        return layout_row * bands.row_floats() + in_lane;
+      };
+      in_bands.emplace_back(place(in_band, lane), row);
+      if (in_band < 2 * halo && lane > 0) in_halos.emplace_back(place(in_band + bands.height, lane - 1), row);
+      if (in_band >= bands.height && lane + 1 < bands.lanes)
+        in_halos.emplace_back(place(in_band - bands.height, lane + 1), row);
+    }
+    const auto add_column = [&](Copies& copies, std::size_t start, std::size_t column, const Copies& rows) {
+      for (const auto& [place, row] : rows) copies.emplace_back(start + place, row * bands.columns + column);
+    };
+    for (const auto& [place, row] : in_bands)
+      for (std::size_t column = 0; column < bands.columns; ++column)
+        pair.node.push_back(column * bands.column_floats() + place);
+    for (std::size_t column = 0; column < bands.columns; ++column)
+      add_column(pair.copies, column * bands.column_floats(), column, in_halos);
+    for (std::size_t part = 0; part < parts; ++part)
+      for (std::size_t ghost = 0; ghost < part_ghosts; ++ghost) {
+        const std::size_t column = first(ghost < halo ? part : part + 1) + ghost - halo;
+        if (column >= bands.columns) continue;  // left of the cloth it wraps to a huge number
+        for (const Copies* rows : {&in_bands, &in_halos})
+          add_column(pair.ghosts, (part * part_ghosts + ghost) * bands.column_floats(), column, *rows);
+      }
     return pair;
   }
+
+ private:
+  using Copies = std::vector<std::pair<std::size_t, std::size_t>>;
 };
 
 class OpenclGridBands final : public OpenclStages {
  public:
   OpenclGridBands(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
                   const OpenclDevice& device, DeviceMemory memory, const BandShape& shape)
-      : OpenclStages(system, integrator, dt_s, device, memory, shape.pair_layout(), {}) {
+      : OpenclStages(system, integrator, dt_s, device, memory, Storage::in_place, shape.pair_layout(), {}) {
     const BandLayout& bands = shape.bands;
     GridParameters parameters = parameters_of(system, grid);
     parameters.height = static_cast<int>(bands.height);
-    parameters.item_columns = static_cast<int>(shape.item_columns);
     const auto place = [&](std::size_t row) { return row % bands.height * bands.lanes + row / bands.height; };
     std::vector<cl_int> unpinned(bands.height * bands.lanes, 0);
     for (std::size_t row = 0; row < bands.rows; ++row) unpinned[place(row)] = -1;
@@ -172,9 +193,10 @@ class OpenclGridBands final : public OpenclStages {
     add_argument(std::span<const GridParameters>(&parameters, 1));
     add_argument(std::span<const cl_int>(free.line_of));
     add_argument(std::span<const cl_int>(free.numbers));
-    add_buffer(shape.items() * 3 * bands.force_floats() * sizeof(float));
+    add_buffer(shape.parts * 3 * 3 * bands.height * bands.lanes *
+               sizeof(float));  // [parts][3 columns][x y z]
     prepare(grid_program_text(integrator, static_cast<int>(bands.lanes)),
-            {cl::NDRange(shape.items()), cl::NDRange(1)}, system.start);
+            {cl::NDRange(shape.parts), cl::NDRange(1)}, system.start);
   }
 };
 

@@ -35,57 +35,61 @@ std::string gather_springs_text() {
   return text.str();
 }
 
-std::string kernel_head(const Stage& stage, std::size_t number) {
-  return "__kernel void " + stage_kernel_name(number) + "(" + pair_parameters(stage) +
-         "__constant struct StepParameters* step,\n    __constant struct GridParameters* grid, ";
-}
-
 /// "update_N(pairs, site, node, ", to which the forces are added.
-std::string update_call(const Stage& stage, std::size_t number) {
-  return "update_" + std::to_string(number) + "(" + pair_names_of(stage) + "site, node, ";
+std::string update_call(const StoredStage& stage) {
+  return "update_" + std::to_string(stage.number) + "(" + pair_names_of(stage) + "site, node, ";
 }
 
-std::string nodes_kernel_text(const Integrator& integrator, std::size_t number) {
-  const Stage& stage = integrator.stages[number];
-  const std::string gathered = gathered_name(stage);
+std::string nodes_kernel_text(const StoredStage& stage) {
+  const std::string gathered = name_of(stage, stage.stage().gather);
   std::ostringstream text;
-  text << kernel_head(stage, number)
-       << "__global const int* restrict pin_rows,\n    __global const int* restrict pins) {\n"
+  text << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
+       << "__constant struct StepParameters* step,\n    __constant struct GridParameters* grid, "
+          "__global const int* restrict pin_rows,\n    __global const int* restrict pins) {\n"
           "  const Site site = site_at((int)get_global_id(1), (int)get_global_id(0), grid, pin_rows, pins);\n"
        << "  const Node node = load_node(" << gathered << ", site, 0, 0, grid);\n"
-       << "  " << update_call(stage, number) << "gather_springs(" << gathered
-       << ", site, node, grid), grid, step);\n"
+       << "  " << update_call(stage) << "gather_springs(" << gathered << ", site, node, grid), grid, step);\n"
        << "}\n";
   return text.str();
 }
 
-std::string bands_kernel_text(const Integrator& integrator, std::size_t number) {
-  const Stage& stage = integrator.stages[number];
+/// The ghosts of a pair. The state's and those of `next` change roles after every step.
+std::string ghosts_of(Pair pair) {
+  return "ghosts_of(" + std::to_string(index(pair)) + (index(pair) < 2 ? " ^ swapped" : "") +
+         ", ghosts, &part, grid)";
+}
+
+std::string bands_kernel_text(const StoredStage& stage) {
+  const Pair gather = stage.stage().gather;
   std::ostringstream text;
-  text << kernel_head(stage, number)
-       << "__global const int* restrict free_lines,\n"
+  text << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
+       << "__global float* ghosts, int swapped, __constant struct StepParameters* step,\n"
+          "    __constant struct GridParameters* grid, __global const int* restrict free_lines,\n"
           "    __global const int* restrict is_free, __global float* restrict sums) {\n"
-          "  const int first = (int)get_global_id(0) * grid->item_columns;\n"
-          "  const int end = min(first + grid->item_columns, grid->columns);\n"
-          "  sums += get_global_id(0) * 3 * sums_floats(grid);\n"
-          "  int column = max(first - 2, 0);\n"
+          "  const Part part = part_of((int)get_global_id(0), (int)get_global_size(0), grid);\n"
+          "  sums += part.number * 3 * sums_floats(grid);\n"
+          "  int column = max(part.first - 2, 0);\n"
           "  clear_sums(sums, column, grid);\n"
-          "  for (; column < end; ++column) {\n"
-       << "    const Column at = column_at(column, " << gathered_name(stage) << ", sums, grid);\n"
-       << "    __global const int* line = is_free + free_lines[column] * grid->height * MSSIM_LANES;\n"
+          "  for (; column < part.end; ++column) {\n"
+       << "    const Column at = column_at(column, " << name_of(stage, gather) << ", " << ghosts_of(gather)
+       << ", sums, &part, grid);\n"
+          "    __global const int* line = is_free + free_lines[column] * grid->height * MSSIM_LANES;\n"
           "    Carry carry = begin_column(&at, grid);\n"
           "    for (int row = 0; row < grid->height; ++row) {\n"
           "      const Node node = load_node(at.here, row);\n"
           "      const Vector forces = walk_row(&at, node, row, &carry, grid);\n"
-          "      if (column < first) continue;\n"
+          "      if (column < part.first) continue;\n"
           "      const Site site = {column_start(column, grid) + row * row_floats,\n"
           "                         load_aligned_mask(line + row * MSSIM_LANES)};\n"
-       << "      " << update_call(stage, number) << "forces, grid, step);\n"
+       << "      " << update_call(stage) << "forces, grid, step);\n"
        << "    }\n"
           "    end_column(&at, &carry, grid);\n"
-          "    if (column < first) continue;\n";
-  for (const Pair pair : written_pairs(stage))
-    if (is_gathered(integrator, pair)) text << "    renew_halo(" << name_of(pair) << ", column, grid);\n";
+          "    if (column < part.first) continue;\n";
+  for (std::size_t i = 0; i < pair_kinds; ++i)
+    if (const Pair pair = static_cast<Pair>(i);
+        writes(stage.stage(), pair) && is_gathered(stage.integrator, pair))
+      text << "    finish_column(column, " << name_of(stage, pair) << ", " << ghosts_of(pair)
+           << ", &part, grid);\n";
   text << "  }\n}\n";
   return text.str();
 }
@@ -104,9 +108,10 @@ std::string grid_program_text(const Integrator& integrator, int lanes) {
     kinds += "#define " + std::string(grid_spring_kinds[kind].name) + " " + std::to_string(kind) + "\n";
   text = kinds + text;
   if (!walks) text += gather_springs_text();
-  for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
-    text += update_text(integrator, stage) +
-            (walks ? bands_kernel_text(integrator, stage) : nodes_kernel_text(integrator, stage));
+  for (std::size_t number = 0; number < integrator.stage_count; ++number) {
+    const StoredStage stage{integrator, number, walks ? Storage::in_place : Storage::separate};
+    text += update_text(stage) + (walks ? bands_kernel_text(stage) : nodes_kernel_text(stage));
+  }
   return text;
 }
 

@@ -17,8 +17,9 @@ namespace {
 /// Records of eight floats (kernels/records.h).
 PairLayout record_layout(const SlicedGraph& graph) {
   constexpr std::size_t record_floats = 8;
-  PairLayout pair{
-      .floats = record_floats * graph.places(), .node = {}, .copies = {}, .component = {0, 1, 2, 4, 5, 6}};
+  PairLayout pair;
+  pair.floats = record_floats * graph.places();
+  pair.component = {0, 1, 2, 4, 5, 6};
   for (const std::uint32_t place : graph.place) pair.node.push_back(record_floats * place);
   return pair;
 }
@@ -27,7 +28,7 @@ class OpenclMesh final : public OpenclStages {
  public:
   OpenclMesh(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
              DeviceMemory memory, int lanes, const SlicedGraph& graph)
-      : OpenclStages(system, integrator, dt_s, device, memory, record_layout(graph),
+      : OpenclStages(system, integrator, dt_s, device, memory, Storage::separate, record_layout(graph),
                      {graph.neighbour.size() * sizeof(cl_uint), graph.neighbour.size() * sizeof(float)}) {
     const std::size_t sites = graph.places() / static_cast<std::size_t>(lanes);
     const OpenclLots lots(sites, device, lanes);

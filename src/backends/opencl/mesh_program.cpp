@@ -7,8 +7,9 @@
 namespace mssim {
 namespace {
 
-std::string kernel_text(const Stage& stage, std::size_t number) {
-  const std::string gathered = gathered_name(stage);
+std::string kernel_text(const StoredStage& stage) {
+  const std::size_t number = stage.number;
+  const std::string gathered = name_of(stage, stage.stage().gather);
   std::ostringstream text;
   text << "__kernel void " << stage_kernel_name(number) << "(" << pair_parameters(stage)
        << "__constant struct StepParameters* step,\n"
@@ -41,8 +42,10 @@ std::string mesh_program_text(const Integrator& integrator, int lanes) {
       "#define MSSIM_SLICE " + std::to_string(mesh_slice_lanes(lanes)) + "\n" +
       program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "floor_law.h", "surroundings.h",
                            "step_parameters.h", "stage.h", "mesh_parameters.h", "mesh_stage.cl"});
-  for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
-    text += update_text(integrator, stage) + kernel_text(integrator.stages[stage], stage);
+  for (std::size_t number = 0; number < integrator.stage_count; ++number) {
+    const StoredStage stage{integrator, number, Storage::separate};
+    text += update_text(stage) + kernel_text(stage);
+  }
   return text;
 }
 

@@ -1,5 +1,6 @@
 #include "backends/opencl/program.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <sstream>
@@ -29,12 +30,8 @@ std::string kernel_file(const char* file) {
   return text.str();
 }
 
-bool writes_pair(const Stage& stage, Pair pair) {
-  return writes(stage, position_slot(pair)) || writes(stage, velocity_slot(pair));
-}
-
 bool uses_pair(const Stage& stage, Pair pair) {
-  return stage.gather == pair || writes_pair(stage, pair) || reads(stage, position_slot(pair)) ||
+  return stage.gather == pair || writes(stage, pair) || reads(stage, position_slot(pair)) ||
          reads(stage, velocity_slot(pair));
 }
 
@@ -52,46 +49,46 @@ std::string sum_of_terms(const Line& line, std::size_t stage, std::size_t number
   return sum;
 }
 
+/// Does the stage write into the arrays of `stored`?
+bool writes_stored(const StoredStage& stage, Pair stored) {
+  for (std::size_t i = 0; i < pair_kinds; ++i)
+    if (const Pair pair = static_cast<Pair>(i); stage.stored(pair) == stored && writes(stage.stage(), pair))
+      return true;
+  return false;
+}
+
 /// The call that reads or writes the slot's memory: kernels/*_stage.cl have these functions.
-std::string access(const char* what, Slot slot, const std::string& value = "") {
+std::string access(const StoredStage& stage, const char* what, Slot slot, const std::string& value = "") {
   const bool velocity = index(slot) % 2 == 1;
   return std::string(what) + (velocity ? "_velocity(" : "_position(") + value +
-         name(static_cast<Pair>(index(slot) / 2)) + ", site, shape)";
+         name_of(stage, static_cast<Pair>(index(slot) / 2)) + ", site, shape)";
 }
 
 }  // namespace
 
-std::string pair_parameters(const Stage& stage) {
+std::string name_of(const StoredStage& stage, Pair pair) { return name(stage.stored(pair)); }
+
+std::string pair_parameters(const StoredStage& stage) {
   std::string text;
   for (const Pair pair : stage_arguments(stage))
-    text += std::string("__global ") + (writes_pair(stage, pair) ? "" : "const ") + "float* restrict " +
+    text += std::string("__global ") + (writes_stored(stage, pair) ? "" : "const ") + "float* restrict " +
             name(pair) + ", ";
   return text;
 }
 
-std::string pair_names_of(const Stage& stage) {
+std::string pair_names_of(const StoredStage& stage) {
   std::string text;
   for (const Pair pair : stage_arguments(stage)) text += name(pair) + ", ";
   return text;
 }
 
-std::vector<Pair> written_pairs(const Stage& stage) {
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (writes_pair(stage, static_cast<Pair>(i))) pairs.push_back(static_cast<Pair>(i));
-  return pairs;
-}
-
-std::string name_of(Pair pair) { return name(pair); }
-
-std::string gathered_name(const Stage& stage) { return name(stage.gather); }
-
-std::string update_text(const Integrator& integrator, std::size_t number) {
-  const Stage& stage = integrator.stages[number];
+std::string update_text(const StoredStage& stored_stage) {
+  const auto& [integrator, number, storage] = stored_stage;
+  const Stage& stage = stored_stage.stage();
   const Slot x = position_slot(stage.gather), v = velocity_slot(stage.gather);
   std::ostringstream text;
   text << "\n/* " << integrator.name << ", stage " << number << " */\n"
-       << "MSSIM_INLINE void update_" << number << "(" << pair_parameters(stage)
+       << "MSSIM_INLINE void update_" << number << "(" << pair_parameters(stored_stage)
        << "Site site, Node node, Vector spring_forces, Shape shape, __constant struct StepParameters* step) "
           "{\n"
        << "  Vector " << name(x) << " = node.x, " << name(v) << " = node.v;\n"
@@ -99,7 +96,7 @@ std::string update_text(const Integrator& integrator, std::size_t number) {
   for (std::size_t i = 0; i < slot_kinds; ++i)
     if (const Slot slot = static_cast<Slot>(i); slot != Slot::a && slot != x && slot != v) {
       if (i < memory_slots && reads(stage, slot))
-        text << "  Vector " << name(slot) << " = " << access("load", slot) << ";\n";
+        text << "  Vector " << name(slot) << " = " << access(stored_stage, "load", slot) << ";\n";
       else if (writes(stage, slot))
         text << "  Vector " << name(slot) << ";\n";
     }
@@ -110,17 +107,20 @@ std::string update_text(const Integrator& integrator, std::size_t number) {
     text << "  touch_floor(&" << name(Slot::x_next) << ", &" << name(Slot::v_next) << ", site.free, step);\n";
   for (std::size_t i = 0; i < memory_slots; ++i)
     if (const Slot slot = static_cast<Slot>(i); writes(stage, slot))
-      text << "  " << access("store", slot, name(slot) + ", ") << ";\n";
+      text << "  " << access(stored_stage, "store", slot, name(slot) + ", ") << ";\n";
   text << "}\n";
   return text.str();
 }
 
 std::string stage_kernel_name(std::size_t stage) { return "stage_" + std::to_string(stage); }
 
-std::vector<Pair> stage_arguments(const Stage& stage) {
+std::vector<Pair> stage_arguments(const StoredStage& stage) {
   std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (uses_pair(stage, static_cast<Pair>(i))) pairs.push_back(static_cast<Pair>(i));
+  for (std::size_t i = 0; i < pair_kinds; ++i) {
+    const Pair pair = static_cast<Pair>(i), stored = stage.stored(pair);
+    if (uses_pair(stage.stage(), pair) && std::find(pairs.begin(), pairs.end(), stored) == pairs.end())
+      pairs.push_back(stored);
+  }
   return pairs;
 }
 

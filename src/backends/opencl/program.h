@@ -22,27 +22,32 @@ std::string program_text(int lanes, std::initializer_list<const char*> files);
 /// Name of the stage's kernel.
 std::string stage_kernel_name(std::size_t stage);
 
-/// The pairs whose buffers are the first arguments of the stage's kernel, in their order. The step parameters
-/// follow (kernels/step_parameters.h), then what the topology needs.
-std::vector<Pair> stage_arguments(const Stage& stage);
+/// A stage, and which pairs share memory. Pairs that share it have one name and are one argument.
+struct StoredStage {
+  const Integrator& integrator;
+  std::size_t number;
+  Storage storage;
+
+  const Stage& stage() const { return integrator.stages[number]; }
+  /// The arrays that hold `pair`.
+  Pair stored(Pair pair) const { return storage_of(integrator, pair, storage); }
+};
+
+/// The stored pairs whose buffers are the first arguments of the stage's kernel, in their order. The step
+/// parameters follow (kernels/step_parameters.h), then what the topology needs.
+std::vector<Pair> stage_arguments(const StoredStage& stage);
 
 /// These pairs as parameters, and as arguments of a call, each with a comma behind it.
-std::string pair_parameters(const Stage& stage);
-std::string pair_names_of(const Stage& stage);
+std::string pair_parameters(const StoredStage& stage);
+std::string pair_names_of(const StoredStage& stage);
 
-/// The pairs that the stage writes.
-std::vector<Pair> written_pairs(const Stage& stage);
-
-/// A pair's name as a parameter.
-std::string name_of(Pair pair);
-
-/// The name of the pair that the stage gathers from.
-std::string gathered_name(const Stage& stage);
+/// The name by which the stage's kernel knows `pair`.
+std::string name_of(const StoredStage& stage, Pair pair);
 
 /// `update_N`: the lines of stage N for the nodes of a site, once their springs are summed. It takes the
 /// pairs, the site, its nodes, the spring forces per mass, the shape of the topology and the step parameters,
 /// and asks the topology for Site, Shape, load_position, load_velocity, store_position and store_velocity.
-std::string update_text(const Integrator& integrator, std::size_t number);
+std::string update_text(const StoredStage& stage);
 
 /// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).
 std::string packed_springs_program_text(int lanes);

@@ -26,6 +26,10 @@ struct PairLayout {
   std::vector<std::size_t> node;  ///< [nodes] where the node's numbers begin
   /// Where a node's numbers stand besides: where they begin, and the node. Kernels keep them up to date.
   std::vector<std::pair<std::size_t, std::size_t>> copies;
+  /// Floats that repeat some of a pair's nodes in a buffer of their own, where pairs share memory, and as
+  /// above where they stand.
+  std::size_t ghost_floats = 0;
+  std::vector<std::pair<std::size_t, std::size_t>> ghosts;
   std::array<std::size_t, 6> component{};  ///< from there on x, y, z, u, v, w
 };
 
@@ -49,9 +53,12 @@ class OpenclStages : public Backend {
   bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
 
  protected:
-  /// Throws Unsupported unless the device can hold the integrator's pairs and `others`, all bytes.
+  /// Pairs that share memory (`storage`) have ghosts instead of it for what is gathered while it is written:
+  /// kernels then take, after the pairs, the ghosts of every kind of pair and an int, 1 after every second
+  /// step, when those of state and next have changed roles. Throws Unsupported unless the device can hold
+  /// the integrator's pairs and `others`, all bytes.
   OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-               DeviceMemory memory, PairLayout layout, std::vector<std::uint64_t> others);
+               DeviceMemory memory, Storage storage, PairLayout layout, std::vector<std::uint64_t> others);
 
   /// The next argument of every kernel: a buffer with a copy of `values`, or of this size. The step
   /// parameters are there from the beginning.
@@ -74,19 +81,22 @@ class OpenclStages : public Backend {
   void prepare(const std::string& program_text, const WorkItems& items, const State& start);
 
  private:
-  const OpenclBuffer<float>& present() const;
+  /// The arrays that hold `pair`.
+  const OpenclBuffer<float>& arrays(Pair pair, bool swapped) const;
 
   const Integrator& integrator_;
   OpenclDevice device_;
   DeviceMemory memory_;
+  Storage storage_;
   PairLayout layout_;
   cl::Context context_;
   cl::CommandQueue queue_;
   WorkItems items_;
   std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are needed
+  std::optional<OpenclBuffer<float>> ghosts_;                         // [Pair][ghost_floats]
   std::vector<OpenclBuffer<std::byte>> arguments_;
   std::array<std::vector<cl::Kernel>, 2> kernels_;  // [swapped][stage]
-  bool swapped_ = false;                            // the state lies in the pair `next`
+  bool swapped_ = false;  // the state lies in the pair `next`, or only its ghosts do
 };
 
 }  // namespace mssim
