@@ -18,12 +18,17 @@ expect 2 'nothing to measure' bench
 expect 2 'known are bench, run and list' frobnicate
 expect 2 'rounds' bench --rounds 0 --scene cloth2500
 expect 2 'threads' bench --threads -3 --scene cloth2500
+expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
+expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
 expect 2 'Did you mean openmp\|did you mean openmp' bench --scene cloth2500 --backend openpm
 expect 2 'Known are serial, threads-mutex, openmp, opencl and hybrid' bench --scene cloth2500 --backend cuda
 expect 2 'rk4-frozen' bench --scene cloth2500 --integrator verlet
 expect 2 'cloth2500' bench --scene cloth2501
 expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json
-expect 2 'table1' bench --suite table9
+expect 2 'table1.*races.*scaling' bench --suite table9
+expect 2 'did you mean gather? Known are serial, mutex-per-group' bench --suite races --backend gahter
+expect 2 'unknown backend "atomic"' bench --scene cloth2500 --backend atomic
+expect 2 'unknown backend "hybrid"' bench --suite races --backend hybrid
 expect 2 'give --out' bench --scene cloth2500 --trace
 expect 2 'duration' run --scene cloth2500 --duration 1e-9
 expect 2 'fps' run --scene cloth2500 --fps 1e9
@@ -35,7 +40,7 @@ expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
 sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
 expect 2 'typo.json.*rowz.*rows' bench --scene "$work/typo.json"
 sed 's/"rows": 50/"rows": 1000000/; s/"columns": 50/"columns": 4000/' "$source/scenes/cloth2500.json" >"$work/huge.json"
-expect 2 'huge.json.*GB' bench --scene "$work/huge.json" --out "$work/never"
+expect 2 'huge.json.*GB.*name fewer with --backend' bench --scene "$work/huge.json" --out "$work/never"
 
 # Devices and files.
 expect 3 'no such device' run --scene cloth2500 --backend opencl --device 'no such device'
@@ -67,6 +72,12 @@ done
 [ "$(awk -F, 'NR > 1' "$work/results/samples.csv" | wc -l)" -eq 45 ] || fail "not 45 samples"
 column roofline_fraction | awk '!($1 > 0 && $1 <= 1.05) { bad = 1 } END { exit bad }' || fail "a roofline fraction"
 
+# Data copied between host and device: the rows that do so say it.
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" \
+  >"$work/out" 2>"$work/err" || fail "bench --memory copy exits with $?"
+[ "$(column verified | grep -c true)" -eq 5 ] || fail "not 5 verified rows with copied memory"
+[ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
+
 # A device that is missing: its rows say so; asked for by name it is an error.
 status=0
 "$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --out "$work/results" >"$work/out" 2>&1 ||
@@ -78,6 +89,14 @@ status=0
   status=$?
 [ "$status" -eq 3 ] || fail "an unavailable backend that was asked for gives $status"
 
+# The ways to avoid the data race: those asked for, and the base of the ratios where it is one of them.
+"$mssim" bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races" >"$work/out" 2>"$work/err" ||
+  fail "races exits with $?"
+[ "$(wc -l <"$work/races/races.csv")" -eq 5 ] || fail "races.csv has not four ways: $(cat "$work/races/races.csv")"
+[ "$(grep -c ',yes,ok$' "$work/races/races.csv")" -eq 4 ] || fail "races.csv: $(cat "$work/races/races.csv")"
+[ -s "$work/races/races.md" ] || fail "races.md is missing"
+[ ! -e "$work/races/table1.csv" ] || fail "races make Table 1"
+
 # Help and listings.
 for arguments in '--help' 'bench --help' 'run --help' 'list --help'; do
   # shellcheck disable=SC2086 # words of their own
@@ -88,5 +107,8 @@ done
 "$mssim" list scenes --format csv | grep -q '^cloth350k,cloth,350000,2094002,4188004,' || fail "list scenes"
 [ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 5 ] || fail "list integrators"
 "$mssim" list backends | grep -q '^hybrid ' || fail "list backends"
+"$mssim" list ways --format csv | grep -q '^thread-private,12 bytes a node and thread,once,' || fail "list ways"
+"$mssim" list suites --format csv | grep -q '^scaling,true,false,"cloth40k, .* and cloth16m",' || fail "list suites"
+"$mssim" bench --help | tr -s '\n ' ' ' | grep -q 'all: the tables of the paper' || fail "bench --help does not say what all is"
 if "$mssim" list scenes >/dev/full 2>"$work/err"; then fail "a full standard output is no error"; fi
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -185,6 +185,27 @@ TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
   }
 }
 
+TEST(OpenclMeshes, GiveTheSameBitsInSharedAndInCopiedMemory) {
+  const System system = two_solid_blocks();
+  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
+  for (const Integrator& integrator : integrators) {
+    const auto stepped = [&](std::unique_ptr<Backend> backend) {
+      backend->step(31);
+      return backend->state();
+    };
+    const auto opencl = [&](DeviceMemory memory) {
+      return stepped(make_opencl(system, integrator, dt_s, device, 16, memory));
+    };
+    const auto hybrid = [&](DeviceMemory memory) {
+      return stepped(make_hybrid(system, integrator, dt_s, device, 2, 16, memory));
+    };
+    EXPECT_EQ(opencl(DeviceMemory::copy).position, opencl(DeviceMemory::shared).position) << integrator.name;
+    EXPECT_EQ(opencl(DeviceMemory::copy).velocity, opencl(DeviceMemory::shared).velocity) << integrator.name;
+    EXPECT_EQ(hybrid(DeviceMemory::copy).position, hybrid(DeviceMemory::shared).position) << integrator.name;
+    EXPECT_EQ(hybrid(DeviceMemory::copy).velocity, hybrid(DeviceMemory::shared).velocity) << integrator.name;
+  }
+}
+
 TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
   const System system = solid_block(7, 5, 6);
   OpenclDevice device = choose_opencl_device(opencl_devices(), "");

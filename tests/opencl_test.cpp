@@ -11,9 +11,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/hybrid.h"
 #include "backends/opencl/device.h"
 #include "backends/opencl/grid_program.h"
@@ -280,6 +282,29 @@ TEST(OpenclBackends, GiveTheSameBitsWithAnyNumberOfLanesOrThreads) {
     EXPECT_EQ(run(hybrid_with<1>), run(hybrid_with<2>)) << integrator.name;
     EXPECT_EQ(run(hybrid_with<1>), run(hybrid_with<3>)) << integrator.name;
   }
+}
+
+TEST(OpenclBackends, GiveTheSameBitsInSharedAndInCopiedMemoryAndSayWhichItIs) {
+  const System system = rippled_cloth(21, 35);
+  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
+  for (const Integrator& integrator : integrators)
+    for (const std::string_view name : {"opencl", "hybrid"}) {
+      std::vector<State> found;
+      for (const DeviceMemory memory : {DeviceMemory::shared, DeviceMemory::copy}) {
+        const auto backend =
+            find_backend(name)->make(system, integrator, 2e-4, {.threads = 2, .memory = memory});
+        backend->step(7);
+        backend->set_state(system.start);
+        EXPECT_EQ(backend->state().position, system.start.position) << name << ", " << integrator.name;
+        backend->step(30);
+        found.push_back(backend->state());
+        EXPECT_EQ(backend->device(),
+                  memory == DeviceMemory::copy ? device.name + " (copied memory)" : device.name);
+      }
+      EXPECT_EQ(found[0].position, found[1].position) << name << ", " << integrator.name;
+      EXPECT_EQ(found[0].velocity, found[1].velocity) << name << ", " << integrator.name;
+      EXPECT_NE(found[0].position, system.start.position);
+    }
 }
 
 TEST(OpenclBackends, SayHowMuchMemoryAClothNeedsThatTheDeviceDoesNotHave) {

@@ -46,7 +46,7 @@ TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
   std::vector<ResultRow> rows{measured_row("serial", 1.0 / 3, 1.0), measured_row("openmp", 0.1, M_PI),
                               failed_row("opencl", "failed: \"x\", at\r\nstep 3")};
   rows[1].samples_ms = {0.1, 1.0 / 7, std::numeric_limits<double>::denorm_min()};
-  ResultFolder(folder(), made_up_provenance(), legend, published_tables()).write(rows);
+  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).write(rows);
   const std::vector<ResultRow> back = read_results(folder());
   ASSERT_EQ(back.size(), rows.size());
   EXPECT_EQ(timings_csv(back), timings_csv(rows));
@@ -116,7 +116,8 @@ TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
 }
 
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
-  const ResultFolder results(folder() / "new/out", made_up_provenance(), legend, published_tables());
+  const ResultFolder results(folder() / "new/out", made_up_provenance(),
+                             paper_tables(legend, published_tables()));
   EXPECT_EQ(nlohmann::json::parse(text_of(folder() / "new/out/provenance.json")),
             to_json(made_up_provenance()));
   EXPECT_TRUE(read_results(folder() / "new/out").empty());
@@ -141,7 +142,7 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
 }
 
 TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
-  const ResultFolder results(folder(), made_up_provenance(), legend, published_tables());
+  const ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
   std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   results.write(rows);
   const std::string before = text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json");
@@ -156,8 +157,9 @@ TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
 
 TEST_F(ResultFiles, CannotGoWhereAFileIs) {
   put("taken", "a file");
-  EXPECT_THROW(ResultFolder(folder() / "taken", made_up_provenance(), legend, published_tables()),
-               WriteError);
+  EXPECT_THROW(
+      ResultFolder(folder() / "taken", made_up_provenance(), paper_tables(legend, published_tables())),
+      WriteError);
   EXPECT_EQ(text_of(folder() / "taken"), "a file");
 }
 

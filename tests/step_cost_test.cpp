@@ -97,6 +97,16 @@ TEST(StepCost, GrowsWithForceEvaluationsForEveryIntegrator) {
   }
 }
 
+TEST(StepCost, MovesTheStateOnceAPassWhereStagesOverlap) {
+  for (const Integrator& integrator : integrators) {
+    const StepSize body{1000, 6000, 12};
+    const double pass = 48.0 * 1000 + 12.0 * 6000;
+    EXPECT_EQ(step_cost(integrator, body, 1).bytes, pass) << integrator.name;
+    EXPECT_EQ(step_cost(integrator, body, 4).bytes, pass / 4) << integrator.name;
+    EXPECT_EQ(step_cost(integrator, body, 4).flops, step_cost(integrator, body).flops) << integrator.name;
+  }
+}
+
 TEST(WorkingSet, HoldsThePairsThatAStepCannotDoWithout) {
   EXPECT_EQ(working_set_bytes(*find_integrator("semi-euler"), {2500, 15000}), 24.0 * 2500);
   EXPECT_EQ(working_set_bytes(*find_integrator("midpoint"), {2500, 15000}), 48.0 * 2500);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -11,11 +12,21 @@
 
 namespace mssim {
 
+/// How host and OpenCL device exchange data.
+enum class DeviceMemory : std::uint8_t {
+  /// Both work on the same arrays in turn. Where the device shares the host's memory nothing is copied;
+  /// elsewhere the driver copies an array each time it changes hands.
+  shared,
+  /// Each has arrays of its own, and what changed is copied from one to the other.
+  copy
+};
+
 /// What the user chose about where a backend runs.
 struct ExecutionOptions {
   int threads = 0;  ///< host threads, at least 1
   std::string device =
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
+  DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.
@@ -55,9 +66,31 @@ class Backend {
   virtual std::string device() const = 0;
   /// Host threads that take part in a step.
   virtual int threads() const = 0;
+  /// Whole steps that one pass over the state in memory takes, where stages overlap; 0 where every stage
+  /// makes a pass of its own. What a step moves through memory is counted by it.
+  virtual int steps_per_pass() const { return 0; }
   /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
   virtual bool runs_on_host() const { return true; }
 };
+
+/// Memory that a backend takes at its peak, which is mostly while it is made: bytes a node, a node and pair
+/// that the integrator needs, a node and thread, and a spring. What does not grow with the scene is left out.
+struct MemoryUse {
+  double node = 0;
+  double pair_node = 0;
+  Storage storage = Storage::in_place;  ///< which pairs it needs
+  double thread_node = 0;
+  double spring = 0;
+
+  double bytes(const Integrator& integrator, std::uint64_t nodes, std::uint64_t springs, int threads) const {
+    const auto pairs = static_cast<double>(stored_pairs(integrator, storage).size());
+    return (node + pair_node * pairs + thread_node * threads) * static_cast<double>(nodes) +
+           spring * static_cast<double>(springs);
+  }
+};
+
+/// Of a SpringList<float>.
+inline constexpr MemoryUse spring_list_memory{.node = 17, .pair_node = 24};
 
 /// A row of the TABLE of backends.
 struct BackendInfo {
@@ -70,6 +103,8 @@ struct BackendInfo {
   /// Unsupported.
   std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
                                    const ExecutionOptions& options);
+  MemoryUse grid_memory;  ///< for a cloth
+  MemoryUse mesh_memory;  ///< for bodies
 };
 
 }  // namespace mssim

@@ -43,10 +43,11 @@ struct Material {
 class Hybrid final : public Backend {
  public:
   Hybrid(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-         int threads, int lanes)
+         int threads, int lanes, DeviceMemory memory)
       : integrator_(integrator),
         coefficients_(coefficients_of<float>(integrator, dt_s)),
         device_(device),
+        memory_(memory),
         threads_(threads),
         packed_(system),
         held_(packed_.places(), true),
@@ -71,13 +72,12 @@ class Hybrid final : public Backend {
     queue_ = cl::CommandQueue(context_, cl_device);
     for (const Pair pair : stored) {
       auto& buffer = pairs_[index(pair)];
-      buffer.emplace(context_, packed_.places(), device.shares_host_memory);
-      host_[index(pair)] = buffer->map(queue_, CL_MAP_READ | CL_MAP_WRITE);
+      buffer.emplace(context_, device_, memory_, packed_.places());
+      host_[index(pair)] = buffer->map(queue_, CL_MAP_WRITE);
       std::fill(host_[index(pair)].begin(), host_[index(pair)].end(), NodeRecord{});
     }
-    forces_.emplace(context_, forces, device.shares_host_memory);
-    host_forces_ = forces_->map(queue_, CL_MAP_READ | CL_MAP_WRITE);
-    std::fill(host_forces_.begin(), host_forces_.end(), Quad{});  // the last one stays so
+    forces_.emplace(filled_buffer(std::vector<Quad>(forces)));  // the last one stays zero
+    host_forces_ = forces_->map(queue_, CL_MAP_READ);
     if (!packed_.units.empty()) make_kernel(system, cl_device, lanes);
     packed_.units = {};
 
@@ -113,17 +113,18 @@ class Hybrid final : public Backend {
     return state;
   }
 
-  std::string device() const override { return device_.name; }
+  std::string device() const override { return label_of(device_, memory_); }
   int threads() const override { return threads_; }
   bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
 
  private:
   template <class T>
   OpenclBuffer<T> filled_buffer(const std::vector<T>& values) const {
-    OpenclBuffer<T> buffer(context_, values.size(), device_.shares_host_memory);
-    const auto memory = buffer.map(queue_, CL_MAP_WRITE);
-    std::copy(values.begin(), values.end(), memory.begin());
-    buffer.unmap(queue_, memory);
+    OpenclBuffer<T> buffer(context_, device_, memory_, values.size());
+    const auto mapped = buffer.map(queue_, CL_MAP_WRITE);
+    std::copy(values.begin(), values.end(), mapped.begin());
+    buffer.unmap(queue_, mapped, CL_MAP_WRITE);
+    queue_.finish();
     return buffer;
   }
 
@@ -163,12 +164,12 @@ class Hybrid final : public Backend {
   void compute_forces(std::size_t place) {
     if (!kernel_) return;
     const auto& pair = *pairs_[place];
-    forces_->unmap(queue_, host_forces_);
-    pair.unmap(queue_, host_[place]);
+    forces_->unmap(queue_, host_forces_, CL_MAP_READ);
+    pair.unmap(queue_, host_[place], CL_MAP_WRITE);
     kernel_->setArg(1, pair.buffer());
     queue_.enqueueNDRangeKernel(*kernel_, cl::NullRange, cl::NDRange(lots_.global), cl::NDRange(lots_.local));
-    host_forces_ = forces_->map(queue_, CL_MAP_READ, false);
-    host_[place] = pair.map(queue_, CL_MAP_READ | CL_MAP_WRITE);
+    host_[place] = pair.map(queue_, CL_MAP_WRITE, false);
+    host_forces_ = forces_->map(queue_, CL_MAP_READ);
   }
 
   /// The spring forces on the nodes of a slice, N.
@@ -280,6 +281,7 @@ class Hybrid final : public Backend {
   const Integrator& integrator_;
   Coefficients<float> coefficients_;
   OpenclDevice device_;
+  DeviceMemory memory_;
   int threads_;
   PackedSprings packed_;
   std::vector<std::uint8_t> held_;   // [places] pinned, or no node
@@ -301,18 +303,19 @@ class Hybrid final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
-                                     const OpenclDevice& device, int threads, int lanes) {
+                                     const OpenclDevice& device, int threads, int lanes,
+                                     DeviceMemory memory) {
   if (threads < 1)
     throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    return std::make_unique<Hybrid>(system, integrator, dt_s, device, threads, lanes);
+    return std::make_unique<Hybrid>(system, integrator, dt_s, device, threads, lanes, memory);
   });
 }
 
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
   const OpenclDevice device = choose_opencl_device(opencl_devices(), options.device);
-  return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device));
+  return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory);
 }
 
 }  // namespace mssim

@@ -7,18 +7,18 @@
 namespace mssim {
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
-                                     const OpenclDevice& device, int lanes) {
+                                     const OpenclDevice& device, int lanes, DeviceMemory memory) {
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     if (const auto* grid = std::get_if<GridPatch>(&system.topology))
-      return make_opencl_grid(system, *grid, integrator, dt_s, device, lanes);
-    return make_opencl_mesh(system, integrator, dt_s, device, lanes);
+      return make_opencl_grid(system, *grid, integrator, dt_s, device, memory, lanes);
+    return make_opencl_mesh(system, integrator, dt_s, device, memory, lanes);
   });
 }
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
   const OpenclDevice device = choose_opencl_device(opencl_devices(), options.device);
-  return make_opencl(system, integrator, dt_s, device, lanes_for(device));
+  return make_opencl(system, integrator, dt_s, device, lanes_for(device), options.memory);
 }
 
 }  // namespace mssim

@@ -25,6 +25,7 @@ class OpenMpGrid final : public Backend {
   void step(int count) override { kernel_.step(sheet_, count); }
   std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
   int threads() const override { return static_cast<int>(sheet_.parts.size()); }
+  int steps_per_pass() const override { return static_cast<int>(sheet_.steps_per_pass); }
 
  private:
   BandKernel kernel_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -43,6 +44,10 @@ struct PackedSprings {
   std::size_t slices() const { return places() / slice_nodes; }
   std::size_t places() const { return scene_node.size(); }
   std::size_t unit_count() const { return kinds.size() * side_by_side; }
+
+ private:
+  /// Fills first_entry and entries from the units. `forces`: [places] how many a node adds and subtracts.
+  void list_entries(std::vector<std::array<std::uint32_t, 2>> forces);
 };
 
 }  // namespace mssim

@@ -14,6 +14,7 @@ SpringList<Real>::SpringList(const System& system, const Integrator& integrator,
       force_(system.nodes()) {
   for (const SpringMaterial& material : system.materials)
     materials_.push_back({static_cast<Real>(material.stiffness), static_cast<Real>(material.damping)});
+  inverse_mass_.reserve(system.nodes());
   for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
   for (const std::uint32_t node : system.pins) pinned_[node] = 1;
   for (std::size_t pair = 0; pair < pair_kinds; ++pair)
@@ -33,6 +34,8 @@ void SpringList<Real>::set_state(const State& state) {
 template <class Real>
 State SpringList<Real>::state() const {
   State state;
+  state.position.reserve(nodes());
+  state.velocity.reserve(nodes());
   for (const Node& node : array(Pair::state)) {
     state.position.push_back(vec3_cast<double>(node.x));
     state.velocity.push_back(vec3_cast<double>(node.v));

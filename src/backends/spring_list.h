@@ -46,6 +46,8 @@ class SpringList {
     force_[spring.first] += force;
     force_[spring.second] -= force;
   }
+  /// What has been added up for a node, N, for those who add in another way.
+  Vec3<Real>& force(std::size_t node) { return force_[node]; }
   /// The table's lines for nodes first .. last - 1, once all forces are complete.
   template <std::size_t method, std::size_t stage>
   void update_nodes(std::size_t first, std::size_t last);

@@ -21,6 +21,7 @@ struct Combination {
   ResultRow row;
   const Integrator* integrator = nullptr;
   bool on_host = true;
+  int steps_per_pass = 0;
   std::unique_ptr<Backend> backend;  ///< null once the row has failed
   int steps = 1;                     ///< in a sample
 };
@@ -60,6 +61,7 @@ Combination prepare(const SceneJob& job, const BackendInfo& info, const Integrat
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
     combination.on_host = combination.backend->runs_on_host();
+    combination.steps_per_pass = combination.backend->steps_per_pass();
   } catch (const Unavailable& reason) {
     fail(combination, std::string("unavailable: ") + reason.what());
   } catch (const Unsupported& reason) {
@@ -125,7 +127,7 @@ void compare_with_peaks(std::vector<Combination>& combinations, const StepSize& 
   for (Combination& combination : combinations) {
     ResultRow& row = combination.row;
     if (!row.ms_per_step) continue;
-    const StepCost cost = step_cost(*combination.integrator, size);
+    const StepCost cost = step_cost(*combination.integrator, size, combination.steps_per_pass);
     const double seconds = *row.ms_per_step / 1000;
     row.gigabytes_per_second = cost.bytes / seconds / 1e9;
     if (!combination.on_host) continue;

@@ -68,11 +68,11 @@ std::size_t bytes_per_spring(const Topology& topology);
 
 StepSize step_size(const System& system);
 
-/// Cost of a step that makes one pass over the nodes, and where they take memory over the springs, per stage.
+/// Cost of a step that passes over the nodes, and where they take memory over the springs, once per stage.
+/// Where stages overlap, so that one pass takes `steps_per_pass` whole steps (Backend::steps_per_pass), trial
+/// values never leave a cache: then a pass moves the state, in and out, and the springs.
 /// Left out, being small: pins, contact with the floor, what a cache line moves besides.
-/// A backend that overlaps stages can move less than this through main memory, because trial values then
-/// never leave a cache.
-StepCost step_cost(const Integrator& integrator, const StepSize& size);
+StepCost step_cost(const Integrator& integrator, const StepSize& size, int steps_per_pass = 0);
 
 /// Bytes of all that a step of the integrator touches, slots and springs: the working set whose cache level
 /// bounds the step.

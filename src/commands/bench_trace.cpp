@@ -1,6 +1,7 @@
 #include "commands/bench_trace.h"
 
-#include "backends/backends.h"
+#include <algorithm>
+
 #include "bench/verification.h"
 #include "commands/run_provenance.h"
 #include "commands/simulation.h"
@@ -29,7 +30,8 @@ void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const s
     if (row.status != "ok") continue;
     progress("trace " + row.backend + " " + row.integrator);
     const Integrator& integrator = *find_integrator(row.integrator);
-    const auto backend = find_backend(row.backend)->make(scene.system, integrator, scene.dt_s, job.execution);
+    const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
+    const auto backend = info.make(scene.system, integrator, scene.dt_s, job.execution);
     TraceHeader header = trace_header(scene, *backend, row.backend, integrator);
     header.with_losses = true;
     H5mdTrace trace(folder / (row.scene + "-" + row.backend + "-" + row.integrator + ".h5"), scene.system,

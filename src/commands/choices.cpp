@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <cmath>
+#include <map>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -18,10 +19,11 @@ namespace {
 /// More threads than this are a typing error, and would only fail later and less clearly.
 constexpr int most_threads = 4096;
 
-template <class Rows>
-UsageError unknown(const std::string& what, const std::string& name, const Rows& rows) {
-  std::vector<std::string_view> known;
-  for (const auto& row : rows) known.push_back(row.name);
+const std::map<std::string, DeviceMemory> device_memories{{"copy", DeviceMemory::copy},
+                                                          {"shared", DeviceMemory::shared}};
+
+UsageError unknown(const std::string& what, const std::string& name,
+                   const std::vector<std::string_view>& known) {
   const std::string_view nearest = nearest_name(name, known);
   const std::string remedy = nearest.empty() ? "" : "did you mean " + std::string(nearest) + "? ";
   return UsageError("unknown " + what + " \"" + name + "\": " + remedy + "Known are " + listed(known));
@@ -30,13 +32,25 @@ UsageError unknown(const std::string& what, const std::string& name, const Rows&
 }  // namespace
 
 const BackendInfo& require_backend(const std::string& name) {
-  if (const BackendInfo* backend = find_backend(name)) return *backend;
-  throw unknown("backend", name, backends());
+  std::vector<const BackendInfo*> known;
+  for (const BackendInfo& backend : backends()) known.push_back(&backend);
+  return require_backend(name, known);
+}
+
+const BackendInfo& require_backend(const std::string& name, const std::vector<const BackendInfo*>& known) {
+  std::vector<std::string_view> names;
+  for (const BackendInfo* backend : known) {
+    if (backend->name == name) return *backend;
+    names.push_back(backend->name);
+  }
+  throw unknown("backend", name, names);
 }
 
 const Integrator& require_integrator(const std::string& name) {
   if (const Integrator* integrator = find_integrator(name)) return *integrator;
-  throw unknown("integrator", name, integrators);
+  std::vector<std::string_view> names;
+  for (const Integrator& integrator : integrators) names.push_back(integrator.name);
+  throw unknown("integrator", name, names);
 }
 
 CLI::Validator positive_number() {
@@ -54,6 +68,11 @@ void declare_execution(CLI::App& app, ExecutionOptions& options) {
       ->check(CLI::Range(1, most_threads));
   app.add_option("--device", options.device,
                  "OpenCL device: its number or a part of its name (see mssim list devices)");
+  app.add_option_function<std::string>(
+         "--memory", [&options](const std::string& name) { options.memory = device_memories.at(name); },
+         "How host and OpenCL device exchange data: shared, without copying where the device can, or copy "
+         "(default: shared)")
+      ->check(CLI::IsMember(&device_memories));
 }
 
 ExecutionOptions complete(ExecutionOptions options) {

@@ -28,7 +28,8 @@ constexpr std::array<Command, 3> table{{
      declare_bench},
     {"run", "simulate one scene, tracing it into a file",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
-    {"list", "list scenes, backends, integrators or devices", "mssim list scenes --format csv", declare_list},
+    {"list", "list scenes, suites, backends, ways, integrators or devices", "mssim list scenes --format csv",
+     declare_list},
 }};
 
 int fail(int code, const std::string& sentence) {

@@ -9,10 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "backends/accumulation/race_ways.h"
 #include "backends/backends.h"
 #include "backends/opencl/device.h"
 #include "commands/choices.h"
 #include "commands/exit_code.h"
+#include "commands/suites.h"
 #include "integrators/integrators.h"
 #include "mesh/mesh_error.h"
 #include "output/listing.h"
@@ -95,6 +97,28 @@ Listing list_backends(const ExecutionOptions& options) {
   return listing;
 }
 
+Listing list_ways(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const RaceWay& way : race_ways())
+    listing.push_back({{"way", way.backend.name},
+                       {"extra_memory", way.extra_memory},
+                       {"springs_computed", way.springs_computed},
+                       {"same_bits", name_of(way.repeatable)},
+                       {"description", way.backend.description}});
+  return listing;
+}
+
+Listing list_suites(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const Suite& suite : suites())
+    listing.push_back({{"suite", suite.name},
+                       {"timed", suite.timed},
+                       {"in_all", suite.in_all},
+                       {"scenes", listed(suite.scenes)},
+                       {"description", suite.description}});
+  return listing;
+}
+
 Listing list_integrators(const ExecutionOptions& /*options*/) {
   Listing listing;
   for (const Integrator& integrator : integrators)
@@ -124,8 +148,10 @@ struct Subject {
   std::string_view name;
   Listing (*list)(const ExecutionOptions& options);
 };
-constexpr std::array<Subject, 4> subjects{{{"scenes", list_scenes},
+constexpr std::array<Subject, 6> subjects{{{"scenes", list_scenes},
+                                           {"suites", list_suites},
                                            {"backends", list_backends},
+                                           {"ways", list_ways},
                                            {"integrators", list_integrators},
                                            {"devices", list_devices}}};
 

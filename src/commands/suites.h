@@ -5,13 +5,26 @@
 #include <string_view>
 #include <vector>
 
+#include "backends/backend.h"
+#include "output/result_table.h"
+
 namespace mssim {
 
-/// A row of the TABLE of suites: the scenes behind a table of a paper.
+/// What is compared on a scene, and which tables are made of the times.
+struct Comparison {
+  std::vector<const BackendInfo*> (*backends)();  ///< the rows of a table, in its order
+  std::span<const std::string_view> integrators;  ///< by default
+  TableMaker (*tables)();                         ///< reads what it needs at once, so before any measurement
+};
+
+/// A row of the TABLE of suites: scenes, and what is compared on them.
 struct Suite {
   std::string_view name;
-  bool timed;  ///< else the table says what the scenes are, and nothing is measured
+  std::string_view description;  ///< one line for `mssim list suites`
+  bool in_all;                   ///< whether "all" stands for it too: the tables of the paper
+  bool timed;                    ///< else the table says what the scenes are, and nothing is measured
   std::span<const std::string_view> scenes;
+  Comparison comparison;
 };
 
 std::span<const Suite> suites();
@@ -19,8 +32,11 @@ std::span<const Suite> suites();
 /// The names of the suites, and "all".
 std::vector<std::string> suite_names();
 
-/// The scenes of the suites of that name whose tables are timed or not, each once. "all" stands for every
-/// suite.
+/// The scenes of the suites of that name whose tables are timed or not, each once. "all" stands for the
+/// suites that are in it.
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
+
+/// What the suite of that name compares. "all", and no suite (an empty name), compare the five backends.
+const Comparison& comparison_of_suite(std::string_view name);
 
 }  // namespace mssim

@@ -145,9 +145,8 @@ inline std::vector<Pair> stored_pairs(const Integrator& integrator, Storage stor
   return stored;
 }
 
-/// Does a later stage, or the next step's first, gather from what this stage writes into `pair`?
+/// Does a stage gather from the pair?
 constexpr bool is_gathered(const Integrator& integrator, Pair pair) {
-  if (pair == Pair::next) return true;  // it becomes the state
   for (std::size_t s = 0; s < integrator.stage_count; ++s)
     if (integrator.stages[s].gather == pair) return true;
   return false;

@@ -1,5 +1,6 @@
 #include "model/grid_patch.h"
 
+#include <array>
 #include <cmath>
 
 namespace mssim {
@@ -21,6 +22,8 @@ std::uint64_t count_springs(std::uint64_t rows, std::uint64_t columns) {
 std::vector<Spring> springs_of(const GridPatch& grid) {
   std::vector<Spring> springs;
   springs.reserve(count_springs(grid.rows, grid.columns));
+  std::array<float, grid_spring_kinds.size()> rest_length{};
+  for (const GridSpringKind kind : {structural, shear, bending}) rest_length[kind] = grid.rest_length(kind);
   const std::int64_t rows = grid.rows, columns = grid.columns;
   for (std::int64_t row = 0; row < rows; ++row)
     for (std::int64_t column = 0; column < columns; ++column)
@@ -29,7 +32,7 @@ std::vector<Spring> springs_of(const GridPatch& grid) {
         if (other_row < 0 || other_row >= rows || other_column >= columns) continue;
         springs.push_back({static_cast<std::uint32_t>(row * columns + column),
                            static_cast<std::uint32_t>(other_row * columns + other_column),
-                           grid.rest_length(spring.kind), spring.kind});
+                           rest_length[spring.kind], spring.kind});
       }
   return springs;
 }

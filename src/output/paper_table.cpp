@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -84,14 +83,8 @@ Timing published_timing(const PublishedTable& published, const PaperLegend::Inte
   return {ms, ms && base ? std::optional(*base / *ms) : std::nullopt};
 }
 
-bool counts(const ResultRow* row) { return row && row->status == "ok" && row->verified; }
-
 Timing measured_timing(const ResultRow* row) {
-  return counts(row) ? Timing{row->ms_per_step, row->speedup_vs_serial} : Timing{};
-}
-
-std::string status_of(const ResultRow& row) {
-  return row.status == "ok" && !row.verified ? "failed: not verified" : row.status;
+  return row && counts(*row) ? Timing{row->ms_per_step, row->speedup_vs_serial} : Timing{};
 }
 
 std::string table_csv(const Measured& measured, const PaperLegend& legend, const PublishedTable& published) {
@@ -142,8 +135,8 @@ class Markdown {
       : measured_(measured), legend_(legend), published_(published) {}
 
   std::string text(const Provenance& provenance) {
-    out_ << "# " << published_.info().title << ", published and measured\n\n";
-    add_origin(provenance);
+    out_ << "# " << published_.info().title << ", published and measured\n\n"
+         << measured_on(measured_.rows(), provenance);
     add_legend();
     for (const auto& integrator : legend_.integrators)
       if (measured_.has(integrator.name)) add_block(integrator);
@@ -152,19 +145,6 @@ class Markdown {
   }
 
  private:
-  void add_origin(const Provenance& provenance) {
-    std::set<std::string> devices;
-    for (const ResultRow* row : measured_.rows())
-      if (!row->device.empty() && row->device != "cpu") devices.insert(row->device);
-    out_ << "Measured on " << provenance.machine.cpu_model << " (" << provenance.machine.logical_cpus
-         << " logical CPUs) with " << provenance.threads
-         << (provenance.threads == 1 ? " thread" : " threads");
-    for (const std::string& device : devices) out_ << "; device " << device;
-    out_ << "; mssim " << provenance.build.version << ", commit " << provenance.build.commit.substr(0, 12)
-         << (provenance.build.dirty ? " with uncommitted changes" : "") << "; " << provenance.started_utc
-         << ".\n\n";
-  }
-
   void add_legend() {
     const bool has_frozen =
         std::any_of(legend_.integrators.begin(), legend_.integrators.end(),
@@ -219,8 +199,7 @@ class Markdown {
       } else if (row) {
         const std::string status = status_of(*row);
         out_ << " " << one_cell(status.substr(0, status.find(':')));
-        remarks_.append("- `").append(scene.name).append("`, `").append(backend.name).append("`, `");
-        remarks_.append(integrator.name).append("`: ").append(one_cell(status)).append("\n");
+        remarks_ += remark_on(*row);
       } else {
         out_ << " " << nothing;
       }
@@ -244,6 +223,17 @@ PaperTable paper_table(std::span<const ResultRow> rows, const PaperLegend& legen
   if (measured.rows().empty()) return {};
   return {false, table_csv(measured, legend, published),
           Markdown(measured, legend, published).text(provenance)};
+}
+
+TableMaker paper_tables(PaperLegend legend, std::vector<PublishedTable> published) {
+  return [legend = std::move(legend), published = std::move(published)](std::span<const ResultRow> rows,
+                                                                        const Provenance& provenance) {
+    std::vector<ResultTable> tables;
+    for (const PublishedTable& each : published)
+      if (PaperTable table = paper_table(rows, legend, each, provenance); !table.empty)
+        tables.push_back({std::string(each.info().name), std::move(table.csv), std::move(table.markdown)});
+    return tables;
+  };
 }
 
 }  // namespace mssim

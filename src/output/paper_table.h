@@ -7,6 +7,7 @@
 #include "bench/provenance.h"
 #include "bench/result.h"
 #include "output/published.h"
+#include "output/result_table.h"
 
 namespace mssim {
 
@@ -39,5 +40,8 @@ struct PaperTable {
 /// Speed-ups are over one thread, published ones over CPU only and measured ones over `serial`.
 PaperTable paper_table(std::span<const ResultRow> rows, const PaperLegend& legend,
                        const PublishedTable& published, const Provenance& provenance);
+
+/// Makes the paper_table of every published table that any row belongs into.
+TableMaker paper_tables(PaperLegend legend, std::vector<PublishedTable> published);
 
 }  // namespace mssim

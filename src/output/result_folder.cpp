@@ -26,12 +26,8 @@ std::string text_of(const Json& json) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(fs::path folder, Provenance provenance, PaperLegend legend,
-                           std::vector<PublishedTable> published)
-    : folder_(std::move(folder)),
-      provenance_(std::move(provenance)),
-      legend_(std::move(legend)),
-      published_(std::move(published)) {
+ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker tables)
+    : folder_(std::move(folder)), provenance_(std::move(provenance)), tables_(std::move(tables)) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw WriteError(write_failure(folder_, "creating the folder", error.value()));
@@ -41,17 +37,12 @@ ResultFolder::ResultFolder(fs::path folder, Provenance provenance, PaperLegend l
 void ResultFolder::write(std::span<const ResultRow> rows) const {
   const std::string timings = timings_csv(rows), samples = samples_csv(rows);
   const std::string benchmark = text_of(benchmark_json(rows, provenance_));
-  std::vector<PaperTable> tables;
-  tables.reserve(published_.size());
-  for (const PublishedTable& published : published_)
-    tables.push_back(paper_table(rows, legend_, published, provenance_));
+  const std::vector<ResultTable> tables = tables_(rows, provenance_);
   write_file_atomically(folder_ / samples_name, samples);
   write_file_atomically(folder_ / "benchmark.json", benchmark);
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    if (tables[i].empty) continue;
-    const std::string name(published_[i].info().name);
-    write_file_atomically(folder_ / (name + ".csv"), tables[i].csv);
-    write_file_atomically(folder_ / (name + ".md"), tables[i].markdown);
+  for (const ResultTable& table : tables) {
+    write_file_atomically(folder_ / (table.name + ".csv"), table.csv);
+    write_file_atomically(folder_ / (table.name + ".md"), table.markdown);
   }
   write_file_atomically(folder_ / timings_name, timings);
 }

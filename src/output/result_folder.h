@@ -6,20 +6,18 @@
 
 #include "bench/provenance.h"
 #include "bench/result.h"
-#include "output/paper_table.h"
-#include "output/published.h"
+#include "output/result_table.h"
 #include "output/structure_table.h"
 
 namespace mssim {
 
 /// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, benchmark.json,
-/// provenance.json and, where scenes of the paper were measured, its tables as NAME.csv and NAME.md.
+/// provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md.
 class ResultFolder {
  public:
   /// Creates the folder and those above it and writes provenance.json, so that a folder that cannot be
   /// written is found before anything is measured. Throws WriteError.
-  ResultFolder(std::filesystem::path folder, Provenance provenance, PaperLegend legend,
-               std::vector<PublishedTable> published);
+  ResultFolder(std::filesystem::path folder, Provenance provenance, TableMaker tables);
 
   /// Writes all that follows from the rows, each file whole or not at all, timings.csv last: what stands
   /// there has its samples. To be called after every finished combination. Throws WriteError, and
@@ -32,8 +30,7 @@ class ResultFolder {
  private:
   std::filesystem::path folder_;
   Provenance provenance_;
-  PaperLegend legend_;
-  std::vector<PublishedTable> published_;
+  TableMaker tables_;
 };
 
 /// The rows, with their samples, that an earlier run left in a folder; none when it has no timings.csv.

@@ -1,9 +1,11 @@
 #include "scene/cloth.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "scene/json_document.h"
 #include "scene/material_fields.h"
@@ -49,10 +51,40 @@ bool is_pinned(const ClothSpec& cloth, std::uint32_t row, std::uint32_t column) 
          (column % cloth.pins->every_columns == 0 || column + 1 == cloth.columns);
 }
 
-/// One component of a standing wave, at most 1: its phases, in radians, along x and z.
-double wave(double wave_number, const Vec3d& at, double phase_x, double phase_z) {
-  return std::sin(wave_number * at.x + phase_x) * std::sin(wave_number * at.z + phase_z);
-}
+/// The standing wave of the ripple: six components, each at most 1 and the product of a sine of the column's
+/// place and one of the row's, which are kept for all of both: 16 million nodes take 48,000 sines then.
+class Ripple {
+ public:
+  explicit Ripple(const ClothSpec& cloth)
+      : columns_(sines(cloth, cloth.columns, 0)), rows_(sines(cloth, cloth.rows, 1)) {}
+
+  /// Three components, from `first` on.
+  Vec3d at(std::uint32_t row, std::uint32_t column, std::size_t first) const {
+    const auto &x = columns_[column], &z = rows_[row];
+    return {x[first] * z[first], x[first + 1] * z[first + 1], x[first + 2] * z[first + 2]};
+  }
+  static constexpr std::size_t position = 0, velocity = 3;
+
+ private:
+  static constexpr std::size_t components = 6;
+  /// Phases along x and z, in radians. A component is zero along lines of constant x and of constant z. As no
+  /// two phases of the velocity on one axis differ by a multiple of pi, no place lies on a line of all three,
+  /// and no node starts at rest.
+  static constexpr std::array<std::array<double, 2>, components> phase{
+      {{0.2, 0.9}, {1.2, 1.9}, {2.2, 2.9}, {0.4, 1.3}, {1.5, 2.5}, {2.6, 0.3}}};
+
+  using Sines = std::vector<std::array<double, components>>;
+  static Sines sines(const ClothSpec& cloth, std::uint32_t count, std::size_t axis) {
+    const double wave_number = 2 * std::numbers::pi / cloth.ripple.wavelength_m;
+    Sines result(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (std::size_t c = 0; c < components; ++c)
+        result[i][c] = std::sin(wave_number * (i * cloth.spacing_m) + phase[c][axis]);
+    return result;
+  }
+
+  Sines columns_, rows_;
+};
 
 }  // namespace
 
@@ -121,7 +153,7 @@ System build_cloth(const SceneSpec& spec) {
   system.viscous_damping = spec.viscous_damping_per_s;
   system.floor = spec.floor;
 
-  const double wave_number = 2 * std::numbers::pi / cloth.ripple.wavelength_m;
+  const Ripple ripple(cloth);
   const double height = cloth.ripple.height_m, speed = cloth.ripple.speed_m_per_s;
   system.start.position.reserve(grid.nodes());
   system.start.velocity.reserve(grid.nodes());
@@ -132,15 +164,9 @@ System build_cloth(const SceneSpec& spec) {
       if (is_pinned(cloth, row, column)) {
         system.pins.push_back(grid.node(row, column));
       } else {
-        // A component is zero along lines of constant x and of constant z. As no two phases of the velocity
-        // on one axis differ by a multiple of pi, no place lies on a line of all three, and no node starts at
-        // rest.
-        const Vec3d flat = position;
-        velocity = speed * Vec3d{wave(wave_number, flat, 0.4, 1.3), wave(wave_number, flat, 1.5, 2.5),
-                                 wave(wave_number, flat, 2.6, 0.3)};
-        position += height * Vec3d{in_plane_share * wave(wave_number, flat, 0.2, 0.9),
-                                   wave(wave_number, flat, 1.2, 1.9),
-                                   in_plane_share * wave(wave_number, flat, 2.2, 2.9)};
+        velocity = speed * ripple.at(row, column, Ripple::velocity);
+        const Vec3d wave = ripple.at(row, column, Ripple::position);
+        position += height * Vec3d{in_plane_share * wave.x, wave.y, in_plane_share * wave.z};
       }
       system.start.position.push_back(position);
       system.start.velocity.push_back(velocity);

@@ -51,14 +51,14 @@ std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs) {
 
 std::uint64_t memory_available() { return std::min(kernel_available(), limit_available()); }
 
-void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts) {
-  const std::uint64_t needed = memory_needed(counts.nodes, counts.springs_unique);
+void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts,
+                    std::uint64_t needed, std::string_view remedy) {
   const std::uint64_t available = memory_available();
   if (needed <= available) return;
   throw SceneError(spec.file.string() + ": " + std::string(pointer) + " has " + std::to_string(counts.nodes) +
                    " nodes and " + std::to_string(counts.springs_unique) + " springs and needs at least " +
                    in_gigabytes(needed) + " of memory, but " + in_gigabytes(available) +
-                   " are available: make the scene smaller");
+                   " are available: " + std::string(remedy));
 }
 
 }  // namespace mssim

@@ -16,8 +16,9 @@ std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs);
 /// (`ulimit -v`) leaves if that is less.
 std::uint64_t memory_available();
 
-/// Throws SceneError when a scene of this size does not fit into the available memory, naming both. `pointer`
-/// is the JSON pointer to what sets the size.
-void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts);
+/// Throws SceneError when `needed` bytes for a scene of this size are more than the available memory, naming
+/// both and the remedy. `pointer` is the JSON pointer to what sets the size.
+void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts,
+                    std::uint64_t needed, std::string_view remedy);
 
 }  // namespace mssim

@@ -46,7 +46,13 @@ SceneCounts counts_of(const SceneSpec& spec, const System& system) {
 }
 
 void require_memory(const SceneSpec& spec) {
-  require_memory(spec, "/" + std::string(kind_of(spec).name), counts_of(spec));
+  const SceneCounts counts = counts_of(spec);
+  require_memory(spec, counts, memory_needed(counts.nodes, counts.springs_unique), "make the scene smaller");
+}
+
+void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
+                    std::string_view remedy) {
+  require_memory(spec, "/" + std::string(kind_of(spec).name), counts, needed, remedy);
 }
 
 System build_system(const SceneSpec& spec) {

@@ -44,8 +44,13 @@ SceneCounts counts_of(const SceneSpec& spec);
 /// The same, of the scene's System.
 SceneCounts counts_of(const SceneSpec& spec, const System& system);
 
-/// Throws SceneError when the scene needs more memory than there is, naming both amounts.
+/// Throws SceneError when any run of the scene needs more memory than there is (memory_needed), naming both
+/// amounts.
 void require_memory(const SceneSpec& spec);
+
+/// The same for a use of the scene, which has these counts, that needs `needed` bytes.
+void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
+                    std::string_view remedy);
 
 /// The System of the scene. Throws SceneError when it needs more memory than there is, before allocating any,
 /// and like counts_of.

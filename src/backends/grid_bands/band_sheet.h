@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "backends/aligned_array.h"
@@ -42,21 +44,43 @@ struct BandPin {
   std::array<float, 3> position;
 };
 
-/// The columns of one thread, with two ghost columns on each side that repeat the neighbours' columns.
-struct BandPart {
-  std::size_t first = 0;  ///< column of the cloth
-  std::size_t count = 0;
-  std::array<AlignedArray, pair_kinds>
-      pairs;  ///< [ghosts + count + ghosts][column_floats]; empty where not stored
-  std::array<float*, pair_kinds> base{};   ///< of `pairs`, by role: `state` and `next` may change places
-  std::vector<std::vector<BandPin>> pins;  ///< [count] by column
-  AlignedArray forces;                     ///< [stages][3][force_floats], columns under way
+/// Stages under way at once. Each walks two columns behind the one before it, so that what it gathers has
+/// just been written, and all that lives between them are a few columns, which stay in a cache: a step of RK4
+/// moves the state through memory once instead of four times, and steps of few stages go through it several
+/// at a time. Measured at 500 x 700 on two cores, RK4: stage by stage 9 to 12 times as fast as the spring
+/// list, like this 27 times.
+inline constexpr std::size_t stages_under_way = 4;
+static_assert(max_stages <= stages_under_way);
 
-  /// Start of a column of the part, -2 <= column < count + 2.
-  float* column(const BandLayout& layout, Pair pair, std::ptrdiff_t column) const {
-    return base[index(pair)] +
-           static_cast<std::size_t>(column + static_cast<std::ptrdiff_t>(BandLayout::halo)) *
-               layout.column_floats();
+/// Columns behind the first stage that the last one under way still gathers from, and so the columns that a
+/// trial pair keeps: they are used in turn.
+inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * stages_under_way);
+
+/// The columns of one thread, and on each side ghost columns that repeat the neighbours': two for each stage
+/// under way. The thread computes what stages but the last do there a second time, and so needs nobody until
+/// the last is through.
+struct BandPart {
+  std::size_t first = 0;   ///< column of the cloth
+  std::size_t count = 0;   ///< columns that are the thread's own
+  std::size_t ghosts = 0;  ///< on each side
+  /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty
+  /// where not stored.
+  std::array<AlignedArray, pair_kinds> pairs;
+  std::vector<std::vector<BandPin>> pins;  ///< [ghosts + count + ghosts] by column
+  AlignedArray forces;                     ///< [stages_under_way][3][force_floats], columns under way
+
+  /// Place of a column of the cloth in `pins` and in the state; first - ghosts <= column.
+  std::size_t place(std::size_t column) const { return column + ghosts - first; }
+  float* column(const BandLayout& layout, Pair stored, std::size_t column) {
+    return pairs[index(stored)].data() + offset(layout, stored, column);
+  }
+  const float* column(const BandLayout& layout, Pair stored, std::size_t column) const {
+    return pairs[index(stored)].data() + offset(layout, stored, column);
+  }
+
+ private:
+  std::size_t offset(const BandLayout& layout, Pair stored, std::size_t column) const {
+    return (stored == Pair::state ? place(column) : column % ring_columns) * layout.column_floats();
   }
 };
 
@@ -71,11 +95,14 @@ struct BandSheet {
   };
   std::array<Material, grid_spring_kinds.size()> materials{};
   Surroundings surroundings{};
+  std::size_t steps_per_pass = 1;  ///< steps under way at once
   std::vector<BandPart> parts;
 
   /// Cuts the cloth for `lanes` lanes and at most `threads` parts. Arrays stay untouched until set_state.
+  /// `steps_in_a_pass`: chosen by the size of the cloth unless given; their stages must not be more than
+  /// stages_under_way.
   BandSheet(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-            std::size_t lanes, std::size_t threads);
+            std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass = {});
   /// Spreads the state over the parts, each by a thread of its own, ghosts, halos and dummies included.
   void set_state(const State& state);
   State state() const;

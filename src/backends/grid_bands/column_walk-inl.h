@@ -38,12 +38,21 @@ static_assert(grid_stencil[3].rows == -1 && grid_stencil[3].columns == 1, "right
 static_assert(grid_stencil[4].rows == 2 && grid_stencil[4].columns == 0, "down_2");
 static_assert(grid_stencil[5].rows == 0 && grid_stencil[5].columns == 2, "right_2");
 
+/// The stored pair that a stage writes `pair` to. Whatever a step gathered its `next` in, its last stage
+/// writes it over the state, which no later stage of the step looks at.
+template <std::size_t method, std::size_t stage>
+constexpr Pair written_to(Pair pair) {
+  constexpr const Integrator& integrator = integrators[method];
+  if (pair == Pair::next && stage + 1 == integrator.stage_count) return Pair::state;
+  return storage_of(integrator, pair, Storage::in_place);
+}
+
 /// Where the walk reads and writes. Pointers to columns stand at row 0.
 struct ColumnView {
   const float* here;                     ///< gathered pair, this column
   const float* next;                     ///< the column to the right
   const float* next_2;                   ///< the one after
-  std::array<float*, pair_kinds> pairs;  ///< this column of every pair, for the update
+  std::array<float*, pair_kinds> pairs;  ///< this column of every pair that is stored, for the update
   const float* forces_here;              ///< [row][x y z][lane] from columns already walked
   float* forces_next;
   float* forces_next_2;
@@ -74,13 +83,14 @@ struct Carry {
 template <bool masked>
 HWY_INLINE void apply_spring(const NodeLanes& node, const float* other, const SpringLanes& spring,
                              Mask exists, Lanes3& on_node, Lanes3& on_other) {
-  const Lanes3 d = load3(other) - node.x;
-  const Lanes3 u = load3(other + 3 * lane_count()) - node.v;
+  // From the other end to this one: what is subtracted can come straight from memory.
+  const Lanes3 d = node.x - load3(other);
+  const Lanes3 u = node.v - load3(other + 3 * lane_count());
   Lanes factor = spring_pull(dot(d, d), dot(u, d), spring.stiffness, spring.stiffness_rest, spring.damping);
   if constexpr (masked) factor = keep(exists, factor);
   const Lanes3 force = factor * d;
-  on_node = on_node + force;
-  on_other = on_other - force;
+  on_node = on_node - force;
+  on_other = on_other + force;
 }
 
 /// One row: the springs of `set` that it owns and, if `update`, the nodes' new values.
@@ -138,14 +148,20 @@ HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3
     Lanes3 a = mul_add(Lanes(-sheet.surroundings.viscous_damping), node.v, force);
     a.y = a.y - Lanes(sheet.surroundings.gravity);
     a = keep(below(cloth_row, rows), a);
-    const auto address = [&](auto slot) MSSIM_INLINE_LAMBDA {
-      constexpr std::size_t i = index(decltype(slot)::value);
-      return column.pairs[i / 2] + row * row_floats + static_cast<std::ptrdiff_t>(i % 2) * 3 * lanes;
+    const auto address = [&](Pair pair, std::size_t slot) MSSIM_INLINE_LAMBDA {
+      return column.pairs[index(pair)] + row * row_floats + static_cast<std::ptrdiff_t>(slot % 2) * 3 * lanes;
     };
     update_stage<method, stage>(
         sheet.coefficients, node.x, node.v, a,
-        [&](auto slot) MSSIM_INLINE_LAMBDA { return load3(address(slot)); },
-        [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { store3(address(slot), value); },
+        [&](auto slot) MSSIM_INLINE_LAMBDA {
+          constexpr std::size_t i = index(decltype(slot)::value);
+          return load3(
+              address(storage_of(integrators[method], static_cast<Pair>(i / 2), Storage::in_place), i));
+        },
+        [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA {
+          constexpr std::size_t i = index(decltype(slot)::value);
+          store3(address(written_to<method, stage>(static_cast<Pair>(i / 2)), i), value);
+        },
         [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
           const Lanes height(sheet.surroundings.floor_height);
           touch_floor(hn::Lt(x.y.v, height.v), height, Lanes(sheet.surroundings.restitution),

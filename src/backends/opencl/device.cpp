@@ -7,8 +7,6 @@
 #include <array>
 #include <cctype>
 
-#include "backends/backend.h"
-
 namespace mssim {
 namespace {
 
@@ -185,6 +183,10 @@ int lanes_for(const OpenclDevice& device) {
   int lanes = 4;
   while (lanes < 16 && static_cast<std::uint32_t>(lanes) < device.preferred_float_width) lanes *= 2;
   return lanes;
+}
+
+std::string label_of(const OpenclDevice& device, DeviceMemory memory) {
+  return memory == DeviceMemory::copy ? device.name + " (copied memory)" : device.name;
 }
 
 void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes) {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "backends/backend.h"
+
 namespace mssim {
 
 enum class OpenclDeviceType : std::uint8_t { cpu, gpu, other };
@@ -41,6 +43,9 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
 /// Nodes or springs per work-item that suit the device: wide vectors for a CPU, whose driver packs nothing by
 /// itself, one for everything else.
 int lanes_for(const OpenclDevice& device);
+
+/// For the `device` column: the device's name, and that memory is copied where it is.
+std::string label_of(const OpenclDevice& device, DeviceMemory memory);
 
 /// Throws Unsupported unless the device can hold buffers of these many bytes all at once.
 void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes);

@@ -118,8 +118,9 @@ struct PinLines {
 class OpenclGrid final : public OpenclStages {
  public:
   OpenclGrid(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
-             const OpenclDevice& device, int lanes, const Range& range, const PlaneLayout& layout)
-      : OpenclStages(system, integrator, dt_s, device, layout.pair_layout(system.nodes()), {}) {
+             const OpenclDevice& device, DeviceMemory memory, int lanes, const Range& range,
+             const PlaneLayout& layout)
+      : OpenclStages(system, integrator, dt_s, device, memory, layout.pair_layout(system.nodes()), {}) {
     const GridParameters parameters = parameters_of(system, grid, layout, range);
     const PinLines pins(system, grid.rows, layout);
     add_argument(std::span(&parameters, 1));
@@ -137,9 +138,9 @@ class OpenclGrid final : public OpenclStages {
 
 std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch& grid,
                                           const Integrator& integrator, double dt_s,
-                                          const OpenclDevice& device, int lanes) {
+                                          const OpenclDevice& device, DeviceMemory memory, int lanes) {
   const Range range = range_for(grid, device, lanes);
-  return std::make_unique<OpenclGrid>(system, grid, integrator, dt_s, device, lanes, range,
+  return std::make_unique<OpenclGrid>(system, grid, integrator, dt_s, device, memory, lanes, range,
                                       PlaneLayout(grid, range));
 }
 

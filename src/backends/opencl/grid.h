@@ -11,6 +11,6 @@ namespace mssim {
 /// throws Unsupported where the cloth does not fit into the device's memory.
 std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch& grid,
                                           const Integrator& integrator, double dt_s,
-                                          const OpenclDevice& device, int lanes);
+                                          const OpenclDevice& device, DeviceMemory memory, int lanes);
 
 }  // namespace mssim

@@ -25,8 +25,8 @@ PairLayout record_layout(const SlicedGraph& graph) {
 class OpenclMesh final : public OpenclStages {
  public:
   OpenclMesh(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-             int lanes, const SlicedGraph& graph)
-      : OpenclStages(system, integrator, dt_s, device, record_layout(graph),
+             DeviceMemory memory, int lanes, const SlicedGraph& graph)
+      : OpenclStages(system, integrator, dt_s, device, memory, record_layout(graph),
                      {graph.neighbour.size() * sizeof(cl_uint), graph.neighbour.size() * sizeof(float)}) {
     const std::size_t sites = graph.places() / static_cast<std::size_t>(lanes);
     const OpenclLots lots(sites, device, lanes);
@@ -46,9 +46,9 @@ class OpenclMesh final : public OpenclStages {
 }  // namespace
 
 std::unique_ptr<Backend> make_opencl_mesh(const System& system, const Integrator& integrator, double dt_s,
-                                          const OpenclDevice& device, int lanes) {
+                                          const OpenclDevice& device, DeviceMemory memory, int lanes) {
   const SlicedGraph graph(system, mesh_slice_lanes(lanes));
-  return std::make_unique<OpenclMesh>(system, integrator, dt_s, device, lanes, graph);
+  return std::make_unique<OpenclMesh>(system, integrator, dt_s, device, memory, lanes, graph);
 }
 
 }  // namespace mssim

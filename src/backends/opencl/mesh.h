@@ -11,6 +11,6 @@ namespace mssim {
 /// or 16). Lets cl::Error through; throws Unsupported where they do not fit into the device's memory or one
 /// node has springs of unlike materials.
 std::unique_ptr<Backend> make_opencl_mesh(const System& system, const Integrator& integrator, double dt_s,
-                                          const OpenclDevice& device, int lanes);
+                                          const OpenclDevice& device, DeviceMemory memory, int lanes);
 
 }  // namespace mssim

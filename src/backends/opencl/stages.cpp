@@ -42,8 +42,9 @@ StepParameters step_parameters_of(const System& system, const Integrator& integr
 }  // namespace
 
 OpenclStages::OpenclStages(const System& system, const Integrator& integrator, double dt_s,
-                           const OpenclDevice& device, PairLayout layout, std::vector<std::uint64_t> others)
-    : integrator_(integrator), device_(device), layout_(std::move(layout)) {
+                           const OpenclDevice& device, DeviceMemory memory, PairLayout layout,
+                           std::vector<std::uint64_t> others)
+    : integrator_(integrator), device_(device), memory_(memory), layout_(std::move(layout)) {
   const std::vector<Pair> stored = stored_pairs(integrator, Storage::separate);
   others.insert(others.end(), stored.size(), layout_.floats * sizeof(float));
   require_memory(device, others);
@@ -54,10 +55,11 @@ OpenclStages::OpenclStages(const System& system, const Integrator& integrator, d
   // Zeros in the padding too, so that no arithmetic there meets a denormal number, which can be slow.
   for (const Pair pair : stored) {
     auto& buffer = pairs_[index(pair)];
-    buffer.emplace(context_, layout_.floats, device.shares_host_memory);
-    const auto memory = buffer->map(queue_, CL_MAP_WRITE);
-    std::fill(memory.begin(), memory.end(), 0.0F);
-    buffer->unmap(queue_, memory);
+    buffer.emplace(context_, device_, memory_, layout_.floats);
+    const auto mapped = buffer->map(queue_, CL_MAP_WRITE);
+    std::fill(mapped.begin(), mapped.end(), 0.0F);
+    buffer->unmap(queue_, mapped, CL_MAP_WRITE);
+    queue_.finish();
   }
   const StepParameters step = step_parameters_of(system, integrator, dt_s);
   add_argument(std::span(&step, 1));
@@ -94,7 +96,7 @@ void OpenclStages::set_state(const State& state) {
       for (std::size_t i = 0; i < values.size(); ++i)
         memory[layout_.node[node] + layout_.component[i]] = static_cast<float>(values[i]);
     }
-    present().unmap(queue_, memory);
+    present().unmap(queue_, memory, CL_MAP_WRITE);
     queue_.finish();
   });
 }
@@ -122,7 +124,7 @@ State OpenclStages::state() const {
       state.position.push_back({number(0), number(1), number(2)});
       state.velocity.push_back({number(3), number(4), number(5)});
     }
-    present().unmap(queue_, memory);
+    present().unmap(queue_, memory, CL_MAP_READ);
     queue_.finish();
     return state;
   });

@@ -39,7 +39,7 @@ class OpenclStages : public Backend {
   void set_state(const State& state) override;
   void step(int count) override;
   State state() const override;
-  std::string device() const override { return device_.name; }
+  std::string device() const override { return label_of(device_, memory_); }
   int threads() const override {
     return device_.type == OpenclDeviceType::cpu ? static_cast<int>(device_.compute_units) : 1;
   }
@@ -48,7 +48,7 @@ class OpenclStages : public Backend {
  protected:
   /// Throws Unsupported unless the device can hold the integrator's pairs and `others`, all bytes.
   OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-               PairLayout layout, std::vector<std::uint64_t> others);
+               DeviceMemory memory, PairLayout layout, std::vector<std::uint64_t> others);
 
   /// The next argument of every kernel: a buffer with a copy of `values`, or of this size. The step
   /// parameters are there from the beginning.
@@ -58,11 +58,12 @@ class OpenclStages : public Backend {
     const auto& buffer = add_buffer(bytes.size());
     const auto memory = buffer.map(queue_, CL_MAP_WRITE);
     std::copy(bytes.begin(), bytes.end(), memory.begin());
-    buffer.unmap(queue_, memory);
+    buffer.unmap(queue_, memory, CL_MAP_WRITE);
+    queue_.finish();
   }
   /// OpenCL has no empty buffers.
   const OpenclBuffer<std::byte>& add_buffer(std::size_t bytes) {
-    return arguments_.emplace_back(context_, std::max<std::size_t>(1, bytes), device_.shares_host_memory);
+    return arguments_.emplace_back(context_, device_, memory_, std::max<std::size_t>(1, bytes));
   }
 
   /// Builds the program, and takes some steps, because drivers finish compiling at a kernel's first launch
@@ -74,6 +75,7 @@ class OpenclStages : public Backend {
 
   const Integrator& integrator_;
   OpenclDevice device_;
+  DeviceMemory memory_;
   PairLayout layout_;
   cl::Context context_;
   cl::CommandQueue queue_;

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <omp.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "backends/backend.h"
+#include "backends/spin_barrier.h"
+#include "backends/spring_list.h"
+
+namespace mssim {
+
+/// The threads that step a spring list together, as one of them sees them.
+struct Team {
+  std::size_t thread;
+  std::size_t threads;
+  SpinBarrier& barrier;
+
+  /// Where this thread's share of `count` things begins; the next thread's begins where it ends.
+  std::size_t begin(std::size_t count) const { return count * thread / threads; }
+  std::size_t end(std::size_t count) const { return count * (thread + 1) / threads; }
+  template <class T>
+  std::span<const T> share_of(std::span<const T> all) const {
+    return all.subspan(begin(all.size()), end(all.size()) - begin(all.size()));
+  }
+};
+
+/// The plain spring list stepped by several threads. All ways to avoid the data race of Hong et al.'s
+/// Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that they
+/// differ in the accumulation alone:
+///
+///     Accumulation(const System& system, SpringList<float>& list, std::size_t threads)
+///     void prepare(const Team& team)           writes what belongs to this thread alone, reads no node
+///     void add(const Team& team, Pair gather)  computes and adds forces, after all have prepared
+///     void finish(const Team& team)            completes the forces of this thread's share of the nodes,
+///                                              after all have added
+template <class Accumulation>
+class ListWay final : public Backend {
+ public:
+  ListWay(const System& system, const Integrator& integrator, double dt_s, int threads)
+      : list_(system, integrator, dt_s),
+        integrator_(integrator),
+        threads_(threads),
+        accumulation_(system, list_, static_cast<std::size_t>(threads)) {}
+
+  void set_state(const State& state) override { list_.set_state(state); }
+  State state() const override { return list_.state(); }
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return threads_; }
+
+  void step(int count) override {
+    with_integrator(integrator_, [&](auto method) {
+      std::optional<SpinBarrier> barrier;
+#pragma omp parallel num_threads(threads_)
+      {
+        const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
+#pragma omp single
+        barrier.emplace(threads);
+        const Team team{static_cast<std::size_t>(omp_get_thread_num()), threads, *barrier};
+        for (int step = 0; step < count; ++step) take_step<method>(team);
+      }
+    });
+  }
+
+ private:
+  template <std::size_t method>
+  void take_step(const Team& team) {
+    for_each_stage<method>([&](auto stage) {
+      accumulation_.prepare(team);
+      team.barrier.wait();
+      accumulation_.add(team, integrators[method].stages[stage].gather);
+      team.barrier.wait();
+      accumulation_.finish(team);
+      list_.template update_nodes<method, stage>(team.begin(list_.nodes()), team.end(list_.nodes()));
+    });
+    team.barrier.wait();
+    if (team.thread == 0) list_.end_step();  // seen by all after the next stage's first barrier
+  }
+
+  SpringList<float> list_;
+  const Integrator& integrator_;
+  const int threads_;
+  Accumulation accumulation_;
+};
+
+/// What the table of ways holds for an accumulation.
+template <class Accumulation>
+std::unique_ptr<Backend> make_list_way(const System& system, const Integrator& integrator, double dt_s,
+                                       const ExecutionOptions& options) {
+  return std::make_unique<ListWay<Accumulation>>(system, integrator, dt_s, options.threads);
+}
+
+}  // namespace mssim

@@ -1,0 +1,46 @@
+#include <algorithm>
+#include <vector>
+
+#include "backends/accumulation/list_way.h"
+#include "backends/accumulation/ways.h"
+
+namespace mssim {
+namespace {
+
+class ThreadPrivate {
+ public:
+  ThreadPrivate(const System& system, SpringList<float>& list, std::size_t threads)
+      : list_(list), forces_(threads, std::vector<Vec3<float>>(system.nodes())) {}
+
+  void prepare(const Team& team) { std::ranges::fill(forces_[team.thread], Vec3<float>{}); }
+
+  void add(const Team& team, Pair gather) {
+    std::vector<Vec3<float>>& forces = forces_[team.thread];
+    for (const Spring& spring : team.share_of(list_.springs())) {
+      const Vec3<float> force = list_.force_of(spring, gather);
+      forces[spring.first] += force;
+      forces[spring.second] -= force;
+    }
+  }
+
+  void finish(const Team& team) {
+    for (std::size_t node = team.begin(list_.nodes()); node < team.end(list_.nodes()); ++node) {
+      Vec3<float> sum = forces_.front()[node];
+      for (std::size_t thread = 1; thread < team.threads; ++thread) sum += forces_[thread][node];
+      list_.force(node) = sum;
+    }
+  }
+
+ private:
+  SpringList<float>& list_;
+  std::vector<std::vector<Vec3<float>>> forces_;  // [threads][nodes] N
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_thread_private(const System& system, const Integrator& integrator, double dt_s,
+                                             const ExecutionOptions& options) {
+  return make_list_way<ThreadPrivate>(system, integrator, dt_s, options);
+}
+
+}  // namespace mssim

@@ -1,0 +1,36 @@
+#include "bench/bench_memory.h"
+
+#include <algorithm>
+
+namespace mssim {
+namespace {
+
+constexpr double state_node = 2 * sizeof(Vec3d);
+
+/// The double-precision reference: a spring list of twice the bytes, but for a byte that says what is pinned.
+constexpr MemoryUse reference{.node = 2 * spring_list_memory.node - 1,
+                              .pair_node = 2 * spring_list_memory.pair_node};
+/// The states that a run of the reference holds: ten steps ago, now, and the last before contact.
+constexpr double reference_states = 3;
+/// Those of a verification: the reference's, and the one read back.
+constexpr double verification_states = 2;
+
+}  // namespace
+
+std::uint64_t bench_memory_needed(const SceneJob& job, const SceneSize& size) {
+  const auto nodes = static_cast<double>(size.nodes);
+  double held =  // the System
+      nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
+  double peak = held;
+  for (const Integrator* integrator : job.integrators) {
+    peak = std::max(peak, held + reference.bytes(*integrator, size.nodes, size.springs, 1) +
+                              reference_states * state_node * nodes);
+    for (const BackendInfo* backend : job.backends)
+      held += (size.grid ? backend->grid_memory : backend->mesh_memory)
+                  .bytes(*integrator, size.nodes, size.springs, job.execution.threads);
+    peak = std::max(peak, held + verification_states * state_node * nodes);
+  }
+  return static_cast<std::uint64_t>(peak);
+}
+
+}  // namespace mssim

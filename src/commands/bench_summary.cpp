@@ -1,0 +1,42 @@
+#include "commands/bench_summary.h"
+
+#include <optional>
+
+namespace mssim {
+
+Listing summary(std::span<const ResultRow> rows) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  Listing listing;
+  for (const ResultRow& row : rows)
+    listing.push_back({{"scene", row.scene},
+                       {"nodes", row.nodes},
+                       {"springs_published", row.springs_published},
+                       {"integrator", row.integrator},
+                       {"backend", row.backend},
+                       {"ms_per_step", number(row.ms_per_step)},
+                       {"low", number(row.ms_per_step_low)},
+                       {"high", number(row.ms_per_step_high)},
+                       {"speedup", number(row.speedup_vs_serial)},
+                       {"paper_ms", number(row.paper_ms)},
+                       {"roofline", number(row.roofline_fraction)},
+                       {"position_error", number(row.position_error)},
+                       {"verified", row.verified},
+                       {"status", row.status}});
+  return listing;
+}
+
+Listing summary(std::span<const StructureRow> rows) {
+  Listing listing;
+  for (const StructureRow& row : rows)
+    listing.push_back({{"scene", row.scene},
+                       {"nodes", row.nodes},
+                       {"springs_unique", row.springs_unique},
+                       {"springs_published", row.springs_published},
+                       {"tetrahedra", row.tetrahedra},
+                       {"smallest_dihedral_angle_deg", row.smallest_dihedral_angle_deg}});
+  return listing;
+}
+
+}  // namespace mssim

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/provenance.h"
+#include "bench/result.h"
+
+namespace mssim {
+
+/// A table that is made of measured rows, for the files NAME.csv and NAME.md.
+struct ResultTable {
+  std::string name;
+  std::string csv;
+  std::string markdown;
+};
+
+/// Makes tables of the rows that a run has so far; none where no row belongs into one.
+using TableMaker =
+    std::function<std::vector<ResultTable>(std::span<const ResultRow> rows, const Provenance& provenance)>;
+
+/// What tables of measured rows have in common.
+
+/// Is this the time of something that works?
+bool counts(const ResultRow& row);
+
+/// The row's status; a row that was measured but not verified has failed.
+std::string status_of(const ResultRow& row);
+
+/// One sentence for the top of a Markdown file: machine, threads, devices of the rows, program, time. Ends
+/// with a blank line.
+std::string measured_on(std::span<const ResultRow* const> rows, const Provenance& provenance);
+
+/// "- `scene`, `backend`, `integrator`: status", a line of Markdown.
+std::string remark_on(const ResultRow& row);
+
+}  // namespace mssim
