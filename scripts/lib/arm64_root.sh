@@ -36,8 +36,8 @@ ensure_arm64_root() {
     mkdir "$new/host"
     cat >"$new/host/aarch64-unknown-linux-gnu-ld" <<'END'
 #!/bin/sh
-root=$(dirname -- "$(dirname -- "$0")")
-exec aarch64-linux-gnu-ld --sysroot="$root" -L"$root/usr/lib/gcc/aarch64-linux-gnu/12" -L"$root/usr/lib/aarch64-linux-gnu" "$@"
+root=${0%/host/*}
+exec /usr/bin/aarch64-linux-gnu-ld --sysroot="$root" -L"$root/usr/lib/gcc/aarch64-linux-gnu/12" -L"$root/usr/lib/aarch64-linux-gnu" "$@"
 END
     chmod +x "$new/host/aarch64-unknown-linux-gnu-ld"
     rm -rf "$new/apt" "$folder"
