@@ -6,12 +6,11 @@
 
 namespace mssim {
 
-/// Text of the program that steps a grid: one kernel per stage of the integrator, over kernels/grid_stage.cl
-/// and the stencil.
+/// Text of the program that steps a grid: one kernel per stage of the integrator. With one lane a work-item
+/// owns a node (kernels/grid_nodes.cl), with several it walks over columns of bands (kernels/grid_bands.cl).
 std::string grid_program_text(const Integrator& integrator, int lanes);
 
-/// Does a work-item of the program walk over a block of rows, with one row of work-items and `sums` as the
-/// last argument, or own one node? kernels/grid_stage.cl says how.
+/// Do work-items of such a program walk over columns?
 bool grid_program_walks(int lanes);
 
 }  // namespace mssim
