@@ -139,8 +139,8 @@ typedef struct {
   Vector below, below_2, right_above, right_below;
 } Carry;
 
-/* Number of each lane's row in the cloth; a halo row above the cloth wraps to a huge number, which is below no
- * limit. */
+/* Number of each lane's row in the cloth; a halo row above the cloth wraps to a huge number, which is below
+ * no limit. */
 static inline Rows cloth_rows(int row, Shape grid) {
   return MSSIM_PASTE(convert_uint, MSSIM_LANES)(lane_number) * (uint)grid->height + (uint)row;
 }
@@ -151,15 +151,17 @@ MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry,
   Vector force = plus(carry->below, load_vector(at->on_here + row * 3 * MSSIM_LANES));
   Vector on_below = carry->below_2, on_below_2 = no_vector(), on_right_2 = no_vector();
   add_spring(&force, &on_below, node, load_node(at->here, row + 1), number < at->down_rows, structural, grid);
-  add_spring(&force, &on_below_2, node, load_node(at->here, row + 2), number < at->down_2_rows, bending, grid);
-  add_spring(&force, &carry->right_above, node, load_node(at->next, row - 1),
-             number - 1 < at->diagonal_rows, shear, grid);
+  add_spring(&force, &on_below_2, node, load_node(at->here, row + 2), number < at->down_2_rows, bending,
+             grid);
+  add_spring(&force, &carry->right_above, node, load_node(at->next, row - 1), number - 1 < at->diagonal_rows,
+             shear, grid);
   if (row > 0) store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES);
   Vector on_right = plus(carry->right_below, load_vector(at->on_next + row * 3 * MSSIM_LANES));
   add_spring(&force, &on_right, node, load_node(at->next, row), number < at->right_rows, structural, grid);
   carry->right_above = on_right;
   carry->right_below = no_vector();
-  add_spring(&force, &carry->right_below, node, load_node(at->next, row + 1), number < at->diagonal_rows, shear, grid);
+  add_spring(&force, &carry->right_below, node, load_node(at->next, row + 1), number < at->diagonal_rows,
+             shear, grid);
   add_spring(&force, &on_right_2, node, load_node(at->next_2, row), number < at->right_2_rows, bending, grid);
   store_vector(on_right_2, at->on_next_2 + row * 3 * MSSIM_LANES);
   carry->below = on_below;
@@ -175,8 +177,10 @@ MSSIM_INLINE Carry begin_column(const Column* at, Shape grid) {
   const Rows number = cloth_rows(-1, grid);
   add_spring(&on_halo, &carry.below, second, top, number - 1 < at->down_2_rows, bending, grid);
   add_spring(&on_halo, &carry.below, first, top, number < at->down_rows, structural, grid);
-  add_spring(&on_halo, &carry.below_2, first, load_node(at->here, 1), number < at->down_2_rows, bending, grid);
-  add_spring(&on_halo, &carry.right_below, first, load_node(at->next, 0), number < at->diagonal_rows, shear, grid);
+  add_spring(&on_halo, &carry.below_2, first, load_node(at->here, 1), number < at->down_2_rows, bending,
+             grid);
+  add_spring(&on_halo, &carry.right_below, first, load_node(at->next, 0), number < at->diagonal_rows, shear,
+             grid);
   return carry;
 }
 
