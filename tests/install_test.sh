@@ -1,6 +1,8 @@
 #!/bin/bash
-# An installed mssim runs from anywhere. Arguments: the built mssim, the source folder.
+# An installed mssim runs from anywhere. Arguments: the built mssim, the source folder, and what runs a program that was
+# built (nothing where it runs by itself).
 set -euo pipefail
+run=("${@:3}")
 build=$(dirname "$(dirname "$1")")
 
 place=$(mktemp -d)
@@ -10,7 +12,7 @@ cmake --install "$build" --prefix "$place/first" >/dev/null
 mv "$place/first" "$place/second"
 cd /
 
-diff <("$place/second/bin/mssim" --version) <("$1" --version)
-diff <("$place/second/bin/mssim" list scenes --format csv) <("$1" list scenes --format csv)
-[[ $("$place/second/bin/mssim" list scenes --format csv | wc -l) -gt 6 ]]
+diff <("${run[@]}" "$place/second/bin/mssim" --version) <("$1" --version)
+diff <("${run[@]}" "$place/second/bin/mssim" list scenes --format csv) <("$1" list scenes --format csv)
+[[ $("${run[@]}" "$place/second/bin/mssim" list scenes --format csv | wc -l) -gt 6 ]]
 [[ -z $(find "$place/second" -xtype l) ]]

@@ -2,12 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
@@ -380,6 +383,32 @@ std::string complaint(const std::vector<OpenclDevice>& devices, const char* want
     return error.what();
   }
   return "";
+}
+
+TEST(OpenclDevice, OfPoclHasItsThreadsBoundUnlessTheUserSaysOtherwise) {
+  const char* const before = std::getenv("POCL_AFFINITY");
+  const std::string kept = before != nullptr ? before : "";
+  const auto after_listing = [](const char* chosen) {
+    chosen != nullptr ? setenv("POCL_AFFINITY", chosen, 1) : unsetenv("POCL_AFFINITY");
+    static_cast<void>(opencl_devices());
+    const char* const found = std::getenv("POCL_AFFINITY");
+    return std::string(found != nullptr ? found : "");
+  };
+  cpu_set_t all, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+  const bool may_use_all = CPU_COUNT(&all) == sysconf(_SC_NPROCESSORS_CONF);
+  EXPECT_EQ(after_listing(nullptr), may_use_all ? "1" : "");
+  EXPECT_EQ(after_listing("0"), "0");
+  if (CPU_COUNT(&all) > 1) {  // a process kept to one core
+    std::size_t core = 0;
+    while (!CPU_ISSET(core, &all)) ++core;
+    CPU_ZERO(&one);
+    CPU_SET(core, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    EXPECT_EQ(after_listing(nullptr), "");
+    ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
+  }
+  before != nullptr ? setenv("POCL_AFFINITY", kept.c_str(), 1) : unsetenv("POCL_AFFINITY");
 }
 
 TEST(OpenclDevice, IsChosenByNumberOrByAPartOfItsNameInAnyCase) {

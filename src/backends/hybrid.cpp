@@ -11,6 +11,7 @@
 
 #include "backends/chunk_tickets.h"
 #include "backends/hybrid/host_nodes.h"
+#include "backends/hybrid/integrate_nodes.h"
 #include "backends/hybrid/spring_device.h"
 #include "backends/opencl/call.h"
 #include "backends/opencl/device.h"
@@ -28,7 +29,7 @@ class Hybrid final : public Backend {
         device_label_(label_of(device, memory)),
         runs_on_host_(device.type == OpenclDeviceType::cpu),
         threads_(threads),
-        kernel_(best_node_kernel()),
+        kernel_(node_kernels().front()),
         nodes_(system, integrator, dt_s),
         // All forces are there before a node is written, so that pairs may share memory.
         device_(system, nodes_.packed, stored_pairs(integrator, Storage::in_place), device, lanes, memory) {

@@ -149,8 +149,11 @@ inline std::vector<Pair> stored_pairs(const Integrator& integrator, Storage stor
   return stored;
 }
 
-/// Does a stage gather from the pair?
-constexpr bool is_gathered(const Integrator& integrator, Pair pair) {
+/// Does the stage write into `pair` what is gathered later, by another stage or as the state by the next
+/// step?
+constexpr bool writes_to_gather(const Integrator& integrator, std::size_t stage, Pair pair) {
+  if (!writes(integrator.stages[stage], pair)) return false;
+  if (pair == Pair::next && stage + 1 == integrator.stage_count) return true;
   for (std::size_t s = 0; s < integrator.stage_count; ++s)
     if (integrator.stages[s].gather == pair) return true;
   return false;

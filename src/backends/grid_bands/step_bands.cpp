@@ -44,9 +44,7 @@ HWY_INLINE void finish_written(const BandLayout& layout, BandPart& part, std::si
   constexpr const Integrator& integrator = integrators[method];
   const auto finish = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
     constexpr Pair pair = static_cast<Pair>(i), stored = written_to<method, stage>(pair);
-    constexpr bool becomes_state = pair == Pair::next && stage + 1 == integrator.stage_count;
-    if constexpr ((becomes_state || is_gathered(integrator, pair)) &&
-                  writes(integrator.stages[stage], position_slot(pair)))
+    if constexpr (writes_to_gather(integrator, stage, pair))
       finish_column(layout, part.pins[part.place(column)], part.column(layout, stored, column));
   };
   [&]<std::size_t... i>(std::index_sequence<i...>) MSSIM_INLINE_LAMBDA {

@@ -1,12 +1,13 @@
 // Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/hybrid/integrate_nodes.cpp"
+#include "backends/hybrid/integrate_nodes.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
 
-#include "backends/hybrid/host_nodes.h"
 #include "backends/sliced_graph/update_nodes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -108,6 +109,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mssim {
 HWY_EXPORT(node_kernel);
-NodeKernel best_node_kernel() { return HWY_DYNAMIC_DISPATCH(node_kernel)(); }
+std::vector<NodeKernel> node_kernels() { return kernels_of_this_processor(HWY_DISPATCH_TABLE(node_kernel)); }
 }  // namespace mssim
 #endif

@@ -85,11 +85,8 @@ std::string bands_kernel_text(const StoredStage& stage) {
        << "    }\n"
           "    end_column(&at, &carry, grid);\n"
           "    if (column < part.first) continue;\n";
-  const bool ends_step = stage.number + 1 == stage.integrator.stage_count;
   for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (const Pair pair = static_cast<Pair>(i);
-        writes(stage.stage(), pair) &&
-        (is_gathered(stage.integrator, pair) || (ends_step && pair == Pair::next)))
+    if (const Pair pair = static_cast<Pair>(i); writes_to_gather(stage.integrator, stage.number, pair))
       text << "    finish_column(column, " << name_of(stage, pair) << ", " << ghosts_of(pair)
            << ", &part, grid);\n";
   text << "  }\n}\n";

@@ -1,0 +1,48 @@
+# shellcheck shell=bash disable=SC2154 # root and exit_missing are prepare.sh's
+# The libraries for arm64 that scripts/test --arm64 links with and loads. Sourced, after prepare.sh.
+#
+# They go into a folder of their own and not into this machine as packages of a second architecture: dpkg may refuse
+# those, or remove others for them, and a foreign architecture stays. Nothing here needs to be root.
+
+# ensure_arm64_root: fills build/arm64-root, unless it holds what scripts/packages.txt asks for already.
+ensure_arm64_root() {
+  local folder=$root/build/arm64-root new=$root/build/arm64-root.new log=$root/build/arm64-root.log lock
+  # The last two belong to the compiler, which comes with them for this machine alone.
+  local -a wanted
+  mapfile -t wanted < <(packages_for library && printf '%s\n' libstdc++6 libgomp1)
+  mkdir -p "$root/build"
+  exec {lock}>"$root/build/.arm64-root.lock"
+  flock "$lock"
+  if [[ ! -e $folder/packages ]] || ! diff -q "$folder/packages" <(printf '%s\n' "${wanted[@]}") >/dev/null; then
+    say "fetching libraries for arm64 into $folder (log: $log)"
+    rm -rf "$new"
+    mkdir -p "$new/apt/lists/partial" "$new/apt/archives/partial"
+    : >"$new/apt/status"
+    # A package manager's state of its own, as of a machine on which nothing is installed yet.
+    local -a apt=(apt-get -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Dir::State="$new/apt"
+      -o Dir::State::status="$new/apt/status" -o Dir::Cache="$new/apt" -o APT::Sandbox::User="$(id -un)")
+    {
+      "${apt[@]}" update || true
+      "${apt[@]}" install --yes --download-only --no-install-recommends "${wanted[@]}" &&
+        printf '%s\0' "$new"/apt/archives/*.deb | xargs -0 -I{} dpkg-deb --extract {} "$new"
+    } </dev/null >"$log" 2>&1 || {
+      cat "$log" >&2
+      say "the libraries for arm64 could not be fetched; this needs network access and Debian's package archive"
+      exit "$exit_missing"
+    }
+    # What the package's installation script would do.
+    ln -s hdf5-serial.pc "$new/usr/lib/aarch64-linux-gnu/pkgconfig/hdf5.pc"
+    # The linker that PoCL is to find (see run_arm64): of this machine, but with the libraries in the folder.
+    mkdir "$new/host"
+    cat >"$new/host/aarch64-unknown-linux-gnu-ld" <<'END'
+#!/bin/sh
+root=${0%/host/*}
+exec /usr/bin/aarch64-linux-gnu-ld --sysroot="$root" -L"$root/usr/lib/gcc/aarch64-linux-gnu/12" -L"$root/usr/lib/aarch64-linux-gnu" "$@"
+END
+    chmod +x "$new/host/aarch64-unknown-linux-gnu-ld"
+    rm -rf "$new/apt" "$folder"
+    printf '%s\n' "${wanted[@]}" >"$new/packages"
+    mv "$new" "$folder"
+  fi
+  exec {lock}>&-
+}
