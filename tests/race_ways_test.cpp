@@ -69,11 +69,11 @@ TEST_P(EachWayAndIntegrator, TakesMoreThreadsThanThereAreNodesOrSprings) {
 
 TEST_P(EachWayAndIntegrator, GivesTheSameBitsAgainWhereItSaysSo) {
   if (way().repeatable == Repeatable::never) return;
-  for (System system : {cloth_system(40, 31), solid_block(5, 6, 7)}) {
-    system.floor.height = 0.4;  // met by some nodes on the way
-    const State alone = after(system, 1, 300);
+  constexpr int steps = 50;
+  for (const System& system : {cloth_system(40, 31), solid_block(5, 6, 7)}) {
+    const State alone = after(system, 1, steps);
     for (const int threads : thread_counts) {
-      const State once = after(system, threads, 300), again = after(system, threads, 300);
+      const State once = after(system, threads, steps), again = after(system, threads, steps);
       EXPECT_EQ(once.position, again.position) << threads << " threads";
       EXPECT_EQ(once.velocity, again.velocity) << threads << " threads";
       if (way().repeatable != Repeatable::always) continue;
