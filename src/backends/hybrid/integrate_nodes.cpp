@@ -19,44 +19,52 @@ constexpr std::size_t slice_floats = 4 * slice_nodes;  // of forces
 /// A force and a zero in one 128-bit register, which every x86-64 and ARM64 processor has.
 using Quad = float __attribute__((vector_size(16)));
 
-/// Minus the sum of what the slice's nodes are to subtract, placed as forces are.
-HWY_INLINE void subtract_forces(const PackedSprings& packed, const float* forces, std::size_t slice,
-                                float* sums) {
-  constexpr std::size_t lists = slice_nodes / PackedSprings::list_nodes;
-  for (std::size_t list = 0; list < lists; ++list) {
-    const std::uint32_t* bound = packed.first_subtracted.data() + slice * lists + list;
-    const auto* all = reinterpret_cast<const Quad*>(forces);
-    const std::uint32_t* end = packed.subtracted.data() + std::size_t{bound[1]} * PackedSprings::list_nodes;
-    Quad sum[PackedSprings::list_nodes] = {};
-    for (const std::uint32_t* of =
-             packed.subtracted.data() + std::size_t{bound[0]} * PackedSprings::list_nodes;
-         of != end; of += PackedSprings::list_nodes)
-      for (std::size_t i = 0; i < PackedSprings::list_nodes; ++i) sum[i] = sum[i] - all[of[i]];
-    for (std::size_t i = 0; i < PackedSprings::list_nodes; ++i)
-      reinterpret_cast<Quad*>(sums)[PackedSprings::force_place(list * PackedSprings::list_nodes + i)] =
-          sum[i];
+/// What the slice's nodes are to add, placed as forces are: the sum of its entries, in one stream.
+HWY_INLINE void add_forces(const PackedSprings& packed, const float* forces, std::size_t slice, float* sums) {
+  const FloatTag d;
+  constexpr std::size_t at_a_time = 4 * vector_nodes;
+  const float* end = forces + packed.first_entry[slice + 1] * slice_floats;
+  for (std::size_t from = 0; from < slice_floats; from += at_a_time) {
+    Lanes sum[4] = {Lanes(0.0F), Lanes(0.0F), Lanes(0.0F), Lanes(0.0F)};
+    for (const float* entry = forces + packed.first_entry[slice] * slice_floats; entry < end;
+         entry += slice_floats)
+      for (std::size_t i = 0; i < 4; ++i)
+        sum[i] = sum[i] + Lanes(hn::Load(d, entry + from + i * vector_nodes));
+    for (std::size_t i = 0; i < 4; ++i) hn::Store(sum[i].v, d, sums + from + i * vector_nodes);
   }
 }
 
-/// `sums` and the forces of `entries` entries, which begin at `forces`, at a vector of a slice's nodes, from
-/// number `node` on.
-HWY_INLINE Lanes3 add_forces(const float* forces, std::size_t entries, const float* sums, std::size_t node) {
-#if HWY_TARGET == HWY_SCALAR
-  const std::size_t at = 4 * PackedSprings::force_place(node);
-  Lanes3 sum{sums[at], sums[at + 1], sums[at + 2]};
-  for (std::size_t entry = 0; entry < entries; ++entry) {
-    const float* force = forces + entry * slice_floats + at;
-    sum = sum + Lanes3{force[0], force[1], force[2]};
+/// Takes off the sums what the slice's nodes are to subtract.
+HWY_INLINE void subtract_forces(const PackedSprings& packed, const float* forces, std::size_t slice,
+                                float* sums) {
+  constexpr std::size_t list_nodes = PackedSprings::list_nodes, lists = slice_nodes / list_nodes;
+  const auto* all = reinterpret_cast<const Quad*>(forces);
+  auto* of_node = reinterpret_cast<Quad*>(sums);
+  for (std::size_t list = 0; list < lists; ++list) {
+    const std::uint32_t* bound = packed.first_subtracted.data() + slice * lists + list;
+    const std::uint32_t* end = packed.subtracted.data() + std::size_t{bound[1]} * list_nodes;
+    Quad sum[list_nodes];
+    for (std::size_t i = 0; i < list_nodes; ++i)
+      sum[i] = of_node[PackedSprings::force_place(list * list_nodes + i)];
+    for (const std::uint32_t* force = packed.subtracted.data() + std::size_t{bound[0]} * list_nodes;
+         force != end; force += list_nodes)
+      for (std::size_t i = 0; i < list_nodes; ++i) sum[i] = sum[i] - all[force[i]];
+    for (std::size_t i = 0; i < list_nodes; ++i)
+      of_node[PackedSprings::force_place(list * list_nodes + i)] = sum[i];
   }
-  return sum;
+}
+
+/// The sums of a vector of a slice's nodes, from number `node` on.
+HWY_INLINE Lanes3 load_sums(const float* sums, std::size_t node) {
+#if HWY_TARGET == HWY_SCALAR
+  const float* sum = sums + 4 * PackedSprings::force_place(node);
+  return {sum[0], sum[1], sum[2]};
 #else
   const FloatTag d;
-  hn::Vec<FloatTag> sum[4], component[4];
-  for (std::size_t i = 0; i < 4; ++i) sum[i] = hn::Load(d, sums + slice_nodes * i + node);
-  for (const float* end = forces + entries * slice_floats; forces < end; forces += slice_floats)
-    for (std::size_t i = 0; i < 4; ++i)
-      sum[i] = hn::Add(sum[i], hn::Load(d, forces + slice_nodes * i + node));
-  transpose_blocks(sum[0], sum[1], sum[2], sum[3], component);
+  hn::Vec<FloatTag> component[4];
+  transpose_blocks(hn::Load(d, sums + node), hn::Load(d, sums + slice_nodes + node),
+                   hn::Load(d, sums + 2 * slice_nodes + node), hn::Load(d, sums + 3 * slice_nodes + node),
+                   component);
   return {component[0], component[1], component[2]};
 #endif
 }
@@ -64,21 +72,23 @@ HWY_INLINE Lanes3 add_forces(const float* forces, std::size_t entries, const flo
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void integrate_slices(const HostNodes& nodes, const MappedNodes& mapped, std::size_t begin,
                                    std::size_t end) {
-  // Subtracted some slices ahead: the vectors below could not be loaded right after the narrower stores.
-  constexpr std::size_t ahead = 16;
-  alignas(64) float sums[ahead * slice_floats];
+  // A few slices a pass, what the nearest cache holds. Added first: that stream brings into the cache what is
+  // then looked up. Summed before vectors of sums are loaded, which could not be right after the narrower
+  // stores.
+  constexpr std::size_t at_a_time = 4;
+  alignas(64) float sums[at_a_time * slice_floats];
   const PackedSprings& packed = nodes.packed;
-  for (; begin < end; begin += ahead) {
-    const std::size_t some = std::min(ahead, end - begin);
+  for (; begin < end; begin += at_a_time) {
+    const std::size_t some = std::min(at_a_time, end - begin);
+    for (std::size_t i = 0; i < some; ++i)
+      add_forces(packed, mapped.forces, begin + i, sums + i * slice_floats);
     for (std::size_t i = 0; i < some; ++i)
       subtract_forces(packed, mapped.forces, begin + i, sums + i * slice_floats);
     for (std::size_t i = 0; i < some; ++i) {
-      const std::size_t slice = begin + i, first = packed.first_entry[slice];
+      const std::size_t slice = begin + i;
       const float* constants = nodes.constants.data() + slice * 2 * slice_nodes;
       for (std::size_t number = 0; number < slice_nodes; number += vector_nodes) {
-        const Lanes3 force =
-            add_forces(mapped.forces + first * slice_floats, packed.first_entry[slice + 1] - first,
-                       sums + i * slice_floats, number);
+        const Lanes3 force = load_sums(sums + i * slice_floats, number);
         const Lanes inverse_mass = hn::Load(FloatTag(), constants + number);
         const Mask free =
             hn::Eq(hn::Load(FloatTag(), constants + slice_nodes + number), hn::Zero(FloatTag()));
