@@ -36,10 +36,10 @@ class ChunkTickets {
   /// Begins the next phase. What was written before is visible to who takes a ticket.
   void open() {
     finished_.store(0, std::memory_order_relaxed);
-    publish(opened_.load(std::memory_order_relaxed) + 1);
+    change_and_notify(opened_, opened_.load(std::memory_order_relaxed) + 1);
   }
   /// Ends it all.
-  void close() { publish(closed); }
+  void close() { change_and_notify(opened_, closed); }
 
   /// Calls act(ticket) for every chunk that it can get, those of `share` first; whether the phase is finished
   /// with them.
@@ -114,10 +114,6 @@ class ChunkTickets {
                                        std::memory_order_acquire))
         return Ticket{left.opened - 1, chunk};
     }
-  }
-  void publish(std::uint32_t opened) {
-    opened_.store(opened, std::memory_order_release);
-    opened_.notify_all();
   }
 
   const std::uint32_t chunks_;

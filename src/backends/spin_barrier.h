@@ -17,8 +17,7 @@ class SpinBarrier {
     const unsigned phase = phase_.load(std::memory_order_acquire);
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
       arrived_.store(0, std::memory_order_relaxed);
-      phase_.store(phase + 1, std::memory_order_release);
-      phase_.notify_all();
+      change_and_notify(phase_, phase + 1);
       return;
     }
     wait_for_change(phase_, phase, spins);

@@ -32,8 +32,18 @@ T wait_for_change(const std::atomic<T>& value, T old, int spins) {
 #endif
     }
   }
-  value.wait(old, std::memory_order_acquire);
+  value.wait(old, std::memory_order_seq_cst);
   return value.load(std::memory_order_acquire);
+}
+
+/// Stores a value and wakes who waits for a change. What this thread wrote before is visible to them. In the
+/// one order of sequentially consistent operations, because libstdc++ 12 wakes nobody if it sees no sleeper:
+/// with a mere release, a processor may look for sleepers before others see the value, and one who just then
+/// lies down sleeps forever.
+template <class T>
+void change_and_notify(std::atomic<T>& value, T now) {
+  value.store(now, std::memory_order_seq_cst);
+  value.notify_all();
 }
 
 }  // namespace mssim
