@@ -26,6 +26,7 @@ struct OpenclDevice {
   std::uint64_t max_allocation_bytes = 0;   ///< largest single buffer
   std::uint32_t preferred_float_width = 0;  ///< floats in the vector that suits the device best
   bool shares_host_memory = false;          ///< its buffers can lie in host memory without being copied
+  bool fine_grained_memory = false;  ///< and host and kernels see what the other wrote without mapping them
   cl_device_id id = nullptr;
 };
 
