@@ -13,12 +13,11 @@
 
 #include "backends/hybrid.h"
 #include "backends/opencl.h"
-#include "backends/opencl/mesh_program.h"
-#include "backends/opencl/program.h"
 #include "backends/packed_springs.h"
 #include "backends/serial.h"
 #include "bench/verification.h"
 #include "integrators/integrators.h"
+#include "opencl_memory.h"
 #include "solid_system.h"
 
 namespace mssim {
@@ -199,24 +198,21 @@ TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
   }
 }
 
-TEST(OpenclMeshes, GiveTheSameBitsInSharedAndInCopiedMemory) {
+TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
   const System system = two_solid_blocks();
-  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
   for (const Integrator& integrator : integrators) {
-    const auto stepped = [&](std::unique_ptr<Backend> backend) {
-      backend->step(31);
-      return backend->state();
-    };
-    const auto opencl = [&](DeviceMemory memory) {
-      return stepped(make_opencl(system, integrator, dt_s, device, 16, memory));
-    };
-    const auto hybrid = [&](DeviceMemory memory) {
-      return stepped(make_hybrid(system, integrator, dt_s, device, 2, 16, memory));
-    };
-    EXPECT_EQ(opencl(DeviceMemory::copy).position, opencl(DeviceMemory::shared).position) << integrator.name;
-    EXPECT_EQ(opencl(DeviceMemory::copy).velocity, opencl(DeviceMemory::shared).velocity) << integrator.name;
-    EXPECT_EQ(hybrid(DeviceMemory::copy).position, hybrid(DeviceMemory::shared).position) << integrator.name;
-    EXPECT_EQ(hybrid(DeviceMemory::copy).velocity, hybrid(DeviceMemory::shared).velocity) << integrator.name;
+    std::vector<State> found;
+    for (const DeviceInMemory& way : ways_to_memory())
+      for (const bool hybrid : {false, true}) {
+        const auto backend = hybrid ? make_hybrid(system, integrator, dt_s, way.device, 2, 16, way.memory)
+                                    : make_opencl(system, integrator, dt_s, way.device, 16, way.memory);
+        backend->step(31);
+        found.push_back(backend->state());
+        const State& first = found[hybrid ? 1 : 0];
+        EXPECT_EQ(found.back().position, first.position) << way.name << ", " << integrator.name;
+        EXPECT_EQ(found.back().velocity, first.velocity) << way.name << ", " << integrator.name;
+      }
+    EXPECT_NE(found.front().position, system.start.position);
   }
 }
 
@@ -233,16 +229,6 @@ TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
     } catch (const Unsupported& error) {
       EXPECT_THAT(error.what(), HasSubstr("needs an OpenCL buffer of"));
       EXPECT_THAT(error.what(), HasSubstr(device.name));
-    }
-}
-
-TEST(MeshProgram, HasOneKernelPerStageOfEveryIntegrator) {
-  for (const Integrator& integrator : integrators)
-    for (const int lanes : {1, 16}) {
-      const std::string text = mesh_program_text(integrator, lanes);
-      for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
-        EXPECT_THAT(text, HasSubstr("__kernel void " + stage_kernel_name(stage) + "(")) << integrator.name;
-      EXPECT_EQ(text.find("__kernel void " + stage_kernel_name(integrator.stage_count)), std::string::npos);
     }
 }
 

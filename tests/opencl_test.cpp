@@ -2,15 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
@@ -21,11 +18,10 @@
 #include "backends/backends.h"
 #include "backends/hybrid.h"
 #include "backends/opencl/device.h"
-#include "backends/opencl/grid_program.h"
-#include "backends/opencl/program.h"
 #include "integrators/integrators.h"
 #include "model/grid_patch.h"
 #include "model/system.h"
+#include "opencl_memory.h"
 
 namespace mssim {
 namespace {
@@ -309,27 +305,38 @@ TEST(OpenclBackends, GiveTheSameBitsForAnyNumberOfComputeUnitsThatShareACloth) {
   }
 }
 
-TEST(OpenclBackends, GiveTheSameBitsInSharedAndInCopiedMemoryAndSayWhichItIs) {
+TEST(OpenclBackends, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
   const System system = rippled_cloth(21, 35);
-  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
-  for (const Integrator& integrator : integrators)
-    for (const std::string_view name : {"opencl", "hybrid"}) {
-      std::vector<State> found;
-      for (const DeviceMemory memory : {DeviceMemory::shared, DeviceMemory::copy}) {
-        const auto backend =
-            find_backend(name)->make(system, integrator, 2e-4, {.threads = 2, .memory = memory});
+  for (const Integrator& integrator : integrators) {
+    std::vector<State> found;
+    for (const DeviceInMemory& way : ways_to_memory())
+      for (const bool hybrid : {false, true}) {
+        const auto backend = hybrid ? make_hybrid(system, integrator, 2e-4, way.device, 2, 16, way.memory)
+                                    : make_opencl(system, integrator, 2e-4, way.device, 16, way.memory);
         backend->step(7);
         backend->set_state(system.start);
-        EXPECT_EQ(backend->state().position, system.start.position) << name << ", " << integrator.name;
+        EXPECT_EQ(backend->state().position, system.start.position) << way.name << ", " << integrator.name;
         backend->step(30);
         found.push_back(backend->state());
-        EXPECT_EQ(backend->device(),
-                  memory == DeviceMemory::copy ? device.name + " (copied memory)" : device.name);
+        const State& first = found[hybrid ? 1 : 0];
+        EXPECT_EQ(found.back().position, first.position) << way.name << ", " << integrator.name;
+        EXPECT_EQ(found.back().velocity, first.velocity) << way.name << ", " << integrator.name;
       }
-      EXPECT_EQ(found[0].position, found[1].position) << name << ", " << integrator.name;
-      EXPECT_EQ(found[0].velocity, found[1].velocity) << name << ", " << integrator.name;
-      EXPECT_NE(found[0].position, system.start.position);
-    }
+    EXPECT_NE(found.front().position, system.start.position);
+  }
+}
+
+TEST(OpenclBackends, SayWhetherTheirMemoryIsCopied) {
+  const std::string name = choose_opencl_device(opencl_devices(), "").name;
+  for (const std::string_view backend : {"opencl", "hybrid"}) {
+    const auto device = [&](DeviceMemory memory) {
+      return find_backend(backend)
+          ->make(rippled_cloth(3, 4), integrators.front(), 2e-4, {.threads = 2, .memory = memory})
+          ->device();
+    };
+    EXPECT_EQ(device(DeviceMemory::shared), name) << backend;
+    EXPECT_EQ(device(DeviceMemory::copy), name + " (copied memory)") << backend;
+  }
 }
 
 TEST(OpenclBackends, SayHowMuchMemoryAClothNeedsThatTheDeviceDoesNotHave) {
@@ -342,115 +349,6 @@ TEST(OpenclBackends, SayHowMuchMemoryAClothNeedsThatTheDeviceDoesNotHave) {
   } catch (const Unsupported& error) {
     EXPECT_THAT(error.what(), HasSubstr("needs an OpenCL buffer of"));
     EXPECT_THAT(error.what(), HasSubstr(device.name));
-  }
-}
-
-int count(const std::string& text, const std::string& what) {
-  int found = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
-  return found;
-}
-
-TEST(OpenclProgram, HasOneKernelPerStageOfEveryIntegrator) {
-  for (const Integrator& integrator : integrators)
-    for (const int lanes : {1, 16}) {
-      const std::string text = grid_program_text(integrator, lanes);
-      EXPECT_EQ(count(text, "__kernel"), static_cast<int>(integrator.stage_count)) << integrator.name;
-      for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
-        EXPECT_THAT(text, HasSubstr("__kernel void " + stage_kernel_name(stage) + "(")) << integrator.name;
-    }
-}
-
-TEST(OpenclProgram, VisitsEverySpringFromBothEndsOnOneLaneAndOnceOnMore) {
-  EXPECT_EQ(count(grid_program_text(integrators.front(), 1), "  add_spring(&sum"), 12);
-  EXPECT_EQ(count(grid_program_text(integrators.front(), 16), "  add_spring(&force"), 6);
-}
-
-/// Two processors and a card.
-std::vector<OpenclDevice> some_devices() {
-  std::vector<OpenclDevice> devices(3);
-  devices[0].name = "Example Processor 7";
-  devices[1].name = "Example Graphics 9000";
-  devices[2].name = "Another Processor";
-  for (int i = 0; i < 3; ++i) devices[static_cast<std::size_t>(i)].number = i;
-  return devices;
-}
-
-std::string complaint(const std::vector<OpenclDevice>& devices, const char* wanted) {
-  try {
-    choose_opencl_device(devices, wanted);
-  } catch (const Unavailable& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(OpenclDevice, OfPoclHasItsThreadsBoundUnlessTheUserSaysOtherwise) {
-  const char* const before = std::getenv("POCL_AFFINITY");
-  const std::string kept = before != nullptr ? before : "";
-  const auto after_listing = [](const char* chosen) {
-    chosen != nullptr ? setenv("POCL_AFFINITY", chosen, 1) : unsetenv("POCL_AFFINITY");
-    static_cast<void>(opencl_devices());
-    const char* const found = std::getenv("POCL_AFFINITY");
-    return std::string(found != nullptr ? found : "");
-  };
-  cpu_set_t all, one;
-  ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
-  const bool may_use_all = CPU_COUNT(&all) == sysconf(_SC_NPROCESSORS_CONF);
-  EXPECT_EQ(after_listing(nullptr), may_use_all ? "1" : "");
-  EXPECT_EQ(after_listing("0"), "0");
-  if (CPU_COUNT(&all) > 1) {  // a process kept to one core
-    std::size_t core = 0;
-    while (!CPU_ISSET(core, &all)) ++core;
-    CPU_ZERO(&one);
-    CPU_SET(core, &one);
-    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
-    EXPECT_EQ(after_listing(nullptr), "");
-    ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
-  }
-  before != nullptr ? setenv("POCL_AFFINITY", kept.c_str(), 1) : unsetenv("POCL_AFFINITY");
-}
-
-TEST(OpenclDevice, IsChosenByNumberOrByAPartOfItsNameInAnyCase) {
-  EXPECT_EQ(choose_opencl_device(some_devices(), "").number, 0);
-  EXPECT_EQ(choose_opencl_device(some_devices(), "2").number, 2);
-  EXPECT_EQ(choose_opencl_device(some_devices(), "graphics").number, 1);
-  EXPECT_EQ(choose_opencl_device(some_devices(), "PROCESSOR 7").number, 0);
-}
-
-TEST(OpenclDevice, ThatDoesNotExistIsAnsweredWithWhatThereIs) {
-  const std::string all = "0 (Example Processor 7), 1 (Example Graphics 9000), 2 (Another Processor)";
-  EXPECT_EQ(complaint(some_devices(), "3"), "no OpenCL device has the number 3; there are: " + all);
-  EXPECT_EQ(complaint(some_devices(), "99999999999999999999"),
-            "no OpenCL device has the number 99999999999999999999; there are: " + all);
-  EXPECT_EQ(complaint(some_devices(), "tpu"), "no OpenCL device has \"tpu\" in its name; there are: " + all);
-  EXPECT_EQ(complaint(some_devices(), "processor"),
-            "several OpenCL devices have \"processor\" in their names, choose one by its number: 0 (Example "
-            "Processor 7), 2 (Another Processor)");
-}
-
-TEST(OpenclDevice, MissingAltogetherIsAnsweredWithWhatToInstall) {
-  EXPECT_THAT(complaint({}, ""), HasSubstr("pocl-opencl-icd"));
-  EXPECT_THAT(complaint({}, "graphics"), HasSubstr("pocl-opencl-icd"));
-}
-
-TEST(OpenclDevice, FailuresNameTheCallAndTheError) {
-  EXPECT_EQ(opencl_failure("clBuildProgram", CL_BUILD_PROGRAM_FAILURE),
-            "the OpenCL call clBuildProgram failed with CL_BUILD_PROGRAM_FAILURE (-11)");
-  EXPECT_EQ(opencl_failure("clFinish", -9999),
-            "the OpenCL call clFinish failed with an unknown error (-9999)");
-}
-
-TEST(OpenclDevice, ListNumbersTheDevicesOfThisMachineInOrder) {
-  const auto devices = opencl_devices();
-  ASSERT_FALSE(devices.empty());
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    EXPECT_EQ(devices[i].number, static_cast<int>(i));
-    EXPECT_FALSE(devices[i].name.empty());
-    EXPECT_FALSE(devices[i].platform.empty());
-    EXPECT_GT(devices[i].compute_units, 0U);
-    EXPECT_GE(devices[i].global_memory_bytes, devices[i].max_allocation_bytes);
-    EXPECT_GT(devices[i].max_allocation_bytes, 0U);
   }
 }
 

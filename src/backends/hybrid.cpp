@@ -3,7 +3,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <exception>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "backends/hybrid/host_nodes.h"
 #include "backends/hybrid/integrate_nodes.h"
 #include "backends/hybrid/spring_device.h"
+#include "backends/node_records.h"
 #include "backends/opencl/call.h"
 #include "backends/opencl/device.h"
 
@@ -42,14 +42,7 @@ class Hybrid final : public Backend {
   }
 
   void set_state(const State& state) override {
-    float* records = device_.pair(present_).data();
-    for (std::size_t node = 0; node < nodes_.packed.place.size(); ++node) {
-      const Vec3<float> x = vec3_cast<float>(state.position[node]),
-                        v = vec3_cast<float>(state.velocity[node]);
-      const std::array<float, SpringDevice::record_floats> record{x.x, x.y, x.z, 0, v.x, v.y, v.z, 0};
-      std::copy(record.begin(), record.end(),
-                records + std::size_t{nodes_.packed.place[node]} * SpringDevice::record_floats);
-    }
+    write_records(state, nodes_.packed.place, device_.pair(present_).data());
   }
 
   void step(int count) override {
@@ -59,15 +52,7 @@ class Hybrid final : public Backend {
     take_steps(count);
   }
 
-  State state() const override {
-    State state;
-    for (const std::uint32_t place : nodes_.packed.place) {
-      const float* record = device_.pair(present_).data() + std::size_t{place} * SpringDevice::record_floats;
-      state.position.push_back({record[0], record[1], record[2]});
-      state.velocity.push_back({record[4], record[5], record[6]});
-    }
-    return state;
-  }
+  State state() const override { return read_records(device_.pair(present_).data(), nodes_.packed.place); }
 
   std::string device() const override { return device_label_; }
   int threads() const override { return threads_; }

@@ -31,15 +31,12 @@ struct Team {
 
 /// The plain spring list stepped by several threads. All ways to avoid the data race of Hong et al.'s
 /// Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that they
-/// differ in the accumulation alone:
-///
-///     Accumulation(const System& system, SpringList<float>& list, std::size_t threads)
-///     void prepare(const Team& team)           writes what only this thread touches in `finish` and update,
-///     and
-///                                              reads no node: others may still be in both for the last stage
-///     void add(const Team& team, Pair gather)  computes and adds forces, after all have prepared
-///     void finish(const Team& team)            completes the forces of this thread's share of the nodes,
-///                                              after all have added
+/// differ in the accumulation alone. An Accumulation is made of (const System&, SpringList<float>&,
+/// std::size_t threads), and in every stage each thread calls, with its Team:
+/// - prepare(team), while others may still be in the last stage's `finish` and update: it writes only what no
+///   other thread touches there, and reads no node;
+/// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
+/// - finish(team), after all have added: completes the forces of this thread's share of the nodes.
 template <class Accumulation>
 class ListWay final : public Backend {
  public:

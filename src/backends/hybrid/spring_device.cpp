@@ -34,18 +34,15 @@ SpringDevice::SpringDevice(const System& system, const PackedSprings& packed, co
     std::fill(host_pairs_[index(pair)].begin(), host_pairs_[index(pair)].end(), 0.0F);
   }
   // What lies behind the forces of the units stays zero.
-  forces_ = filled_buffer(std::span<const float>(std::vector<float>(force_floats)));
+  forces_ = buffer_with(std::span<const float>(std::vector<float>(force_floats)));
   host_forces_ = forces_->map(queue_, CL_MAP_READ);
   if (packed.unit_count() > 0) make_kernel(system, packed, lanes);
 }
 
 template <class T>
-OpenclBuffer<T> SpringDevice::filled_buffer(std::span<const T> values) const {
+OpenclBuffer<T> SpringDevice::buffer_with(std::span<const T> values) const {
   OpenclBuffer<T> buffer(context_, device_, memory_, values.size());
-  const auto mapped = buffer.map(queue_, CL_MAP_WRITE);
-  std::copy(values.begin(), values.end(), mapped.begin());
-  buffer.unmap(queue_, mapped, CL_MAP_WRITE);
-  queue_.finish();
+  buffer.write(queue_, [&](std::span<T> array) { std::copy(values.begin(), values.end(), array.begin()); });
   return buffer;
 }
 
@@ -53,9 +50,9 @@ void SpringDevice::make_kernel(const System& system, const PackedSprings& packed
   std::vector<Material> materials;
   for (const SpringMaterial& material : system.materials)
     materials.push_back({static_cast<float>(material.stiffness), static_cast<float>(material.damping)});
-  units_ = filled_buffer(std::span(packed.units));
-  entries_ = filled_buffer(std::span(packed.entries));
-  materials_ = filled_buffer(std::span<const Material>(materials));
+  units_ = buffer_with(std::span(packed.units));
+  entries_ = buffer_with(std::span(packed.entries));
+  materials_ = buffer_with(std::span<const Material>(materials));
   kernel_.emplace(build_program(context_, cl::Device(device_.id, true), packed_springs_program_text(lanes)),
                   "packed_spring_forces");
   kernel_->setArg(0, units_->buffer());

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "backends/node_records.h"
 #include "backends/opencl/buffer.h"
 #include "backends/opencl/device.h"
 #include "backends/opencl/lots.h"
@@ -19,8 +20,6 @@ namespace mssim {
 /// takes turns with the host to use. Between calls the host has them.
 class SpringDevice {
  public:
-  static constexpr std::size_t record_floats = 8;  ///< of a node in a pair, as kernels/records.h has them
-
   /// Takes `lanes` springs side by side (1, 4, 8 or 16). `stored`: the pairs that the integrator needs; all
   /// are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
   SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
@@ -36,7 +35,7 @@ class SpringDevice {
 
  private:
   template <class T>
-  OpenclBuffer<T> filled_buffer(std::span<const T> values) const;
+  OpenclBuffer<T> buffer_with(std::span<const T> values) const;
   void make_kernel(const System& system, const PackedSprings& packed, int lanes);
 
   OpenclDevice device_;

@@ -29,19 +29,21 @@ class OpenclBuffer {
  public:
   OpenclBuffer(const cl::Context& context, const OpenclDevice& device, DeviceMemory memory, std::size_t size)
       : size_(size),
-        copies_(memory == DeviceMemory::copy),
-        fine_grained_(!copies_ && device.fine_grained_memory) {
+        exchange_(memory == DeviceMemory::copy                     ? Exchange::copies
+                  : device.host_memory == HostMemory::fine_grained ? Exchange::nothing
+                                                                   : Exchange::maps) {
     // Whole pages, because drivers copy what begins or ends within a cache line.
     constexpr std::size_t page = 4096, huge_page = std::size_t{2} << 20;
     const std::size_t alignment = size * sizeof(T) >= huge_page ? huge_page : page;
     const std::size_t bytes = (size * sizeof(T) + alignment - 1) / alignment * alignment;
-    if (copies_ || device.shares_host_memory) {
-      memory_ = fine_grained_ ? shared_virtual_memory(context, bytes) : host_memory(alignment, bytes);
+    if (exchange_ == Exchange::copies || device.host_memory != HostMemory::none) {
+      memory_ = exchange_ == Exchange::nothing ? shared_virtual_memory(context, bytes)
+                                               : host_memory(alignment, bytes);
       if (!memory_) throw std::bad_alloc();
       if (alignment == huge_page) wish_for_huge_pages(memory_.get(), bytes);
     }
     // A buffer made of shared virtual memory is that memory (The OpenCL Specification, 3.0, clCreateBuffer).
-    if (memory_ && !copies_) {
+    if (memory_ && exchange_ != Exchange::copies) {
       buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory_.get());
     } else {
       buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes);
@@ -57,9 +59,9 @@ class OpenclBuffer {
   /// everything else as it left it.
   std::span<T> map(const cl::CommandQueue& queue, cl_map_flags use, bool block = true) const {
     const cl_bool blocking = block ? CL_TRUE : CL_FALSE;
-    if (!copies_ && !fine_grained_)
+    if (exchange_ == Exchange::maps)
       return {static_cast<T*>(queue.enqueueMapBuffer(buffer_, blocking, use, 0, size_ * sizeof(T))), size_};
-    if (copies_ && (use & CL_MAP_READ) != 0) {
+    if (exchange_ == Exchange::copies && (use & CL_MAP_READ) != 0) {
       queue.enqueueReadBuffer(buffer_, blocking, 0, size_ * sizeof(T), memory_.get());
     } else if (block) {
       queue.finish();  // kernels, or an earlier transfer to the device, may still be reading
@@ -68,15 +70,22 @@ class OpenclBuffer {
   }
   /// Hands what `map` gave back, for the same `use`, to the device, for the work that is queued from now on.
   void unmap(const cl::CommandQueue& queue, std::span<T> mapped, cl_map_flags use) const {
-    if (fine_grained_) return;
-    if (!copies_) {
-      queue.enqueueUnmapMemObject(buffer_, mapped.data());
-    } else if ((use & CL_MAP_WRITE) != 0) {
+    if (exchange_ == Exchange::maps) queue.enqueueUnmapMemObject(buffer_, mapped.data());
+    if (exchange_ == Exchange::copies && (use & CL_MAP_WRITE) != 0)
       queue.enqueueWriteBuffer(buffer_, CL_FALSE, 0, size_ * sizeof(T), memory_.get());
-    }
+  }
+  /// Lets `fill` write the array, a std::span<T>, while the device has nothing to do with it.
+  template <class Fill>
+  void write(const cl::CommandQueue& queue, Fill&& fill) const {
+    const std::span<T> array = map(queue, CL_MAP_WRITE);
+    fill(array);
+    unmap(queue, array, CL_MAP_WRITE);
+    queue.finish();
   }
 
  private:
+  /// What taking turns takes.
+  enum class Exchange : std::uint8_t { copies, maps, nothing };
   using Memory = std::unique_ptr<T, std::function<void(T*)>>;
 
   static Memory host_memory(std::size_t alignment, std::size_t bytes) {
@@ -96,7 +105,7 @@ class OpenclBuffer {
   }
 
   std::size_t size_;
-  bool copies_, fine_grained_;
+  Exchange exchange_;
   Memory memory_;  // outlives buffer_, which may refer to it
   cl::Buffer buffer_;
 };

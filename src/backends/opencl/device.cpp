@@ -33,16 +33,16 @@ OpenclDeviceType type_of(cl_device_type type) {
   return OpenclDeviceType::other;
 }
 
-/// Can kernels and host use the same shared virtual memory without mapping it? Not before OpenCL 2.0, where
-/// the question is an error.
-bool has_fine_grained_memory(const cl::Device& device) {
+HostMemory host_memory_of(const cl::Device& device) {
+  if (device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_TRUE) return HostMemory::none;
+  // Before OpenCL 2.0 the question is an error.
   cl_device_svm_capabilities can = 0;
-  return clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof can, &can, nullptr) == CL_SUCCESS &&
-         (can & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0;
+  const cl_int error = clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof can, &can, nullptr);
+  return error == CL_SUCCESS && (can & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0 ? HostMemory::fine_grained
+                                                                             : HostMemory::mapped;
 }
 
 OpenclDevice describe(const cl::Device& device, const std::string& platform, int number) {
-  const bool shares_host_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
   return {.number = number,
           .name = trimmed(device.getInfo<CL_DEVICE_NAME>()),
           .platform = platform,
@@ -52,8 +52,7 @@ OpenclDevice describe(const cl::Device& device, const std::string& platform, int
           .global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
           .max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
           .preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
-          .shares_host_memory = shares_host_memory,
-          .fine_grained_memory = shares_host_memory && has_fine_grained_memory(device),
+          .host_memory = host_memory_of(device),
           .id = device()};
 }
 

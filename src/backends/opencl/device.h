@@ -14,6 +14,13 @@ namespace mssim {
 
 enum class OpenclDeviceType : std::uint8_t { cpu, gpu, other };
 
+/// What host memory can be to a device's kernels.
+enum class HostMemory : std::uint8_t {
+  none,         ///< nothing: the device has memory of its own
+  mapped,       ///< buffers lie there without being copied; the host maps them to read or write
+  fine_grained  ///< the same, and each sees what the other wrote without mapping
+};
+
 /// One OpenCL device of this machine.
 struct OpenclDevice {
   int number = 0;  ///< in this list, from 0; what `--device` takes
@@ -25,8 +32,7 @@ struct OpenclDevice {
   std::uint64_t global_memory_bytes = 0;
   std::uint64_t max_allocation_bytes = 0;   ///< largest single buffer
   std::uint32_t preferred_float_width = 0;  ///< floats in the vector that suits the device best
-  bool shares_host_memory = false;          ///< its buffers can lie in host memory without being copied
-  bool fine_grained_memory = false;  ///< and host and kernels see what the other wrote without mapping them
+  HostMemory host_memory = HostMemory::none;
   cl_device_id id = nullptr;
 };
 

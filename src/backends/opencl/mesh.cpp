@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "backends/node_records.h"
 #include "backends/opencl/lots.h"
 #include "backends/opencl/mesh_program.h"
 #include "backends/opencl/stages.h"
@@ -14,9 +15,7 @@
 namespace mssim {
 namespace {
 
-/// Records of eight floats (kernels/records.h).
 PairLayout record_layout(const SlicedGraph& graph) {
-  constexpr std::size_t record_floats = 8;
   PairLayout pair;
   pair.floats = record_floats * graph.places();
   pair.component = {0, 1, 2, 4, 5, 6};

@@ -53,10 +53,7 @@ OpenclStages::OpenclStages(const System& system, const Integrator& integrator, d
   // Zeros in the padding too, so that no arithmetic there meets a denormal number, which can be slow.
   const auto make_zeros = [&](std::optional<OpenclBuffer<float>>& buffer, std::size_t floats) {
     buffer.emplace(context_, device_, memory_, floats);
-    const auto mapped = buffer->map(queue_, CL_MAP_WRITE);
-    std::fill(mapped.begin(), mapped.end(), 0.0F);
-    buffer->unmap(queue_, mapped, CL_MAP_WRITE);
-    queue_.finish();
+    buffer->write(queue_, [](std::span<float> array) { std::fill(array.begin(), array.end(), 0.0F); });
   };
   for (const Pair pair : stored) make_zeros(pairs_[index(pair)], layout_.floats);
   if (layout_.ghost_floats > 0) make_zeros(ghosts_, pair_kinds * layout_.ghost_floats);
@@ -99,18 +96,15 @@ void OpenclStages::set_state(const State& state) {
       memory[place + layout_.component[i]] = static_cast<float>(values[i]);
   };
   opencl_call<std::runtime_error>([&] {
-    const OpenclBuffer<float>& present = arrays(Pair::state, swapped_);
-    const auto memory = present.map(queue_, CL_MAP_WRITE);
-    for (std::size_t node = 0; node < layout_.node.size(); ++node) put(memory, layout_.node[node], node);
-    for (const auto& [place, node] : layout_.copies) put(memory, place, node);
-    present.unmap(queue_, memory, CL_MAP_WRITE);
-    if (ghosts_) {
-      const auto ghosts = ghosts_->map(queue_, CL_MAP_WRITE);
+    arrays(Pair::state, swapped_).write(queue_, [&](std::span<float> memory) {
+      for (std::size_t node = 0; node < layout_.node.size(); ++node) put(memory, layout_.node[node], node);
+      for (const auto& [place, node] : layout_.copies) put(memory, place, node);
+    });
+    if (!ghosts_) return;
+    ghosts_->write(queue_, [&](std::span<float> memory) {
       const std::size_t first = index(role(Pair::state, swapped_)) * layout_.ghost_floats;
-      for (const auto& [place, node] : layout_.ghosts) put(ghosts, first + place, node);
-      ghosts_->unmap(queue_, ghosts, CL_MAP_WRITE);
-    }
-    queue_.finish();
+      for (const auto& [place, node] : layout_.ghosts) put(memory, first + place, node);
+    });
   });
 }
 

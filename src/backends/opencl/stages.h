@@ -65,11 +65,9 @@ class OpenclStages : public Backend {
   template <class T>
   void add_argument(std::span<const T> values) {
     const auto bytes = std::as_bytes(values);
-    const auto& buffer = add_buffer(bytes.size());
-    const auto memory = buffer.map(queue_, CL_MAP_WRITE);
-    std::copy(bytes.begin(), bytes.end(), memory.begin());
-    buffer.unmap(queue_, memory, CL_MAP_WRITE);
-    queue_.finish();
+    add_buffer(bytes.size()).write(queue_, [&](std::span<std::byte> array) {
+      std::copy(bytes.begin(), bytes.end(), array.begin());
+    });
   }
   /// OpenCL has no empty buffers.
   const OpenclBuffer<std::byte>& add_buffer(std::size_t bytes) {

@@ -83,23 +83,8 @@ SlicedBodies::SlicedBodies(const System& system, const Integrator& method, doubl
                                               std::size_t{ChunkTickets::most_chunks}}));
 }
 
-void SlicedBodies::set_state(const State& state) {
-  for (std::size_t node = 0; node < place.size(); ++node) {
-    float* record = base[index(Pair::state)] + place[node] * record_floats;
-    const Vec3<float> x = vec3_cast<float>(state.position[node]), v = vec3_cast<float>(state.velocity[node]);
-    const std::array<float, record_floats> values{x.x, x.y, x.z, 0, v.x, v.y, v.z, 0};
-    std::copy(values.begin(), values.end(), record);
-  }
-}
+void SlicedBodies::set_state(const State& state) { write_records(state, place, base[index(Pair::state)]); }
 
-State SlicedBodies::state() const {
-  State state;
-  for (std::size_t node = 0; node < place.size(); ++node) {
-    const float* record = base[index(Pair::state)] + place[node] * record_floats;
-    state.position.push_back(vec3_cast<double>(Vec3<float>{record[0], record[1], record[2]}));
-    state.velocity.push_back(vec3_cast<double>(Vec3<float>{record[4], record[5], record[6]}));
-  }
-  return state;
-}
+State SlicedBodies::state() const { return read_records(base[index(Pair::state)], place); }
 
 }  // namespace mssim

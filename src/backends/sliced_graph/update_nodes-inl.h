@@ -10,6 +10,7 @@
 #include <array>
 #include <utility>
 
+#include "backends/node_records.h"
 #include "backends/sliced_graph/records-inl.h"
 #include "backends/surroundings.h"
 
@@ -17,7 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
 constexpr std::size_t vector_nodes = hn::MaxLanes(FloatTag());
-constexpr std::size_t record_floats = 8;
 
 /// Where each pair's records start, by role.
 using Pairs = std::array<float*, pair_kinds>;
