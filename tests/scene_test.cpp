@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/printable.h"
 #include "scene/json_document.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"

@@ -58,8 +58,9 @@ std::string csv_number(const std::optional<double>& value) {
   return value ? csv_number(*value) : std::string();
 }
 
-CsvTable::CsvTable(const std::filesystem::path& file) : file_(file) {
-  const std::string text = read_text(file);
+CsvTable::CsvTable(const std::filesystem::path& file) : CsvTable(file.string(), read_text(file)) {}
+
+CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(name)) {
   std::size_t line = 1;
   for (std::size_t at = 0; at < text.size();) {
     Record record{line, {std::string()}};
@@ -86,14 +87,14 @@ CsvTable::CsvTable(const std::filesystem::path& file) : file_(file) {
       }
     }
     if (in_quotes)
-      throw CsvError(file.string() + ", line " + std::to_string(record.line) +
+      throw CsvError(name_ + ", line " + std::to_string(record.line) +
                      ": a quoted field does not end; close it with a quotation mark");
     if (header_.empty()) {
       header_ = std::move(record.fields);
       continue;
     }
     if (record.fields.size() != header_.size())
-      throw CsvError(file.string() + ", line " + std::to_string(record.line) + ": has " +
+      throw CsvError(name_ + ", line " + std::to_string(record.line) + ": has " +
                      std::to_string(record.fields.size()) + " fields where the header has " +
                      std::to_string(header_.size()) + "; write the missing ones, or remove the line");
     records_.push_back(std::move(record));
@@ -103,14 +104,14 @@ CsvTable::CsvTable(const std::filesystem::path& file) : file_(file) {
 void CsvTable::require_columns(const std::vector<std::string_view>& columns) const {
   for (std::size_t column = 0; column < columns.size(); ++column)
     if (column >= header_.size() || header_[column] != columns[column])
-      throw CsvError(file_.string() + ", line 1: column " + std::to_string(column + 1) + " is " +
+      throw CsvError(name_ + ", line 1: column " + std::to_string(column + 1) + " is " +
                      (column < header_.size() ? "\"" + header_[column] + "\"" : "missing") +
                      " instead of \"" + std::string(columns[column]) + "\"; give a file that mssim wrote");
 }
 
 CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
-  return CsvError{file_.string() + ", line " + std::to_string(records_[record].line) + ", column " +
-                  header_[column] + ": \"" + text(record, column) + "\" " + what};
+  return CsvError{name_ + ", line " + std::to_string(records_[record].line) + ", column " + header_[column] +
+                  ": \"" + text(record, column) + "\" " + what};
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {

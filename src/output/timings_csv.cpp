@@ -5,8 +5,6 @@
 #include <functional>
 #include <string_view>
 
-#include "output/csv.h"
-
 namespace mssim {
 namespace {
 
@@ -126,7 +124,10 @@ std::string samples_csv(std::span<const ResultRow> rows) {
 }
 
 std::vector<ResultRow> read_timings(const std::filesystem::path& file) {
-  const CsvTable table(file);
+  return read_timings(CsvTable(file));
+}
+
+std::vector<ResultRow> read_timings(const CsvTable& table) {
   std::vector<std::string_view> names;
   for (const Column& column : columns()) names.push_back(column.name);
   table.require_columns(names);
@@ -138,7 +139,10 @@ std::vector<ResultRow> read_timings(const std::filesystem::path& file) {
 }
 
 void read_samples(const std::filesystem::path& file, std::span<ResultRow> rows) {
-  const CsvTable table(file);
+  read_samples(CsvTable(file), rows);
+}
+
+void read_samples(const CsvTable& table, std::span<ResultRow> rows) {
   table.require_columns(sample_columns);
   for (std::size_t record = 0; record < table.size(); ++record) {
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const ResultRow& candidate) {

@@ -8,8 +8,10 @@
 #include <fstream>
 #include <set>
 #include <system_error>
+#include <utility>
 #include <vector>
 
+#include "model/printable.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -45,7 +47,6 @@ std::string read_text(const std::filesystem::path& file) {
   }
   if (stream.bad() || errno != 0)
     fail(file, std::string("cannot be read (") + std::strerror(errno) + "): check the file and its disk");
-  if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
   return text;
 }
 
@@ -136,8 +137,9 @@ std::string quoted_part(std::string_view message) {
 
 }  // namespace
 
-JsonDocument read_json(const std::filesystem::path& file) {
-  JsonDocument document{file, read_text(file), {}};
+JsonDocument parse_json(const std::filesystem::path& file, std::string text) {
+  if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
+  JsonDocument document{file, std::move(text), {}};
   Watcher watcher(file);
   try {
     document.value = json::parse(
@@ -153,6 +155,8 @@ JsonDocument read_json(const std::filesystem::path& file) {
   return document;
 }
 
+JsonDocument read_json(const std::filesystem::path& file) { return parse_json(file, read_text(file)); }
+
 std::string json_pointer(std::string_view pointer, std::string_view key) {
   std::string result(pointer);
   result += '/';
@@ -163,26 +167,6 @@ std::string json_pointer(std::string_view pointer, std::string_view key) {
       result += "~1";
     else
       result += c;
-  }
-  return result;
-}
-
-std::string printable(std::string_view text, std::size_t length) {
-  std::string result;
-  if (text.size() > length) {
-    std::size_t end = length;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
-      --end;  // not within a character
-    result = std::string(text.substr(0, end)) + "...";
-  } else {
-    result = text;
-  }
-  // The library's own writer escapes control characters and replaces what is not UTF-8; quotes are put back.
-  const std::string escaped = json(result).dump(-1, ' ', false, json::error_handler_t::replace);
-  result.clear();
-  for (std::size_t i = 1; i + 1 < escaped.size(); ++i) {
-    if (escaped[i] == '\\' && (escaped[i + 1] == '"' || escaped[i + 1] == '\\')) ++i;
-    result += escaped[i];
   }
   return result;
 }
