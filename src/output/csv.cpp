@@ -3,9 +3,12 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <sstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
 
 #include "model/decimal.h"
+#include "model/printable.h"
 
 namespace mssim {
 namespace {
@@ -21,12 +24,19 @@ std::string quoted(const std::string& field) {
 }
 
 std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  // A folder opens, and fails on the first read.
-  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf())) || in.bad())
-    throw CsvError("cannot read " + file.string() + ": check that it exists and may be read");
-  return text.str();
+  std::error_code error;
+  // A device may never end, and a pipe would block.
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(file, error)) in.open(file, std::ios::binary);
+  if (!in.is_open())
+    throw CsvError("cannot read " + file.string() + ": check that it is a file, exists and may be read");
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+      !error && bytes > largest_csv_bytes)
+    throw CsvError(file.string() + ": has " + std::to_string(bytes) + " bytes and at most " +
+                   std::to_string(largest_csv_bytes) + " are read; give a file that mssim wrote");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) throw CsvError("cannot read " + file.string() + ": check its disk");
+  return text;
 }
 
 template <class Number>
@@ -105,13 +115,13 @@ void CsvTable::require_columns(const std::vector<std::string_view>& columns) con
   for (std::size_t column = 0; column < columns.size(); ++column)
     if (column >= header_.size() || header_[column] != columns[column])
       throw CsvError(name_ + ", line 1: column " + std::to_string(column + 1) + " is " +
-                     (column < header_.size() ? "\"" + header_[column] + "\"" : "missing") +
+                     (column < header_.size() ? "\"" + printable(header_[column]) + "\"" : "missing") +
                      " instead of \"" + std::string(columns[column]) + "\"; give a file that mssim wrote");
 }
 
 CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
-  return CsvError{name_ + ", line " + std::to_string(records_[record].line) + ", column " + header_[column] +
-                  ": \"" + text(record, column) + "\" " + what};
+  return CsvError{name_ + ", line " + std::to_string(records_[record].line) + ", column " +
+                  printable(header_[column]) + ": \"" + printable(text(record, column)) + "\" " + what};
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -10,6 +12,9 @@
 namespace mssim {
 
 /// Comma-separated values as RFC 4180 has them, with line feeds alone as line ends.
+
+/// A file is refused beyond this size, a million samples: its fields take many times that in memory.
+inline constexpr std::size_t largest_csv_bytes = std::size_t{64} << 20;
 
 /// Thrown when a CSV file cannot be read; what() is one sentence that names file, line and column, the value
 /// and what to do.
