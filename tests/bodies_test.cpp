@@ -257,6 +257,9 @@ INSTANTIATE_TEST_SUITE_P(
                     BadBodies{"\"swell_per_s\": 3", "\"swel_per_s\": 3", "/bodies/list/0/swel_per_s",
                               "did you mean \"swell_per_s\"?"},
                     BadBodies{"\"one.node\"", "\"two.node\"", "/bodies/list/0", "two.node"},
+                    // The name of a file may hold what a terminal would obey.
+                    BadBodies{"\"one.node\"", "\"two\\u007f\\u009b31m.node\"", "/bodies/list/0",
+                              "two\\u007f\\u009b31m.node is missing"},
                     BadBodies{"\"one.ele\"", "\"one.node\"", "/bodies/list/0", "one.node"},
                     BadBodies{"\"density_kg_per_m3\": 1000", "\"density_kg_per_m3\": 0",
                               "/bodies/density_kg_per_m3", "is 0"}));

@@ -10,6 +10,7 @@
 
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
+#include "model/printable.h"
 #include "scene/body_shapes.h"
 #include "scene/json_document.h"
 #include "scene/material_fields.h"
@@ -61,9 +62,9 @@ class MeshedShapes {
     try {
       meshed.mesh = mesh_of(shape, spec_.file.parent_path());
     } catch (const MeshError& error) {
-      refuse(spec_.file, pointer_to(body), std::string("has no mesh: ") + error.what());
+      refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
     } catch (const SceneError& error) {  // of another scene whose shape it takes
-      refuse(spec_.file, pointer_to(body), std::string("has no mesh: ") + error.what());
+      refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
     }
     Vec3d centre;
     for (const Vec3d& node : meshed.mesh.nodes) centre += node;

@@ -35,10 +35,8 @@ bool may_build(const SceneSpec& spec) {
   constexpr std::uint64_t most_nodes = 100;
   const auto* bodies = std::get_if<BodiesSpec>(&spec.body);
   if (bodies == nullptr) return counts_of(spec).nodes <= most_nodes;
-  return std::all_of(bodies->list.begin(), bodies->list.end(), [](const BodySpec& body) {
-    const auto* files = std::get_if<MeshFiles>(&body.shape);
-    return files != nullptr && files->node_file == "tetrahedra.node" && files->ele_file == "tetrahedra.ele";
-  });
+  return std::all_of(bodies->list.begin(), bodies->list.end(),
+                     [](const BodySpec& body) { return std::holds_alternative<MeshFiles>(body.shape); });
 }
 
 bool is_positive(double value) { return std::isfinite(value) && value > 0; }
