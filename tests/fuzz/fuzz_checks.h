@@ -6,10 +6,10 @@
 #include <string_view>
 #include <utility>
 
+namespace mssim {
+
 /// What a fuzz target is: is called with one input after the other, and must come back from each of them.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
-namespace mssim {
 
 /// The bytes of an input as text.
 std::string_view text_of(const std::uint8_t* data, std::size_t size);

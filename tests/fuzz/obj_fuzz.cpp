@@ -5,9 +5,12 @@
 #include "mesh/surface_file.h"
 #include "surface_checks.h"
 
+namespace mssim {
+
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace mssim;
   const auto surface = unless_refused<MeshError>([&] { return parse_obj("fuzz.obj", text_of(data, size)); });
   if (surface) check_surface(*surface);
   return 0;
 }
+
+}  // namespace mssim

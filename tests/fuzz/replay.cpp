@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     // As many bytes as the file has, so that a sanitizer sees who reads beyond them.
     const std::vector<char> input{std::istreambuf_iterator<char>(stream), {}};
     std::fprintf(stderr, "%s, %zu bytes\n", file.c_str(), input.size());
-    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
+    mssim::LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
   }
   std::printf("%zu inputs\n", files.size());
   return 0;

@@ -63,10 +63,7 @@ void check_published(const CsvTable& table) {
 }
 
 }  // namespace
-}  // namespace mssim
-
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace mssim;
   const auto [first, second] = two_texts(text_of(data, size));
   const auto table = unless_refused<CsvError>([text = first] { return CsvTable("fuzz.csv", text); });
   if (!table) return 0;
@@ -75,3 +72,5 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   check_published(*table);
   return 0;
 }
+
+}  // namespace mssim

@@ -67,10 +67,7 @@ void check(const System& system) {
 }
 
 }  // namespace
-}  // namespace mssim
-
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace mssim;
   const auto spec =
       unless_refused<SceneError>([&] { return parse_scene(scene_path, std::string(text_of(data, size))); });
   if (!spec || !may_count(*spec)) return 0;
@@ -86,3 +83,5 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         "a cloth has the counts that its file states");
   return 0;
 }
+
+}  // namespace mssim

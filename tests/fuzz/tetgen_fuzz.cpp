@@ -30,10 +30,7 @@ void check(const TetMesh& mesh) {
 }
 
 }  // namespace
-}  // namespace mssim
-
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace mssim;
   const auto [nodes, tetrahedra] = two_texts(text_of(data, size));
   const auto mesh = unless_refused<MeshError>([&, node_text = nodes, ele_text = tetrahedra] {
     return parse_tetgen_files({"fuzz.node", node_text}, {"fuzz.ele", ele_text});
@@ -41,3 +38,5 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (mesh) check(*mesh);
   return 0;
 }
+
+}  // namespace mssim
