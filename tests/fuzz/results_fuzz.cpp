@@ -63,6 +63,7 @@ void check_published(const CsvTable& table) {
 }
 
 }  // namespace
+
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto [first, second] = two_texts(text_of(data, size));
   const auto table = unless_refused<CsvError>([text = first] { return CsvTable("fuzz.csv", text); });

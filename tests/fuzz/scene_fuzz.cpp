@@ -67,6 +67,7 @@ void check(const System& system) {
 }
 
 }  // namespace
+
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto spec =
       unless_refused<SceneError>([&] { return parse_scene(scene_path, std::string(text_of(data, size))); });

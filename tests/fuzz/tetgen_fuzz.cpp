@@ -30,6 +30,7 @@ void check(const TetMesh& mesh) {
 }
 
 }  // namespace
+
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto [nodes, tetrahedra] = two_texts(text_of(data, size));
   const auto mesh = unless_refused<MeshError>([&, node_text = nodes, ele_text = tetrahedra] {
