@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <filesystem>
@@ -24,7 +25,10 @@ namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Lt;
+using testing::SizeIs;
 
 class ResultFiles : public TemporaryFolderTest {};
 
@@ -125,6 +129,21 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(complaint(""), HasSubstr("column 1 is missing"));
   EXPECT_THROW(read_timings(folder() / "missing.csv"), CsvError);
   EXPECT_THROW(read_timings(folder()), CsvError);
+  // Found by fuzzing: whatever stood in the file went into the message.
+  EXPECT_THAT(complaint(with("19.475", "\x1b[31m" + std::string(100'000, 'x'))),
+              AllOf(HasSubstr("column paper_ms: \"\\u001b[31mxxx"), SizeIs(Lt(300U))));
+  EXPECT_THAT(complaint(with("roofline_fraction", "\xff\x7f" + std::string(100'000, 'x'))),
+              AllOf(HasSubstr("is \"\xef\xbf\xbd\\u007fxxx"), SizeIs(Lt(300U))));
+}
+
+TEST_F(ResultFiles, WithoutAnEndAreRefusedAndNotRead) {
+  EXPECT_THROW(read_timings("/dev/zero"), CsvError);
+  const fs::path pipe = folder() / "pipe.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(read_timings(pipe), CsvError);
+  const fs::path huge = put("huge.csv", "");
+  fs::resize_file(huge, largest_csv_bytes + 1);  // without its blocks
+  EXPECT_THROW(read_timings(huge), CsvError);
 }
 
 TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <climits>
 #include <functional>
+#include <map>
 #include <string_view>
+#include <tuple>
 
 #include "bench/outliers.h"
-#include "output/csv.h"
 
 namespace mssim {
 namespace {
@@ -136,7 +137,10 @@ std::string samples_csv(std::span<const ResultRow> rows) {
 }
 
 std::vector<ResultRow> read_timings(const std::filesystem::path& file) {
-  const CsvTable table(file);
+  return read_timings(CsvTable(file));
+}
+
+std::vector<ResultRow> read_timings(const CsvTable& table) {
   std::vector<std::string_view> names;
   for (const Column& column : columns()) names.push_back(column.name);
   names.resize(std::clamp(table.header().size(), oldest_columns, names.size()));
@@ -149,18 +153,21 @@ std::vector<ResultRow> read_timings(const std::filesystem::path& file) {
 }
 
 void read_samples(const std::filesystem::path& file, std::span<ResultRow> rows) {
-  const CsvTable table(file);
+  read_samples(CsvTable(file), rows);
+}
+
+void read_samples(const CsvTable& table, std::span<ResultRow> rows) {
   table.require_columns({sample_columns.begin(), sample_columns.begin() + oldest_sample_columns});
+  std::map<std::tuple<std::string_view, std::string_view, std::string_view>, ResultRow*> row_of;
+  for (ResultRow& row : rows) row_of.try_emplace({row.scene, row.backend, row.integrator}, &row);
   for (std::size_t record = 0; record < table.size(); ++record) {
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const ResultRow& candidate) {
-      return candidate.scene == table.text(record, 0) && candidate.backend == table.text(record, 1) &&
-             candidate.integrator == table.text(record, 2);
-    });
-    if (row == rows.end()) continue;
-    if (table.count(record, 3) != row->samples_ms.size() + 1)
+    const auto found = row_of.find({table.text(record, 0), table.text(record, 1), table.text(record, 2)});
+    if (found == row_of.end()) continue;
+    ResultRow& row = *found->second;
+    if (table.count(record, 3) != row.samples_ms.size() + 1)
       throw table.complaint(record, 3, "is not the next round of its row; measure anew without --resume");
-    row->sample_steps.push_back(read_int(table, record, 4));
-    row->samples_ms.push_back(table.number(record, 5));
+    row.sample_steps.push_back(read_int(table, record, 4));
+    row.samples_ms.push_back(table.number(record, 5));
   }
 }
 
