@@ -16,6 +16,8 @@
 #include "commands/run_provenance.h"
 #include "mesh/interruption.h"
 #include "mesh/mesh_error.h"
+#include "output/csv.h"
+#include "output/provenance_file.h"
 #include "output/write_error.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
@@ -51,6 +53,10 @@ int run_guarded(const std::function<int()>& run) {
     return fail(exit_bad_input, error.what());
   } catch (const SceneError& error) {
     return fail(exit_bad_input, error.what());
+  } catch (const CsvError& error) {
+    return fail(exit_bad_input, error.what());
+  } catch (const ProvenanceError& error) {
+    return fail(exit_bad_input, error.what());
   } catch (const MissingProgram& error) {
     return fail(exit_unavailable, error.what());
   } catch (const Unsupported& error) {
@@ -72,12 +78,10 @@ std::span<const Command> commands() { return table; }
 
 int run_program(int argc, char** argv) {
   remember_arguments(argc, argv);
-  CLI::App app("mssim " + std::string(build_info().version) +
-                   ": benchmark harness for parallel mass-spring simulation",
+  CLI::App app("mssim " + build_info().version + ": benchmark harness for parallel mass-spring simulation",
                "mssim");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "mssim " + std::string(build_info().version) + " (" +
-                                        std::string(build_info().commit) +
+  app.set_version_flag("--version", "mssim " + build_info().version + " (" + build_info().commit +
                                         (build_info().dirty ? ", changed" : "") + ")");
   std::string examples = "Examples:";
   std::function<int()> run;
