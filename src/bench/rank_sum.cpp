@@ -1,0 +1,70 @@
+#include "bench/rank_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "bench/midranks.h"
+#include "bench/rank_distribution.h"
+#include "bench/ranked_value.h"
+
+namespace mssim {
+namespace {
+
+void require_values(std::span<const double> values) {
+  if (values.empty() || !std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+    throw std::invalid_argument("a rank sum needs finite values in both samples");
+}
+
+std::vector<double> ascending(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
+  return sorted;
+}
+
+}  // namespace
+
+RankTest rank_sum_test(std::span<const double> x, std::span<const double> y) {
+  require_values(x);
+  require_values(y);
+  std::vector<double> both(x.begin(), x.end());
+  both.insert(both.end(), y.begin(), y.end());
+  const Midranks pooled = midranks(both);
+  const auto m = static_cast<double>(x.size()), n = static_cast<double>(y.size()), all = m + n;
+  const double rank_sum =
+      std::accumulate(pooled.ranks.begin(), pooled.ranks.begin() + static_cast<std::ptrdiff_t>(x.size()), 0.);
+  RankDistribution distribution = rank_sum_distribution(x.size(), y.size());
+  if (pooled.tie_term > 0)
+    distribution = RankDistribution::normal(
+        m * n / 2, std::sqrt(m * n / 12 * (all + 1 - pooled.tie_term / (all * (all - 1)))));
+  const double u = rank_sum - m * (m + 1) / 2;
+  return {u, distribution.at_most(u), distribution.at_least(u), distribution.is_exact()};
+}
+
+ShiftEstimate rank_sum_shift(std::span<const double> x, std::span<const double> y) {
+  require_values(x);
+  require_values(y);
+  const std::vector<double> xs = ascending(x), ys = ascending(y);
+  const auto differences_up_to = [&](double bound) {
+    // A larger x needs a larger y, so that both samples are passed once.
+    std::size_t count = 0, first = 0;
+    for (const double value : xs) {
+      while (first < ys.size() && value - ys[first] > bound) ++first;
+      count += ys.size() - first;
+    }
+    return count;
+  };
+  const std::size_t pairs = xs.size() * ys.size();
+  const double least = xs.front() - ys.back(), most = xs.back() - ys.front();
+  const std::size_t rank = rank_sum_distribution(xs.size(), ys.size()).interval_rank();
+  ShiftEstimate estimate{ranked_median(pairs, least, most, differences_up_to), least, most, rank > 0};
+  if (rank > 0) {
+    estimate.low = ranked_value(rank, least, most, differences_up_to);
+    estimate.high = ranked_value(pairs + 1 - rank, least, most, differences_up_to);
+  }
+  return estimate;
+}
+
+}  // namespace mssim
