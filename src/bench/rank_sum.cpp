@@ -8,7 +8,6 @@
 
 #include "bench/midranks.h"
 #include "bench/rank_distribution.h"
-#include "bench/ranked_value.h"
 
 namespace mssim {
 namespace {
@@ -56,15 +55,8 @@ ShiftEstimate rank_sum_shift(std::span<const double> x, std::span<const double> 
     }
     return count;
   };
-  const std::size_t pairs = xs.size() * ys.size();
-  const double least = xs.front() - ys.back(), most = xs.back() - ys.front();
-  const std::size_t rank = rank_sum_distribution(xs.size(), ys.size()).interval_rank();
-  ShiftEstimate estimate{ranked_median(pairs, least, most, differences_up_to), least, most, rank > 0};
-  if (rank > 0) {
-    estimate.low = ranked_value(rank, least, most, differences_up_to);
-    estimate.high = ranked_value(pairs + 1 - rank, least, most, differences_up_to);
-  }
-  return estimate;
+  return shift_of({xs.size() * ys.size(), xs.front() - ys.back(), xs.back() - ys.front(), differences_up_to},
+                  rank_sum_distribution(xs.size(), ys.size()));
 }
 
 }  // namespace mssim

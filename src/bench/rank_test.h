@@ -15,12 +15,4 @@ struct RankTest {
   double p_two_sided() const { return std::min(1., 2 * std::min(p_less, p_greater)); }
 };
 
-/// An estimate of how far values are shifted, by the test that belongs to it.
-struct ShiftEstimate {
-  double shift = 0;
-  double low = 0, high = 0;  ///< the 95 % interval
-  /// Whether the samples are large enough for such an interval. Else low and high are the outermost values.
-  bool covers = false;
-};
-
 }  // namespace mssim

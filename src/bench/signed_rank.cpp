@@ -8,7 +8,6 @@
 
 #include "bench/midranks.h"
 #include "bench/rank_distribution.h"
-#include "bench/ranked_value.h"
 
 namespace mssim {
 namespace {
@@ -54,15 +53,8 @@ ShiftEstimate signed_rank_shift(std::span<const double> differences) {
     }
     return count;
   };
-  const std::size_t averages = values.size() * (values.size() + 1) / 2;
-  const double least = values.front(), most = values.back();
-  const std::size_t rank = signed_rank_distribution(values.size()).interval_rank();
-  ShiftEstimate estimate{ranked_median(averages, least, most, averages_up_to), least, most, rank > 0};
-  if (rank > 0) {
-    estimate.low = ranked_value(rank, least, most, averages_up_to);
-    estimate.high = ranked_value(averages + 1 - rank, least, most, averages_up_to);
-  }
-  return estimate;
+  return shift_of({values.size() * (values.size() + 1) / 2, values.front(), values.back(), averages_up_to},
+                  signed_rank_distribution(values.size()));
 }
 
 }  // namespace mssim

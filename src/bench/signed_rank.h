@@ -3,6 +3,7 @@
 #include <span>
 
 #include "bench/rank_test.h"
+#include "bench/shift_estimate.h"
 
 namespace mssim {
 

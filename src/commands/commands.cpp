@@ -10,6 +10,7 @@
 #include "bench/build_info.h"
 #include "commands/bench_command.h"
 #include "commands/command.h"
+#include "commands/compare_command.h"
 #include "commands/exit_code.h"
 #include "commands/list_command.h"
 #include "commands/run_command.h"
@@ -25,11 +26,13 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 3> table{{
+constexpr std::array<Command, 4> table{{
     {"bench", "time and verify backends on scenes", "mssim bench --scene cloth350k --out results/today",
      declare_bench},
     {"run", "simulate one scene, tracing it into a file",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
+    {"compare", "say which of two runs is faster, and whether that is certain",
+     "mssim compare results/yesterday results/today", declare_compare},
     {"list", "list scenes, suites, backends, ways, integrators or devices", "mssim list scenes --format csv",
      declare_list},
 }};
