@@ -10,6 +10,7 @@
 
 #include "bench/comparability.h"
 #include "bench/comparison.h"
+#include "commands/ab_rounds.h"
 #include "commands/choices.h"
 #include "commands/exit_code.h"
 #include "commands/measured_run.h"
@@ -19,7 +20,8 @@ namespace mssim {
 namespace {
 
 struct CompareOptions {
-  std::string base, next;
+  AbOptions ab;  ///< of which two folders have base, next and threshold
+  bool programs = false;
   double threshold_percent = 5;
   ComparisonFormat format = ComparisonFormat::table;
   bool force = false;
@@ -57,13 +59,13 @@ int report(const RunComparison& comparison, ComparisonFormat format) {
   return has_regression(comparison) ? exit_regression : exit_ok;
 }
 
-int run(const CompareOptions& options) {
-  const MeasuredRun base = read_run(options.base), next = read_run(options.next);
+int compare_runs(const CompareOptions& options) {
+  const MeasuredRun base = read_run(options.ab.base), next = read_run(options.ab.next);
   require_comparable(base, next, options.force);
-  const RunComparison comparison = compare(base.rows, next.rows, options.threshold_percent / 100);
+  const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
   if (comparison.rows.empty())
     throw UsageError(
-        "there is nothing to compare: " + options.base + " and " + options.next +
+        "there is nothing to compare: " + options.ab.base + " and " + options.ab.next +
         " have no measured combination in common; measure the same scenes, backends and integrators");
   tell("only BASE has", comparison.only_base);
   tell("only NEW has", comparison.only_new);
@@ -71,12 +73,20 @@ int run(const CompareOptions& options) {
   return report(comparison, options.format);
 }
 
+int run(CompareOptions options) {
+  options.ab.threshold = options.threshold_percent / 100;
+  if (!options.programs) return compare_runs(options);
+  if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
+  return report(compare_programs(options.ab), options.format);
+}
+
 }  // namespace
 
 std::function<int()> declare_compare(CLI::App& app) {
   const auto options = std::make_shared<CompareOptions>();
-  app.add_option("base", options->base, "BASE: a result folder, or a file in it")->required();
-  app.add_option("new", options->next, "NEW: what is compared with it")->required();
+  app.add_option("base", options->ab.base, "BASE: a result folder or a file in it; with --ab a program")
+      ->required();
+  app.add_option("new", options->ab.next, "NEW: what is compared with it")->required();
   app.add_option("--threshold", options->threshold_percent, "A change that matters, in percent (default: 5)")
       ->check(positive_number());
   const std::map<std::string, ComparisonFormat> formats{{"table", ComparisonFormat::table},
@@ -84,7 +94,24 @@ std::function<int()> declare_compare(CLI::App& app) {
                                                         {"json", ComparisonFormat::json}};
   app.add_option("--format", options->format, "table, markdown or json (default: table)")
       ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
-  app.add_flag("--force", options->force, "Compare runs of unlike machines, builds, threads or scenes too");
+  CLI::Option* ab =
+      app.add_flag("--ab", options->programs,
+                   "BASE and NEW are mssim programs: run them by turns, as a new process each time");
+  app.add_flag("--force", options->force, "Compare runs of unlike machines, builds, threads or scenes too")
+      ->excludes(ab);
+  app.add_option("--scene", options->ab.scenes, "With --ab: scenes to measure")->delimiter(',')->needs(ab);
+  app.add_option("--backend", options->ab.backends, "With --ab: backends (default: openmp)")
+      ->delimiter(',')
+      ->needs(ab);
+  app.add_option("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
+      ->delimiter(',')
+      ->needs(ab);
+  app.add_option("--threads", options->ab.threads, "With --ab: threads (default: all processors)")
+      ->check(CLI::Range(1, 4096))
+      ->needs(ab);
+  app.add_option("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)")
+      ->check(CLI::Range(1., 86400.))
+      ->needs(ab);
   return [options] { return run(*options); };
 }
 
