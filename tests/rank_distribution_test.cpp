@@ -93,6 +93,16 @@ TEST(RankDistributions, GiveTheCriticalValuesOfThePrintedTables) {
   EXPECT_EQ(signed_rank_distribution(5).interval_rank(), 0U);
 }
 
+TEST(RankDistributions, LeaveAsMuchOutsideTheIntervalWhenTheyAreNormal) {
+  for (const std::size_t size : {50UL, 51UL, 300UL, 100000UL})
+    for (const RankDistribution& distribution :
+         {rank_sum_distribution(size, size), signed_rank_distribution(size)}) {
+      const auto rank = static_cast<double>(distribution.interval_rank());
+      EXPECT_LE(distribution.at_most(rank - 1), 0.025) << size;
+      EXPECT_GT(distribution.at_most(rank), 0.025) << size;
+    }
+}
+
 TEST(RankDistributions, OfValuesThatAreAllEqualFindNothing) {
   const RankDistribution distribution = RankDistribution::normal(4.5, 0);
   EXPECT_EQ(distribution.at_most(4.5), 1);

@@ -60,6 +60,19 @@ TEST(RatioOfTwoSamples, HoldsTheTrueRatioInNineteenOfTwentyIntervals) {
   EXPECT_NEAR(static_cast<double>(holds) / trials, 0.955, 4 * 0.0033);
 }
 
+TEST(RatioOfTwoSamples, IsFoundForAsManySamplesAsABenchMayTake) {
+  std::mt19937_64 random(1);
+  std::lognormal_distribution<double> draw(0, 0.1);
+  std::vector<double> x(100000), y(100000);
+  std::generate(x.begin(), x.end(), [&] { return draw(random); });
+  std::generate(y.begin(), y.end(), [&] { return 1.01 * draw(random); });
+  const RatioEstimate ratio = ratio_of(x, y);
+  EXPECT_NEAR(ratio.ratio, 1.01, 0.002);
+  EXPECT_LT(ratio.low, ratio.ratio);
+  EXPECT_LT(ratio.high, ratio.low * 1.003);
+  EXPECT_LT(ratio.p, 1e-9);
+}
+
 TEST(PairedRatio, CancelsWhatSlowsAWholeRoundDown) {
   std::vector<double> next;
   for (std::size_t i = 0; i < base.size(); ++i)

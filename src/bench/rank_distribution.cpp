@@ -39,10 +39,13 @@ double RankDistribution::at_most(double statistic) const {
 }
 
 std::size_t RankDistribution::interval_rank() const {
+  if (!is_exact()) {
+    constexpr double normal_quantile = 1.959963984540054;  // 2.5 % of a normal distribution lie beyond it
+    return static_cast<std::size_t>(std::max(0., std::floor(mean_ + 0.5 - normal_quantile * deviation_)));
+  }
   constexpr double outside = 0.025;
-  std::size_t rank = 0;
-  while (static_cast<double>(rank) <= mean_ && at_most(static_cast<double>(rank)) <= outside) ++rank;
-  return rank;
+  const auto inside = std::ranges::find_if(at_most_, [](double tail) { return tail > outside; });
+  return static_cast<std::size_t>(inside - at_most_.begin());
 }
 
 RankDistribution rank_sum_distribution(std::size_t x_size, std::size_t y_size) {
