@@ -245,14 +245,32 @@ class EachIntegratorOnOpenMp : public testing::TestWithParam<std::string_view> {
 INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorOnOpenMp, testing::ValuesIn(names_of(integrators)),
                          [](const auto& test) { return plain(test.param); });
 
-/// Expects the same bits after 600 steps with any number of threads.
+/// Steps in which what starts a few millimetres above the floor bounces off it.
+constexpr int steps_with_a_bounce = 300;
+
+/// A cloth that meets the floor in that time.
+System low_cloth(std::uint32_t rows, std::uint32_t columns) {
+  SceneSpec spec = cloth_spec(rows, columns);
+  std::get<ClothSpec>(spec.body).ceiling_height_m = 0.0035;
+  return build_system(spec);
+}
+
+/// Whether a node lies on the floor or rises from it.
+bool has_met_floor(const System& system, const State& state) {
+  for (std::size_t node = 0; node < system.nodes(); ++node)
+    if (state.velocity[node].y > 0 || state.position[node].y == system.floor.height) return true;
+  return false;
+}
+
+/// Expects the same bits after a bounce with any number of threads.
 void expect_same_bits(const System& system, const Integrator& integrator) {
   const auto alone = make_openmp(system, integrator, dt_s, {1, ""});
-  alone->step(600);
+  alone->step(steps_with_a_bounce);
   const State expected = alone->state();
+  EXPECT_TRUE(has_met_floor(system, expected));
   for (const int threads : {2, 3, 4, 7}) {
     const auto simulation = make_openmp(system, integrator, dt_s, {threads, ""});
-    simulation->step(600);
+    simulation->step(steps_with_a_bounce);
     const State state = simulation->state();
     EXPECT_EQ(state.position, expected.position) << threads << " threads";
     EXPECT_EQ(state.velocity, expected.velocity) << threads << " threads";
@@ -260,29 +278,26 @@ void expect_same_bits(const System& system, const Integrator& integrator) {
 }
 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
-  for (const auto& [rows, columns] : {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {61U, 200U}}) {
-    SceneSpec spec = cloth_spec(rows, columns);
-    std::get<ClothSpec>(spec.body).ceiling_height_m = 0.02;  // the floor is met on the way
-    const System system = build_system(spec);
+  for (const auto& [rows, columns] : {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {61U, 80U}}) {
     SCOPED_TRACE(std::to_string(rows) + " x " + std::to_string(columns));
-    expect_same_bits(system, integrator());
+    expect_same_bits(low_cloth(rows, columns), integrator());
   }
 }
 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverManyStepsAPassTakes) {
   const BandKernel kernel = band_kernels().front();
   for (const auto& [rows, columns] : {std::pair{37U, 23U}, {9U, 11U}, {61U, 80U}, {1U, 7U}, {7U, 1U}}) {
-    SceneSpec spec = cloth_spec(rows, columns);
-    std::get<ClothSpec>(spec.body).ceiling_height_m = 0.02;  // the floor is met on the way
-    const System system = build_system(spec);
+    const System system = low_cloth(rows, columns);
     const auto& grid = std::get<GridPatch>(system.topology);
     const auto state_after = [&](std::size_t threads, std::size_t steps_per_pass) {
       BandSheet sheet(system, grid, integrator(), dt_s, kernel.lanes, threads, steps_per_pass);
       sheet.set_state(system.start);
-      kernel.step(sheet, 601);  // the last pass is a short one
+      kernel.step(sheet, steps_with_a_bounce + 1);  // the last pass is a short one
       return sheet.state();
     };
     const State expected = state_after(1, 1);
+    // A strip may hang in the air again by now.
+    EXPECT_TRUE(rows == 1 || has_met_floor(system, expected)) << rows << " x " << columns;
     for (std::size_t steps = 2; steps * integrator().stage_count <= stages_under_way; ++steps)
       for (const std::size_t threads : {1U, 2U, 3U, 4U}) {
         const State state = state_after(threads, steps);
@@ -304,12 +319,7 @@ TEST(OpenMpOnAnUncommonlyLargeCloth, TakesSeveralStepsInAPass) {
 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreadsOnBodies) {
   for (System system : bodies_of_any_shape()) {
-    system.floor.height = 0.49;  // it is met on the way
-    const auto reference = make_reference(system, integrator(), dt_s);
-    reference->step(600);
-    const State end = reference->state();
-    EXPECT_TRUE(
-        std::any_of(end.velocity.begin(), end.velocity.end(), [](const Vec3d& v) { return v.y > 0; }));
+    system.floor.height = 0.497;  // it is met on the way
     SCOPED_TRACE(std::to_string(system.nodes()) + " nodes");
     expect_same_bits(system, integrator());
   }

@@ -11,13 +11,11 @@
 #include <tuple>
 #include <vector>
 
-#include "backends/hybrid.h"
-#include "backends/opencl.h"
 #include "backends/packed_springs.h"
 #include "backends/serial.h"
 #include "bench/verification.h"
 #include "integrators/integrators.h"
-#include "opencl_memory.h"
+#include "opencl_ways.h"
 #include "solid_system.h"
 
 namespace mssim {
@@ -27,33 +25,21 @@ using ::testing::HasSubstr;
 
 constexpr double dt_s = 1e-4;
 
-enum class Kind { opencl, hybrid };
-struct Way {
-  Kind kind;
-  int lanes;  // 1 is what a GPU runs
-  std::unique_ptr<Backend> make(const System& system, const Integrator& integrator) const {
-    const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
-    return kind == Kind::opencl ? make_opencl(system, integrator, dt_s, device, lanes)
-                                : make_hybrid(system, integrator, dt_s, device, 2, lanes);
-  }
-};
-
-class EachWidthAndIntegrator : public testing::TestWithParam<std::tuple<Kind, int, Integrator>> {
+class EachWidthAndIntegrator : public testing::TestWithParam<std::tuple<bool, int, Integrator>> {
  protected:
   const Integrator& integrator() const { return *find_integrator(std::get<2>(GetParam()).name); }
   std::unique_ptr<Backend> make(const System& system) const {
-    return Way{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator());
+    return OpenclWay{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator(), dt_s);
   }
 };
 
 INSTANTIATE_TEST_SUITE_P(Tables, EachWidthAndIntegrator,
-                         testing::Combine(testing::Values(Kind::opencl, Kind::hybrid),
-                                          testing::Values(1, 4, 8, 16), testing::ValuesIn(integrators)),
+                         testing::Combine(testing::Bool(), testing::ValuesIn(opencl_lanes),
+                                          testing::ValuesIn(integrators)),
                          [](const auto& test) {
-                           std::string name =
-                               std::string(std::get<0>(test.param) == Kind::opencl ? "opencl" : "hybrid") +
-                               "_" + std::to_string(std::get<1>(test.param)) + "_lanes_" +
-                               std::string(std::get<2>(test.param).name);
+                           std::string name = std::string(std::get<0>(test.param) ? "hybrid" : "opencl") +
+                                              "_" + std::to_string(std::get<1>(test.param)) + "_lanes_" +
+                                              std::string(std::get<2>(test.param).name);
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
@@ -167,11 +153,10 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
   System system = solid_block(7, 5, 6);
   system.materials.push_back({50, 0.2});
   for (std::size_t i = 0; i < system.springs.size(); i += 3) system.springs[i].kind = 1;
-  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
   for (const Integrator& integrator : integrators)
-    for (const int lanes : {1, 16}) {
+    for (const int lanes : {1, most_opencl_lanes}) {
       const Reference reference = run_reference(system, integrator, dt_s);
-      const auto hybrid = make_hybrid(system, integrator, dt_s, device, 2, lanes);
+      const auto hybrid = OpenclWay{true, lanes}.make(system, integrator, dt_s);
       const Verification verification = verify(*hybrid, system, reference, dt_s);
       EXPECT_FALSE(verification.failure) << integrator.name << ": " << verification.failure.value_or("");
     }
@@ -179,41 +164,35 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
 
 TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
   const System system = solid_block(7, 5, 6);
-  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
-  const auto positions = [&](std::unique_ptr<Backend> backend) {
-    backend->step(30);
-    return backend->state().position;
-  };
   for (const Integrator& integrator : integrators) {
-    const auto hybrid = [&](int threads, int lanes) {
-      return positions(make_hybrid(system, integrator, dt_s, device, threads, lanes));
+    const auto run = [&](const OpenclWay& way) {
+      const auto backend = way.make(system, integrator, dt_s);
+      backend->step(30);
+      return backend->state().position;
     };
-    const auto opencl = [&](int lanes) {
-      return positions(make_opencl(system, integrator, dt_s, device, lanes));
-    };
-    EXPECT_EQ(opencl(4), opencl(16)) << integrator.name;
-    EXPECT_EQ(opencl(8), opencl(16)) << integrator.name;
-    EXPECT_EQ(hybrid(1, 16), hybrid(3, 16)) << integrator.name;
-    EXPECT_EQ(hybrid(2, 4), hybrid(2, 16)) << integrator.name;
+    for (const int lanes : opencl_lanes) {
+      if (lanes == 1) continue;  // a GPU's kernels sum in another order
+      for (const bool hybrid : {false, true})
+        EXPECT_EQ(run({hybrid, lanes}), run({hybrid, most_opencl_lanes})) << integrator.name << ", " << lanes;
+    }
+    EXPECT_EQ(run({true, most_opencl_lanes, 1}), run({true, most_opencl_lanes, 3})) << integrator.name;
   }
 }
 
 TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
   const System system = two_solid_blocks();
-  for (const Integrator& integrator : integrators) {
-    std::vector<State> found;
-    for (const DeviceInMemory& way : ways_to_memory())
-      for (const bool hybrid : {false, true}) {
-        const auto backend = hybrid ? make_hybrid(system, integrator, dt_s, way.device, 2, 16, way.memory)
-                                    : make_opencl(system, integrator, dt_s, way.device, 16, way.memory);
+  for (const Integrator& integrator : integrators)
+    for (const OpenclWay way : {OpenclWay{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
+      std::vector<State> found;
+      for (const DeviceInMemory& memory : ways_to_memory()) {
+        const auto backend = way.make_in(memory, system, integrator, dt_s);
         backend->step(31);
         found.push_back(backend->state());
-        const State& first = found[hybrid ? 1 : 0];
-        EXPECT_EQ(found.back().position, first.position) << way.name << ", " << integrator.name;
-        EXPECT_EQ(found.back().velocity, first.velocity) << way.name << ", " << integrator.name;
+        EXPECT_EQ(found.back().position, found[0].position) << memory.name << ", " << integrator.name;
+        EXPECT_EQ(found.back().velocity, found[0].velocity) << memory.name << ", " << integrator.name;
       }
-    EXPECT_NE(found.front().position, system.start.position);
-  }
+      EXPECT_NE(found[0].position, system.start.position);
+    }
 }
 
 TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
