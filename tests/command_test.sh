@@ -15,7 +15,7 @@ column() {
 
 # Usage.
 expect 2 'nothing to measure' bench
-expect 2 'known are bench, run and list' frobnicate
+expect 2 'known are bench, run, compare and list' frobnicate
 expect 2 'rounds' bench --rounds 0 --scene cloth2500
 expect 2 'threads' bench --threads -3 --scene cloth2500
 expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
@@ -98,7 +98,7 @@ status=0
 [ ! -e "$work/races/table1.csv" ] || fail "races make Table 1"
 
 # Help and listings.
-for arguments in '--help' 'bench --help' 'run --help' 'list --help'; do
+for arguments in '--help' 'bench --help' 'run --help' 'compare --help' 'list --help'; do
   # shellcheck disable=SC2086 # words of their own
   "$mssim" $arguments >"$work/out" 2>"$work/err" || fail "$arguments exits with $?"
   grep -q 'Example' "$work/out" || fail "$arguments shows no example"

@@ -6,8 +6,8 @@
 namespace mssim {
 
 const BuildInfo& build_info() {
-  static constexpr BuildInfo info{MSSIM_VERSION,  MSSIM_COMMIT, MSSIM_DIRTY,
-                                  MSSIM_COMPILER, MSSIM_FLAGS,  MSSIM_BUILD_TYPE};
+  static const BuildInfo info{MSSIM_VERSION,  MSSIM_COMMIT, MSSIM_DIRTY,
+                              MSSIM_COMPILER, MSSIM_FLAGS,  MSSIM_BUILD_TYPE};
   return info;
 }
 

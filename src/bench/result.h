@@ -43,4 +43,17 @@ struct ResultRow {
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
 };
 
+/// Are these the same scene, backend and integrator? What of them was measured may differ.
+inline bool same_combination(const ResultRow& a, const ResultRow& b) {
+  return a.scene == b.scene && a.backend == b.backend && a.integrator == b.integrator;
+}
+
+/// Is this the time of something that works?
+inline bool counts(const ResultRow& row) { return row.status == "ok" && row.verified; }
+
+/// The row's status; a row that was measured but not verified has failed.
+inline std::string status_of(const ResultRow& row) {
+  return row.status == "ok" && !row.verified ? "failed: not verified" : row.status;
+}
+
 }  // namespace mssim

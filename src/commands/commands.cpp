@@ -10,12 +10,15 @@
 #include "bench/build_info.h"
 #include "commands/bench_command.h"
 #include "commands/command.h"
+#include "commands/compare_command.h"
 #include "commands/exit_code.h"
 #include "commands/list_command.h"
 #include "commands/run_command.h"
 #include "commands/run_provenance.h"
 #include "mesh/interruption.h"
 #include "mesh/mesh_error.h"
+#include "output/csv.h"
+#include "output/provenance_file.h"
 #include "output/write_error.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
@@ -23,11 +26,13 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 3> table{{
+constexpr std::array<Command, 4> table{{
     {"bench", "time and verify backends on scenes", "mssim bench --scene cloth350k --out results/today",
      declare_bench},
     {"run", "simulate one scene, tracing it into a file",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
+    {"compare", "say which of two runs is faster, and whether that is certain",
+     "mssim compare results/yesterday results/today", declare_compare},
     {"list", "list scenes, suites, backends, ways, integrators or devices", "mssim list scenes --format csv",
      declare_list},
 }};
@@ -51,6 +56,10 @@ int run_guarded(const std::function<int()>& run) {
     return fail(exit_bad_input, error.what());
   } catch (const SceneError& error) {
     return fail(exit_bad_input, error.what());
+  } catch (const CsvError& error) {
+    return fail(exit_bad_input, error.what());
+  } catch (const ProvenanceError& error) {
+    return fail(exit_bad_input, error.what());
   } catch (const MissingProgram& error) {
     return fail(exit_unavailable, error.what());
   } catch (const Unsupported& error) {
@@ -72,12 +81,10 @@ std::span<const Command> commands() { return table; }
 
 int run_program(int argc, char** argv) {
   remember_arguments(argc, argv);
-  CLI::App app("mssim " + std::string(build_info().version) +
-                   ": benchmark harness for parallel mass-spring simulation",
+  CLI::App app("mssim " + build_info().version + ": benchmark harness for parallel mass-spring simulation",
                "mssim");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "mssim " + std::string(build_info().version) + " (" +
-                                        std::string(build_info().commit) +
+  app.set_version_flag("--version", "mssim " + build_info().version + " (" + build_info().commit +
                                         (build_info().dirty ? ", changed" : "") + ")");
   std::string examples = "Examples:";
   std::function<int()> run;

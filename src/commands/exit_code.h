@@ -8,6 +8,7 @@ namespace mssim {
 enum ExitCode : int {
   exit_ok = 0,
   exit_not_verified = 1,  ///< a row failed verification, a simulation blew up
+  exit_regression = 1,    ///< a row became slower, or is lost
   exit_bad_input = 2,     ///< bad usage or a bad input file
   exit_unavailable = 3,   ///< a device or program that was asked for is missing
   exit_file_error = 4     ///< reading or writing failed

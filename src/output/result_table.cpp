@@ -7,12 +7,6 @@
 
 namespace mssim {
 
-bool counts(const ResultRow& row) { return row.status == "ok" && row.verified; }
-
-std::string status_of(const ResultRow& row) {
-  return row.status == "ok" && !row.verified ? "failed: not verified" : row.status;
-}
-
 std::string measured_on(std::span<const ResultRow* const> rows, const Provenance& provenance) {
   std::set<std::string> devices;
   for (const ResultRow* row : rows)

@@ -23,12 +23,6 @@ using TableMaker =
 
 /// What tables of measured rows have in common.
 
-/// Is this the time of something that works?
-bool counts(const ResultRow& row);
-
-/// The row's status; a row that was measured but not verified has failed.
-std::string status_of(const ResultRow& row);
-
 /// One sentence for the top of a Markdown file: machine, threads, devices of the rows, program, time. Ends
 /// with a blank line.
 std::string measured_on(std::span<const ResultRow* const> rows, const Provenance& provenance);

@@ -1,0 +1,118 @@
+#include "commands/compare_command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/comparability.h"
+#include "bench/comparison.h"
+#include "commands/ab_rounds.h"
+#include "commands/choices.h"
+#include "commands/exit_code.h"
+#include "commands/measured_run.h"
+#include "output/comparison_table.h"
+
+namespace mssim {
+namespace {
+
+struct CompareOptions {
+  AbOptions ab;  ///< of which two folders have base, next and threshold
+  bool programs = false;
+  double threshold_percent = 5;
+  ComparisonFormat format = ComparisonFormat::table;
+  bool force = false;
+};
+
+/// Times from unlike machines or builds are no regression and no progress: says how they differ, and refuses
+/// them unless that is what is wanted.
+void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool force) {
+  std::vector<std::string> all = differences(base.provenance, next.provenance);
+  const std::vector<std::string> of_rows = differences(base.rows, next.rows);
+  all.insert(all.end(), of_rows.begin(), of_rows.end());
+  if (all.empty()) return;
+  std::string sentence;
+  for (const std::string& difference : all) sentence += (sentence.empty() ? "" : "; ") + difference;
+  if (!force)
+    throw UsageError("the two runs are not comparable: " + sentence +
+                     "; measure both alike, or compare them all the same with --force");
+  std::cerr << "mssim: compared all the same: " << sentence << '\n';
+}
+
+/// One line for combinations that are not in the table, however many.
+void tell(const std::string& what, const std::vector<std::string>& combinations) {
+  if (combinations.empty()) return;
+  std::cerr << "mssim: " << what << ": " << combinations.front();
+  if (combinations.size() > 1) std::cerr << " and " << combinations.size() - 1 << " more";
+  std::cerr << '\n';
+}
+
+int report(const RunComparison& comparison, ComparisonFormat format) {
+  std::cout << to_text(comparison, format);
+  const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
+  if (undecided > 0)
+    std::cerr << "mssim: " << undecided << " of " << comparison.rows.size()
+              << " combinations are undecided\n";
+  return has_regression(comparison) ? exit_regression : exit_ok;
+}
+
+int compare_runs(const CompareOptions& options) {
+  const MeasuredRun base = read_run(options.ab.base), next = read_run(options.ab.next);
+  require_comparable(base, next, options.force);
+  const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
+  if (comparison.rows.empty())
+    throw UsageError(
+        "there is nothing to compare: " + options.ab.base + " and " + options.ab.next +
+        " have no measured combination in common; measure the same scenes, backends and integrators");
+  tell("only BASE has", comparison.only_base);
+  tell("only NEW has", comparison.only_new);
+  tell("without a verified time in BASE", comparison.untimed);
+  return report(comparison, options.format);
+}
+
+int run(CompareOptions options) {
+  options.ab.threshold = options.threshold_percent / 100;
+  if (!options.programs) return compare_runs(options);
+  if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
+  return report(compare_programs(options.ab), options.format);
+}
+
+}  // namespace
+
+std::function<int()> declare_compare(CLI::App& app) {
+  const auto options = std::make_shared<CompareOptions>();
+  app.add_option("base", options->ab.base, "BASE: a result folder or a file in it; with --ab a program")
+      ->required();
+  app.add_option("new", options->ab.next, "NEW: what is compared with it")->required();
+  app.add_option("--threshold", options->threshold_percent, "A change that matters, in percent (default: 5)")
+      ->check(positive_number());
+  const std::map<std::string, ComparisonFormat> formats{{"table", ComparisonFormat::table},
+                                                        {"markdown", ComparisonFormat::markdown},
+                                                        {"json", ComparisonFormat::json}};
+  app.add_option("--format", options->format, "table, markdown or json (default: table)")
+      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  CLI::Option* ab =
+      app.add_flag("--ab", options->programs,
+                   "BASE and NEW are mssim programs: run them by turns, as a new process each time");
+  app.add_flag("--force", options->force, "Compare runs of unlike machines, builds, threads or scenes too")
+      ->excludes(ab);
+  app.add_option("--scene", options->ab.scenes, "With --ab: scenes to measure")->delimiter(',')->needs(ab);
+  app.add_option("--backend", options->ab.backends, "With --ab: backends (default: openmp)")
+      ->delimiter(',')
+      ->needs(ab);
+  app.add_option("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
+      ->delimiter(',')
+      ->needs(ab);
+  app.add_option("--threads", options->ab.threads, "With --ab: threads (default: all processors)")
+      ->check(CLI::Range(1, 4096))
+      ->needs(ab);
+  app.add_option("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)")
+      ->check(CLI::Range(1., 86400.))
+      ->needs(ab);
+  return [options] { return run(*options); };
+}
+
+}  // namespace mssim

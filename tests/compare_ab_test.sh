@@ -1,0 +1,134 @@
+#!/usr/bin/env bash
+# mssim compare --ab: programs that take turns. Most are scripts here, which write times as mssim does, so that what comes
+# out is known.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/command_line.sh
+. "$2/tests/command_line.sh"
+export TMPDIR=$work/tmp
+mkdir "$TMPDIR"
+
+# program NAME COMMANDS: a program that finds its result folder in $out, may call `times MS [STATUS [VERIFIED]]` to fill it,
+# and counts its runs in NAME.runs
+program() {
+  cat >"$work/$1" <<SCRIPT
+#!/usr/bin/env bash
+[ "\$1" = bench ] || exit 9
+echo "\$*" >>"\$0.runs"
+while [ \$# -gt 1 ]; do [ "\$1" = --out ] && out=\$2; shift; done
+times() {
+  mkdir -p "\$out"
+  printf '%s\n' scene,backend,integrator,ms_per_step,verified,status \
+    "cloth2500,openmp,semi-euler,\$1,\${3-true},\${2-ok}" >"\$out/timings.csv"
+}
+runs=\$(wc -l <"\$0.runs")
+$2
+SCRIPT
+  chmod +x "$work/$1"
+}
+
+# ab STATUS BASE NEW OPTIONS...: compare --ab must exit with STATUS and leave nothing in the folder for temporary files
+ab() {
+  local wanted=$1 status=0 base=$2 new=$3
+  shift 3
+  rm -f "$work/$base.runs" "$work/$new.runs"
+  "$mssim" compare --ab "$work/$base" "$work/$new" --scene cloth2500 "$@" >"$work/out" 2>"$work/err" || status=$?
+  echo "compare --ab $base $new $*: $status"
+  cat "$work/out" "$work/err"
+  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
+  [ -z "$(ls -A "$TMPDIR")" ] || fail "something is left in $TMPDIR"
+}
+says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\""; }
+warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\""; }
+
+# Times that vary a little from run to run.
+# shellcheck disable=SC2016 # for the programs' own shell
+{
+  program steady 'times "1.00$((runs * 7 % 10))"'
+  program steady2 'times "1.00$((runs * 3 % 10))"'
+  program slow 'times "1.10$((runs * 3 % 10))"'
+  program quick 'times "0.90$((runs * 3 % 10))"'
+  program wild 'times "$((runs % 4 + 1)).5"; sleep 0.05'
+  program wrong 'times 1.0 ok false; exit 1'
+  program broken 'times not-a-number'
+  program fickle 'if [ "$runs" -gt 2 ]; then times 1 "failed: step 3"; exit 1; else times 1; fi'
+  program crash 'echo "what went wrong"; kill -SEGV $$'
+  program deaf 'echo "no such device" >&2; exit 3'
+  program silent 'exit 0'
+  program sleepy 'echo $$ >"$0.pid"; sleep 60'
+}
+
+ab 0 steady steady2
+says 'openmp .* same'
+warns '8 rounds in'
+[ "$(wc -l <"$work/steady.runs")" -eq 8 ] || fail "not 8 runs"
+grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 3 --out ' "$work/steady.runs" ||
+  fail "the program is not given what was asked for: $(head -n 1 "$work/steady.runs")"
+ab 1 steady slow
+says 'openmp .* slower'
+ab 0 steady slow --threshold 20
+says 'openmp .* same'
+ab 0 steady quick --format json
+says '"verdict": "faster"'
+ab 1 steady slow --format markdown
+says '| \*\*slower\*\* |'
+
+# The budget: no round is begun that would not fit, and what is not known is not said.
+start=$(date +%s%N)
+ab 0 wild wild --time-budget 2 --backend openmp,serial --integrator rk4 --threads 2
+says 'undecided'
+warns 'the time budget ended'
+(($(date +%s%N) - start < 4000000000)) || fail "the time budget of 2 s is exceeded by far"
+grep -q -- '--backend openmp,serial --integrator rk4 --rounds 3 --threads 2 --out' "$work/wild.runs" || fail "options"
+
+# Programs that fail.
+ab 1 steady wrong
+says 'lost  *failed: not verified'
+ab 2 wrong steady
+warns 'nothing to compare'
+ab 1 steady fickle
+says 'lost  *failed: step 3'
+ab 2 fickle steady
+warns 'not in another (failed: step 3)'
+ab 2 steady crash
+warns '^what went wrong$'
+warns 'crash bench was ended by signal 11'
+ab 3 steady deaf
+warns '^no such device$'
+warns 'deaf bench exited with 3'
+ab 2 steady silent
+warns 'silent bench exited with 0 instead of measuring, saying nothing'
+ab 2 steady broken
+warns 'timings.csv, line 2, column ms_per_step: "not-a-number" is not a number'
+ab 3 steady missing
+warns 'cannot run .*missing: give the path'
+expect 2 'needs a --scene' compare --ab "$work/steady" "$work/slow"
+expect 2 'scene requires --ab' compare "$work" "$work" --scene cloth2500
+expect 2 'time-budget' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --time-budget 0
+expect 2 'excludes' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
+
+# Interrupted: ends the program under way, leaves nothing.
+set -m
+"$mssim" compare --ab "$work/sleepy" "$work/sleepy" --scene cloth2500 >"$work/out" 2>"$work/err" &
+compare=$!
+set +m
+for ((i = 0; i < 100; ++i)); do
+  [ ! -s "$work/sleepy.pid" ] || break
+  sleep 0.1
+done
+kill -INT "$compare"
+status=0
+wait "$compare" || status=$?
+[ "$status" -eq 130 ] || fail "interrupted it exits with $status"
+if kill -0 "$(cat "$work/sleepy.pid")" 2>/dev/null; then fail "the program under way goes on"; fi
+[ -z "$(ls -A "$TMPDIR")" ] || fail "interrupted it leaves something in $TMPDIR"
+
+# The real thing against itself: whatever the noise, never slower by more than a factor of 20.
+status=0
+"$mssim" compare --ab "$mssim" "$mssim" --scene cloth2500 --threads 1 --threshold 1900 --time-budget 60 >"$work/out" \
+  2>"$work/err" || status=$?
+cat "$work/out" "$work/err"
+[ "$status" -eq 0 ] || fail "a comparison with itself exits with $status"
+says 'cloth2500  openmp   semi-euler .* same'
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
