@@ -54,6 +54,7 @@ before=$(grep '^cloth2500,serial,semi-euler,1,' int/samples.csv)
 # --resume keeps that and measures the rest; a finished folder is left as it is.
 "$mssim" "${bench[@]}" --out int --resume >out 2>err || fail "--resume exits with $?: $(cat err)"
 [ "$(rounds int)" = '6 6 6 6 ' ] || fail "after --resume the rows have the rounds $(rounds int)"
+grep -A 1 '"earlier_starts_utc": \[' int/provenance.json | grep -q '"20' || fail "the provenance does not tell of the first run"
 [ "$(grep '^cloth2500,serial,semi-euler,1,' int/samples.csv)" = "$before" ] || fail "--resume has lost a sample"
 [ "$(grep -c '^cloth2500,serial,' int/samples.csv)" -eq 6 ] || fail "cloth2500 has not six samples"
 whole int
@@ -67,6 +68,10 @@ expect 2 'int holds results already: give another --out, --resume .*or --overwri
 cmp -s kept int/samples.csv || fail "a refused bench has changed the folder"
 "$mssim" "${scenes[@]}" --backend serial --rounds 6 --out int --resume >out 2>err && fail "other backends are mixed"
 grep -q 'other backends or integrators of cloth2500' err || fail "other backends: $(cat err)"
+cp -r int moved
+sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8/' moved/provenance.json
+expect 2 'cannot go on in moved: the CPU was Another CPU .*; the number of threads was 8 and is 1; choose another' \
+  "${bench[@]}" --out moved --resume
 expect 2 'resume' bench --scene cloth2500 --resume
 expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
 "$mssim" bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite >out 2>err ||

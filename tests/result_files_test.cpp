@@ -14,6 +14,7 @@
 #include "output/benchmark_json.h"
 #include "output/csv.h"
 #include "output/paper_table.h"
+#include "output/provenance_file.h"
 #include "output/published.h"
 #include "output/result_folder.h"
 #include "output/timings_csv.h"

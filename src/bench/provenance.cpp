@@ -8,15 +8,12 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "bench/noise.h"
 #include "model/fnv1a.h"
 
 namespace mssim {
 namespace {
-
-using nlohmann::json;
 
 std::vector<int> allowed_cpus() {
   std::vector<int> cpus;
@@ -67,17 +64,6 @@ std::string now_utc() {
   return text.data();
 }
 
-json caches_json(const std::vector<Cache>& caches) {
-  json list = json::array();
-  for (const Cache& cache : caches)
-    list.push_back({{"level", cache.level},
-                    {"type", cache.type},
-                    {"bytes", cache.bytes},
-                    {"count", cache.count},
-                    {"logical_cpus_sharing", cache.sharing}});
-  return list;
-}
-
 }  // namespace
 
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads) {
@@ -98,42 +84,6 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
 
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text) {
   provenance.scenes.push_back({std::string(name), fnv1a_64(file_text)});
-}
-
-json to_json(const Provenance& provenance) {
-  const BuildInfo& build = provenance.build;
-  const Machine& machine = provenance.machine;
-  json environment = json::object(), scenes = json::object();
-  for (const auto& [name, value] : provenance.thread_environment) environment[name] = value;
-  for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = hexadecimal(scene.fnv1a_64);
-  return {{"started_utc", provenance.started_utc},
-          {"command_line", provenance.command_line},
-          {"build",
-           {{"version", build.version},
-            {"commit", build.commit},
-            {"dirty", build.dirty},
-            {"compiler", build.compiler},
-            {"flags", build.flags},
-            {"build_type", build.build_type}}},
-          {"cpu",
-           {{"model", machine.cpu_model},
-            {"logical_cpus", machine.logical_cpus},
-            {"mhz", machine.cpu_mhz},
-            {"governor", machine.governor ? json(*machine.governor) : json()},
-            {"turbo", machine.turbo ? json(*machine.turbo) : json()},
-            {"caches", caches_json(machine.caches)}}},
-          {"memory_bytes", machine.memory_bytes},
-          {"load_average", machine.load_average},
-          {"operating_system", machine.operating_system},
-          {"kernel", machine.kernel},
-          {"threads",
-           {{"asked_for", provenance.threads},
-            {"allowed_cpus", provenance.allowed_cpus},
-            {"environment", environment}}},
-          {"opencl_devices", provenance.opencl_devices},
-          {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
-          {"noise", provenance.noise},
-          {"scenes_fnv1a_64", scenes}};
 }
 
 }  // namespace mssim

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,8 +30,9 @@ struct Provenance {
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
   std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/noise.h)
   std::vector<SceneHash> scenes;
-  std::vector<std::string> command_line;  ///< the program without its folder; the home folder reads ~
-  std::string started_utc;                ///< ISO 8601, for example "2026-01-31T12:00:00Z"
+  std::vector<std::string> command_line;        ///< the program without its folder; the home folder reads ~
+  std::vector<std::string> earlier_starts_utc;  ///< of runs that this one goes on with, as below
+  std::string started_utc;                      ///< ISO 8601, for example "2026-01-31T12:00:00Z"
 };
 
 /// Gathers all that can be known at the start; scenes, OpenCL devices and TetGen are the caller's to add.
@@ -41,8 +41,5 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
 
 /// Adds the hash of a scene file's text.
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);
-
-/// All of it. Numbers are finite; what is not known is absent or null.
-nlohmann::json to_json(const Provenance& provenance);
 
 }  // namespace mssim

@@ -17,6 +17,7 @@
 #include "commands/bench_summary.h"
 #include "commands/bench_trace.h"
 #include "commands/choices.h"
+#include "commands/earlier_rows.h"
 #include "commands/exit_code.h"
 #include "commands/prepared_scene.h"
 #include "commands/progress_line.h"
@@ -104,18 +105,6 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
   return rows;
 }
 
-/// What stands in the folder already and is to stay.
-std::vector<ResultRow> earlier_rows(const ResultFolder& folder, const BenchOptions& options) {
-  if (!folder.has_rows()) return {};
-  if (options.resume) return read_results(options.out);
-  if (!options.overwrite)
-    throw UsageError(options.out +
-                     " holds results already: give another --out, --resume to go on with them, "
-                     "or --overwrite to replace them");
-  folder.clear();
-  return {};
-}
-
 /// A user shall not wait for a scene only to see the program killed.
 void require_memory_for(const SceneJob& job, const SceneSpec& spec) {
   const SceneCounts counts = counts_of(spec);
@@ -141,7 +130,7 @@ int run(const BenchOptions& options) {
   const std::vector<PublishedTable> published = published_tables();
   std::optional<ResultFolder> folder;
   if (!options.out.empty()) folder.emplace(options.out, provenance, plan.tables);
-  BenchRows rows(folder ? earlier_rows(*folder, options) : std::vector<ResultRow>());
+  BenchRows rows(folder ? earlier_rows(*folder, provenance, options) : std::vector<ResultRow>());
   if (folder) folder->begin();
 
   if (!plan.timed.empty())

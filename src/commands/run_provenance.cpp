@@ -5,6 +5,7 @@
 #include "backends/opencl/device.h"
 #include "mesh/tetgen_program.h"
 #include "model/fnv1a.h"
+#include "output/provenance_file.h"
 
 namespace mssim {
 namespace {

@@ -6,9 +6,13 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
+
+#include "model/fnv1a.h"
+#include "model/printable.h"
 
 namespace mssim {
 namespace {
@@ -34,9 +38,20 @@ std::string read_text(const std::filesystem::path& file) {
   if (!in && !in.eof()) fail(file, "cannot be read: check its permissions");
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (text.size() > largest_provenance_bytes)
-    fail(file, "is longer than " + std::to_string(largest_provenance_bytes >> 20) +
-                   " MiB: give a provenance.json that mssim wrote");
+    fail(file, "is longer than " + std::to_string(largest_provenance_bytes >> 10) +
+                   " KiB: give a provenance.json that mssim wrote");
   return text;
+}
+
+json caches_json(const std::vector<Cache>& caches) {
+  json list = json::array();
+  for (const Cache& cache : caches)
+    list.push_back({{"level", cache.level},
+                    {"type", cache.type},
+                    {"bytes", cache.bytes},
+                    {"count", cache.count},
+                    {"logical_cpus_sharing", cache.sharing}});
+  return list;
 }
 
 /// A value for an error message: on one line, valid UTF-8, no longer than a line.
@@ -53,11 +68,16 @@ class Place {
   Place(const std::filesystem::path& file, const json& root) : file_(file), value_(root) {}
 
   Place operator[](const std::string& key) const {
+    const std::optional<Place> member = find(key);
+    if (!member) fail(file_, pointer_ + '/' + key + " is missing: give a provenance.json that mssim wrote");
+    return *member;
+  }
+  /// None where there is no such member: an older mssim did not write it.
+  std::optional<Place> find(const std::string& key) const {
     require(value_.is_object(), "an object");
     const auto member = value_.find(key);
-    if (member == value_.end())
-      fail(file_, pointer_ + '/' + key + " is missing: give a provenance.json that mssim wrote");
-    return {file_, *member, pointer_ + '/' + key};
+    if (member == value_.end()) return std::nullopt;
+    return Place(file_, *member, pointer_ + '/' + key);
   }
 
   std::string text() const {
@@ -145,6 +165,7 @@ Machine read_machine(const Place& document) {
   machine.memory_bytes = document["memory_bytes"].count<std::uint64_t>();
   machine.operating_system = document["operating_system"].text();
   machine.kernel = document["kernel"].text();
+  if (const auto turbo = cpu.find("turbo"); turbo && !turbo->is_null()) machine.turbo = turbo->truth();
   return machine;
 }
 
@@ -165,13 +186,56 @@ Provenance read_document(const Place& document) {
   });
   provenance.command_line = document["command_line"].list(text_of);
   provenance.started_utc = document["started_utc"].text();
+  if (const auto noise = document.find("noise")) provenance.noise = noise->list(text_of);
+  if (const auto earlier = document.find("earlier_starts_utc"))
+    provenance.earlier_starts_utc = earlier->list(text_of);
   return provenance;
 }
 
 }  // namespace
 
+json to_json(const Provenance& provenance) {
+  const BuildInfo& build = provenance.build;
+  const Machine& machine = provenance.machine;
+  json environment = json::object(), scenes = json::object();
+  for (const auto& [name, value] : provenance.thread_environment) environment[name] = value;
+  for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = hexadecimal(scene.fnv1a_64);
+  return {{"started_utc", provenance.started_utc},
+          {"earlier_starts_utc", provenance.earlier_starts_utc},
+          {"command_line", provenance.command_line},
+          {"build",
+           {{"version", build.version},
+            {"commit", build.commit},
+            {"dirty", build.dirty},
+            {"compiler", build.compiler},
+            {"flags", build.flags},
+            {"build_type", build.build_type}}},
+          {"cpu",
+           {{"model", machine.cpu_model},
+            {"logical_cpus", machine.logical_cpus},
+            {"mhz", machine.cpu_mhz},
+            {"governor", machine.governor ? json(*machine.governor) : json()},
+            {"turbo", machine.turbo ? json(*machine.turbo) : json()},
+            {"caches", caches_json(machine.caches)}}},
+          {"memory_bytes", machine.memory_bytes},
+          {"load_average", machine.load_average},
+          {"operating_system", machine.operating_system},
+          {"kernel", machine.kernel},
+          {"threads",
+           {{"asked_for", provenance.threads},
+            {"allowed_cpus", provenance.allowed_cpus},
+            {"environment", environment}}},
+          {"opencl_devices", provenance.opencl_devices},
+          {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
+          {"noise", provenance.noise},
+          {"scenes_fnv1a_64", scenes}};
+}
+
 Provenance read_provenance(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
+  return parse_provenance(file, read_text(file));
+}
+
+Provenance parse_provenance(const std::filesystem::path& file, std::string_view text) {
   json document;
   try {
     document = json::parse(text, [&](int depth, json::parse_event_t /*event*/, const json& /*parsed*/) {
@@ -184,10 +248,7 @@ Provenance read_provenance(const std::filesystem::path& file) {
     // The library's sentence names line and column, behind its own name in brackets.
     const std::string_view message = error.what();
     const std::size_t start = message.find("] ");
-    std::string problem(message.substr(start == std::string_view::npos ? 0 : start + 2));
-    for (char& character : problem)
-      if (static_cast<unsigned char>(character) < 0x20 || static_cast<unsigned char>(character) > 0x7e)
-        character = '?';
+    const std::string problem = printable(message.substr(start == std::string_view::npos ? 0 : start + 2));
     fail(file, "malformed JSON, " + problem + ": give a provenance.json that mssim wrote");
   }
   return read_document({file, document});

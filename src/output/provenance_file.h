@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "bench/provenance.h"
 
@@ -14,11 +16,18 @@ struct ProvenanceError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Larger files are refused: no provenance needs a tenth of it, and a wrong file should not fill the memory.
-inline constexpr std::size_t largest_provenance_bytes = std::size_t{4} << 20;
+/// Larger files are refused: a provenance has a few thousand bytes, and a wrong file should fill neither the
+/// memory nor a message.
+inline constexpr std::size_t largest_provenance_bytes = std::size_t{256} << 10;
+
+/// All of it. Numbers are finite; what is not known is absent or null.
+nlohmann::json to_json(const Provenance& provenance);
 
 /// Reads what to_json(Provenance) wrote. Every value that mssim writes must be there and be what it should;
 /// further ones, of a newer mssim, are ignored. Throws ProvenanceError.
 Provenance read_provenance(const std::filesystem::path& file);
+
+/// The same of a text; `file` is named in messages.
+Provenance parse_provenance(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace mssim

@@ -7,6 +7,7 @@
 
 #include "output/atomic_file.h"
 #include "output/benchmark_json.h"
+#include "output/provenance_file.h"
 #include "output/timings_csv.h"
 #include "output/write_error.h"
 
@@ -49,6 +50,11 @@ void ResultFolder::clear() const {
     fs::remove(folder_ / name, error);
     if (error) throw WriteError(write_failure(folder_ / name, "removing it", error.value()));
   }
+}
+
+void ResultFolder::go_on_with(const Provenance& earlier) {
+  provenance_.earlier_starts_utc = earlier.earlier_starts_utc;
+  provenance_.earlier_starts_utc.push_back(earlier.started_utc);
 }
 
 void ResultFolder::begin() const {

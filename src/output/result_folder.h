@@ -25,6 +25,8 @@ class ResultFolder {
   bool has_rows() const;
   /// Removes the rows that an earlier run left. Throws WriteError.
   void clear() const;
+  /// Takes the start of the run whose rows stay into this one's provenance.
+  void go_on_with(const Provenance& earlier);
   /// Writes provenance.json, so that a folder that cannot be written is found before anything is measured.
   /// Throws WriteError.
   void begin() const;

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "bench/provenance.h"
+#include "bench/result.h"
+#include "commands/bench_plan.h"
+#include "output/result_folder.h"
+
+namespace mssim {
+
+/// What stands in the folder already and is to stay: with --resume what an earlier run of the same program on
+/// the same machine left, with --overwrite nothing. Throws UsageError where the folder has results and
+/// neither was asked for, or where --resume would mix what is not alike, and what reading them throws.
+std::vector<ResultRow> earlier_rows(ResultFolder& folder, const Provenance& now, const BenchOptions& options);
+
+}  // namespace mssim

@@ -1,0 +1,20 @@
+// provenance.json, which `compare` and `bench --resume` read.
+
+#include <nlohmann/json.hpp>
+
+#include "fuzz_checks.h"
+#include "output/provenance_file.h"
+
+namespace mssim {
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto found =
+      unless_refused<ProvenanceError>([&] { return parse_provenance("fuzz.json", text_of(data, size)); });
+  if (!found) return 0;
+  const std::string written = to_json(*found).dump();
+  require(to_json(parse_provenance("again.json", written)).dump() == written,
+          "a written provenance reads back");
+  return 0;
+}
+
+}  // namespace mssim
