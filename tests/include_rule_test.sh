@@ -13,7 +13,7 @@ integrators
 contact      model kernels
 backends     model integrators kernels contact
 bench        backends model integrators mssim
-output       model bench/result.h bench/provenance.h bench/statistics.h bench/comparison.h
+output       model bench/result.h bench/provenance.h bench/statistics.h bench/outliers.h bench/comparison.h
 commands     *
 main.cpp     *
 '

@@ -29,6 +29,8 @@ Provenance full_provenance() {
   provenance.thread_environment = {{"GOMP_SPINCOUNT", "1"}, {"OMP_PLACES", "cores"}};
   provenance.opencl_devices = {"platform: device, driver 1"};
   provenance.tetgen = "1.5";
+  provenance.machine.turbo = true;
+  provenance.noise = {"the load is high"};
   provenance.scenes = {{"cloth2500", 0xfedcba9876543210}, {"mine", 1}};
   return provenance;
 }
@@ -101,6 +103,8 @@ TEST_F(ProvenanceFile, IsRefusedWithThePlaceAndTheValue) {
   EXPECT_THAT(refusal_with("/build/compiler", nullptr), HasSubstr("/build/compiler is null"));
   EXPECT_THAT(refusal_with("/load_average/0", "much"), HasSubstr("/load_average/0 is \"much\""));
   EXPECT_THAT(refusal_with("/opencl_devices", "none"), HasSubstr("instead of a list"));
+  EXPECT_THAT(refusal_with("/cpu/turbo", 7), HasSubstr("/cpu/turbo is 7 instead of true or false"));
+  EXPECT_THAT(refusal_with("/noise", "much"), HasSubstr("/noise is \"much\" instead of a list"));
   EXPECT_THAT(refusal_with("/cpu/governor", 7), HasSubstr("/cpu/governor is 7"));
   EXPECT_THAT(refusal_with("/cpu/caches/0/bytes", 1e300), HasSubstr("/cpu/caches/0/bytes is 1e+300"));
   for (const char* hash : {"fedcba987654321", "fedcba987654321g", "0xfedcba98765432", "fedcba98765432100"})
@@ -116,7 +120,7 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
   for (const auto& [pointer, value] : flat.items()) {
     const json::json_pointer place(pointer);
     if (document[place.parent_pointer()].is_array() || pointer.starts_with("/scenes_fnv1a_64/") ||
-        pointer.starts_with("/threads/environment/"))
+        pointer.starts_with("/threads/environment/") || pointer == "/cpu/turbo")
       continue;
     EXPECT_EQ(refusal_with(pointer, gone), pointer + " is missing: give a provenance.json that mssim wrote");
     ++values;

@@ -130,8 +130,8 @@ TEST(Provenance, HoldsTheseFactsAndNoOthers) {
   const nlohmann::json json = to_json(gather_provenance({"mssim"}, 1));
   for (const auto& [name, value] : json.items()) facts.push_back(name);
   EXPECT_THAT(facts, ElementsAre("build", "command_line", "cpu", "kernel", "load_average", "memory_bytes",
-                                 "opencl_devices", "operating_system", "scenes_fnv1a_64", "started_utc",
-                                 "tetgen", "threads"));
+                                 "noise", "opencl_devices", "operating_system", "scenes_fnv1a_64",
+                                 "started_utc", "tetgen", "threads"));
 }
 
 }  // namespace

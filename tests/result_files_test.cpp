@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output/benchmark_json.h"
@@ -23,7 +25,10 @@ namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Lt;
+using testing::SizeIs;
 
 class ResultFiles : public TemporaryFolderTest {};
 
@@ -35,11 +40,11 @@ TEST_F(ResultFiles, TimingsHaveTheDocumentedColumnsAndQuoteWhatNeedsIt) {
       "scene,nodes,springs_unique,springs_published,backend,device,threads,integrator,dt_s,rounds,"
       "ms_per_step,ms_per_step_low,ms_per_step_high,ms_per_step_min,springs_per_second,"
       "gigabytes_per_second,roofline_fraction,speedup_vs_serial,paper_ms,position_error,energy_drift,"
-      "verified,status,note\n"
+      "verified,status,note,warm_up_trials,outliers\n"
       "cloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,116016000,1.5,"
-      "0.25,1,19.475,1e-05,-2e-07,true,ok,\n"
+      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0\n"
       "cloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
-      "\"unavailable: no device \"\"fast, big\"\"\nhere\",\n");
+      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0\n");
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
@@ -62,10 +67,16 @@ TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
 
 TEST_F(ResultFiles, SamplesAreListedRoundByRound) {
   EXPECT_EQ(samples_csv(std::vector{measured_row("serial", 0.5, 1.0)}),
-            "scene,backend,integrator,round,steps,ms_per_step\n"
-            "cloth2500,serial,semi-euler,1,10,1\n"
-            "cloth2500,serial,semi-euler,2,20,0.25\n"
-            "cloth2500,serial,semi-euler,3,30,0.5\n");
+            "scene,backend,integrator,round,steps,ms_per_step,outlier\n"
+            "cloth2500,serial,semi-euler,1,10,1,\n"
+            "cloth2500,serial,semi-euler,2,20,0.25,\n"
+            "cloth2500,serial,semi-euler,3,30,0.5,\n");
+  ResultRow row = measured_row("serial", 0.5, 1.0);
+  row.samples_ms = {1, 1, 1.125, 1.25, 1.25, 1.75, 1, 9};
+  row.sample_steps.assign(8, 7);
+  const std::string text = samples_csv(std::vector{row});
+  EXPECT_THAT(text, HasSubstr(",5,7,1.25,\n"));
+  EXPECT_THAT(text, HasSubstr(",8,7,9,extreme\n"));
 }
 
 TEST_F(ResultFiles, TimingsAllowFurtherColumnsBehindTheirs) {
@@ -76,6 +87,21 @@ TEST_F(ResultFiles, TimingsAllowFurtherColumnsBehindTheirs) {
   const auto back = read_timings(put("timings.csv", header + ",joules\r\n" + row + ",3\r\n"));
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].status, "ok");
+}
+
+TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
+  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  std::istringstream lines(timings_csv(rows));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    for (int columns = 0; columns < 2; ++columns) line.resize(line.rfind(','));
+    text += line + '\n';
+  }
+  EXPECT_THAT(text, HasSubstr("status,note\n"));
+  const auto back = read_timings(put("timings.csv", text));
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back[0].ms_per_step, 0.5);
+  EXPECT_EQ(back[0].warm_up_trials, 0);
 }
 
 TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
@@ -97,12 +123,27 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(complaint(with("19.475", "nan")), HasSubstr("column paper_ms: \"nan\""));
   EXPECT_THAT(complaint(with("2500,14502", "-1,14502")), HasSubstr("column nodes: \"-1\""));
   EXPECT_THAT(complaint(with("true", "yes")), HasSubstr("column verified: \"yes\""));
-  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 23 fields where the header has 24"));
+  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 25 fields where the header has 26"));
   EXPECT_THAT(complaint(with("ok", "\"ok")), HasSubstr("line 2: a quoted field does not end"));
   EXPECT_THAT(complaint(with("roofline_fraction", "roof")), HasSubstr("column 17 is \"roof\""));
   EXPECT_THAT(complaint(""), HasSubstr("column 1 is missing"));
   EXPECT_THROW(read_timings(folder() / "missing.csv"), CsvError);
   EXPECT_THROW(read_timings(folder()), CsvError);
+  // Found by fuzzing: whatever stood in the file went into the message.
+  EXPECT_THAT(complaint(with("19.475", "\x1b[31m" + std::string(100'000, 'x'))),
+              AllOf(HasSubstr("column paper_ms: \"\\u001b[31mxxx"), SizeIs(Lt(300U))));
+  EXPECT_THAT(complaint(with("roofline_fraction", "\xff\x7f" + std::string(100'000, 'x'))),
+              AllOf(HasSubstr("is \"\xef\xbf\xbd\\u007fxxx"), SizeIs(Lt(300U))));
+}
+
+TEST_F(ResultFiles, WithoutAnEndAreRefusedAndNotRead) {
+  EXPECT_THROW(read_timings("/dev/zero"), CsvError);
+  const fs::path pipe = folder() / "pipe.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(read_timings(pipe), CsvError);
+  const fs::path huge = put("huge.csv", "");
+  fs::resize_file(huge, largest_csv_bytes + 1);  // without its blocks
+  EXPECT_THROW(read_timings(huge), CsvError);
 }
 
 TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
@@ -118,6 +159,7 @@ TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
   const ResultFolder results(folder() / "new/out", made_up_provenance(),
                              paper_tables(legend, published_tables()));
+  results.begin();
   EXPECT_EQ(nlohmann::json::parse(text_of(folder() / "new/out/provenance.json")),
             to_json(made_up_provenance()));
   EXPECT_TRUE(read_results(folder() / "new/out").empty());
@@ -153,6 +195,34 @@ TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
   rows[1].samples_ms[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(results.write(rows), std::invalid_argument);
   EXPECT_EQ(text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json"), before);
+}
+
+TEST_F(ResultFiles, AreWrittenByOneAtATime) {
+  const auto open = [&] {
+    return ResultFolder(folder() / "out", made_up_provenance(), paper_tables(legend, published_tables()));
+  };
+  {
+    ResultFolder first = open();
+    const ResultFolder moved = std::move(first);
+    try {
+      open();
+      ADD_FAILURE() << "a second one was let in";
+    } catch (const WriteError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("another mssim is writing into " + (folder() / "out").string()));
+    }
+  }
+  EXPECT_FALSE(open().has_rows());
+}
+
+TEST_F(ResultFiles, AreClearedOfAnEarlierRunsRows) {
+  const ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+  put("notes.txt", "mine");
+  results.write(std::vector{measured_row("serial", 0.5, 1.0)});
+  EXPECT_TRUE(results.has_rows());
+  results.clear();
+  EXPECT_FALSE(results.has_rows());
+  EXPECT_FALSE(fs::exists(folder() / "samples.csv"));
+  EXPECT_EQ(text_of(folder() / "notes.txt"), "mine");
 }
 
 TEST_F(ResultFiles, CannotGoWhereAFileIs) {

@@ -35,6 +35,7 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.position_error = 1e-5;
   row.energy_drift = -2e-7;
   row.verified = true;
+  row.warm_up_trials = 4;
   row.samples_ms = {2 * ms, ms / 2, ms};
   row.sample_steps = {10, 20, 30};
   return row;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/printable.h"
 #include "scene/json_document.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
@@ -288,6 +289,13 @@ TEST(FindScene, ListsTheKnownNamesForAnUnknownOne) {
   }
 }
 
+TEST_F(SceneFile, OfMegabytesIsRefusedInSecondsNotHours) {
+  // The parser used to go through the whole list after each of its elements.
+  std::string text = "[";
+  for (int i = 0; i < 500'000; ++i) text += "{},";
+  EXPECT_THAT(error_of(write(text + "0]")), HasSubstr("the top level is a list: give an object"));
+}
+
 TEST(NearestName, CountsInsertionsDeletionsReplacementsAndSwaps) {
   const std::vector<std::string_view> names{"rows", "columns", "spacing_m"};
   EXPECT_EQ(nearest_name("rosw", names), "rows");
@@ -302,6 +310,8 @@ TEST(Printable, KeepsMessagesOnOneLineAndShort) {
   EXPECT_EQ(printable("a\nb\"c\\d"), "a\\nb\"c\\d");
   EXPECT_EQ(printable("\xc3\xa4\xc3\xa4", 3), "\xc3\xa4...");
   EXPECT_EQ(printable(std::string(100, 'x'), 10), "xxxxxxxxxx...");
+  EXPECT_EQ(printable("\x1b[31m\x7f\xc2\x9b\xc2\xa0"), "\\u001b[31m\\u007f\\u009b\xc2\xa0");
+  EXPECT_EQ(printable("a\xff\xc2"), "a\xef\xbf\xbd\xef\xbf\xbd");  // the replacement character
 }
 
 }  // namespace

@@ -67,6 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BrokenText{"v 0 0 0\nv 1 0\n", "a.obj, line 2: ", "z is missing"},
                     BrokenText{"v 0 0 zero\n", "a.obj, line 1: ", "z is \"zero\""},
                     BrokenText{"v 0 0 inf\n", "a.obj, line 1: ", "z is \"inf\""},
+                    // It had an infinite volume.
+                    BrokenText{"v 0 0 1e150\n", "a.obj, line 1: ", "give a number from -1e9 to 1e9"},
                     BrokenText{"v 0 0 0\nf 1 1\n", "a.obj, line 2: ", "the face has 2 corners"},
                     BrokenText{"v 0 0 0\nf\n", "a.obj, line 2: ", "the face has 0 corners"},
                     BrokenText{"v 0 0 0\nf 1 1 2\n", "a.obj, line 2: ", "vertex 2 of 1"},
@@ -79,7 +81,9 @@ INSTANTIATE_TEST_SUITE_P(
                     BrokenText{"v 0 0 0\nf 1 1 99999999999999999999\n", "a.obj, line 2: ", "cannot be read"},
                     BrokenText{"v 0 0 0\nf 1 1 \\\n1\n", "a.obj, line 2: ", "backslash"},
                     BrokenText{"curv 0 1 2\n", "a.obj, line 1: ", "it begins with \"curv\""},
-                    BrokenText{"PK\x03\x04\n", "a.obj, line 1: ", "it begins with \"PK??\""}));
+                    BrokenText{"PK\x03\x04\n", "a.obj, line 1: ", "it begins with \"PK\\u0003\\u0004\""},
+                    // Bytes that are not UTF-8 went into the message where char has no sign (arm64).
+                    BrokenText{"\xff\n", "a.obj, line 1: ", "it begins with \"\xef\xbf\xbd\""}));
 
 /// An ASCII STL file of the tetrahedron above.
 std::string ascii_stl() {
@@ -152,6 +156,7 @@ TEST(StlFile, BrokenBinaryNamesTheByte) {
     return mesh_error_of([&] { parse_stl("a.stl", content); });
   };
   EXPECT_THAT(complaint(binary_stl(NAN)), StartsWith("a.stl, byte 96: a corner is at (nan, 0, 0)"));
+  EXPECT_THAT(complaint(binary_stl(-2e9F)), HasSubstr("for each axis give a number from -1e9 to 1e9"));
   EXPECT_THAT(complaint(binary_stl() + "more"),
               StartsWith("a.stl, byte 80: the file promises 4 triangles, which take 284 bytes, and has 288"));
   std::string absurd = binary_stl();

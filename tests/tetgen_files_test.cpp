@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenFile{"", nullptr, "a.node, line ", "the file ends before the number of nodes"},
         BrokenFile{"# only this\n", nullptr, "a.node, line 1: ", "truncated"},
         BrokenFile{"five 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is \"five\""},
-        BrokenFile{"\x01\x7f\xff\n", nullptr, "a.node, line 1: ", "is \"??"},
+        BrokenFile{"\x01\x7f\xff\n", nullptr, "a.node, line 1: ", "is \"\\u0001\\u007f\xef\xbf\xbd\""},
         BrokenFile{"0 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is 0"},
         BrokenFile{"-5 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is -5"},
         BrokenFile{"99999999999999999999 3 0 0\n", nullptr, "a.node, line 1: ", "99999999999999999999"},
@@ -85,12 +85,18 @@ INSTANTIATE_TEST_SUITE_P(
                    "a.node, line 1: ", "more than a file of 34 bytes"},
         BrokenFile{"1 2 0 0\n", nullptr, "a.node, line 1: ", "the dimension is 2"},
         BrokenFile{"1 3 -1 0\n", nullptr, "a.node, line 1: ", "attributes is -1"},
+        // Found by fuzzing: such a number overflowed when the others were added to it.
+        BrokenFile{"1 3 9223372036854775807 0\n", nullptr,
+                   "a.node, line 1: ", "attributes is 9223372036854775807; give one from 0 to 1000"},
+        BrokenFile{"1 3 0 1001\n", nullptr, "a.node, line 1: ", "boundary markers is 1001"},
         BrokenFile{FOUR_NODES, nullptr, "a.node, line 4: ", "the file ends before node 4 of 4"},
         BrokenFile{FOUR_NODES "3 0 0", nullptr, "a.node, line 5: ", "there are 3 numbers"},
         BrokenFile{FOUR_NODES "3 0 0 0 0", nullptr, "a.node, line 5: ", "there are 5 numbers"},
         BrokenFile{FOUR_NODES "3 0 0 x", nullptr, "a.node, line 5: ", "z is \"x\""},
         BrokenFile{FOUR_NODES "3 0 nan 1", nullptr, "a.node, line 5: ", "y is \"nan\""},
         BrokenFile{FOUR_NODES "3 1e999 0 1", nullptr, "a.node, line 5: ", "x is \"1e999\""},
+        BrokenFile{FOUR_NODES "3 -2e9 0 1", nullptr,
+                   "a.node, line 5: ", "x is \"-2e9\"; give a number from -1e9 to 1e9"},
         BrokenFile{FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 stands where node 3 is due"},
         BrokenFile{FOUR_NODES "3 0 0 1\n4 1 1 1", nullptr, "a.node, line 6: ", "goes on after the 4 nodes"},
         BrokenFile{"1 3 0 0\n7 0 0 0\n", nullptr, "a.node, line 2: ", "the first node has the number 7"},
@@ -117,6 +123,13 @@ INSTANTIATE_TEST_SUITE_P(
                    "a.ele, line 4: ", "shares a face with two"},
         BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4\nmore",
                    "a.ele, line 4: ", "goes on after the 2 tetrahedra"}));
+
+TEST(TetgenFiles, OfOneEndlessLineAreRefusedBeforeItIsSplitIntoWords) {
+  std::string words = "5 3 0 0\n0";
+  while (words.size() <= 9 + (std::size_t{1} << 20)) words += " 1";
+  EXPECT_THAT(mesh_error_of([&] { parse(words, good_tetrahedra); }),
+              AllOf(StartsWith("a.node, line 2: it has "), HasSubstr("break the file into lines")));
+}
 
 TEST_F(MeshTest, TetgenFilesThatAreMissingOrFoldersAreNamed) {
   put("a.node", good_nodes);

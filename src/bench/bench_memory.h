@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "bench/bench_scene.h"
+#include "bench/scene_job.h"
 
 namespace mssim {
 

@@ -104,6 +104,13 @@ std::vector<Cache> read_caches(const fs::path& cpus) {
   return caches;
 }
 
+/// Drivers say it in one of two ways: whether boost is on, or whether turbo is off.
+std::optional<bool> read_turbo(const fs::path& cpus) {
+  if (const std::string boost = first_line(cpus / "cpufreq/boost"); !boost.empty()) return boost == "1";
+  if (const std::string off = first_line(cpus / "intel_pstate/no_turbo"); !off.empty()) return off == "0";
+  return std::nullopt;
+}
+
 std::vector<double> read_load(const fs::path& file) {
   std::ifstream in(file);
   std::vector<double> averages;
@@ -133,6 +140,7 @@ Machine read_machine(const fs::path& root) {
   machine.caches = read_caches(cpus);
   if (std::string governor = first_line(cpus / "cpu0/cpufreq/scaling_governor"); !governor.empty())
     machine.governor = std::move(governor);
+  machine.turbo = read_turbo(cpus);
   machine.load_average = read_load(root / "proc/loadavg");
   machine.memory_bytes = leading_number<std::uint64_t>(value_of(root / "proc/meminfo", "MemTotal", ':'))
                          << 10;

@@ -24,7 +24,8 @@ struct Machine {
   double cpu_mhz = 0;                   ///< of the first CPU, now
   std::vector<Cache> caches;            ///< by level, then type
   std::optional<std::string> governor;  ///< of the first CPU's frequency; none in most virtual machines
-  std::vector<double> load_average;     ///< over 1, 5 and 15 minutes
+  std::optional<bool> turbo;         ///< whether the frequency may exceed the nominal one, where it is said
+  std::vector<double> load_average;  ///< over 1, 5 and 15 minutes
   std::uint64_t memory_bytes = 0;
   std::string operating_system;  ///< the distribution's name for itself
   std::string kernel;            ///< system, release and architecture

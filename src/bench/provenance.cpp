@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "bench/noise.h"
 #include "model/fnv1a.h"
 
 namespace mssim {
@@ -90,6 +91,7 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
     provenance.command_line.push_back(provenance.command_line.empty()
                                           ? std::filesystem::path(argument).filename().string()
                                           : without_home(argument));
+  provenance.noise = noise_of(provenance);
   provenance.started_utc = now_utc();
   return provenance;
 }
@@ -118,6 +120,7 @@ json to_json(const Provenance& provenance) {
             {"logical_cpus", machine.logical_cpus},
             {"mhz", machine.cpu_mhz},
             {"governor", machine.governor ? json(*machine.governor) : json()},
+            {"turbo", machine.turbo ? json(*machine.turbo) : json()},
             {"caches", caches_json(machine.caches)}}},
           {"memory_bytes", machine.memory_bytes},
           {"load_average", machine.load_average},
@@ -129,6 +132,7 @@ json to_json(const Provenance& provenance) {
             {"environment", environment}}},
           {"opencl_devices", provenance.opencl_devices},
           {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
+          {"noise", provenance.noise},
           {"scenes_fnv1a_64", scenes}};
 }
 

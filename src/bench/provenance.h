@@ -29,6 +29,7 @@ struct Provenance {
   std::vector<std::pair<std::string, std::string>> thread_environment;
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
+  std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/noise.h)
   std::vector<SceneHash> scenes;
   std::vector<std::string> command_line;  ///< the program without its folder; the home folder reads ~
   std::string started_utc;                ///< ISO 8601, for example "2026-01-31T12:00:00Z"

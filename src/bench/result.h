@@ -37,6 +37,8 @@ struct ResultRow {
   bool verified = false;
   std::string status = "ok";       ///< ok, or failed/unsupported/unavailable with the reason after a colon
   std::string note;                ///< what a reader of the numbers should know, or empty
+  int warm_up_trials = 0;          ///< before the samples, until the backend was warm
+  int outliers = 0;                ///< samples that lie far from the rest (bench/outliers.h); they count too
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
 };

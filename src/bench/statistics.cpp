@@ -18,21 +18,21 @@ double fair_binomial(std::size_t n, std::size_t k) {
                   static_cast<double>(n) * std::numbers::ln2);
 }
 
-std::vector<double> sorted(std::span<const double> samples) {
-  if (samples.empty()) throw std::invalid_argument("a median needs at least one sample");
-  std::vector<double> result(samples.begin(), samples.end());
-  if (!std::all_of(result.begin(), result.end(), [](double sample) { return std::isfinite(sample); }))
-    throw std::invalid_argument("a median needs finite samples");
-  std::sort(result.begin(), result.end());
-  return result;
-}
-
-double middle(const std::vector<double>& ascending) {
-  const std::size_t half = ascending.size() / 2;
-  return ascending.size() % 2 == 1 ? ascending[half] : std::midpoint(ascending[half - 1], ascending[half]);
+double middle(const std::vector<double>& sorted) {
+  const std::size_t half = sorted.size() / 2;
+  return sorted.size() % 2 == 1 ? sorted[half] : std::midpoint(sorted[half - 1], sorted[half]);
 }
 
 }  // namespace
+
+std::vector<double> ascending(std::span<const double> samples) {
+  if (samples.empty()) throw std::invalid_argument("statistics need at least one sample");
+  std::vector<double> result(samples.begin(), samples.end());
+  if (!std::all_of(result.begin(), result.end(), [](double sample) { return std::isfinite(sample); }))
+    throw std::invalid_argument("statistics need finite samples");
+  std::sort(result.begin(), result.end());
+  return result;
+}
 
 double rank_coverage(std::size_t samples, std::size_t rank) {
   double tail = 0;
@@ -48,7 +48,7 @@ std::size_t interval_rank(std::size_t samples) {
   return rank;
 }
 
-double median(std::span<const double> samples) { return middle(sorted(samples)); }
+double median(std::span<const double> samples) { return middle(ascending(samples)); }
 
 MeanDeviation mean_deviation(std::span<const double> samples) {
   if (samples.empty()) throw std::invalid_argument("a mean needs at least one sample");
@@ -62,10 +62,9 @@ MeanDeviation mean_deviation(std::span<const double> samples) {
 }
 
 MedianInterval median_interval(std::span<const double> samples) {
-  const std::vector<double> ascending = sorted(samples);
-  const std::size_t rank = std::max<std::size_t>(interval_rank(ascending.size()), 1);
-  return {middle(ascending), ascending[rank - 1], ascending[ascending.size() - rank],
-          rank_coverage(ascending.size(), rank)};
+  const std::vector<double> sorted = ascending(samples);
+  const std::size_t rank = std::max<std::size_t>(interval_rank(sorted.size()), 1);
+  return {middle(sorted), sorted[rank - 1], sorted[sorted.size() - rank], rank_coverage(sorted.size(), rank)};
 }
 
 MedianInterval median_ratio(std::span<const double> numerators, std::span<const double> denominators) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace mssim {
 
@@ -32,8 +33,10 @@ double rank_coverage(std::size_t samples, std::size_t rank);
 /// steps, so that the coverage is often well above 95 %; nothing is interpolated.
 std::size_t interval_rank(std::size_t samples);
 
-/// The middle sample, or the mean of the two middle ones. Throws std::invalid_argument for no samples or for
-/// one that is not finite.
+/// The samples in ascending order. Throws std::invalid_argument for no samples or for one that is not finite.
+std::vector<double> ascending(std::span<const double> samples);
+
+/// The middle sample, or the mean of the two middle ones. Throws like ascending().
 double median(std::span<const double> samples);
 
 /// Mean, and standard deviation of the distribution as estimated from the sample (division by n - 1), for

@@ -13,6 +13,7 @@
 #include "bench/bench_memory.h"
 #include "bench/bench_scene.h"
 #include "commands/bench_plan.h"
+#include "commands/bench_rows.h"
 #include "commands/bench_summary.h"
 #include "commands/bench_trace.h"
 #include "commands/choices.h"
@@ -20,6 +21,7 @@
 #include "commands/prepared_scene.h"
 #include "commands/progress_line.h"
 #include "commands/run_provenance.h"
+#include "commands/stop_request.h"
 #include "commands/structure.h"
 #include "integrators/integrators.h"
 #include "output/listing.h"
@@ -54,30 +56,42 @@ int exit_code_of(const std::vector<ResultRow>& rows, const BenchOptions& options
   return code;
 }
 
-std::vector<ResultRow> time_scenes(SceneJob job, const std::vector<std::string>& names,
-                                   const BenchOptions& options, const std::vector<PublishedTable>& published,
-                                   const ResultFolder* folder) {
-  std::vector<ResultRow> rows;
+/// Measures the plan's scenes, but for what an earlier run has done of them already, and writes the folder
+/// after every round. Ends early when it is asked to.
+void time_scenes(SceneJob job, const std::vector<std::string>& names, const BenchOptions& options,
+                 const std::vector<PublishedTable>& published, const ResultFolder* folder,
+                 const StopRequest& stop, BenchRows& rows) {
   ProgressLine progress(names.size());
   for (const std::string& name : names) {
+    job.name = find_scene(name).name;
+    job.earlier = rows.of_scene(job.name);
+    progress.begin_scene(job.name);
+    const bool finished = is_finished(job, job.name, job.earlier);
+    if (finished && !options.trace) continue;
     const PreparedScene scene = prepare_scene(name);
     warn_of_difference(scene);
-    job.name = scene.spec.name;
     job.system = &scene.system;
     job.springs_published = scene.counts.springs_published;
     job.note = scene.note;
     job.dt_s = scene.dt_s;
-    progress.begin_scene(job.name);
-    std::vector<ResultRow> measured =
-        bench_scene(job, [&](const std::string& activity, double done) { progress.update(activity, done); });
-    add_published_times(measured, job.backends, published);
-    rows.insert(rows.end(), measured.begin(), measured.end());
-    if (folder) folder->write(rows);
-    if (options.trace)
-      write_bench_traces(job, scene, measured, std::filesystem::path(options.out) / "traces",
-                         [&](const std::string& activity) { progress.update(activity, 1); });
+    const auto keep = [&](std::vector<ResultRow> measured) {
+      add_published_times(measured, job.backends, published);
+      rows.replace(job.name, std::move(measured));
+      if (folder) folder->write(rows.all());
+    };
+    const BenchWatch watch{
+        .progress = [&](const std::string& activity, double done) { progress.update(activity, done); },
+        .after_round = keep,
+        .stop = [&] { return stop.requested(); }};
+    if (!finished) {
+      std::vector<ResultRow> measured = bench_scene(job, watch);
+      if (!measured.empty()) keep(std::move(measured));
+    }
+    if (options.trace && !stop.requested())
+      write_bench_traces(job, scene, rows.of_scene(job.name), std::filesystem::path(options.out) / "traces",
+                         options.resume, watch);
+    if (stop.requested()) return;
   }
-  return rows;
 }
 
 std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names) {
@@ -88,6 +102,18 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
     rows.push_back(structure_of(scene));
   }
   return rows;
+}
+
+/// What stands in the folder already and is to stay.
+std::vector<ResultRow> earlier_rows(const ResultFolder& folder, const BenchOptions& options) {
+  if (!folder.has_rows()) return {};
+  if (options.resume) return read_results(options.out);
+  if (!options.overwrite)
+    throw UsageError(options.out +
+                     " holds results already: give another --out, --resume to go on with them, "
+                     "or --overwrite to replace them");
+  folder.clear();
+  return {};
 }
 
 /// A user shall not wait for a scene only to see the program killed.
@@ -115,20 +141,29 @@ int run(const BenchOptions& options) {
   const std::vector<PublishedTable> published = published_tables();
   std::optional<ResultFolder> folder;
   if (!options.out.empty()) folder.emplace(options.out, provenance, plan.tables);
+  BenchRows rows(folder ? earlier_rows(*folder, options) : std::vector<ResultRow>());
+  if (folder) folder->begin();
 
+  if (!plan.timed.empty())
+    for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
   int code = exit_ok;
   if (!plan.described.empty()) {
-    const std::vector<StructureRow> rows = describe_scenes(plan.described);
-    if (folder) folder->write(rows);
-    std::cout << to_text(summary(rows), ListingFormat::table);
+    const std::vector<StructureRow> structure = describe_scenes(plan.described);
+    if (folder) folder->write(structure);
+    std::cout << to_text(summary(structure), ListingFormat::table);
   }
+  StopRequest stop;
   if (!plan.timed.empty()) {
-    const std::vector<ResultRow> rows =
-        time_scenes(plan.job, plan.timed, options, published, folder ? &*folder : nullptr);
-    std::cout << (plan.described.empty() ? "" : "\n") << to_text(summary(rows), ListingFormat::table);
-    code = exit_code_of(rows, options);
+    time_scenes(plan.job, plan.timed, options, published, folder ? &*folder : nullptr, stop, rows);
+    std::cout << (plan.described.empty() ? "" : "\n") << to_text(summary(rows.all()), ListingFormat::table);
+    code = exit_code_of(rows.all(), options);
   }
-  if (folder) std::cerr << "mssim: results are in " << options.out << '\n';
+  if (folder && stop.requested())
+    std::cerr << "mssim: " << (rows.all().empty() ? "nothing was measured yet" : "results so far are in ")
+              << (rows.all().empty() ? "" : options.out) << "; --resume goes on\n";
+  else if (folder)
+    std::cerr << "mssim: results are in " << options.out << '\n';
+  stop.throw_if_requested();
   return code;
 }
 
@@ -153,6 +188,10 @@ std::function<int()> declare_bench(CLI::App& app) {
   app.add_flag("--trace", options->trace,
                "Trace each combination too, after it has been timed, into OUT/traces");
   app.add_option("--out", options->out, "Folder for the results: tables, samples, provenance");
+  CLI::Option* resume = app.add_flag(
+      "--resume", options->resume,
+      "Go on where an earlier run of the same command ended, whatever ended it: keep what OUT has");
+  app.add_flag("--overwrite", options->overwrite, "Replace the results that OUT has")->excludes(resume);
   return [options] { return run(*options); };
 }
 

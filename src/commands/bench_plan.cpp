@@ -54,6 +54,9 @@ BenchPlan plan_of(const BenchOptions& options) {
     throw UsageError("there is nothing to measure: name a --scene or a --suite");
   if (options.trace && options.out.empty())
     throw UsageError("--trace writes into the result folder: give --out too");
+  if (options.out.empty() && (options.resume || options.overwrite))
+    throw UsageError(std::string(options.resume ? "--resume" : "--overwrite") +
+                     " needs the folder of an earlier run: give --out too");
   plan.tables = comparison.tables();
   return plan;
 }

@@ -18,6 +18,8 @@ struct BenchOptions {
   int rounds = 15;
   bool trace = false;
   std::string out;
+  bool resume = false;
+  bool overwrite = false;
 };
 
 /// What it means.

@@ -18,8 +18,7 @@ constexpr int frames = 10;
 }  // namespace
 
 void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
-                        const std::filesystem::path& folder,
-                        const std::function<void(const std::string& activity)>& progress) {
+                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -27,15 +26,17 @@ void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const s
                      "); choose another --out");
   const double duration_s = verification_steps * scene.dt_s;
   for (const ResultRow& row : rows) {
-    if (row.status != "ok") continue;
-    progress("trace " + row.backend + " " + row.integrator);
+    const std::filesystem::path file =
+        folder / (row.scene + "-" + row.backend + "-" + row.integrator + ".h5");
+    if (row.status != "ok" || (keep_existing && std::filesystem::exists(file))) continue;
+    if (watch.stop()) return;
+    watch.progress("trace " + row.backend + " " + row.integrator, 1);
     const Integrator& integrator = *find_integrator(row.integrator);
     const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
     const auto backend = info.make(scene.system, integrator, scene.dt_s, job.execution);
     TraceHeader header = trace_header(scene, *backend, row.backend, integrator);
     header.with_losses = true;
-    H5mdTrace trace(folder / (row.scene + "-" + row.backend + "-" + row.integrator + ".h5"), scene.system,
-                    header);
+    H5mdTrace trace(file, scene.system, header);
     simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s, true},
              [&](const Frame& frame) {
                trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "bench/bench_scene.h"
@@ -12,9 +10,9 @@
 namespace mssim {
 
 /// Traces every combination whose row is ok, from the start over as many steps as it was verified with, into
-/// FOLDER/SCENE-BACKEND-INTEGRATOR.h5: what `mssim bench --trace` does after the timing. Throws WriteError.
+/// FOLDER/SCENE-BACKEND-INTEGRATOR.h5: what `mssim bench --trace` does after the timing. Files that are there
+/// already stay when `keep_existing`. Ends between two traces when it is asked to. Throws WriteError.
 void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
-                        const std::filesystem::path& folder,
-                        const std::function<void(const std::string& activity)>& progress);
+                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch);
 
 }  // namespace mssim

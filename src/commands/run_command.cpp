@@ -17,6 +17,8 @@
 #include "commands/prepared_scene.h"
 #include "commands/run_provenance.h"
 #include "commands/simulation.h"
+#include "commands/stop_request.h"
+#include "mesh/interruption.h"
 #include "output/energy_curve.h"
 #include "output/h5md_trace.h"
 #include "output/listing.h"
@@ -100,9 +102,11 @@ int run(const RunOptions& options) {
   std::vector<EnergySample> curve;
   std::int64_t steps = 0;
   std::optional<EnergyLosses> losses;
+  StopRequest stop;
   const auto before = std::chrono::steady_clock::now();
   const auto finish = [&] {
     if (trace) trace->close();
+    if (!options.energy_curve.empty()) write_energy_curve(options.energy_curve, curve, command_line());
   };
   try {
     simulate(*backend, scene.system, integrator, plan, [&](const Frame& frame) {
@@ -110,14 +114,17 @@ int run(const RunOptions& options) {
       curve.push_back({frame.time_s, frame.energy});
       steps = frame.step;
       losses = frame.losses;
+      stop.throw_if_requested();
     });
   } catch (const NotVerified&) {
     finish();  // the frames before it are good and show what happened
     throw;
+  } catch (const Interrupted&) {
+    finish();
+    throw;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   finish();
-  if (!options.energy_curve.empty()) write_energy_curve(options.energy_curve, curve, command_line());
 
   const auto loss = [&](double EnergyLosses::*kind) {
     return losses ? or_null(*losses.*kind) : or_null(std::nullopt);

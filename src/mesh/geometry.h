@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "model/decimal.h"
 #include "model/vec3.h"
@@ -20,6 +21,14 @@ inline Vec3d rounded(const Vec3d& point) {
   const auto round_one = [](double x) { return std::round(x * per_metre) / per_metre + 0.0; };
   return {round_one(point.x), round_one(point.y), round_one(point.z)};
 }
+
+/// The farthest that a mesh file may place a node, in the file's unit: volumes, and what is computed from
+/// them in single precision, stay finite then, whatever the unit.
+constexpr double farthest_coordinate = 1e9;
+inline constexpr std::string_view coordinate_wanted = "give a number from -1e9 to 1e9";
+
+/// Is it a number, and not too large?
+inline bool is_coordinate(double x) { return std::abs(x) <= farthest_coordinate; }
 
 /// A number for messages that has been computed, without the last digits, which rounding has made.
 std::string shown(double computed);

@@ -42,7 +42,7 @@ class ObjReader {
   };
 
   void vertex() {
-    vertices_.push_back({lines_.number(1, "x"), lines_.number(2, "y"), lines_.number(3, "z")});
+    vertices_.push_back({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
   }
 
   /// A corner reads V, V/VT, V//VN or V/VT/VN; negative numbers count back from the latest.

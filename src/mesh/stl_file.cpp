@@ -48,9 +48,9 @@ Surface parse_binary(const std::string& name, std::string_view content) {
       const std::size_t byte =
           bytes_before_triangles + t * bytes_of_triangle + (corner + 1) * bytes_of_vector;
       const Vec3d point = vector_at(content, byte);
-      if (!is_finite(point))
+      if (!is_coordinate(point.x) || !is_coordinate(point.y) || !is_coordinate(point.z))
         throw MeshError(name + ", byte " + std::to_string(byte) + ": a corner is at " + place(point) +
-                        "; give finite numbers");
+                        "; for each axis " + std::string(coordinate_wanted));
       triangle[corner] = merger.add(point);
     }
     surface.triangles.push_back(triangle);
@@ -103,7 +103,7 @@ class AsciiReader {
     std::array<std::uint32_t, 3> triangle{};
     for (std::uint32_t& point : triangle) {
       next("vertex", "");
-      point = merger_.add({lines_.number(1, "x"), lines_.number(2, "y"), lines_.number(3, "z")});
+      point = merger_.add({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
     }
     next("endloop", "");
     next("endfacet", "");

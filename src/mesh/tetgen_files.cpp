@@ -31,7 +31,10 @@ std::int64_t optional_integer(const TextLines& lines, std::size_t index, std::st
                               std::int64_t absent) {
   if (index >= lines.words().size()) return absent;
   const std::int64_t value = lines.integer(index, what);
-  if (value < 0) lines.fail(std::string(what) + " is " + std::to_string(value) + "; it cannot be negative");
+  constexpr std::int64_t most = 1000;
+  if (value < 0 || value > most)
+    lines.fail(std::string(what) + " is " + std::to_string(value) + "; give one from 0 to " +
+               std::to_string(most));
   return value;
 }
 
@@ -79,7 +82,7 @@ class NodeFile {
         lines_.fail("node " + std::to_string(index) + " stands where node " +
                     std::to_string(first + static_cast<std::int64_t>(n)) +
                     " is due; number nodes in ascending order");
-      nodes.push_back({lines_.number(1, "x"), lines_.number(2, "y"), lines_.number(3, "z")});
+      nodes.push_back({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
       at_line.push_back(lines_.line());
     }
     require_end(lines_, "nodes", count);

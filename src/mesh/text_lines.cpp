@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <fstream>
 #include <system_error>
 
+#include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
+#include "model/printable.h"
 
 namespace mssim {
 namespace {
@@ -51,6 +52,10 @@ bool TextLines::next() {
     std::string_view rest = text_.substr(at_, end - at_);
     at_ = end + 1;
     ++line_;
+    constexpr std::size_t longest_line = std::size_t{1} << 20;
+    if (rest.size() > longest_line)
+      fail("it has " + std::to_string(rest.size()) + " bytes and at most " + std::to_string(longest_line) +
+           " are read of one line; break the file into lines");
     rest = rest.substr(0, rest.find(comment_));
     while (true) {
       const std::size_t first = rest.find_first_not_of(blanks);
@@ -73,16 +78,14 @@ bool TextLines::parse(std::string_view word, std::int64_t& value) { return parse
 
 std::string TextLines::quoted(std::string_view word) {
   constexpr std::size_t longest = 40;
-  std::string text = "\"";
-  for (const char c : word.substr(0, longest)) text += (c < ' ' || c == 0x7f) ? '?' : c;
-  return text + (word.size() > longest ? "...\"" : "\"");
+  return '"' + printable(word, longest) + '"';
 }
 
-double TextLines::number(std::size_t index, std::string_view what) const {
+double TextLines::coordinate(std::size_t index, std::string_view what) const {
   double value = 0;
   const std::string_view text = word(index, what);
-  if (!parse(text, value) || !std::isfinite(value))
-    fail(std::string(what) + " is " + quoted(text) + "; give a finite number");
+  if (!parse(text, value) || !is_coordinate(value))
+    fail(std::string(what) + " is " + quoted(text) + "; " + std::string(coordinate_wanted));
   return value;
 }
 

@@ -19,7 +19,8 @@ class TextLines {
   /// `text` must outlive this; what follows `comment` on a line is left out.
   TextLines(std::string file, std::string_view text, char comment = '#');
 
-  /// Goes to the next line that has words; false at the end.
+  /// Goes to the next line that has words; false at the end. Throws for one of more than a megabyte: its
+  /// words would take many times that.
   bool next();
   /// Goes to the next line that has words; throws at the end, where `expected` was to come.
   void require_next(const std::string& expected);
@@ -31,15 +32,15 @@ class TextLines {
   /// Bytes of the whole text: no file holds more lines than that.
   std::size_t bytes() const { return text_.size(); }
 
-  /// Word `index` as a finite number; `what` it is, for the message.
-  double number(std::size_t index, std::string_view what) const;
+  /// Word `index` as a coordinate (is_coordinate); `what` it is, for the message.
+  double coordinate(std::size_t index, std::string_view what) const;
   /// Word `index` as a whole number.
   std::int64_t integer(std::size_t index, std::string_view what) const;
 
   /// The whole word as a number, in no locale; false when it is none or too large.
   static bool parse(std::string_view word, double& value);
   static bool parse(std::string_view word, std::int64_t& value);
-  /// A word for a message: in quotes, cut off when long, without control characters.
+  /// A word for a message: in quotes, printable, cut off when long.
   static std::string quoted(std::string_view word);
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }

@@ -3,9 +3,12 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <sstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
 
 #include "model/decimal.h"
+#include "model/printable.h"
 
 namespace mssim {
 namespace {
@@ -21,12 +24,19 @@ std::string quoted(const std::string& field) {
 }
 
 std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  // A folder opens, and fails on the first read.
-  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf())) || in.bad())
-    throw CsvError("cannot read " + file.string() + ": check that it exists and may be read");
-  return text.str();
+  std::error_code error;
+  // A device may never end, and a pipe would block.
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(file, error)) in.open(file, std::ios::binary);
+  if (!in.is_open())
+    throw CsvError("cannot read " + file.string() + ": check that it is a file, exists and may be read");
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+      !error && bytes > largest_csv_bytes)
+    throw CsvError(file.string() + ": has " + std::to_string(bytes) + " bytes and at most " +
+                   std::to_string(largest_csv_bytes) + " are read; give a file that mssim wrote");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) throw CsvError("cannot read " + file.string() + ": check its disk");
+  return text;
 }
 
 template <class Number>
@@ -58,8 +68,9 @@ std::string csv_number(const std::optional<double>& value) {
   return value ? csv_number(*value) : std::string();
 }
 
-CsvTable::CsvTable(const std::filesystem::path& file) : file_(file) {
-  const std::string text = read_text(file);
+CsvTable::CsvTable(const std::filesystem::path& file) : CsvTable(file.string(), read_text(file)) {}
+
+CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(name)) {
   std::size_t line = 1;
   for (std::size_t at = 0; at < text.size();) {
     Record record{line, {std::string()}};
@@ -86,14 +97,14 @@ CsvTable::CsvTable(const std::filesystem::path& file) : file_(file) {
       }
     }
     if (in_quotes)
-      throw CsvError(file.string() + ", line " + std::to_string(record.line) +
+      throw CsvError(name_ + ", line " + std::to_string(record.line) +
                      ": a quoted field does not end; close it with a quotation mark");
     if (header_.empty()) {
       header_ = std::move(record.fields);
       continue;
     }
     if (record.fields.size() != header_.size())
-      throw CsvError(file.string() + ", line " + std::to_string(record.line) + ": has " +
+      throw CsvError(name_ + ", line " + std::to_string(record.line) + ": has " +
                      std::to_string(record.fields.size()) + " fields where the header has " +
                      std::to_string(header_.size()) + "; write the missing ones, or remove the line");
     records_.push_back(std::move(record));
@@ -103,14 +114,14 @@ CsvTable::CsvTable(const std::filesystem::path& file) : file_(file) {
 void CsvTable::require_columns(const std::vector<std::string_view>& columns) const {
   for (std::size_t column = 0; column < columns.size(); ++column)
     if (column >= header_.size() || header_[column] != columns[column])
-      throw CsvError(file_.string() + ", line 1: column " + std::to_string(column + 1) + " is " +
-                     (column < header_.size() ? "\"" + header_[column] + "\"" : "missing") +
+      throw CsvError(name_ + ", line 1: column " + std::to_string(column + 1) + " is " +
+                     (column < header_.size() ? "\"" + printable(header_[column]) + "\"" : "missing") +
                      " instead of \"" + std::string(columns[column]) + "\"; give a file that mssim wrote");
 }
 
 CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
-  return CsvError{file_.string() + ", line " + std::to_string(records_[record].line) + ", column " +
-                  header_[column] + ": \"" + text(record, column) + "\" " + what};
+  return CsvError{name_ + ", line " + std::to_string(records_[record].line) + ", column " +
+                  printable(header_[column]) + ": \"" + printable(text(record, column)) + "\" " + what};
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -10,6 +12,9 @@
 namespace mssim {
 
 /// Comma-separated values as RFC 4180 has them, with line feeds alone as line ends.
+
+/// A file is refused beyond this size, a million samples: its fields take many times that in memory.
+inline constexpr std::size_t largest_csv_bytes = std::size_t{64} << 20;
 
 /// Thrown when a CSV file cannot be read; what() is one sentence that names file, line and column, the value
 /// and what to do.
@@ -28,8 +33,11 @@ std::string csv_number(const std::optional<double>& value);
 /// A table read from a file: a header and records of as many fields.
 class CsvTable {
  public:
-  /// Throws CsvError when the file cannot be read, a quote is left open or a record has not the header's
-  /// length.
+  /// Parses a text; `name`, of the file it came from, stands in messages. Throws CsvError when a quote is
+  /// left open or a record has not the header's length.
+  CsvTable(std::string name, std::string_view text);
+
+  /// The same from a file. Throws CsvError when it cannot be read, too.
   explicit CsvTable(const std::filesystem::path& file);
 
   const std::vector<std::string>& header() const { return header_; }
@@ -54,7 +62,7 @@ class CsvTable {
     std::size_t line = 0;  ///< of its first character, from 1
     std::vector<std::string> fields;
   };
-  std::filesystem::path file_;
+  std::string name_;
   std::vector<std::string> header_;
   std::vector<Record> records_;
 };

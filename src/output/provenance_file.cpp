@@ -10,6 +10,8 @@
 #include <system_error>
 #include <vector>
 
+#include "model/printable.h"
+
 namespace mssim {
 namespace {
 
@@ -39,14 +41,6 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-/// A value for an error message: on one line, valid UTF-8, no longer than a line.
-std::string shown(const json& value) {
-  constexpr std::size_t longest = 60;
-  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  if (text.size() > longest) text = text.substr(0, longest) + "...";
-  return text;
-}
-
 /// A value of the document and where it stands: the root is the file, a member is reached by its key.
 class Place {
  public:
@@ -58,6 +52,13 @@ class Place {
     if (member == value_.end())
       fail(file_, pointer_ + '/' + key + " is missing: give a provenance.json that mssim wrote");
     return {file_, *member, pointer_ + '/' + key};
+  }
+
+  /// Whether there is such a member that is not null: what programs older than it did not write.
+  bool has(const std::string& key) const {
+    require(value_.is_object(), "an object");
+    const auto member = value_.find(key);
+    return member != value_.end() && !member->is_null();
   }
 
   std::string text() const {
@@ -114,7 +115,8 @@ class Place {
 
   void require(bool good, const std::string& wanted) const {
     if (!good)
-      fail(file_, (pointer_.empty() ? "the whole" : pointer_) + " is " + shown(value_) + " instead of " +
+      fail(file_, (pointer_.empty() ? "the whole" : pointer_) + " is " +
+                      printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)) + " instead of " +
                       wanted + ": give a provenance.json that mssim wrote");
   }
 
@@ -141,6 +143,7 @@ Machine read_machine(const Place& document) {
   machine.cpu_mhz = cpu["mhz"].number();
   machine.caches = cpu["caches"].list(read_cache);
   if (const Place governor = cpu["governor"]; !governor.is_null()) machine.governor = governor.text();
+  if (cpu.has("turbo")) machine.turbo = cpu["turbo"].truth();
   machine.load_average = document["load_average"].list([](const Place& average) { return average.number(); });
   machine.memory_bytes = document["memory_bytes"].count<std::uint64_t>();
   machine.operating_system = document["operating_system"].text();
@@ -160,6 +163,7 @@ Provenance read_document(const Place& document) {
       [](const std::string& name, const Place& value) { return std::pair(name, value.text()); });
   provenance.opencl_devices = document["opencl_devices"].list(text_of);
   if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
+  if (document.has("noise")) provenance.noise = document["noise"].list(text_of);
   provenance.scenes = document["scenes_fnv1a_64"].members([](const std::string& name, const Place& value) {
     return SceneHash{name, value.hash()};
   });
@@ -184,10 +188,8 @@ Provenance read_provenance(const std::filesystem::path& file) {
     // The library's sentence names line and column, behind its own name in brackets.
     const std::string_view message = error.what();
     const std::size_t start = message.find("] ");
-    std::string problem(message.substr(start == std::string_view::npos ? 0 : start + 2));
-    for (char& character : problem)
-      if (static_cast<unsigned char>(character) < 0x20 || static_cast<unsigned char>(character) > 0x7e)
-        character = '?';
+    const std::string problem =
+        printable(message.substr(start == std::string_view::npos ? 0 : start + 2), 300);
     fail(file, "malformed JSON, " + problem + ": give a provenance.json that mssim wrote");
   }
   return read_document({file, document});

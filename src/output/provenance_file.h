@@ -17,8 +17,8 @@ struct ProvenanceError : std::runtime_error {
 /// Larger files are refused: no provenance needs a tenth of it, and a wrong file should not fill the memory.
 inline constexpr std::size_t largest_provenance_bytes = std::size_t{4} << 20;
 
-/// Reads what to_json(Provenance) wrote. Every value that mssim writes must be there and be what it should;
-/// further ones, of a newer mssim, are ignored. Throws ProvenanceError.
+/// Reads what to_json(Provenance) wrote. Every value must be what it should; what mssim has written from the
+/// first must be there, and what a newer one adds is ignored. Throws ProvenanceError.
 Provenance read_provenance(const std::filesystem::path& file);
 
 }  // namespace mssim

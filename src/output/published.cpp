@@ -3,12 +3,15 @@
 #include <algorithm>
 
 #include "model/data_folder.h"
-#include "output/csv.h"
 
 namespace mssim {
 
-PublishedTable::PublishedTable(const PublishedTableInfo& table_info) : info_(table_info) {
-  const CsvTable table(data_folder() / "published" / ("hong2016_" + std::string(info_.name) + ".csv"));
+PublishedTable::PublishedTable(const PublishedTableInfo& table_info)
+    : PublishedTable(table_info, CsvTable(data_folder() / "published" /
+                                          ("hong2016_" + std::string(table_info.name) + ".csv"))) {}
+
+PublishedTable::PublishedTable(const PublishedTableInfo& table_info, const CsvTable& table)
+    : info_(table_info) {
   // Table 3 calls its fourth column springs_published, because there the count is not the springs themselves.
   const bool counts_apart = table.header().size() > 3 && table.header()[3] == "springs_published";
   table.require_columns({"integrator", "configuration", "nodes",

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "output/csv.h"
+
 namespace mssim {
 
 /// How Hong et al. ran a step: the name in the published CSV files and the heading in their tables.
@@ -37,7 +39,10 @@ class PublishedTable {
  public:
   /// Reads integrator, configuration, nodes, springs, ms_per_step from the data folder. Throws CsvError, and
   /// std::runtime_error when the folder is missing.
-  explicit PublishedTable(const PublishedTableInfo& table);
+  explicit PublishedTable(const PublishedTableInfo& table_info);
+
+  /// The same from a table that was read. Throws CsvError.
+  PublishedTable(const PublishedTableInfo& table_info, const CsvTable& table);
 
   const PublishedTableInfo& info() const { return info_; }
 

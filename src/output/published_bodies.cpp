@@ -1,12 +1,14 @@
 #include "output/published_bodies.h"
 
 #include "model/data_folder.h"
-#include "output/csv.h"
 
 namespace mssim {
 
 std::vector<PublishedBody> published_bodies() {
-  const CsvTable table(data_folder() / "published/hong2016_table2.csv");
+  return published_bodies(CsvTable(data_folder() / "published/hong2016_table2.csv"));
+}
+
+std::vector<PublishedBody> published_bodies(const CsvTable& table) {
   table.require_columns({"object", "size", "nodes", "springs_published"});
   std::vector<PublishedBody> bodies;
   for (std::size_t record = 0; record < table.size(); ++record)

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "output/csv.h"
+
 namespace mssim {
 
 /// A body of Table 2 of Hong et al. (2016), as published.
@@ -21,5 +23,8 @@ struct PublishedBody {
 /// The bodies in the published order, from the data folder. Throws CsvError, and std::runtime_error when the
 /// folder is missing.
 std::vector<PublishedBody> published_bodies();
+
+/// The same from a table that was read. Throws CsvError.
+std::vector<PublishedBody> published_bodies(const CsvTable& table);
 
 }  // namespace mssim

@@ -17,6 +17,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* timings_name = "timings.csv";
 constexpr const char* samples_name = "samples.csv";
+constexpr const char* benchmark_name = "benchmark.json";
+
+/// The folder, which is there afterwards.
+const fs::path& made(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw WriteError(write_failure(folder, "creating the folder", error.value()));
+  return folder;
+}
 
 /// Bytes that are no UTF-8 (a folder's name may hold any) are replaced.
 template <class Json>
@@ -27,10 +36,22 @@ std::string text_of(const Json& json) {
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker tables)
-    : folder_(std::move(folder)), provenance_(std::move(provenance)), tables_(std::move(tables)) {
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) throw WriteError(write_failure(folder_, "creating the folder", error.value()));
+    : folder_(std::move(folder)),
+      lock_(made(folder_)),
+      provenance_(std::move(provenance)),
+      tables_(std::move(tables)) {}
+
+bool ResultFolder::has_rows() const { return fs::exists(folder_ / timings_name); }
+
+void ResultFolder::clear() const {
+  for (const char* name : {timings_name, samples_name, benchmark_name}) {
+    std::error_code error;
+    fs::remove(folder_ / name, error);
+    if (error) throw WriteError(write_failure(folder_ / name, "removing it", error.value()));
+  }
+}
+
+void ResultFolder::begin() const {
   write_file_atomically(folder_ / "provenance.json", text_of(to_json(provenance_)));
 }
 
@@ -39,7 +60,7 @@ void ResultFolder::write(std::span<const ResultRow> rows) const {
   const std::string benchmark = text_of(benchmark_json(rows, provenance_));
   const std::vector<ResultTable> tables = tables_(rows, provenance_);
   write_file_atomically(folder_ / samples_name, samples);
-  write_file_atomically(folder_ / "benchmark.json", benchmark);
+  write_file_atomically(folder_ / benchmark_name, benchmark);
   for (const ResultTable& table : tables) {
     write_file_atomically(folder_ / (table.name + ".csv"), table.csv);
     write_file_atomically(folder_ / (table.name + ".md"), table.markdown);

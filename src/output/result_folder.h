@@ -6,22 +6,32 @@
 
 #include "bench/provenance.h"
 #include "bench/result.h"
+#include "output/folder_lock.h"
 #include "output/result_table.h"
 #include "output/structure_table.h"
 
 namespace mssim {
 
 /// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, benchmark.json,
-/// provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md.
+/// provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md. One at a time writes
+/// into it.
 class ResultFolder {
  public:
-  /// Creates the folder and those above it and writes provenance.json, so that a folder that cannot be
-  /// written is found before anything is measured. Throws WriteError.
+  /// Creates the folder and those above it. Throws WriteError, also where another ResultFolder, in any
+  /// process, has it.
   ResultFolder(std::filesystem::path folder, Provenance provenance, TableMaker tables);
 
+  /// Whether an earlier run left rows here.
+  bool has_rows() const;
+  /// Removes the rows that an earlier run left. Throws WriteError.
+  void clear() const;
+  /// Writes provenance.json, so that a folder that cannot be written is found before anything is measured.
+  /// Throws WriteError.
+  void begin() const;
+
   /// Writes all that follows from the rows, each file whole or not at all, timings.csv last: what stands
-  /// there has its samples. To be called after every finished combination. Throws WriteError, and
-  /// std::invalid_argument for a number that is not finite, then before any file is touched.
+  /// there has its samples. To be called after every round. Throws WriteError, and std::invalid_argument for
+  /// a number that is not finite, then before any file is touched.
   void write(std::span<const ResultRow> rows) const;
 
   /// Writes table2.csv and table2.md. Throws WriteError.
@@ -29,6 +39,7 @@ class ResultFolder {
 
  private:
   std::filesystem::path folder_;
+  FolderLock lock_;
   Provenance provenance_;
   TableMaker tables_;
 };

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <climits>
 #include <functional>
+#include <map>
 #include <string_view>
+#include <tuple>
 
-#include "output/csv.h"
+#include "bench/outliers.h"
 
 namespace mssim {
 namespace {
@@ -67,7 +69,9 @@ Column truth(std::string_view name, bool ResultRow::*field) {
           }};
 }
 
-/// The TABLE of columns, in their order. Readers rely on it: new columns go to the end.
+/// The TABLE of columns, in their order. Readers rely on it: new columns go to the end, and files of older
+/// programs, which end after one of `oldest_columns` or more, are read too.
+constexpr std::size_t oldest_columns = 24;
 const std::vector<Column>& columns() {
   using Row = ResultRow;
   static const std::vector<Column> table{
@@ -95,12 +99,15 @@ const std::vector<Column>& columns() {
       truth("verified", &Row::verified),
       text("status", &Row::status),
       text("note", &Row::note),
+      count("warm_up_trials", &Row::warm_up_trials),
+      count("outliers", &Row::outliers),
   };
   return table;
 }
 
-const std::vector<std::string_view> sample_columns{"scene", "backend", "integrator",
-                                                   "round", "steps",   "ms_per_step"};
+const std::vector<std::string_view> sample_columns{"scene", "backend",     "integrator", "round",
+                                                   "steps", "ms_per_step", "outlier"};
+constexpr std::size_t oldest_sample_columns = 6;
 
 }  // namespace
 
@@ -118,38 +125,49 @@ std::string timings_csv(std::span<const ResultRow> rows) {
 
 std::string samples_csv(std::span<const ResultRow> rows) {
   std::string csv = csv_line({sample_columns.begin(), sample_columns.end()});
-  for (const ResultRow& row : rows)
+  for (const ResultRow& row : rows) {
+    if (row.samples_ms.empty()) continue;
+    const std::vector<Outlier> labels = outliers(row.samples_ms);
     for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
       csv += csv_line({row.scene, row.backend, row.integrator, std::to_string(round + 1),
-                       std::to_string(row.sample_steps.at(round)), csv_number(row.samples_ms[round])});
+                       std::to_string(row.sample_steps.at(round)), csv_number(row.samples_ms[round]),
+                       std::string(name_of(labels[round]))});
+  }
   return csv;
 }
 
 std::vector<ResultRow> read_timings(const std::filesystem::path& file) {
-  const CsvTable table(file);
+  return read_timings(CsvTable(file));
+}
+
+std::vector<ResultRow> read_timings(const CsvTable& table) {
   std::vector<std::string_view> names;
   for (const Column& column : columns()) names.push_back(column.name);
+  names.resize(std::clamp(table.header().size(), oldest_columns, names.size()));
   table.require_columns(names);
   std::vector<ResultRow> rows(table.size());
   for (std::size_t record = 0; record < rows.size(); ++record)
-    for (std::size_t column = 0; column < columns().size(); ++column)
+    for (std::size_t column = 0; column < names.size(); ++column)
       columns()[column].read(rows[record], table, record, column);
   return rows;
 }
 
 void read_samples(const std::filesystem::path& file, std::span<ResultRow> rows) {
-  const CsvTable table(file);
-  table.require_columns(sample_columns);
+  read_samples(CsvTable(file), rows);
+}
+
+void read_samples(const CsvTable& table, std::span<ResultRow> rows) {
+  table.require_columns({sample_columns.begin(), sample_columns.begin() + oldest_sample_columns});
+  std::map<std::tuple<std::string_view, std::string_view, std::string_view>, ResultRow*> row_of;
+  for (ResultRow& row : rows) row_of.try_emplace({row.scene, row.backend, row.integrator}, &row);
   for (std::size_t record = 0; record < table.size(); ++record) {
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const ResultRow& candidate) {
-      return candidate.scene == table.text(record, 0) && candidate.backend == table.text(record, 1) &&
-             candidate.integrator == table.text(record, 2);
-    });
-    if (row == rows.end()) continue;
-    if (table.count(record, 3) != row->samples_ms.size() + 1)
+    const auto found = row_of.find({table.text(record, 0), table.text(record, 1), table.text(record, 2)});
+    if (found == row_of.end()) continue;
+    ResultRow& row = *found->second;
+    if (table.count(record, 3) != row.samples_ms.size() + 1)
       throw table.complaint(record, 3, "is not the next round of its row; measure anew without --resume");
-    row->sample_steps.push_back(read_int(table, record, 4));
-    row->samples_ms.push_back(table.number(record, 5));
+    row.sample_steps.push_back(read_int(table, record, 4));
+    row.samples_ms.push_back(table.number(record, 5));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/result.h"
+#include "output/csv.h"
 
 namespace mssim {
 
@@ -19,10 +20,12 @@ std::string samples_csv(std::span<const ResultRow> rows);
 
 /// The rows of a timings.csv, without their samples. Further columns behind the known ones are allowed and
 /// ignored. Throws CsvError.
+std::vector<ResultRow> read_timings(const CsvTable& table);
 std::vector<ResultRow> read_timings(const std::filesystem::path& file);
 
 /// Reads a samples.csv into those of `rows` that it has samples of; others stay as they are.
 /// Throws CsvError, also when the rounds of a row do not count up from 1.
+void read_samples(const CsvTable& table, std::span<ResultRow> rows);
 void read_samples(const std::filesystem::path& file, std::span<ResultRow> rows);
 
 }  // namespace mssim

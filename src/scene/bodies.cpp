@@ -10,6 +10,7 @@
 
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
+#include "model/printable.h"
 #include "scene/body_shapes.h"
 #include "scene/json_document.h"
 #include "scene/material_fields.h"
@@ -19,6 +20,10 @@ namespace mssim {
 namespace {
 
 constexpr std::size_t most_bodies = 10'000;
+
+/// How short and long a spring of a body may be, m. Within, lengths, masses and stiffnesses over masses are
+/// ordinary numbers in single precision.
+constexpr double shortest_spring = 1e-7, longest_spring = 1e6;
 
 const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.body); }
 
@@ -57,20 +62,30 @@ class MeshedShapes {
     try {
       meshed.mesh = mesh_of(shape, spec_.file.parent_path());
     } catch (const MeshError& error) {
-      refuse(spec_.file, pointer_to(body), std::string("has no mesh: ") + error.what());
+      refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
     } catch (const SceneError& error) {  // of another scene whose shape it takes
-      refuse(spec_.file, pointer_to(body), std::string("has no mesh: ") + error.what());
+      refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
     }
     Vec3d centre;
     for (const Vec3d& node : meshed.mesh.nodes) centre += node;
     centre = 1 / static_cast<double>(meshed.mesh.nodes.size()) * centre;
     for (Vec3d& node : meshed.mesh.nodes) node -= centre;
     meshed.edges = edges_of(meshed.mesh);
+    require_lengths(meshed, body);
     meshed.volume = volume_of(meshed.mesh);
     return shapes_.emplace_back(shape, std::move(meshed)).second;
   }
 
  private:
+  void require_lengths(const MeshedShape& meshed, std::size_t body) const {
+    for (const auto& [a, b] : meshed.edges)
+      if (const double metres = length(meshed.mesh.nodes[b] - meshed.mesh.nodes[a]);
+          !(metres >= shortest_spring && metres <= longest_spring))
+        refuse(spec_.file, pointer_to(body),
+               "has a spring of " + shown(metres) + " m: springs are from " + shown_number(shortest_spring) +
+                   " to " + shown_number(longest_spring) + " m long, so correct the unit_m or the mesh");
+  }
+
   const SceneSpec& spec_;
   std::vector<std::pair<BodyShape, MeshedShape>> shapes_;
 };
@@ -154,7 +169,7 @@ System build_bodies(const SceneSpec& spec) {
   system.floor = spec.floor;
   TetrahedralMesh mesh;
   for (std::size_t i = 0; i < bodies.list.size(); ++i) {
-    const std::size_t first = system.nodes();
+    const std::size_t first = system.nodes(), first_spring = system.springs.size();
     add_body(system, mesh.tetrahedra, shapes.of_body(i), bodies, bodies.list[i]);
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     for (std::size_t node = first; node < system.nodes(); ++node) {
@@ -168,6 +183,15 @@ System build_bodies(const SceneSpec& spec) {
                  ", so that the lowest node of the body, which is " + shown(highest - lowest) +
                  " m high, would start at " + shown(lowest) + ", not above the floor at " +
                  shown_number(spec.floor.height) + ": raise it");
+    for (std::size_t s = first_spring; s < system.springs.size(); ++s) {
+      const auto in_single = [&](std::uint32_t node) {
+        return vec3_cast<float>(system.start.position[node]);
+      };
+      if (in_single(system.springs[s].first) == in_single(system.springs[s].second))
+        refuse(spec.file, pointer_to(i) + "/centre_m",
+               "is so far away that two nodes " + shown(system.springs[s].rest_length) +
+                   " m apart start at one place in single precision: move the body towards the origin");
+    }
   }
   system.topology = std::move(mesh);
   return system;

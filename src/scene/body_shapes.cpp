@@ -6,6 +6,7 @@
 #include "mesh/shape_mesh.h"
 #include "mesh/surface_mesh.h"
 #include "mesh/tetgen_files.h"
+#include "model/printable.h"
 #include "scene/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_spec.h"
@@ -105,10 +106,10 @@ SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folde
 BodySpec first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
   const auto* bodies = std::get_if<BodiesSpec>(&scene.body);
   if (bodies == nullptr)
-    throw SceneError("the scene \"" + shape.name +
+    throw SceneError("the scene \"" + printable(shape.name) +
                      "\" has no bodies whose shape could be taken: name one that has");
   if (std::holds_alternative<ShapeOfScene>(bodies->list.front().shape))
-    throw SceneError("the first body of the scene \"" + shape.name +
+    throw SceneError("the first body of the scene \"" + printable(shape.name) +
                      "\" takes its shape from another scene: name that one");
   return bodies->list.front();
 }

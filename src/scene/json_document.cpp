@@ -8,8 +8,10 @@
 #include <fstream>
 #include <set>
 #include <system_error>
+#include <utility>
 #include <vector>
 
+#include "model/printable.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -45,67 +47,8 @@ std::string read_text(const std::filesystem::path& file) {
   }
   if (stream.bad() || errno != 0)
     fail(file, std::string("cannot be read (") + std::strerror(errno) + "): check the file and its disk");
-  if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
   return text;
 }
-
-/// Follows the parser through the document: knows the place, and refuses what the parser lets pass.
-class Watcher {
- public:
-  explicit Watcher(const std::filesystem::path& file) : file_(file) {}
-
-  bool operator()(json::parse_event_t event, const json& parsed) {
-    switch (event) {
-      case json::parse_event_t::object_start:
-      case json::parse_event_t::array_start:
-        if (levels_.size() == deepest_json_level)
-          fail(file_, printable(pointer()) + " is nested deeper than " + std::to_string(deepest_json_level) +
-                          " levels: a scene needs fewer, so remove the surplus brackets");
-        levels_.push_back({event == json::parse_event_t::array_start, 0, {}, {}});
-        break;
-      case json::parse_event_t::key:
-        levels_.back().key = parsed.get<std::string>();
-        if (!levels_.back().keys.insert(levels_.back().key).second)
-          fail(file_, printable(pointer()) + " is given twice: keep one of the two");
-        break;
-      case json::parse_event_t::object_end:
-      case json::parse_event_t::array_end:
-        levels_.pop_back();
-        next_element();
-        break;
-      case json::parse_event_t::value:
-        next_element();
-        break;
-    }
-    return true;
-  }
-
-  /// The value under way; at the top level the empty pointer.
-  std::string pointer() const {
-    std::string result;
-    for (const Level& level : levels_)
-      if (level.is_array)
-        result = json_pointer(result, std::to_string(level.element));
-      else if (!level.keys.empty())
-        result = json_pointer(result, level.key);
-    return result;
-  }
-
- private:
-  struct Level {
-    bool is_array;
-    std::size_t element;  ///< of an array, the one under way
-    std::string key;      ///< of an object, the last one seen
-    std::set<std::string> keys;
-  };
-
-  void next_element() {
-    if (!levels_.empty() && levels_.back().is_array) ++levels_.back().element;
-  }
-
-  const std::filesystem::path& file_;
-  std::vector<Level> levels_;
-};
 
 /// The JSON library's account of a syntax error, "[json.exception.parse_error.101] parse error at line 1,
 /// column 9: syntax error while parsing value - invalid literal; last read: '"a": N'", from "line" on. It
@@ -134,24 +77,96 @@ std::string quoted_part(std::string_view message) {
   return first < last ? printable(message.substr(first + 1, last - first - 1)) : std::string("a number");
 }
 
+/// Goes through a document ahead of the parser that keeps it: knows the place, and refuses what that lets
+/// pass. (A callback of the keeping parser could do so too, but the library then goes through all elements of
+/// a list after each: two million empty objects, 16 MB, take hours.)
+class Watcher final : public json::json_sax_t {
+ public:
+  explicit Watcher(const std::filesystem::path& file) : file_(file) {}
+
+  bool null() override { return next_element(); }
+  bool boolean(bool /*value*/) override { return next_element(); }
+  bool number_integer(number_integer_t /*value*/) override { return next_element(); }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return next_element(); }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return next_element(); }
+  bool string(string_t& /*value*/) override { return next_element(); }
+  bool binary(binary_t& /*value*/) override { return next_element(); }
+
+  bool start_object(std::size_t /*elements*/) override { return start(false); }
+  bool start_array(std::size_t /*elements*/) override { return start(true); }
+  bool end_object() override { return end(); }
+  bool end_array() override { return end(); }
+
+  bool key(string_t& name) override {
+    levels_.back().key = name;
+    if (!levels_.back().keys.insert(name).second)
+      fail(file_, printable(pointer()) + " is given twice: keep one of the two");
+    return true;
+  }
+
+  bool parse_error(std::size_t /*position*/, const std::string& /*last_token*/,
+                   const json::exception& error) override {
+    const std::string place = pointer();
+    if (dynamic_cast<const json::out_of_range*>(&error) != nullptr)
+      fail(file_, printable(place) + " is " + quoted_part(error.what()) +
+                      ", which overflows to infinity: give a finite number");
+    fail(file_, "malformed JSON" + (place.empty() ? "" : " near " + printable(place)) + ", " +
+                    syntax_problem(error.what()) + ": correct the file there");
+  }
+
+ private:
+  /// The value under way; at the top level the empty pointer.
+  std::string pointer() const {
+    std::string result;
+    for (const Level& level : levels_)
+      if (level.is_array)
+        result = json_pointer(result, std::to_string(level.element));
+      else if (!level.keys.empty())
+        result = json_pointer(result, level.key);
+    return result;
+  }
+
+  struct Level {
+    bool is_array;
+    std::size_t element;  ///< of an array, the one under way
+    std::string key;      ///< of an object, the last one seen
+    std::set<std::string> keys;
+  };
+
+  bool start(bool is_array) {
+    if (levels_.size() == deepest_json_level)
+      fail(file_, printable(pointer()) + " is nested deeper than " + std::to_string(deepest_json_level) +
+                      " levels: a scene needs fewer, so remove the surplus brackets");
+    levels_.push_back({is_array, 0, {}, {}});
+    return true;
+  }
+
+  bool end() {
+    levels_.pop_back();
+    return next_element();
+  }
+
+  bool next_element() {
+    if (!levels_.empty() && levels_.back().is_array) ++levels_.back().element;
+    return true;
+  }
+
+  const std::filesystem::path& file_;
+  std::vector<Level> levels_;
+};
+
 }  // namespace
 
-JsonDocument read_json(const std::filesystem::path& file) {
-  JsonDocument document{file, read_text(file), {}};
+JsonDocument parse_json(const std::filesystem::path& file, std::string text) {
+  if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
   Watcher watcher(file);
-  try {
-    document.value = json::parse(
-        document.text, [&](int, json::parse_event_t event, json& parsed) { return watcher(event, parsed); });
-  } catch (const json::parse_error& error) {
-    const std::string place = watcher.pointer();
-    fail(file, "malformed JSON" + (place.empty() ? "" : " near " + printable(place)) + ", " +
-                   syntax_problem(error.what()) + ": correct the file there");
-  } catch (const json::out_of_range& error) {
-    fail(file, printable(watcher.pointer()) + " is " + quoted_part(error.what()) +
-                   ", which overflows to infinity: give a finite number");
-  }
+  json::sax_parse(text, &watcher);
+  JsonDocument document{file, std::move(text), {}};
+  document.value = json::parse(document.text);
   return document;
 }
+
+JsonDocument read_json(const std::filesystem::path& file) { return parse_json(file, read_text(file)); }
 
 std::string json_pointer(std::string_view pointer, std::string_view key) {
   std::string result(pointer);
@@ -163,26 +178,6 @@ std::string json_pointer(std::string_view pointer, std::string_view key) {
       result += "~1";
     else
       result += c;
-  }
-  return result;
-}
-
-std::string printable(std::string_view text, std::size_t length) {
-  std::string result;
-  if (text.size() > length) {
-    std::size_t end = length;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
-      --end;  // not within a character
-    result = std::string(text.substr(0, end)) + "...";
-  } else {
-    result = text;
-  }
-  // The library's own writer escapes control characters and replaces what is not UTF-8; quotes are put back.
-  const std::string escaped = json(result).dump(-1, ' ', false, json::error_handler_t::replace);
-  result.clear();
-  for (std::size_t i = 1; i + 1 < escaped.size(); ++i) {
-    if (escaped[i] == '\\' && (escaped[i + 1] == '"' || escaped[i + 1] == '\\')) ++i;
-    result += escaped[i];
   }
   return result;
 }

@@ -20,15 +20,16 @@ struct JsonDocument {
   nlohmann::json value;
 };
 
-/// Reads and parses a file, strictly: no comments, no duplicate keys (which the JSON library would let pass,
-/// the last one winning), no number that overflows, at most `deepest_json_level` levels. Throws SceneError.
+/// Parses a text, strictly: no comments, no duplicate keys (which the JSON library would let pass, the last
+/// one winning), no number that overflows, at most `deepest_json_level` levels. `file` is where it came from.
+/// Throws SceneError.
+JsonDocument parse_json(const std::filesystem::path& file, std::string text);
+
+/// The same, from a file of at most `largest_json_bytes`.
 JsonDocument read_json(const std::filesystem::path& file);
 
 /// A JSON pointer (RFC 6901) to `key` in the object at `pointer`.
 std::string json_pointer(std::string_view pointer, std::string_view key);
-
-/// `text` for an error message: on one line, valid UTF-8, cut to about `length` bytes.
-std::string printable(std::string_view text, std::size_t length = 80);
 
 /// A number for an error message, as short as it reads back.
 std::string shown_number(double number);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/printable.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
 

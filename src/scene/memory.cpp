@@ -55,10 +55,10 @@ void require_memory(const SceneSpec& spec, std::string_view pointer, const Scene
                     std::uint64_t needed, std::string_view remedy) {
   const std::uint64_t available = memory_available();
   if (needed <= available) return;
-  throw SceneError(spec.file.string() + ": " + std::string(pointer) + " has " + std::to_string(counts.nodes) +
-                   " nodes and " + std::to_string(counts.springs_unique) + " springs and needs at least " +
-                   in_gigabytes(needed) + " of memory, but " + in_gigabytes(available) +
-                   " are available: " + std::string(remedy));
+  refuse(spec.file, pointer,
+         "has " + std::to_string(counts.nodes) + " nodes and " + std::to_string(counts.springs_unique) +
+             " springs and needs at least " + in_gigabytes(needed) + " of memory, but " +
+             in_gigabytes(available) + " are available: " + std::string(remedy));
 }
 
 }  // namespace mssim

@@ -1,6 +1,6 @@
 #include "scene/scene_error.h"
 
-#include "scene/json_document.h"
+#include "model/printable.h"
 
 namespace mssim {
 

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "model/data_folder.h"
+#include "model/printable.h"
+#include "scene/json_document.h"
 #include "scene/json_reader.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
@@ -52,16 +54,25 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.object("floor", Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
 }
 
-SceneSpec load_scene(const std::filesystem::path& file) {
-  JsonDocument document = read_json(file);
+namespace {
+
+SceneSpec scene_of(JsonDocument document) {
   SceneSpec spec;
   read_fields(document, [&](FieldVisitor& fields) { visit_scene_fields(fields, spec); });
-  spec.name = file.stem().string();
-  spec.file = file;
+  spec.name = document.file.stem().string();
+  spec.file = std::move(document.file);
   spec.source = std::move(document.text);
   kind_of(spec).check(spec);
   return spec;
 }
+
+}  // namespace
+
+SceneSpec parse_scene(const std::filesystem::path& file, std::string text) {
+  return scene_of(parse_json(file, std::move(text)));
+}
+
+SceneSpec load_scene(const std::filesystem::path& file) { return scene_of(read_json(file)); }
 
 std::vector<std::string> scene_names() {
   std::vector<std::tuple<std::size_t, std::uint64_t, std::string>> scenes;

@@ -13,6 +13,9 @@ namespace mssim {
 /// Names the fields of a whole scene file, with their targets in `spec`.
 void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec);
 
+/// Checks the text of a scene file, which need not exist; the scene is named after it. Throws SceneError.
+SceneSpec parse_scene(const std::filesystem::path& file, std::string text);
+
 /// Reads and checks a scene file. Throws SceneError.
 SceneSpec load_scene(const std::filesystem::path& file);
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/backend.h"
+#include "bench/result.h"
+#include "bench/scene_job.h"
+#include "bench/verification.h"
+
+namespace mssim {
+
+/// A row under way: a backend with an integrator on the job's scene.
+struct Combination {
+  ResultRow row;
+  const Integrator* integrator = nullptr;
+  bool on_host = true;
+  int steps_per_pass = 0;
+  std::unique_ptr<Backend> backend;  ///< null where the row has no times: it cannot run, or has failed
+  int steps = 1;                     ///< in a sample
+};
+
+/// Makes the backend; a reason not to becomes the row's status.
+Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator);
+
+/// Holds the backend against the reference. The row has failed where it is not near enough.
+void verify_combination(Combination& combination, const SceneJob& job, const Reference& reference);
+
+/// Finds how many steps fill a sample, from ever longer trials, and goes on until the backend is warm.
+void calibrate(Combination& combination, const SceneJob& job);
+
+/// Milliseconds a step, in a sample of combination.steps from the scene's start. Sets and warms up what is
+/// needed outside the timed region. The row has failed where the result is not finite.
+double sample_ms(Combination& combination, const SceneJob& job);
+
+/// Computes all that follows from the row's samples. `serial`: the baseline's row of the same integrator, or
+/// null.
+void summarise(ResultRow& row, const ResultRow* serial);
+
+}  // namespace mssim

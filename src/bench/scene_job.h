@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/backend.h"
+#include "bench/result.h"
+
+namespace mssim {
+
+/// What to measure of one scene: every backend with every integrator.
+struct SceneJob {
+  std::string name;
+  const System* system = nullptr;
+  std::uint64_t springs_published = 0;
+  std::string note = {};  ///< for every row
+  double dt_s = 0;
+  std::vector<const BackendInfo*> backends;
+  std::vector<const Integrator*> integrators;
+  ExecutionOptions execution;
+  int rounds = 0;               ///< at most, with a deadline
+  double sample_seconds = 0.1;  ///< what a sample's steps should add up to
+  /// No round begins that would probably not end before it, but for the first.
+  std::optional<std::chrono::steady_clock::time_point> deadline = {};
+  std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
+};
+
+/// Combinations of a job: integrators outermost.
+inline std::size_t combinations(const SceneJob& job) { return job.integrators.size() * job.backends.size(); }
+
+}  // namespace mssim

@@ -1,0 +1,59 @@
+#include "surface_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "fuzz_checks.h"
+#include "mesh/mesh_error.h"
+#include "mesh/surface_file.h"
+#include "model/decimal.h"
+
+namespace mssim {
+namespace {
+
+std::string obj_text(const Surface& surface) {
+  std::string text;
+  for (const Vec3d& point : surface.points)
+    text += "v " + decimal(point.x) + ' ' + decimal(point.y) + ' ' + decimal(point.z) + '\n';
+  for (const auto& [a, b, c] : surface.triangles)
+    text += "f " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + ' ' + std::to_string(c + 1) + '\n';
+  return text;
+}
+
+}  // namespace
+
+void check_surface(const Surface& surface) {
+  require(!surface.triangles.empty(), "a surface has triangles");
+  std::vector<bool> used(surface.points.size());
+  for (const auto& triangle : surface.triangles)
+    for (const std::uint32_t point : triangle) {
+      require(point < surface.points.size(), "corners are points");
+      used[point] = true;
+    }
+  require(std::find(used.begin(), used.end(), false) == used.end(), "points are corners");
+  std::vector<std::tuple<double, double, double>> places;
+  for (const Vec3d& point : surface.points) {
+    require(is_finite(point), "points are finite");
+    places.emplace_back(point.x, point.y, point.z);
+  }
+  std::sort(places.begin(), places.end());
+  require(std::adjacent_find(places.begin(), places.end()) == places.end(), "points stand apart");
+
+  const Surface again = parse_obj("again.obj", obj_text(surface));
+  require(again.points == surface.points && again.triangles == surface.triangles,
+          "written surfaces read back");
+
+  const auto closed = unless_refused<MeshError>([&] {
+    validate_surface(surface, "surface");
+    return true;
+  });
+  if (!closed) return;
+  require(surface.triangles.size() % 2 == 0, "a closed surface has three edges for two triangles");
+  require(std::isfinite(volume_of(surface)) && volume_of(surface) > 0, "a closed surface has a volume");
+}
+
+}  // namespace mssim
