@@ -104,6 +104,8 @@ TEST_F(ProvenanceFile, IsRefusedWithThePlaceAndTheValue) {
   EXPECT_THAT(refusal_with("/build/compiler", nullptr), HasSubstr("/build/compiler is null"));
   EXPECT_THAT(refusal_with("/load_average/0", "much"), HasSubstr("/load_average/0 is \"much\""));
   EXPECT_THAT(refusal_with("/opencl_devices", "none"), HasSubstr("instead of a list"));
+  EXPECT_THAT(refusal_with("/cpu/turbo", 7), HasSubstr("/cpu/turbo is 7 instead of true or false"));
+  EXPECT_THAT(refusal_with("/noise", "much"), HasSubstr("/noise is \"much\" instead of a list"));
   EXPECT_THAT(refusal_with("/cpu/governor", 7), HasSubstr("/cpu/governor is 7"));
   EXPECT_THAT(refusal_with("/cpu/caches/0/bytes", 1e300), HasSubstr("/cpu/caches/0/bytes is 1e+300"));
   for (const char* hash : {"fedcba987654321", "fedcba987654321g", "0xfedcba98765432", "fedcba98765432100"})

@@ -54,14 +54,6 @@ json caches_json(const std::vector<Cache>& caches) {
   return list;
 }
 
-/// A value for an error message: on one line, valid UTF-8, no longer than a line.
-std::string shown(const json& value) {
-  constexpr std::size_t longest = 60;
-  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  if (text.size() > longest) text = text.substr(0, longest) + "...";
-  return text;
-}
-
 /// A value of the document and where it stands: the root is the file, a member is reached by its key.
 class Place {
  public:
@@ -134,7 +126,8 @@ class Place {
 
   void require(bool good, const std::string& wanted) const {
     if (!good)
-      fail(file_, (pointer_.empty() ? "the whole" : pointer_) + " is " + shown(value_) + " instead of " +
+      fail(file_, (pointer_.empty() ? "the whole" : pointer_) + " is " +
+                      printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)) + " instead of " +
                       wanted + ": give a provenance.json that mssim wrote");
   }
 
@@ -248,7 +241,7 @@ Provenance parse_provenance(const std::filesystem::path& file, std::string_view 
     // The library's sentence names line and column, behind its own name in brackets.
     const std::string_view message = error.what();
     const std::size_t start = message.find("] ");
-    const std::string problem = printable(message.substr(start == std::string_view::npos ? 0 : start + 2));
+    const std::string problem = printable(message.substr(start == std::string_view::npos ? 0 : start + 2), 300);
     fail(file, "malformed JSON, " + problem + ": give a provenance.json that mssim wrote");
   }
   return read_document({file, document});

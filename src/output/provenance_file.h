@@ -23,8 +23,8 @@ inline constexpr std::size_t largest_provenance_bytes = std::size_t{256} << 10;
 /// All of it. Numbers are finite; what is not known is absent or null.
 nlohmann::json to_json(const Provenance& provenance);
 
-/// Reads what to_json(Provenance) wrote. Every value that mssim writes must be there and be what it should;
-/// further ones, of a newer mssim, are ignored. Throws ProvenanceError.
+/// Reads what to_json(Provenance) wrote. Every value must be what it should; what mssim has written from the
+/// first must be there, and what a newer one adds is ignored. Throws ProvenanceError.
 Provenance read_provenance(const std::filesystem::path& file);
 
 /// The same of a text; `file` is named in messages.
