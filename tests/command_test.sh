@@ -36,6 +36,20 @@ expect 2 'duration: "nan" is not a positive number' run --scene cloth2500 --dura
 expect 2 'dt' run --scene cloth2500 --dt -1
 expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
 
+# Plans.
+"$mssim" bench --suite table1 --dry-run --out "$work/never" >"$work/out" || fail "--dry-run exits with $?"
+[ "$(grep -c '^cloth' "$work/out")" -eq 6 ] || fail "--dry-run does not name the six cloths"
+grep -q '^about [0-9]* s in all$' "$work/out" || fail "--dry-run does not say how long it takes"
+"$mssim" bench --suite table2 --dry-run >"$work/out" || fail "--dry-run of table2 exits with $?"
+[ ! -e "$work/never" ] || fail "--dry-run has made a folder"
+expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite table1 --time-budget 5
+expect 2 'time-budget' bench --scene cloth2500 --time-budget nan
+start=$(date +%s%N)
+"$mssim" bench --scene cloth2500,cloth4900 --backend serial,opencl --integrator semi-euler --threads 1 --time-budget 12 >"$work/out" 2>"$work/err" ||
+  fail "a bench with a time budget exits with $?"
+spent=$((($(date +%s%N) - start) / 1000000))
+[ "$spent" -ge 10800 ] && [ "$spent" -le 13200 ] || fail "a time budget of 12 s was $spent ms"
+
 # Scenes.
 sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
 expect 2 'typo.json.*rowz.*rows' bench --scene "$work/typo.json"
@@ -59,7 +73,7 @@ status=0
 grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timings.csv does not say what failed"
 
 # A bench as it should be.
-"$mssim" bench --scene cloth2500 --rounds 3 --threads 2 --trace --out "$work/results" >"$work/out" 2>"$work/err" ||
+"$mssim" bench --scene cloth2500 --rounds 3 --threads 2 --trace --out "$work/results" --overwrite >"$work/out" 2>"$work/err" ||
   fail "bench exits with $?"
 cat "$work/out"
 [ "$(column nodes | sort -u)" = 2500 ] || fail "nodes"
@@ -73,14 +87,14 @@ done
 column roofline_fraction | awk '!($1 > 0 && $1 <= 1.05) { bad = 1 } END { exit bad }' || fail "a roofline fraction"
 
 # Data copied between host and device: the rows that do so say it.
-"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" \
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite \
   >"$work/out" 2>"$work/err" || fail "bench --memory copy exits with $?"
 [ "$(column verified | grep -c true)" -eq 5 ] || fail "not 5 verified rows with copied memory"
 [ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
 
 # A device that is missing: its rows say so; asked for by name it is an error.
 status=0
-"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --out "$work/results" >"$work/out" 2>&1 ||
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --out "$work/results" --overwrite >"$work/out" 2>&1 ||
   status=$?
 [ "$status" -eq 0 ] || fail "an unavailable backend that nobody asked for gives $status"
 [ "$(grep -c 'unavailable: ' "$work/results/timings.csv")" -eq 2 ] || fail "not two unavailable rows"

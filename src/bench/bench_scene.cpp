@@ -101,6 +101,18 @@ bool take_round(std::vector<Combination>& combinations, const std::vector<std::s
   return true;
 }
 
+void tell_round(int round, const SceneJob& job, Clock::time_point start, const BenchWatch& watch) {
+  std::string activity = "round " + std::to_string(round + 1);
+  double done = static_cast<double>(round) / job.rounds;
+  if (job.deadline) {
+    const std::chrono::duration<double> spent = Clock::now() - start, all = *job.deadline - start;
+    done = all > spent ? std::max(done, spent / all) : 1;
+  } else {
+    activity += " of " + std::to_string(job.rounds);
+  }
+  watch.progress(activity, preparation + (1 - preparation) * done);
+}
+
 }  // namespace
 
 std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch) {
@@ -133,8 +145,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     const int measured = round - restored;
     if (job.deadline && measured > 0 && Clock::now() + (Clock::now() - start) / measured > *job.deadline)
       break;
-    watch.progress("round " + std::to_string(round + 1) + " of " + std::to_string(job.rounds),
-                   preparation + (1 - preparation) * round / job.rounds);
+    tell_round(round, job, start, watch);
     if (!take_round(all, order, job, watch)) {
       if (round == 0) return {};
       break;

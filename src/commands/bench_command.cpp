@@ -17,6 +17,7 @@
 #include "commands/bench_summary.h"
 #include "commands/bench_trace.h"
 #include "commands/choices.h"
+#include "commands/dry_run.h"
 #include "commands/earlier_rows.h"
 #include "commands/exit_code.h"
 #include "commands/prepared_scene.h"
@@ -24,8 +25,9 @@
 #include "commands/run_provenance.h"
 #include "commands/stop_request.h"
 #include "commands/structure.h"
+#include "commands/time_budget.h"
 #include "integrators/integrators.h"
-#include "output/listing.h"
+#include "output/atomic_file.h"
 #include "output/published.h"
 #include "output/result_folder.h"
 #include "scene/scene_file.h"
@@ -61,9 +63,10 @@ int exit_code_of(const std::vector<ResultRow>& rows, const BenchOptions& options
 /// after every round. Ends early when it is asked to.
 void time_scenes(SceneJob job, const std::vector<std::string>& names, const BenchOptions& options,
                  const std::vector<PublishedTable>& published, const ResultFolder* folder,
-                 const StopRequest& stop, BenchRows& rows) {
+                 const StopRequest& stop, TimeBudget& budget, BenchRows& rows) {
   ProgressLine progress(names.size());
   for (const std::string& name : names) {
+    job.deadline = budget.begin_scene();
     job.name = find_scene(name).name;
     job.earlier = rows.of_scene(job.name);
     progress.begin_scene(job.name);
@@ -76,6 +79,7 @@ void time_scenes(SceneJob job, const std::vector<std::string>& names, const Benc
     job.note = scene.note;
     job.dt_s = scene.dt_s;
     const auto keep = [&](std::vector<ResultRow> measured) {
+      if (measured.front().rounds == 1) budget.first_round_done();
       add_published_times(measured, job.backends, published);
       rows.replace(job.name, std::move(measured));
       if (folder) folder->write(rows.all());
@@ -107,9 +111,7 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
 
 /// A user shall not wait for a scene only to see the program killed.
 void require_memory_for(const SceneJob& job, const SceneSpec& spec) {
-  const SceneCounts counts = counts_of(spec);
-  const bool grid = std::holds_alternative<ClothSpec>(spec.body);
-  require_memory(spec, counts, bench_memory_needed(job, {counts.nodes, counts.springs_unique, grid}),
+  require_memory(spec, counts_of(spec), bench_memory_needed(job, size_of(spec)),
                  "name fewer with --backend or --integrator, or make the scene smaller");
 }
 
@@ -127,6 +129,11 @@ int run(const BenchOptions& options) {
     require_memory_for(plan.job, spec);
     add_scene(provenance, spec.name, spec.source);
   }
+  if (options.dry_run) {
+    tell_plan(plan, options.time_budget_s);
+    return exit_ok;
+  }
+  TimeBudget budget(options.time_budget_s, expected_times(plan.job, plan.timed));
   const std::vector<PublishedTable> published = published_tables();
   std::optional<ResultFolder> folder;
   if (!options.out.empty()) folder.emplace(options.out, provenance, plan.tables);
@@ -139,12 +146,16 @@ int run(const BenchOptions& options) {
   if (!plan.described.empty()) {
     const std::vector<StructureRow> structure = describe_scenes(plan.described);
     if (folder) folder->write(structure);
-    std::cout << to_text(summary(structure), ListingFormat::table);
+    std::cout << summary(structure, options.format);
   }
   StopRequest stop;
   if (!plan.timed.empty()) {
-    time_scenes(plan.job, plan.timed, options, published, folder ? &*folder : nullptr, stop, rows);
-    std::cout << (plan.described.empty() ? "" : "\n") << to_text(summary(rows.all()), ListingFormat::table);
+    time_scenes(plan.job, plan.timed, options, published, folder ? &*folder : nullptr, stop, budget, rows);
+    if (!plan.described.empty() && options.format == SummaryFormat::table) std::cout << '\n';
+    const std::string text = summary(rows.all(), options.format);
+    std::cout << text;
+    if (folder && options.format == SummaryFormat::github)
+      write_file_atomically(std::filesystem::path(options.out) / "github.json", text);
     code = exit_code_of(rows.all(), options);
   }
   if (folder && stop.requested())
@@ -172,10 +183,23 @@ std::function<int()> declare_bench(CLI::App& app) {
          "Integrators, or all (default: semi-euler,midpoint,rk4; with --suite races or scaling semi-euler)")
       ->delimiter(',');
   declare_execution(app, options->execution);
-  app.add_option("--rounds", options->rounds, "Samples of each combination (default: 15)")
-      ->check(CLI::Range(1, 100000));
+  app.add_option("--rounds", options->rounds,
+                 "Samples of each combination (default: 15; with --time-budget at most so many)")
+      ->check(CLI::Range(1, most_rounds));
+  app.add_option("--time-budget", options->time_budget_s,
+                 "Seconds that the measurement is to take, in as many rounds as fit; traces come on top")
+      ->check(positive_number());
+  app.add_flag("--dry-run", options->dry_run,
+               "Print what would be measured and about how long it would take, and do nothing");
   app.add_flag("--trace", options->trace,
                "Trace each combination too, after it has been timed, into OUT/traces");
+  add_choice<SummaryFormat>(app, "--format", options->format,
+                            {{"table", SummaryFormat::table},
+                             {"csv", SummaryFormat::csv},
+                             {"json", SummaryFormat::json},
+                             {"github", SummaryFormat::github}},
+                            "What to print: table, csv, json, or github, what github-action-benchmark reads, "
+                            "which is written into OUT too (default: table)");
   app.add_option("--out", options->out, "Folder for the results: tables, samples, provenance");
   CLI::Option* resume = app.add_flag(
       "--resume", options->resume,

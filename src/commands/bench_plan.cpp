@@ -1,10 +1,12 @@
 #include "commands/bench_plan.h"
 
 #include <algorithm>
+#include <variant>
 
 #include "commands/choices.h"
 #include "commands/exit_code.h"
 #include "integrators/integrators.h"
+#include "scene/scene_kinds.h"
 
 namespace mssim {
 namespace {
@@ -41,13 +43,18 @@ std::vector<const Integrator*> integrators_of(const BenchOptions& options,
 
 }  // namespace
 
+SceneSize size_of(const SceneSpec& spec) {
+  const SceneCounts counts = counts_of(spec);
+  return {counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body)};
+}
+
 BenchPlan plan_of(const BenchOptions& options) {
   const Comparison& comparison = comparison_of_suite(options.suite);
   BenchPlan plan;
   plan.job.backends = backends_of(options, comparison.backends());
   plan.job.integrators = integrators_of(options, comparison.integrators);
   plan.job.execution = complete(options.execution);
-  plan.job.rounds = options.rounds;
+  plan.job.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
   plan.timed = timed_scenes_of(options);
   plan.described = scenes_of_suite(options.suite, false);
   if (plan.timed.empty() && plan.described.empty())

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "bench/bench_scene.h"
+#include "bench/bench_memory.h"
+#include "bench/scene_job.h"
+#include "commands/bench_summary.h"
 #include "commands/suites.h"
+#include "scene/scene_spec.h"
 
 namespace mssim {
 
@@ -15,12 +19,22 @@ struct BenchOptions {
   std::vector<std::string> backends;
   std::vector<std::string> integrators;
   ExecutionOptions execution;
-  int rounds = 15;
+  std::optional<int> rounds;  ///< none: the usual number, or as many as the budget allows
+  std::optional<double> time_budget_s;
+  bool dry_run = false;
   bool trace = false;
   std::string out;
+  SummaryFormat format = SummaryFormat::table;
   bool resume = false;
   bool overwrite = false;
 };
+
+/// Rounds of a bench that says nothing of them.
+inline constexpr int usual_rounds = 15;
+inline constexpr int most_rounds = 100'000;
+
+/// The size of a scene that may not be built yet. Throws like counts_of.
+SceneSize size_of(const SceneSpec& spec);
 
 /// What it means.
 struct BenchPlan {

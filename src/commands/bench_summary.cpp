@@ -1,10 +1,25 @@
 #include "commands/bench_summary.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
 
-namespace mssim {
+#include "output/github_json.h"
+#include "output/listing.h"
 
-Listing summary(std::span<const ResultRow> rows) {
+namespace mssim {
+namespace {
+
+std::string text_of(const Listing& listing, SummaryFormat format) {
+  if (listing.empty() || format == SummaryFormat::github) return "";
+  return to_text(listing, format == SummaryFormat::csv    ? ListingFormat::csv
+                          : format == SummaryFormat::json ? ListingFormat::json
+                                                          : ListingFormat::table);
+}
+
+}  // namespace
+
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format) {
+  if (format == SummaryFormat::github) return github_json(rows).dump(2) + '\n';
   const auto number = [](const std::optional<double>& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
   };
@@ -24,10 +39,10 @@ Listing summary(std::span<const ResultRow> rows) {
                        {"position_error", number(row.position_error)},
                        {"verified", row.verified},
                        {"status", row.status}});
-  return listing;
+  return text_of(listing, format);
 }
 
-Listing summary(std::span<const StructureRow> rows) {
+std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
   Listing listing;
   for (const StructureRow& row : rows)
     listing.push_back({{"scene", row.scene},
@@ -36,7 +51,7 @@ Listing summary(std::span<const StructureRow> rows) {
                        {"springs_published", row.springs_published},
                        {"tetrahedra", row.tetrahedra},
                        {"smallest_dihedral_angle_deg", row.smallest_dihedral_angle_deg}});
-  return listing;
+  return text_of(listing, format);
 }
 
 }  // namespace mssim

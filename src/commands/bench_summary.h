@@ -1,17 +1,22 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <string>
 
 #include "bench/result.h"
-#include "output/listing.h"
 #include "output/structure_table.h"
 
 namespace mssim {
 
-/// The rows for a reader: the columns that answer "how fast, how right".
-Listing summary(std::span<const ResultRow> rows);
+/// How a bench prints its rows; `github` is github_json().
+enum class SummaryFormat : std::uint8_t { table, csv, json, github };
 
-/// The rows of scenes of which only the structure is told.
-Listing summary(std::span<const StructureRow> rows);
+/// The rows for a reader: the columns that answer "how fast, how right". Ends with a newline; empty for a
+/// table without rows.
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format);
+
+/// The rows of scenes of which only the structure is told; none in the format `github`, which is for times.
+std::string summary(std::span<const StructureRow> rows, SummaryFormat format);
 
 }  // namespace mssim

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,19 @@ const Integrator& require_integrator(const std::string& name);
 
 /// Accepts finite numbers above zero, and says so in words.
 CLI::Validator positive_number();
+
+/// Declares an option that takes one of these words, in any case, and sets `target` to what the word stands
+/// for. Both must outlive the parsing.
+template <class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& target,
+                        const std::map<std::string, Value>& choices, const std::string& description) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) words.push_back(word);
+  return app
+      .add_option_function<std::string>(
+          name, [&target, choices](const std::string& word) { target = choices.at(word); }, description)
+      ->transform(CLI::IsMember(words, CLI::ignore_case));
+}
 
 /// Declares --threads, --device and --memory. `options` must outlive the parsing.
 void declare_execution(CLI::App& app, ExecutionOptions& options);

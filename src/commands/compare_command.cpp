@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,11 +88,11 @@ std::function<int()> declare_compare(CLI::App& app) {
   app.add_option("new", options->ab.next, "NEW: what is compared with it")->required();
   app.add_option("--threshold", options->threshold_percent, "A change that matters, in percent (default: 5)")
       ->check(positive_number());
-  const std::map<std::string, ComparisonFormat> formats{{"table", ComparisonFormat::table},
-                                                        {"markdown", ComparisonFormat::markdown},
-                                                        {"json", ComparisonFormat::json}};
-  app.add_option("--format", options->format, "table, markdown or json (default: table)")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  add_choice<ComparisonFormat>(app, "--format", options->format,
+                               {{"table", ComparisonFormat::table},
+                                {"markdown", ComparisonFormat::markdown},
+                                {"json", ComparisonFormat::json}},
+                               "table, markdown or json (default: table)");
   CLI::Option* ab =
       app.add_flag("--ab", options->programs,
                    "BASE and NEW are mssim programs: run them by turns, as a new process each time");

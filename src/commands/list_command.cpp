@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -180,10 +179,10 @@ std::function<int()> declare_list(CLI::App& app) {
   std::vector<std::string> names;
   for (const Subject& subject : subjects) names.emplace_back(subject.name);
   app.add_option("subject", options->subject, "What to list")->required()->check(CLI::IsMember(names));
-  const std::map<std::string, ListingFormat> formats{
-      {"table", ListingFormat::table}, {"csv", ListingFormat::csv}, {"json", ListingFormat::json}};
-  app.add_option("--format", options->format, "table, csv or json (default: table)")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  add_choice<ListingFormat>(
+      app, "--format", options->format,
+      {{"table", ListingFormat::table}, {"csv", ListingFormat::csv}, {"json", ListingFormat::json}},
+      "table, csv or json (default: table)");
   app.add_option("--device", options->execution.device, "OpenCL device that backends are checked with");
   return [options] { return run_list(*options); };
 }

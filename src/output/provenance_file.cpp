@@ -241,7 +241,8 @@ Provenance parse_provenance(const std::filesystem::path& file, std::string_view 
     // The library's sentence names line and column, behind its own name in brackets.
     const std::string_view message = error.what();
     const std::size_t start = message.find("] ");
-    const std::string problem = printable(message.substr(start == std::string_view::npos ? 0 : start + 2), 300);
+    const std::string problem =
+        printable(message.substr(start == std::string_view::npos ? 0 : start + 2), 300);
     fail(file, "malformed JSON, " + problem + ": give a provenance.json that mssim wrote");
   }
   return read_document({file, document});

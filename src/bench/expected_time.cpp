@@ -1,0 +1,37 @@
+#include "bench/expected_time.h"
+
+#include <algorithm>
+
+#include "bench/verification.h"
+
+namespace mssim {
+namespace {
+
+// Seconds, as measured on two cores of a server of 2024.
+constexpr double spring_s = 7e-9;           // the force of one, in the plain list
+constexpr double other_backends = 0.3;      // their step, in steps of the plain list
+constexpr double built_spring_s = 1.5e-7;   // building the scene
+constexpr double moved_node_s = 4e-8;       // setting a state
+constexpr double peaks_s = 0.5;             // of one working set, with one thread and with all
+constexpr double samples_to_calibrate = 3;  // growing ones, and until the backend is warm
+
+}  // namespace
+
+ExpectedTime expected_time(const SceneJob& job, const SceneSize& size) {
+  const auto nodes = static_cast<double>(size.nodes), springs = static_cast<double>(size.springs);
+  ExpectedTime time;
+  time.preparation = springs * built_spring_s;
+  for (const Integrator* integrator : job.integrators) {
+    const double list_step = spring_s * springs * static_cast<double>(integrator->stage_count);
+    time.preparation += verification_steps * list_step + peaks_s;
+    for (const BackendInfo* backend : job.backends) {
+      const double step = list_step * (backend->name == "serial" ? 1 : other_backends);
+      const double sample = std::max(job.sample_seconds, step) + step + 2 * nodes * moved_node_s;
+      time.preparation += verification_steps * step + samples_to_calibrate * sample;
+      time.round += sample;
+    }
+  }
+  return time;
+}
+
+}  // namespace mssim

@@ -1,0 +1,23 @@
+#include "output/github_json.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "output/csv.h"
+
+namespace mssim {
+
+nlohmann::ordered_json github_json(std::span<const ResultRow> rows) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const ResultRow& row : rows) {
+    if (row.status != "ok" || !row.ms_per_step) continue;
+    list.push_back({{"name", row.scene + '/' + row.backend + '/' + row.integrator},
+                    {"unit", "ms/step"},
+                    {"value", *row.ms_per_step},
+                    {"range", csv_number(row.ms_per_step_low) + " to " + csv_number(row.ms_per_step_high)},
+                    {"extra", row.device + ", " + std::to_string(row.threads) + " threads"}});
+  }
+  return list;
+}
+
+}  // namespace mssim
