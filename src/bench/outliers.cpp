@@ -33,11 +33,11 @@ std::string_view name_of(Outlier outlier) {
 }
 
 std::vector<Outlier> outliers(std::span<const double> samples) {
-  const auto [first, third] = quartiles(samples);
-  const double range = third - first;
+  const Quartiles middle = quartiles(samples);
+  const double range = middle.third - middle.first;
   std::vector<Outlier> labels;
   std::ranges::transform(samples, std::back_inserter(labels), [&](double sample) {
-    const double outside = std::max(first - sample, sample - third);
+    const double outside = std::max(middle.first - sample, sample - middle.third);
     if (outside > 3 * range) return Outlier::extreme;
     return outside > 1.5 * range ? Outlier::mild : Outlier::no;
   });
