@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -79,14 +80,18 @@ void time_scenes(SceneJob job, const std::vector<std::string>& names, const Benc
     job.note = scene.note;
     job.dt_s = scene.dt_s;
     const auto keep = [&](std::vector<ResultRow> measured) {
-      if (measured.front().rounds == 1) budget.first_round_done();
       add_published_times(measured, job.backends, published);
       rows.replace(job.name, std::move(measured));
       if (folder) folder->write(rows.all());
     };
+    bool first_round = true;
     const BenchWatch watch{
         .progress = [&](const std::string& activity, double done) { progress.update(activity, done); },
-        .after_round = keep,
+        .after_round =
+            [&](const std::vector<ResultRow>& measured) {
+              if (std::exchange(first_round, false)) budget.first_round_done();
+              keep(measured);
+            },
         .stop = [&] { return stop.requested(); }};
     if (!finished) {
       std::vector<ResultRow> measured = bench_scene(job, watch);
