@@ -10,7 +10,7 @@ namespace mssim {
 namespace {
 
 // Permeability of human chorioamnion at term and at 12 to 26 weeks: M. Hollander, D. A. Wolfe, Nonparametric
-// Statistical Methods, Wiley 1973, pages 69 to 79; in the help of R's wilcox.test with W = 35 and a one-sided
+// Statistical Methods, Wiley 1973, page 69 f.; in the help of R's wilcox.test with W = 35 and a one-sided
 // probability of 0.1272.
 const std::vector<double> at_term{0.80, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46};
 const std::vector<double> earlier{1.15, 0.88, 0.90, 0.74, 1.21};
@@ -31,7 +31,7 @@ TEST(RankSum, OfExchangedSamplesIsItsMirrorImage) {
 }
 
 TEST(RankSum, ShiftsByHollanderAndWolfesExample) {
-  // The same data, pages 75 to 79, and in the help of R's package coin: 0.305, from -0.15 to 0.76.
+  // The same data, in the help of R's package coin: 0.305, from -0.15 to 0.76.
   const ShiftEstimate shift = rank_sum_shift(at_term, earlier);
   EXPECT_NEAR(shift.shift, 0.305, 1e-12);
   EXPECT_NEAR(shift.low, -0.15, 1e-12);

@@ -18,7 +18,7 @@ std::vector<double> differences(const std::vector<double>& first, const std::vec
 }
 
 // Depression scores of nine patients before and after a tranquillizer: M. Hollander, D. A. Wolfe,
-// Nonparametric Statistical Methods, Wiley 1973, pages 29 to 37; in the help of R's wilcox.test with V = 40
+// Nonparametric Statistical Methods, Wiley 1973, page 29 f.; in the help of R's wilcox.test with V = 40
 // and a one-sided probability of 0.01953.
 const std::vector<double> depression = differences({1.83, 0.50, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.30},
                                                    {0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29});
@@ -32,7 +32,7 @@ TEST(SignedRank, GivesHollanderAndWolfesExample) {
 }
 
 TEST(SignedRank, ShiftsByHollanderAndWolfesExample) {
-  // The same data, pages 33 to 37, and R's wilcox.test with conf.int: 0.46, from 0.010 to 0.786.
+  // The same data, R's wilcox.test with conf.int: 0.46, from 0.010 to 0.786.
   const ShiftEstimate shift = signed_rank_shift(depression);
   EXPECT_NEAR(shift.shift, 0.46, 1e-12);
   EXPECT_NEAR(shift.low, 0.010, 1e-12);
@@ -42,7 +42,7 @@ TEST(SignedRank, ShiftsByHollanderAndWolfesExample) {
 
 TEST(SignedRank, GivesSiegelsExample) {
   // Social perceptiveness of eight pairs of twins: S. Siegel, Nonparametric Statistics, McGraw-Hill 1956,
-  // page 78; NAG Library Manual, example program of g08agf: statistic 32, two-tailed probability 0.0547.
+  // in the NAG Library Manual, example program of g08agf: statistic 32, two-tailed probability 0.0547.
   const RankTest test =
       signed_rank_test(differences({82, 69, 73, 43, 58, 56, 76, 65}, {63, 42, 74, 37, 51, 43, 80, 62}));
   EXPECT_EQ(test.statistic, 32);

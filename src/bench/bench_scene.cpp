@@ -67,9 +67,8 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
   std::size_t complete = SIZE_MAX;
   for (Combination& combination : combinations) {
     if (!combination.backend) continue;
-    const auto row = std::ranges::find_if(earlier, [&](const ResultRow& other) {
-      return other.backend == combination.row.backend && other.integrator == combination.row.integrator;
-    });
+    const auto row = std::ranges::find_if(
+        earlier, [&](const ResultRow& other) { return same_combination(other, combination.row); });
     if (row != earlier.end()) {
       combination.row.samples_ms = row->samples_ms;
       combination.row.sample_steps = row->sample_steps;

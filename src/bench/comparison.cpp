@@ -12,10 +12,6 @@ namespace {
 /// With so few samples a side even times that do not overlap are not significant.
 constexpr std::size_t fewest_samples = 5;
 
-std::string combination(const ResultRow& row) {
-  return row.scene + ", " + row.backend + ", " + row.integrator;
-}
-
 const ResultRow* find(std::span<const ResultRow> rows, const ResultRow& row) {
   const auto same = std::ranges::find_if(
       rows, [&](const ResultRow& candidate) { return same_combination(candidate, row); });
@@ -75,14 +71,14 @@ RunComparison compare(std::span<const ResultRow> base, std::span<const ResultRow
   for (const ResultRow& row : base) {
     const ResultRow* same = find(next, row);
     if (!same)
-      comparison.only_base.push_back(combination(row));
+      comparison.only_base.push_back(combination_name(row));
     else if (!counts(row))
-      comparison.untimed.push_back(combination(row));
+      comparison.untimed.push_back(combination_name(row));
     else
       comparison.rows.push_back(compare_rows(row, *same, threshold));
   }
   for (const ResultRow& row : next)
-    if (!find(base, row)) comparison.only_new.push_back(combination(row));
+    if (!find(base, row)) comparison.only_new.push_back(combination_name(row));
   add_means(comparison);
   return comparison;
 }

@@ -17,6 +17,19 @@ constexpr double samples_to_calibrate = 3;  // growing ones, and until the backe
 
 }  // namespace
 
+ExpectedTime total(std::span<const ExpectedTime> scenes) {
+  ExpectedTime sum;
+  for (const ExpectedTime& scene : scenes) {
+    sum.preparation += scene.preparation;
+    sum.round += scene.round;
+  }
+  return sum;
+}
+
+double rounds_within(double seconds, const ExpectedTime& time) {
+  return std::max(1.0, (seconds - time.preparation) / time.round);
+}
+
 ExpectedTime expected_time(const SceneJob& job, const SceneSize& size) {
   const auto nodes = static_cast<double>(size.nodes), springs = static_cast<double>(size.springs);
   ExpectedTime time;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "bench/bench_memory.h"
 #include "bench/scene_job.h"
 
@@ -10,6 +12,12 @@ struct ExpectedTime {
   double preparation = 0;  ///< building the scene, references, verification, calibration, peaks
   double round = 0;        ///< one sample of every combination
 };
+
+/// Of several scenes together.
+ExpectedTime total(std::span<const ExpectedTime> scenes);
+
+/// How many rounds of them fit into `seconds`, at least 1.
+double rounds_within(double seconds, const ExpectedTime& time);
 
 /// The time for a scene of this size, about: by a factor of two either way, because it takes all processors
 /// and backends for alike. A plan is made of it, no result. Of the job, the scene's own part is not looked

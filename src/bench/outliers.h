@@ -25,7 +25,7 @@ std::string_view name_of(Outlier outlier);
 
 /// A label for every sample: mild beyond the inner fences, 1.5 interquartile ranges outside the quartiles;
 /// extreme beyond the outer ones, 3 of them. For the readers of samples: none is left out of any number.
-/// Source: J. W. Tukey, Exploratory Data Analysis, Addison-Wesley 1977, section 2E. Throws like quartiles().
+/// Source: J. W. Tukey, Exploratory Data Analysis, Addison-Wesley 1977. Throws like quartiles().
 std::vector<Outlier> outliers(std::span<const double> samples);
 
 }  // namespace mssim

@@ -43,9 +43,16 @@ struct ResultRow {
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
 };
 
-/// Are these the same scene, backend and integrator? What of them was measured may differ.
-inline bool same_combination(const ResultRow& a, const ResultRow& b) {
+/// Are these, whatever is known of them, of the same scene, backend and integrator?
+template <class A, class B>
+bool same_combination(const A& a, const B& b) {
   return a.scene == b.scene && a.backend == b.backend && a.integrator == b.integrator;
+}
+
+/// "scene, backend, integrator", for messages.
+template <class A>
+std::string combination_name(const A& a) {
+  return a.scene + ", " + a.backend + ", " + a.integrator;
 }
 
 /// Is this the time of something that works?

@@ -18,6 +18,7 @@
 #include "mesh/child_process.h"
 #include "mesh/mesh_error.h"
 #include "mesh/temporary_folder.h"
+#include "model/joined.h"
 #include "output/combination_times.h"
 
 namespace mssim {
@@ -27,12 +28,6 @@ namespace fs = std::filesystem;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
-  return text;
 }
 
 /// One of the two, ready to be run again and again.
@@ -46,11 +41,11 @@ class Program {
     child_.folder = fs::current_path();  // scenes may be files named from here
     child_.arguments = {"bench",
                         "--scene",
-                        joined(options.scenes),
+                        joined(options.scenes, ","),
                         "--backend",
-                        joined(options.backends),
+                        joined(options.backends, ","),
                         "--integrator",
-                        joined(options.integrators),
+                        joined(options.integrators, ","),
                         "--rounds",
                         "3"};
     if (options.threads > 0) {
@@ -98,11 +93,9 @@ std::vector<PairedTimes> combinations_of(const std::vector<CombinationTime>& bas
                                          const std::vector<CombinationTime>& next, const AbOptions& options) {
   std::vector<PairedTimes> series;
   for (const CombinationTime& time : base) {
-    const bool both = std::ranges::any_of(next, [&](const CombinationTime& other) {
-      return other.scene == time.scene && other.backend == time.backend &&
-             other.integrator == time.integrator;
-    });
-    const std::string name = time.scene + ", " + time.backend + ", " + time.integrator;
+    const bool both = std::ranges::any_of(
+        next, [&](const CombinationTime& other) { return same_combination(other, time); });
+    const std::string name = combination_name(time);
     if (!both)
       std::cerr << "mssim: only " << options.base << " has " << name << '\n';
     else if (!time.ms_per_step)
@@ -121,21 +114,18 @@ void add_round(std::vector<PairedTimes>& series, const std::vector<CombinationTi
                const std::vector<CombinationTime>& next) {
   for (PairedTimes& pairs : series) {
     const auto find = [&](const std::vector<CombinationTime>& times) -> const CombinationTime& {
-      const auto found = std::ranges::find_if(times, [&](const CombinationTime& time) {
-        return time.scene == pairs.scene && time.backend == pairs.backend &&
-               time.integrator == pairs.integrator;
-      });
+      const auto found = std::ranges::find_if(
+          times, [&](const CombinationTime& time) { return same_combination(time, pairs); });
       if (found == times.end())
         throw UsageError(
-            pairs.scene + ", " + pairs.backend + ", " + pairs.integrator +
+            combination_name(pairs) +
             " was measured in one round and is missing in another; run the programs by themselves");
       return *found;
     };
     const CombinationTime &a = find(base), &b = find(next);
     if (!a.ms_per_step)
-      throw UsageError(pairs.scene + ", " + pairs.backend + ", " + pairs.integrator +
-                       " was measured in one round and not in another (" + a.status +
-                       "); run the programs by themselves");
+      throw UsageError(combination_name(pairs) + " was measured in one round and not in another (" +
+                       a.status + "); run the programs by themselves");
     pairs.base_ms.push_back(*a.ms_per_step);
     if (b.ms_per_step)
       pairs.new_ms.push_back(*b.ms_per_step);

@@ -11,16 +11,15 @@
 #include <variant>
 #include <vector>
 
-#include "bench/bench_memory.h"
 #include "bench/bench_scene.h"
 #include "commands/bench_plan.h"
 #include "commands/bench_rows.h"
 #include "commands/bench_summary.h"
 #include "commands/bench_trace.h"
 #include "commands/choices.h"
-#include "commands/dry_run.h"
 #include "commands/earlier_rows.h"
 #include "commands/exit_code.h"
+#include "commands/planned_scenes.h"
 #include "commands/prepared_scene.h"
 #include "commands/progress_line.h"
 #include "commands/run_provenance.h"
@@ -28,7 +27,6 @@
 #include "commands/structure.h"
 #include "commands/time_budget.h"
 #include "integrators/integrators.h"
-#include "output/atomic_file.h"
 #include "output/published.h"
 #include "output/result_folder.h"
 #include "scene/scene_file.h"
@@ -114,12 +112,6 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
   return rows;
 }
 
-/// A user shall not wait for a scene only to see the program killed.
-void require_memory_for(const SceneJob& job, const SceneSpec& spec) {
-  require_memory(spec, counts_of(spec), bench_memory_needed(job, size_of(spec)),
-                 "name fewer with --backend or --integrator, or make the scene smaller");
-}
-
 int run(const BenchOptions& options) {
   // Everything that can be wrong with the input is found before the first measurement.
   const BenchPlan plan = plan_of(options);
@@ -131,14 +123,14 @@ int run(const BenchOptions& options) {
   }
   for (const std::string& name : plan.timed) {
     const SceneSpec spec = find_scene(name);
-    require_memory_for(plan.job, spec);
     add_scene(provenance, spec.name, spec.source);
   }
+  const std::vector<PlannedScene> scenes = planned_scenes(plan);
+  TimeBudget budget(options.time_budget_s, times_of(scenes));
   if (options.dry_run) {
-    tell_plan(plan, options.time_budget_s);
+    tell_plan(plan, scenes, options.time_budget_s);
     return exit_ok;
   }
-  TimeBudget budget(options.time_budget_s, expected_times(plan.job, plan.timed));
   const std::vector<PublishedTable> published = published_tables();
   std::optional<ResultFolder> folder;
   if (!options.out.empty()) folder.emplace(options.out, provenance, plan.tables);
@@ -157,10 +149,8 @@ int run(const BenchOptions& options) {
   if (!plan.timed.empty()) {
     time_scenes(plan.job, plan.timed, options, published, folder ? &*folder : nullptr, stop, budget, rows);
     if (!plan.described.empty() && options.format == SummaryFormat::table) std::cout << '\n';
-    const std::string text = summary(rows.all(), options.format);
-    std::cout << text;
-    if (folder && options.format == SummaryFormat::github)
-      write_file_atomically(std::filesystem::path(options.out) / "github.json", text);
+    std::cout << summary(rows.all(), options.format);
+    if (folder && options.format == SummaryFormat::github) folder->write_for_github(rows.all());
     code = exit_code_of(rows.all(), options);
   }
   if (folder && stop.requested())

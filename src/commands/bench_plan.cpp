@@ -1,12 +1,10 @@
 #include "commands/bench_plan.h"
 
 #include <algorithm>
-#include <variant>
 
 #include "commands/choices.h"
 #include "commands/exit_code.h"
 #include "integrators/integrators.h"
-#include "scene/scene_kinds.h"
 
 namespace mssim {
 namespace {
@@ -42,11 +40,6 @@ std::vector<const Integrator*> integrators_of(const BenchOptions& options,
 }
 
 }  // namespace
-
-SceneSize size_of(const SceneSpec& spec) {
-  const SceneCounts counts = counts_of(spec);
-  return {counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body)};
-}
 
 BenchPlan plan_of(const BenchOptions& options) {
   const Comparison& comparison = comparison_of_suite(options.suite);

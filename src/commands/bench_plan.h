@@ -4,11 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/bench_memory.h"
 #include "bench/scene_job.h"
 #include "commands/bench_summary.h"
 #include "commands/suites.h"
-#include "scene/scene_spec.h"
 
 namespace mssim {
 
@@ -32,9 +30,6 @@ struct BenchOptions {
 /// Rounds of a bench that says nothing of them.
 inline constexpr int usual_rounds = 15;
 inline constexpr int most_rounds = 100'000;
-
-/// The size of a scene that may not be built yet. Throws like counts_of.
-SceneSize size_of(const SceneSpec& spec);
 
 /// What it means.
 struct BenchPlan {

@@ -13,6 +13,7 @@
 #include "commands/choices.h"
 #include "commands/exit_code.h"
 #include "commands/measured_run.h"
+#include "model/joined.h"
 #include "output/comparison_table.h"
 
 namespace mssim {
@@ -33,8 +34,7 @@ void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool f
   const std::vector<std::string> of_rows = differences(base.rows, next.rows);
   all.insert(all.end(), of_rows.begin(), of_rows.end());
   if (all.empty()) return;
-  std::string sentence;
-  for (const std::string& difference : all) sentence += (sentence.empty() ? "" : "; ") + difference;
+  const std::string sentence = joined(all, "; ");
   if (!force)
     throw UsageError("the two runs are not comparable: " + sentence +
                      "; measure both alike, or compare them all the same with --force");

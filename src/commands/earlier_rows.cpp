@@ -5,6 +5,7 @@
 #include "bench/comparability.h"
 #include "commands/exit_code.h"
 #include "commands/measured_run.h"
+#include "model/joined.h"
 
 namespace mssim {
 namespace {
@@ -20,9 +21,7 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
     all.push_back("the program was of commit " + revision(earlier.build) + " and is of " +
                   revision(now.build));
   if (all.empty()) return;
-  std::string sentence;
-  for (const std::string& difference : all) sentence += (sentence.empty() ? "" : "; ") + difference;
-  throw UsageError("--resume cannot go on in " + folder + ": " + sentence +
+  throw UsageError("--resume cannot go on in " + folder + ": " + joined(all, "; ") +
                    "; choose another --out, or --overwrite to measure anew");
 }
 

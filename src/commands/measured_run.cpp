@@ -27,8 +27,7 @@ fs::path folder_of(const fs::path& path) {
 /// What is measured has a time above zero in every round.
 void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.status != "ok") return;
-  const std::string where = (folder / "samples.csv").string() + ": " + row.scene + ", " + row.backend + ", " +
-                            row.integrator + " has ";
+  const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
   if (row.samples_ms.empty())
     throw UsageError(where + "no samples, though timings.csv says ok; measure the folder anew");
   for (std::size_t round = 0; round < row.samples_ms.size(); ++round)

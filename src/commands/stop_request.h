@@ -1,6 +1,6 @@
 #pragma once
 
-#include <csignal>
+#include "mesh/ending_signals.h"
 
 namespace mssim {
 
@@ -19,6 +19,9 @@ class StopRequest {
   bool requested() const;
   /// Throws Interrupted when one has.
   void throw_if_requested();
+
+ private:
+  EndingSignals signals_;
 };
 
 }  // namespace mssim

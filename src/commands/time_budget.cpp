@@ -23,8 +23,8 @@ TimeBudget::Clock::duration duration_of(double seconds) {
 TimeBudget::TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> scenes)
     : scenes_(std::move(scenes)), present_start_(Clock::now()) {
   if (!seconds) return;
-  double least = 0;
-  for (const ExpectedTime& scene : scenes_) least += scene.preparation + scene.round;
+  const ExpectedTime all = total(scenes_);
+  const double least = all.preparation + all.round;
   if (*seconds < least)
     throw UsageError("--time-budget is too short: one round of all this takes about " +
                      std::to_string(std::lround(std::ceil(least))) +
@@ -36,15 +36,10 @@ std::optional<TimeBudget::Clock::time_point> TimeBudget::begin_scene() {
   if (!end_) return std::nullopt;
   present_start_ = Clock::now();
   const double scale = expected_ > 0 ? taken_ / expected_ : 1;
-  double preparation = 0, round = 0;
-  for (const ExpectedTime& scene : scenes_) {
-    preparation += scale * scene.preparation;
-    round += scale * scene.round;
-  }
-  const double rounds = std::max(1.0, (seconds_of(*end_ - present_start_) - preparation) / round);
+  const double rounds = rounds_within(seconds_of(*end_ - present_start_) / scale, total(scenes_));
   present_ = scenes_.front();
   scenes_.erase(scenes_.begin());
-  return present_start_ + duration_of(scale * present_.preparation + rounds * scale * present_.round);
+  return present_start_ + duration_of(scale * (present_.preparation + rounds * present_.round));
 }
 
 void TimeBudget::first_round_done() {

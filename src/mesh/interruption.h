@@ -3,6 +3,9 @@
 #include <sys/types.h>
 
 #include <csignal>
+#include <optional>
+
+#include "mesh/ending_signals.h"
 
 namespace mssim {
 
@@ -32,6 +35,7 @@ class InterruptionGuard {
 
  private:
   sigset_t before_{};
+  std::optional<EndingSignals> signals_;
 };
 
 }  // namespace mssim

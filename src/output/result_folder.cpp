@@ -7,6 +7,7 @@
 
 #include "output/atomic_file.h"
 #include "output/benchmark_json.h"
+#include "output/github_json.h"
 #include "output/provenance_file.h"
 #include "output/timings_csv.h"
 #include "output/write_error.h"
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char* timings_name = "timings.csv";
 constexpr const char* samples_name = "samples.csv";
 constexpr const char* benchmark_name = "benchmark.json";
+constexpr const char* github_name = "github.json";
 
 /// The folder, which is there afterwards.
 const fs::path& made(const fs::path& folder) {
@@ -45,7 +47,7 @@ ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker ta
 bool ResultFolder::has_rows() const { return fs::exists(folder_ / timings_name); }
 
 void ResultFolder::clear() const {
-  for (const char* name : {timings_name, samples_name, benchmark_name}) {
+  for (const char* name : {timings_name, samples_name, benchmark_name, github_name}) {
     std::error_code error;
     fs::remove(folder_ / name, error);
     if (error) throw WriteError(write_failure(folder_ / name, "removing it", error.value()));
@@ -72,6 +74,10 @@ void ResultFolder::write(std::span<const ResultRow> rows) const {
     write_file_atomically(folder_ / (table.name + ".md"), table.markdown);
   }
   write_file_atomically(folder_ / timings_name, timings);
+}
+
+void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
+  write_file_atomically(folder_ / github_name, text_of(github_json(rows)));
 }
 
 void ResultFolder::write(std::span<const StructureRow> rows) const {

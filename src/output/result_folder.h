@@ -36,6 +36,9 @@ class ResultFolder {
   /// a number that is not finite, then before any file is touched.
   void write(std::span<const ResultRow> rows) const;
 
+  /// Writes github.json (github_json.h). Throws WriteError.
+  void write_for_github(std::span<const ResultRow> rows) const;
+
   /// Writes table2.csv and table2.md. Throws WriteError.
   void write(std::span<const StructureRow> rows) const;
 
