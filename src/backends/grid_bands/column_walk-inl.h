@@ -13,6 +13,8 @@
 #define MSSIM_COLUMN_WALK_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
+
 #include "backends/grid_bands/band_sheet.h"
 #include "backends/lanes-inl.h"
 
@@ -65,6 +67,25 @@ struct SpringLanes {
       : stiffness(m.stiffness), stiffness_rest(m.stiffness_rest), damping(m.damping) {}
 };
 
+/// What every row needs of the sheet. A copy, as the walk's ColumnView is: a vector's store may change
+/// anything that has an address elsewhere, as far as the compiler knows, which then reads all of it again in
+/// every row. Measured on two Zen 5 cores at 500 x 700: copies 1.15 times as fast.
+struct RowConstants {
+  std::array<SpringLanes, 3> spring;
+  Coefficients<float> coefficients;
+  Surroundings surroundings;
+  std::uint32_t rows;  ///< of the cloth
+  Index band_start;    ///< row of the cloth at row 0 of each lane
+  HWY_INLINE explicit RowConstants(const BandSheet& sheet)
+      : spring{SpringLanes(sheet.materials[structural]), SpringLanes(sheet.materials[shear]),
+               SpringLanes(sheet.materials[bending])},
+        coefficients(sheet.coefficients),
+        surroundings(sheet.surroundings),
+        rows(static_cast<std::uint32_t>(sheet.layout.rows)),
+        band_start(hn::Mul(hn::Iota(IndexTag(), 0),
+                           hn::Set(IndexTag(), static_cast<std::uint32_t>(sheet.layout.height)))) {}
+};
+
 struct NodeLanes {
   Lanes3 x, v;
 };
@@ -78,81 +99,95 @@ struct Carry {
   Lanes3 right_above;
 };
 
-/// Adds one spring's force to its owner and takes it from its other end. `exists`: the lanes that have the
+/// A spring's force on its other end; its owner gets the opposite one. `exists`: the lanes that have the
 /// spring; looked at only if `masked`, because no force on a dummy matters.
 template <bool masked>
-HWY_INLINE void apply_spring(const NodeLanes& node, const float* other, const SpringLanes& spring,
-                             Mask exists, Lanes3& on_node, Lanes3& on_other) {
+HWY_INLINE Lanes3 spring_force(const NodeLanes& node, const float* other, const SpringLanes& spring,
+                               Mask exists) {
   // From the other end to this one: what is subtracted can come straight from memory.
   const Lanes3 d = node.x - load3(other);
   const Lanes3 u = node.v - load3(other + 3 * lane_count());
   Lanes factor = spring_pull(dot(d, d), dot(u, d), spring.stiffness, spring.stiffness_rest, spring.damping);
   if constexpr (masked) factor = keep(exists, factor);
-  const Lanes3 force = factor * d;
-  on_node = on_node - force;
-  on_other = on_other + force;
+  return factor * d;
+}
+
+/// Asks for the row of a column of states that the walk comes to next but so many. Measured on Zen 5 at 500 x
+/// 700, whose state lies in the last-level cache: 1.04 to 1.1 times as fast with two threads, up to twice
+/// with one.
+HWY_INLINE void prefetch_row(const float* row) {
+  constexpr std::ptrdiff_t rows_ahead = 16;  // behind a column's end lies the next one; no address is wrong
+  const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
+  for (std::ptrdiff_t component = 0; component < 6; ++component)
+    hwy::Prefetch(row + (6 * rows_ahead + component) * lanes);
 }
 
 /// One row: the springs of `set` that it owns and, if `update`, the nodes' new values.
 template <std::size_t method, std::size_t stage, unsigned set, bool update>
-HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3>& spring,
-                         const ColumnView& column, Carry& carry, std::ptrdiff_t row) {
+HWY_INLINE void walk_row(const RowConstants& constants, const ColumnView& column, Carry& carry,
+                         std::ptrdiff_t row) {
   const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
   const std::ptrdiff_t row_floats = 6 * lanes, force_floats = 3 * lanes;
+  const auto& spring = constants.spring;
+  const std::uint32_t rows = constants.rows;
   const NodeLanes node{load3(column.here + row * row_floats),
                        load3(column.here + row * row_floats + 3 * lanes)};
-  const auto rows = static_cast<std::uint32_t>(sheet.layout.rows);
   // Row of the cloth in each lane; a halo row above the cloth wraps to a huge number, which is below no
   // limit.
-  const Index band_start =
-      hn::Mul(hn::Iota(IndexTag(), 0), hn::Set(IndexTag(), static_cast<std::uint32_t>(sheet.layout.height)));
-  const Index cloth_row = hn::Add(band_start, hn::Set(IndexTag(), static_cast<std::uint32_t>(row)));
+  const Index cloth_row = hn::Add(constants.band_start, hn::Set(IndexTag(), static_cast<std::uint32_t>(row)));
   const Mask has_below = below(cloth_row, rows - 1);
 
   Lanes3 force = carry.below;
   if constexpr (update) force = force + load3(column.forces_here + row * force_floats);
-  Lanes3 on_below = carry.below_2, on_below_2 = zero3();
-  if constexpr ((set & down) != 0)
-    apply_spring<true>(node, column.here + (row + 1) * row_floats, spring[structural], has_below, force,
-                       on_below);
-  if constexpr ((set & down_2) != 0)
-    apply_spring<true>(node, column.here + (row + 2) * row_floats, spring[bending],
-                       below(cloth_row, rows < 2 ? 0 : rows - 2), force, on_below_2);
+  carry.below = carry.below_2;
+  if constexpr ((set & down) != 0) {
+    const Lanes3 pull =
+        spring_force<true>(node, column.here + (row + 1) * row_floats, spring[structural], has_below);
+    force = force - pull;
+    carry.below = carry.below + pull;
+  }
+  if constexpr ((set & down_2) != 0) {
+    carry.below_2 = spring_force<true>(node, column.here + (row + 2) * row_floats, spring[bending],
+                                       below(cloth_row, rows < 2 ? 0 : rows - 2));
+    force = force - carry.below_2;
+  }
   if constexpr ((set & right_up) != 0) {
     const Mask has_above = below(hn::Sub(cloth_row, hn::Set(IndexTag(), 1)), rows - 1);
-    apply_spring<true>(node, column.next + (row - 1) * row_floats, spring[shear], has_above, force,
-                       carry.right_above);
-    if (row > 0) store3(column.forces_next + (row - 1) * force_floats, carry.right_above);
+    const Lanes3 pull =
+        spring_force<true>(node, column.next + (row - 1) * row_floats, spring[shear], has_above);
+    force = force - pull;
+    if (row > 0) store3(column.forces_next + (row - 1) * force_floats, carry.right_above + pull);
   }
   if constexpr ((set & right) != 0) {
-    Lanes3 on_right = carry.right_below + load3(column.forces_next + row * force_floats);
-    apply_spring<false>(node, column.next + row * row_floats, spring[structural], has_below, force, on_right);
-    carry.right_above = on_right;
+    const Lanes3 pull =
+        spring_force<false>(node, column.next + row * row_floats, spring[structural], has_below);
+    force = force - pull;
+    carry.right_above = carry.right_below + load3(column.forces_next + row * force_floats) + pull;
   }
   if constexpr ((set & right_down) != 0) {
-    carry.right_below = zero3();
-    apply_spring<true>(node, column.next + (row + 1) * row_floats, spring[shear], has_below, force,
-                       carry.right_below);
+    carry.right_below =
+        spring_force<true>(node, column.next + (row + 1) * row_floats, spring[shear], has_below);
+    force = force - carry.right_below;
   }
   if constexpr ((set & right_2) != 0) {
-    Lanes3 on_right_2 = zero3();
-    apply_spring<false>(node, column.next_2 + row * row_floats, spring[bending], has_below, force,
-                        on_right_2);
-    store3(column.forces_next_2 + row * force_floats, on_right_2);
+    const float* other = column.next_2 + row * row_floats;
+    if constexpr (integrators[method].stages[stage].gather == Pair::state) prefetch_row(other);
+    const Lanes3 pull = spring_force<false>(node, other, spring[bending], has_below);
+    force = force - pull;
+    store3(column.forces_next_2 + row * force_floats, pull);
   }
-  carry.below = on_below;
-  carry.below_2 = on_below_2;
 
   if constexpr (update) {
+    const Surroundings& surroundings = constants.surroundings;
     // The forces are accelerations already; dummies get none and stay where they are.
-    Lanes3 a = mul_add(Lanes(-sheet.surroundings.viscous_damping), node.v, force);
-    a.y = a.y - Lanes(sheet.surroundings.gravity);
+    Lanes3 a = mul_add(Lanes(-surroundings.viscous_damping), node.v, force);
+    a.y = a.y - Lanes(surroundings.gravity);
     a = keep(below(cloth_row, rows), a);
     const auto address = [&](Pair pair, std::size_t slot) MSSIM_INLINE_LAMBDA {
       return column.pairs[index(pair)] + row * row_floats + static_cast<std::ptrdiff_t>(slot % 2) * 3 * lanes;
     };
     update_stage<method, stage>(
-        sheet.coefficients, node.x, node.v, a,
+        constants.coefficients, node.x, node.v, a,
         [&](auto slot) MSSIM_INLINE_LAMBDA {
           constexpr std::size_t i = index(decltype(slot)::value);
           return load3(
@@ -163,9 +198,9 @@ HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3
           store3(address(written_to<method, stage>(static_cast<Pair>(i / 2)), i), value);
         },
         [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
-          const Lanes height(sheet.surroundings.floor_height);
-          touch_floor(hn::Lt(x.y.v, height.v), height, Lanes(sheet.surroundings.restitution),
-                      Lanes(sheet.surroundings.friction), x, v);
+          const Lanes height(surroundings.floor_height);
+          touch_floor(hn::Lt(x.y.v, height.v), height, Lanes(surroundings.restitution),
+                      Lanes(surroundings.friction), x, v);
         });
   }
 }
@@ -173,19 +208,18 @@ HWY_INLINE void walk_row(const BandSheet& sheet, const std::array<SpringLanes, 3
 /// One column from the halo rows above it to the one below. `set`: springs of its nodes that exist and
 /// matter.
 template <std::size_t method, std::size_t stage, unsigned set, bool update>
-HWY_NOINLINE void walk_column(const BandSheet& sheet, const ColumnView& column) {
-  const std::array<SpringLanes, 3> spring{SpringLanes(sheet.materials[structural]),
-                                          SpringLanes(sheet.materials[shear]),
-                                          SpringLanes(sheet.materials[bending])};
+HWY_NOINLINE void walk_column(const BandSheet& sheet, const ColumnView& view) {
+  const RowConstants constants(sheet);
+  const ColumnView column = view;
   const auto height = static_cast<std::ptrdiff_t>(sheet.layout.height);
   Carry carry{zero3(), zero3(), zero3(), zero3()};
   if constexpr ((set & within_column) != 0)
-    walk_row<method, stage, set & down_2, false>(sheet, spring, column, carry, -2);
-  walk_row<method, stage, set&(within_column | right_down), false>(sheet, spring, column, carry, -1);
+    walk_row<method, stage, set & down_2, false>(constants, column, carry, -2);
+  walk_row<method, stage, set&(within_column | right_down), false>(constants, column, carry, -1);
   for (std::ptrdiff_t row = 0; row < height; ++row)
-    walk_row<method, stage, set, update>(sheet, spring, column, carry, row);
+    walk_row<method, stage, set, update>(constants, column, carry, row);
   if constexpr ((set & right_up) != 0)
-    walk_row<method, stage, right_up, false>(sheet, spring, column, carry, height);
+    walk_row<method, stage, right_up, false>(constants, column, carry, height);
 }
 
 }  // namespace mssim::HWY_NAMESPACE
