@@ -1,6 +1,5 @@
 #include "bench/provenance.h"
 
-#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,21 +8,12 @@
 #include <ctime>
 #include <filesystem>
 
+#include "backends/process_cpus.h"
 #include "bench/noise.h"
 #include "model/fnv1a.h"
 
 namespace mssim {
 namespace {
-
-std::vector<int> allowed_cpus() {
-  std::vector<int> cpus;
-  cpu_set_t mask;
-  CPU_ZERO(&mask);
-  if (sched_getaffinity(0, sizeof mask, &mask) != 0) return cpus;
-  for (std::size_t cpu = 0; cpu < CPU_SETSIZE; ++cpu)
-    if (CPU_ISSET(cpu, &mask)) cpus.push_back(static_cast<int>(cpu));
-  return cpus;
-}
 
 std::vector<std::pair<std::string, std::string>> thread_environment() {
   std::vector<std::pair<std::string, std::string>> variables;
@@ -71,7 +61,7 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
   provenance.build = build_info();
   provenance.machine = read_machine();
   provenance.threads = threads;
-  provenance.allowed_cpus = allowed_cpus();
+  provenance.allowed_cpus = process_cpus();
   provenance.thread_environment = thread_environment();
   for (const std::string& argument : arguments)
     provenance.command_line.push_back(provenance.command_line.empty()

@@ -23,7 +23,7 @@ struct Provenance {
   BuildInfo build;
   Machine machine;                ///< when the run started
   int threads = 0;                ///< asked for
-  std::vector<int> allowed_cpus;  ///< the process's affinity mask
+  std::vector<int> allowed_cpus;  ///< process_cpus()
   /// OMP_ and GOMP_ variables, by name.
   std::vector<std::pair<std::string, std::string>> thread_environment;
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them

@@ -1,7 +1,6 @@
 #include "backends/opencl/device.h"
 
 #include <CL/cl_ext.h>
-#include <sched.h>
 #include <unistd.h>
 
 #include <CL/opencl.hpp>
@@ -9,6 +8,8 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
+
+#include "backends/process_cpus.h"
 
 namespace mssim {
 namespace {
@@ -139,10 +140,7 @@ constexpr std::array error_names{
 /// 200 microseconds on two cores, 110 to 150 with this. PoCL numbers cores from 0, so that a process that is
 /// kept from some of them must not ask. PoCL looks at it once, when it is loaded.
 void bind_pocl_threads() {
-  cpu_set_t allowed;
-  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0 &&
-      CPU_COUNT(&allowed) == sysconf(_SC_NPROCESSORS_CONF))
-    setenv("POCL_AFFINITY", "1", 0);
+  if (std::ssize(process_cpus()) == sysconf(_SC_NPROCESSORS_CONF)) setenv("POCL_AFFINITY", "1", 0);
 }
 
 }  // namespace
@@ -161,6 +159,7 @@ std::string_view name_of(OpenclDeviceType type) {
 
 std::vector<OpenclDevice> opencl_devices() {
   bind_pocl_threads();
+  const OnAllProcessCpus every;  // PoCL starts its threads here
   try {
     std::vector<OpenclDevice> devices;
     // The loader reports a machine without any driver, and a driver one without devices, as an error.

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <sched.h>
+
+#include <vector>
+
+namespace mssim {
+
+/// Numbers of the logical CPUs that the process may use, in ascending order; empty where the system does not
+/// tell. Not the calling thread's affinity mask, unless OpenMP binds no threads: with OMP_PROC_BIND or
+/// OMP_PLACES it binds the first one to a CPU of its own before main begins.
+std::vector<int> process_cpus();
+
+/// While it lives, the calling thread may move to all of process_cpus(), and the threads that it starts
+/// inherit that: those of a library would otherwise share the one CPU that OpenMP has bound this thread to.
+class OnAllProcessCpus {
+ public:
+  OnAllProcessCpus();
+  ~OnAllProcessCpus();
+  OnAllProcessCpus(const OnAllProcessCpus&) = delete;
+  OnAllProcessCpus& operator=(const OnAllProcessCpus&) = delete;
+
+ private:
+  cpu_set_t before_{};
+  bool changed_ = false;
+};
+
+}  // namespace mssim
