@@ -39,6 +39,18 @@ SpringDevice::SpringDevice(const System& system, const PackedSprings& packed, co
   if (packed.unit_count() > 0) make_kernel(system, packed, lanes);
 }
 
+SpringDevice::~SpringDevice() {
+  // A driver keeps a buffer for ever that is mapped when it is released. As if read: nothing is copied back.
+  try {
+    for (std::size_t i = 0; i < pair_kinds; ++i)
+      if (pairs_[i]) pairs_[i]->unmap(queue_, host_pairs_[i], CL_MAP_READ);
+    forces_->unmap(queue_, host_forces_, CL_MAP_READ);
+    queue_.finish();
+  } catch (const cl::Error&) {
+    // After a failure, which has been told, some are not mapped; the process's end frees the others.
+  }
+}
+
 template <class T>
 OpenclBuffer<T> SpringDevice::buffer_with(std::span<const T> values) const {
   OpenclBuffer<T> buffer(context_, device_, memory_, values.size());

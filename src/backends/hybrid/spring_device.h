@@ -24,6 +24,9 @@ class SpringDevice {
   /// are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
   SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
                const OpenclDevice& device, int lanes, DeviceMemory memory);
+  ~SpringDevice();
+  SpringDevice(const SpringDevice&) = delete;
+  SpringDevice& operator=(const SpringDevice&) = delete;
 
   /// The records of a stored pair, [places][record_floats].
   std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }

@@ -40,6 +40,7 @@ class OpenclBuffer {
       memory_ = exchange_ == Exchange::nothing ? shared_virtual_memory(context, bytes)
                                                : host_memory(alignment, bytes);
       if (!memory_) throw std::bad_alloc();
+      aligned(memory_.get());
       if (alignment == huge_page) wish_for_huge_pages(memory_.get(), bytes);
     }
     // A buffer made of shared virtual memory is that memory (The OpenCL Specification, 3.0, clCreateBuffer).
@@ -60,7 +61,7 @@ class OpenclBuffer {
   std::span<T> map(const cl::CommandQueue& queue, cl_map_flags use, bool block = true) const {
     const cl_bool blocking = block ? CL_TRUE : CL_FALSE;
     if (exchange_ == Exchange::maps)
-      return {static_cast<T*>(queue.enqueueMapBuffer(buffer_, blocking, use, 0, size_ * sizeof(T))), size_};
+      return {aligned(queue.enqueueMapBuffer(buffer_, blocking, use, 0, size_ * sizeof(T))), size_};
     if (exchange_ == Exchange::copies && (use & CL_MAP_READ) != 0) {
       queue.enqueueReadBuffer(buffer_, blocking, 0, size_ * sizeof(T), memory_.get());
     } else if (block) {
@@ -95,6 +96,15 @@ class OpenclBuffer {
     constexpr cl_svm_mem_flags flags = CL_MEM_READ_WRITE | CL_MEM_SVM_FINE_GRAIN_BUFFER;
     return {static_cast<T*>(clSVMAlloc(context(), flags, bytes, 0)),
             [context](T* memory) { clSVMFree(context(), memory); }};
+  }
+  /// What the driver gave, if vectors can be loaded from it. OpenCL promises more, but not every driver keeps
+  /// it.
+  static T* aligned(void* memory) {
+    constexpr std::uintptr_t vector_bytes = 64;
+    if (reinterpret_cast<std::uintptr_t>(memory) % vector_bytes != 0)
+      throw Unavailable(
+          "the OpenCL driver gives the host memory that is not aligned to 64 bytes; use --memory copy");
+    return static_cast<T*>(memory);
   }
   /// Without them the array is only slower. For the whole pages of it.
   static void wish_for_huge_pages(T* memory, std::size_t bytes) {
