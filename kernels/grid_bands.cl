@@ -145,8 +145,8 @@ static inline Rows cloth_rows(int row, Shape grid) {
   return MSSIM_PASTE(convert_uint, MSSIM_LANES)(lane_number) * (uint)grid->height + (uint)row;
 }
 
-/* Asks for the row of a column of states that the walk comes to next but so many: behind a column's end lies the
- * next one, and no address is wrong. */
+/* Asks for the row of a column of states that the walk comes to next but so many: behind a column's end lies
+ * the next one, and no address is wrong. */
 static inline void prefetch_row(__global const float* row) {
 #if defined(__x86_64__) || defined(__aarch64__)
   for (int component = 0; component < 6; ++component)
