@@ -22,7 +22,7 @@ make() {
     IFS=: read -r ms spread count <<<"${pair#*=}"
     grep "^cloth2500,.*,$backend,.*,semi-euler," "$source_run/timings.csv" >>"$folder/timings.csv"
     awk -v b="$backend" -v ms="$ms" -v s="${spread:-0.02}" -v n="${count:-15}" 'BEGIN {
-        for (i = 1; i <= n; ++i) print "cloth2500," b ",semi-euler," i ",10," ms * (1 + s * (2 * (i - 1) / (n - 1) - 1))
+        for (i = 1; i <= n; ++i) print "cloth2500," b ",semi-euler," i ",10," ms * (1 + s * (2 * (i - 1) / (n - 1) - 1)) ","
       }' >>"$folder/samples.csv"
   done
 }
@@ -124,9 +124,9 @@ broken() {
   rm -rf "$work/broken"
   cp -r "$work/base" "$work/broken"
 }
-broken && sed -i 's/,0.1\([0-9]*\)$/,nan/' "$work/broken/samples.csv"
+broken && sed -i 's/,0.1\([0-9]*\),$/,nan,/' "$work/broken/samples.csv"
 expect 2 'samples.csv, line [0-9]*, column ms_per_step: "nan" is not a number' compare "$work/base" "$work/broken"
-broken && sed -i 's/,10,0.1\([0-9]*\)$/,10,0/' "$work/broken/samples.csv"
+broken && sed -i 's/,10,0.1\([0-9]*\),$/,10,0,/' "$work/broken/samples.csv"
 expect 2 'openmp, semi-euler has no time above zero in round' compare "$work/base" "$work/broken"
 broken && sed -i '/,openmp,/d' "$work/broken/samples.csv"
 expect 2 'openmp, semi-euler has no samples' compare "$work/base" "$work/broken"
