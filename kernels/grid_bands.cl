@@ -146,7 +146,8 @@ static inline Rows cloth_rows(int row, Shape grid) {
 }
 
 /* Asks for the row of a column of states that the walk comes to next but so many: behind a column's end lies
- * the next one, and no address is wrong. */
+ * the next one, and no address is wrong. Only where the kernel is compiled for the processor itself: other
+ * compilers need not have the built-in function. */
 static inline void prefetch_row(__global const float* row) {
 #if defined(__x86_64__) || defined(__aarch64__)
   for (int component = 0; component < 6; ++component)

@@ -17,6 +17,7 @@
 
 #include "backends/backends.h"
 #include "integrators/integrators.h"
+#include "largest_distance.h"
 #include "model/grid_patch.h"
 #include "model/system.h"
 #include "opencl_ways.h"
@@ -125,15 +126,6 @@ const std::array<std::pair<const char*, Method>, 5> methods{{{"semi-euler", semi
                                                              {"rk4", rk4},
                                                              {"midpoint-frozen", frozen},
                                                              {"rk4-frozen", frozen}}};
-
-double largest_distance(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const Vec3d d = a[i] - b[i];
-    largest = std::isfinite(dot(d, d)) ? std::max(largest, std::sqrt(dot(d, d))) : HUGE_VAL;
-  }
-  return largest;
-}
 
 std::vector<OpenclWay> ways() {
   std::vector<OpenclWay> all{{true, most_opencl_lanes, 1}, {true, most_opencl_lanes, 3}};
