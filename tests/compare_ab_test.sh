@@ -19,7 +19,7 @@ echo "\$*" >>"\$0.runs"
 while [ \$# -gt 1 ]; do [ "\$1" = --out ] && out=\$2; shift; done
 times() {
   mkdir -p "\$out"
-  printf '%s\n' scene,backend,integrator,ms_per_step,verified,status \
+  printf '%s\n' scene,backend,integrator,ms_per_step_min,verified,status \
     "cloth2500,openmp,semi-euler,\$1,\${3-true},\${2-ok}" >"\$out/timings.csv"
 }
 runs=\$(wc -l <"\$0.runs")
@@ -63,7 +63,7 @@ ab 0 steady steady2
 says 'openmp .* same'
 warns '8 rounds in'
 [ "$(wc -l <"$work/steady.runs")" -eq 8 ] || fail "not 8 runs"
-grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 3 --out ' "$work/steady.runs" ||
+grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 7 --out ' "$work/steady.runs" ||
   fail "the program is not given what was asked for: $(head -n 1 "$work/steady.runs")"
 ab 1 steady slow
 says 'openmp .* slower'
@@ -80,7 +80,7 @@ ab 0 wild wild --time-budget 2 --backend openmp,serial --integrator rk4 --thread
 says 'undecided'
 warns 'the time budget ended'
 (($(date +%s%N) - start < 4000000000)) || fail "the time budget of 2 s is exceeded by far"
-grep -q -- '--backend openmp,serial --integrator rk4 --rounds 3 --threads 2 --out' "$work/wild.runs" || fail "options"
+grep -q -- '--backend openmp,serial --integrator rk4 --rounds 7 --threads 2 --out' "$work/wild.runs" || fail "options"
 
 # Programs that fail.
 ab 1 steady wrong
@@ -100,7 +100,7 @@ warns 'deaf bench exited with 3'
 ab 2 steady silent
 warns 'silent bench exited with 0 instead of measuring, saying nothing'
 ab 2 steady broken
-warns 'timings.csv, line 2, column ms_per_step: "not-a-number" is not a number'
+warns 'timings.csv, line 2, column ms_per_step_min: "not-a-number" is not a number'
 ab 3 steady missing
 warns 'cannot run .*missing: give the path'
 expect 2 'needs a --scene' compare --ab "$work/steady" "$work/slow"

@@ -16,7 +16,7 @@ std::vector<CombinationTime> read_combination_times(const std::filesystem::path&
     return static_cast<std::size_t>(found - table.header().begin());
   };
   const std::size_t scene = column("scene"), backend = column("backend"), integrator = column("integrator"),
-                    ms = column("ms_per_step"), verified = column("verified"), status = column("status");
+                    ms = column("ms_per_step_min"), verified = column("verified"), status = column("status");
   std::vector<CombinationTime> times;
   for (std::size_t row = 0; row < table.size(); ++row) {
     CombinationTime time{table.text(row, scene),
@@ -26,8 +26,8 @@ std::vector<CombinationTime> read_combination_times(const std::filesystem::path&
                          table.text(row, status)};
     if (time.status == "ok" && table.text(row, verified) != "true") time.status = "failed: not verified";
     if (time.status == "ok") {
-      time.ms_per_step = table.number(row, ms);
-      if (!(*time.ms_per_step > 0)) throw table.complaint(row, ms, "is not a time above zero");
+      time.least_ms = table.number(row, ms);
+      if (!(*time.least_ms > 0)) throw table.complaint(row, ms, "is not a time above zero");
     }
     times.push_back(std::move(time));
   }

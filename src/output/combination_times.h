@@ -10,8 +10,10 @@ namespace mssim {
 /// What every version of mssim has written about a combination.
 struct CombinationTime {
   std::string scene, backend, integrator;
-  std::optional<double> ms_per_step;  ///< of what was verified
-  std::string status;                 ///< why there is no time, where there is none
+  /// The least sample's time a step, of what was verified: what else a machine does only ever adds to a
+  /// sample, and seldom to all of them.
+  std::optional<double> least_ms;
+  std::string status;  ///< why there is no time, where there is none
 };
 
 /// The rows of a timings.csv that another version of mssim may have written: columns are found by name.
