@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace mssim {
+
+/// A pattern piece as a grid: rows x columns nodes, row-major, row 0 at its lower edge, column 0 at its left
+/// one as the pattern is drawn, joined by the 12-neighbour stencil (grid_stencil).
+struct GarmentPanel {
+  std::string name;
+  std::uint32_t rows = 0;
+  std::uint32_t columns = 0;
+  std::uint32_t first_node = 0;  ///< of its rows * columns consecutive ones
+  /// Panels of different layers may touch each other; 0 is the innermost.
+  std::uint32_t layer = 0;
+
+  std::uint32_t nodes() const { return rows * columns; }
+  std::uint32_t node(std::uint32_t row, std::uint32_t column) const {
+    return first_node + row * columns + column;
+  }
+};
+
+/// What a seam is made of: a node and the point of another panel's boundary that it is sewn to, either a node
+/// or a point on the edge between two (Vassilev, "Cloth simulation").
+struct Joint {
+  std::uint32_t node = 0;
+  std::uint32_t edge_first = 0;
+  std::uint32_t edge_second = 0;  ///< the same as edge_first where it is a node
+  double edge_share = 0;          ///< of the way from first to second, 0 to 1
+  double length = 0;              ///< m, the share of the seam that it stands for
+  double strength = 1;            ///< factor of the seam's force
+  std::uint32_t seam = 0;         ///< index into Garment::seams
+};
+
+/// The topology of a garment: how its panels lie in the list of nodes and what joins them.
+struct Garment {
+  std::vector<GarmentPanel> panels;
+  std::vector<std::string> seams;  ///< names
+  std::vector<Joint> joints;
+};
+
+}  // namespace mssim
