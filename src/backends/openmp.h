@@ -18,7 +18,7 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
 /// The instruction sets that its vector code is compiled for and this processor has, by Highway's names, the
 /// best first: make_openmp takes that. The order of every sum is the scene's (a column's nodes from the top,
 /// a body's neighbours by their number) and has nothing to do with lanes. So all that fuse a multiplication
-/// and an addition (AVX-512, AVX2, NEON) give the same bits, and all that round twice (SSSE3, SSE4, plain
+/// and an addition (AVX-512, AVX2, NEON) give the same bits, and all that round twice (SSE4, plain
 /// floats) give the same bits.
 std::vector<std::string_view> openmp_instruction_sets();
 

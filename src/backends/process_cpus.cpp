@@ -8,7 +8,8 @@ namespace mssim {
 
 std::vector<int> process_cpus() {
   std::vector<int> cpus;
-  for (int place = 0; place < omp_get_num_places(); ++place) {
+  const bool bound = omp_get_proc_bind() != omp_proc_bind_false;
+  for (int place = 0; bound && place < omp_get_num_places(); ++place) {
     std::vector<int> ids(static_cast<std::size_t>(omp_get_place_num_procs(place)));
     omp_get_place_proc_ids(place, ids.data());
     cpus.insert(cpus.end(), ids.begin(), ids.end());
