@@ -8,10 +8,12 @@ rule='
 kernels
 model        kernels
 mesh         model
-scene        model mesh
+garment      model mesh
+contact      model kernels mesh/surface.h
+scene        model mesh garment contact
 integrators
-contact      model kernels
 backends     model integrators kernels contact
+fitting      backends model contact
 bench        backends model integrators mssim
 output       model bench/result.h bench/provenance.h bench/statistics.h bench/outliers.h bench/comparison.h
 commands     *

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "garment/panel_mesh.h"
+#include "garment/panel_springs.h"
+#include "garment/placement.h"
+#include "garment/seams.h"
+#include "model/garment.h"
+#include "model/spring.h"
+
+namespace mssim {
+
+/// A pattern piece with all that makes it a part of a garment.
+struct PatternPanel {
+  PatternPiece piece;
+  PanelGrid grid{};
+  PanelCloth cloth{};
+  PanelPlacement placement{};
+  std::uint32_t layer = 0;
+};
+
+/// A garment as it is drawn and cut.
+struct GarmentPattern {
+  std::vector<PatternPanel> panels;
+  std::vector<Seam> seams;
+};
+
+/// A garment as it is simulated. Vectors over nodes go panel by panel.
+struct GarmentBuild {
+  Garment garment;
+  std::vector<Vec3d> flat;        ///< m, in the plane of each node's pattern piece, z = 0
+  std::vector<Vec3d> placed;      ///< m, where the nodes start
+  std::vector<double> node_mass;  ///< kg
+  std::vector<Spring> springs;    ///< panel by panel; kind is an index into materials
+  std::vector<SpringMaterial> materials;
+};
+
+/// Cuts, sews and places a pattern. Throws MeshError, which begins with the panel's or seam's name, for what
+/// mesh_panel, require_cloth, join_seam and place_panel refuse, and for two panels of one name.
+GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body);
+
+}  // namespace mssim
