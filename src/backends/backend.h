@@ -46,6 +46,14 @@ inline double require_uniform_mass(const System& system) {
   return *mass;
 }
 
+/// Whether the system's steps are those of Algorithm 1 (dressing/).
+inline bool is_garment(const System& system) { return std::holds_alternative<Garment>(system.topology); }
+
+/// Throws Unsupported for a garment.
+inline void refuse_garment(const System& system) {
+  if (is_garment(system)) throw Unsupported("garments are dressed by serial and openmp");
+}
+
 /// One simulation under way. All calls block until their work is done: a caller may read the clock around
 /// them.
 class Backend {

@@ -134,6 +134,7 @@ class Hybrid final : public Backend {
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int threads, int lanes,
                                      DeviceMemory memory) {
+  refuse_garment(system);
   if (threads < 1)
     throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {

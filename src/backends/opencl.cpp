@@ -8,6 +8,7 @@ namespace mssim {
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes, DeviceMemory memory) {
+  refuse_garment(system);
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     if (const auto* grid = std::get_if<GridPatch>(&system.topology))
       return make_opencl_grid(system, *grid, integrator, dt_s, device, memory, lanes);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "backends/dressing/openmp_dressing.h"
 #include "backends/grid_bands/band_sheet.h"
 #include "backends/grid_bands/step_bands.h"
 #include "backends/sliced_graph/sliced_bodies.h"
@@ -76,6 +77,8 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options, std::string_view instruction_set) {
+  if (is_garment(system))
+    return make_openmp_dressing(system, integrator, dt_s, options.threads, instruction_set);
   const auto threads = static_cast<std::size_t>(options.threads);
   if (const auto* grid = std::get_if<GridPatch>(&system.topology))
     return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads,

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "backends/dressing/serial_dressing.h"
 #include "backends/spring_list.h"
 
 namespace mssim {
@@ -41,10 +42,12 @@ class Serial final : public Backend {
 
 std::unique_ptr<Backend> make_serial(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& /*options*/) {
+  if (is_garment(system)) return make_serial_dressing(system, integrator, dt_s);
   return std::make_unique<Serial<float>>(system, integrator, dt_s);
 }
 
 std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s) {
+  if (is_garment(system)) return make_reference_dressing(system, integrator, dt_s);
   return std::make_unique<Serial<double>>(system, integrator, dt_s);
 }
 

@@ -1,10 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "model/dressing.h"
+#include "model/vec3.h"
+
 namespace mssim {
+
+class BodyMaps;  // contact/body_maps.h
 
 /// A pattern piece as a grid: rows x columns nodes, row-major, row 0 at its lower edge, column 0 at its left
 /// one as the pattern is drawn, joined by the 12-neighbour stencil (grid_stencil).
@@ -34,11 +40,14 @@ struct Joint {
   std::uint32_t seam = 0;         ///< index into Garment::seams
 };
 
-/// The topology of a garment: how its panels lie in the list of nodes and what joins them.
+/// A garment: how its panels lie in the list of nodes, what joins them, and how it is dressed.
 struct Garment {
   std::vector<GarmentPanel> panels;
   std::vector<std::string> seams;  ///< names
   std::vector<Joint> joints;
+  std::vector<Vec3d> flat;  ///< [nodes] m, z = 0: in the pattern, where y is the height at which it is worn
+  Dressing dressing;
+  std::shared_ptr<const BodyMaps> body;  ///< none: nothing to dress
 };
 
 }  // namespace mssim

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "model/garment.h"
 #include "model/grid_patch.h"
 #include "model/spring.h"
 #include "model/tetrahedral_mesh.h"
@@ -28,7 +29,7 @@ struct Floor {
 };
 
 /// How the nodes hang together: what a backend may know beyond the list of springs.
-using Topology = std::variant<GridPatch, TetrahedralMesh>;
+using Topology = std::variant<GridPatch, TetrahedralMesh, Garment>;
 
 /// Everything that stays constant while a scene is stepped, and the state that it starts from.
 /// The acceleration of a free node is

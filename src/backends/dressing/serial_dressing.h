@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/backend.h"
+#include "backends/dressing/seam_force.h"
+
+namespace mssim {
+
+/// A backend that dresses.
+class DressingBackend : public Backend {
+ public:
+  virtual DressingProgress progress() const = 0;
+};
+
+/// Throws Unsupported for another integrator.
+void require_semi_euler(const Integrator& integrator);
+
+/// Algorithm 1 of Vassilev's paper as a straightforward program has it: one thread, an array of nodes, a list
+/// of springs, six loops. `system.topology` is a Garment. Throws Unsupported for another integrator than
+/// semi-euler.
+std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
+                                                      double dt_s);
+
+/// The same in double precision.
+std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, const Integrator& integrator,
+                                                         double dt_s);
+
+}  // namespace mssim
