@@ -160,8 +160,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"\"height_m\": 0,", "\"height_m\": \"0\",", "/floor/height_m", "is the text \"0\"",
                  "a number"},
         BadScene{R"({"row": 0, "every_columns": 10})", "7", "/cloth/pins", "is 7", "give an object, { ... }"},
-        BadScene{"\"cloth\",", "5,", "/kind", "is 5", "give the text cloth or bodies"},
-        BadScene{"\"cloth\",", "\"clot\",", "/kind", "is the text \"clot\"", "give the text cloth or bodies"},
+        BadScene{"\"cloth\",", "5,", "/kind", "is 5", "give the text cloth, bodies or garment"},
+        BadScene{"\"cloth\",", "\"clot\",", "/kind", "is the text \"clot\"",
+                 "give the text cloth, bodies or garment"},
         BadScene{"Cotton", "Cot\\nton", "/description", "is the text \"Cot\\nton", "one line of text"},
         BadScene{"Cotton", long_words.c_str(), "/description", "is the text \"xxx",
                  "at most 200 characters"}));
@@ -179,7 +180,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{rows, "\"rows\": 50, \"a/b~c\\n\": 1", "/cloth/a~1b~0c\\n ", "value is 1", "known here are"},
         BadScene{rows, long_key.c_str(), "/cloth/xxx", "value is 1", "known here are"},
         BadScene{"\"rows\": 50,", "", "/cloth/rows", "is missing", "add it as an integer from 2 to 1000000"},
-        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing", "add it as the text cloth or bodies"},
+        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing",
+                 "add it as the text cloth, bodies or garment"},
         BadScene{"\"every_columns\": 10", "\"row\": 0", "/cloth/pins/row", "is given twice",
                  "keep one of the two"},
         BadScene{rows, "\"rows\": 50, \"rows\": 60", "/cloth/rows", "is given twice",
@@ -263,7 +265,8 @@ TEST(SceneNames, AreTheCommittedOnesByKindAndSize) {
                                    "cloth1m", "cloth4m", "cloth16m", "torus-small", "box-small",
                                    "sphere-small", "torus-medium", "box-medium", "sphere-medium",
                                    "torus-large", "box-large", "sphere-large", "bodies3858", "bodies4737",
-                                   "bodies7282", "bodies10223", "bodies20587", "bodies38233"));
+                                   "bodies7282", "bodies10223", "bodies20587", "bodies38233", "jeans2k",
+                                   "jeans4k", "jeans8k", "jeans16k", "jeans64k"));
 }
 
 TEST(FindScene, FindsByNameAndByPath) {
@@ -284,7 +287,7 @@ TEST(FindScene, ListsTheKnownNamesForAnUnknownOne) {
       ADD_FAILURE() << name << " was found";
     } catch (const SceneError& error) {
       EXPECT_THAT(error.what(), AllOf(HasSubstr(hint), HasSubstr("a name: cloth2500, cloth4900, "),
-                                      EndsWith("bodies20587 or bodies38233")));
+                                      EndsWith("jeans16k or jeans64k")));
     }
   }
 }

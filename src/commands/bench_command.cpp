@@ -123,6 +123,10 @@ int run(const BenchOptions& options) {
   }
   for (const std::string& name : plan.timed) {
     const SceneSpec spec = find_scene(name);
+    if (std::holds_alternative<GarmentSpec>(spec.body))
+      throw UsageError(spec.name +
+                       " is a garment: bench times cloths and bodies; mssim run dresses a garment "
+                       "and says how long that took");
     add_scene(provenance, spec.name, spec.source);
   }
   const std::vector<PlannedScene> scenes = planned_scenes(plan);

@@ -13,6 +13,7 @@
 
 #include "backends/serial.h"
 #include "commands/choices.h"
+#include "commands/dressing_run.h"
 #include "commands/exit_code.h"
 #include "commands/prepared_scene.h"
 #include "commands/run_provenance.h"
@@ -26,13 +27,15 @@
 namespace mssim {
 namespace {
 
+constexpr double default_duration_s = 1;
+
 struct RunOptions {
   std::string scene;
   std::string backend = "openmp";
   std::string integrator = "semi-euler";
   std::string precision = "single";
   std::optional<double> dt_s;
-  double duration_s = 1;
+  std::optional<double> duration_s;  ///< default_duration_s where it is not given
   double fps = 60;
   std::string trace;
   std::string energy_curve;
@@ -49,6 +52,15 @@ std::unique_ptr<Backend> make_backend(const RunOptions& options, const PreparedS
     throw UsageError("--precision double needs --backend serial, not \"" + options.backend +
                      "\": the other backends compute in single precision only");
   return make_reference(scene.system, integrator, scene.dt_s);
+}
+
+/// A garment is dressed until it has settled, and there are no files of that.
+void require_no_frames(const RunOptions& options) {
+  const std::string reason =
+      " does not go with a garment, which is dressed until it has settled; leave it out";
+  if (options.duration_s) throw UsageError("--duration" + reason);
+  if (!options.trace.empty()) throw UsageError("--trace" + reason);
+  if (!options.energy_curve.empty()) throw UsageError("--energy-curve" + reason);
 }
 
 /// Tells who waits long for the accounting how to do without it.
@@ -88,9 +100,12 @@ int run(const RunOptions& options) {
   warn_of_difference(scene);
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const bool keeps_energies = !options.trace.empty() || !options.energy_curve.empty();
-  const SimulationPlan plan{scene.dt_s, options.duration_s, options.fps,
+  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
                             keeps_energies && !options.no_losses};
+  if (is_garment(scene.system)) require_no_frames(options);
   const auto backend = make_backend(options, scene, integrator);
+  if (auto* dressing = dynamic_cast<DressingBackend*>(backend.get()))
+    return run_dressing(scene, *dressing, options.backend);
 
   std::optional<H5mdTrace> trace;
   if (!options.trace.empty()) {
@@ -159,7 +174,8 @@ std::function<int()> declare_run(CLI::App& app) {
   app.add_option("--scene", options->scene, "Scene: a name (see mssim list scenes) or a file")->required();
   app.add_option("--backend", options->backend, "Backend (default: openmp)");
   app.add_option("--integrator", options->integrator, "Integrator (default: semi-euler)");
-  app.add_option("--duration", options->duration_s, "Simulated seconds (default: 1)")
+  app.add_option("--duration", options->duration_s,
+                 "Simulated seconds (default: 1; a garment is dressed until it has settled)")
       ->check(positive_number());
   app.add_option("--fps", options->fps, "Frames per simulated second (default: 60)")
       ->check(positive_number());

@@ -6,12 +6,13 @@
 
 #include "scene/bodies.h"
 #include "scene/cloth.h"
+#include "scene/garment.h"
 #include "scene/memory.h"
 
 namespace mssim {
 namespace {
 
-constexpr std::array<SceneKind, 2> kinds{{
+constexpr std::array<SceneKind, 3> kinds{{
     // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
     // both
     // of its ends.
@@ -20,6 +21,9 @@ constexpr std::array<SceneKind, 2> kinds{{
     // be
     // divided by three, and the thirds fit tetrahedral meshes.
     {"bodies", visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts, build_bodies},
+    // No garment of Hong et al. has a count.
+    {"garment", visit_garment_fields, check_garment, 1, stated_garment_counts, garment_counts,
+     build_garment_scene},
 }};
 static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);
 

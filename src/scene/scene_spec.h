@@ -10,6 +10,7 @@
 #include "model/spring.h"
 #include "model/system.h"
 #include "scene/bodies_spec.h"
+#include "scene/garment_spec.h"
 
 namespace mssim {
 
@@ -49,7 +50,7 @@ struct SceneSpec {
   double gravity_m_per_s2 = 0;
   double viscous_damping_per_s = 0;
   Floor floor;
-  std::variant<ClothSpec, BodiesSpec>
+  std::variant<ClothSpec, BodiesSpec, GarmentSpec>
       body;                    ///< one alternative a scene kind, in the order of their table (scene_kinds.h)
   std::string source;          ///< the file's text, for traces and hashes
   std::filesystem::path file;  ///< where it was read, for messages

@@ -1,0 +1,238 @@
+#include "scene/garment.h"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "contact/body_maps.h"
+#include "garment/body_profile.h"
+#include "garment/jeans.h"
+#include "mesh/mesh_error.h"
+#include "mesh/surface_file.h"
+#include "model/printable.h"
+#include "scene/material_fields.h"
+#include "scene/scene_error.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
+constexpr double largest_length_m = 10;
+
+/// Cloth of this radius of curvature, of a limb's, say, must not show the body through the faces between its
+/// nodes: their sagitta is h^2 / 8 r.
+constexpr double least_curvature_radius_m = 0.04;
+
+/// A trouser leg begins so far outside the leg's middle: its halves are closed around the leg from there
+/// without being drawn across the other one.
+constexpr double beside_the_leg_m = 0.01;
+
+const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
+
+void visit_length(FieldVisitor& fields, std::string_view key, double& target) {
+  fields.number(key, target, above(0, largest_length_m));
+}
+
+void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
+  fields.object(key, Presence::required, [&](FieldVisitor& at) {
+    visit_length(at, "girth_m", girth.girth);
+    visit_length(at, "height_m", girth.height);
+  });
+}
+
+void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
+  auto& [measures, resolution] = garment.body.emplace<MannequinBody>();
+  visit_girth(fields, "bust", measures.bust);
+  visit_girth(fields, "waist", measures.waist);
+  visit_girth(fields, "hip", measures.hip);
+  visit_girth(fields, "thigh", measures.thigh);
+  visit_girth(fields, "knee", measures.knee);
+  visit_girth(fields, "ankle", measures.ankle);
+  visit_length(fields, "crotch_height_m", measures.crotch_height);
+  fields.number("hip_depth_over_width", measures.hip_aspect, above(0, 10));
+  fields.number("thigh_gap_m", measures.thigh_gap, from(0, largest_length_m));
+  visit_length(fields, "stance_m", measures.stance);
+  fields.integer("cells_around", resolution.cells_around, 16, 512);
+}
+
+void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
+  auto& body = garment.body.emplace<BodyFile>();
+  fields.text("file", Presence::required, body.file);
+  fields.number("unit_m", body.unit_m, above(0, 1e6));
+}
+
+void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
+  fields.integer("nodes", jeans.nodes, fewest_nodes, most_nodes);
+  visit_length(fields, "waist_height_m", jeans.measures.waist_height);
+  visit_length(fields, "hip_height_m", jeans.measures.hip_height);
+  visit_length(fields, "knee_height_m", jeans.measures.knee_height);
+  visit_length(fields, "hem_height_m", jeans.measures.hem_height);
+  visit_length(fields, "knee_m", jeans.measures.knee);
+  visit_length(fields, "hem_m", jeans.measures.hem);
+  fields.number("hip_ease_m", jeans.measures.hip_ease, from(0, largest_length_m));
+  fields.number("waist_ease_m", jeans.measures.waist_ease, from(0, largest_length_m));
+  fields.number("crotch_ease_m", jeans.measures.crotch_ease, from(0, largest_length_m));
+}
+
+void visit_cloth(FieldVisitor& fields, PanelCloth& cloth) {
+  fields.number("areal_density_kg_per_m2", cloth.area_density, above(0, 1e6));
+  fields.number("structural_n_per_m", cloth.structural.stiffness, above(0, largest_stiffness));
+  fields.number("shear_n_per_m", cloth.shear.stiffness, above(0, largest_stiffness));
+  fields.number("bending_n_per_m", cloth.bending.stiffness, above(0, largest_stiffness));
+  fields.number("least_mass_share", cloth.least_mass_share, from(0, 1));
+  fields.object("waistband", Presence::optional, [&](FieldVisitor& band) {
+    visit_length(band, "height_m", cloth.waistband.height);
+    band.number("stiffness_factor", cloth.waistband.stiffness_factor, above(0, 1000));
+    band.number("mass_factor", cloth.waistband.mass_factor, above(0, 1000));
+    band.number("seam_factor", cloth.waistband.seam_factor, above(0, 1000));
+  });
+}
+
+void visit_correction(FieldVisitor& fields, Dressing& dressing, VelocityCorrection correction) {
+  dressing.correction = correction;
+  if (correction == VelocityCorrection::none) return;
+  fields.number("threshold", dressing.correction_threshold, from(0, 10));
+  fields.integer("sweeps", dressing.correction_sweeps, 1, 1000);
+  if (correction == VelocityCorrection::bounded) fields.number("rate", dressing.correction_rate, from(0, 1));
+}
+
+void visit_dressing(FieldVisitor& fields, Dressing& dressing) {
+  fields.number("seam_force_n_per_m", dressing.seam_force, from(0, 1e6));
+  fields.number("seam_force_doubling_s", dressing.seam_force_doubling_s, above(0, 1e6));
+  fields.number("seaming_damping_per_s", dressing.seaming_damping, from(0, 1e6));
+  fields.number("seaming_gravity", dressing.seaming_gravity, from(0, 1));
+  fields.number("longest_seaming_s", dressing.longest_seaming_s, from(0, 1e6));
+  visit_length(fields, "sewn_gap_m", dressing.sewn_gap);
+  fields.number("closing_share", dressing.closing_share, from(0, 1));
+  fields.number("closing_speed_m_per_s", dressing.closing_speed, above(0, 1000));
+  fields.number("friction", dressing.friction, from(0, 100));
+  fields.number("push_speed_m_per_s", dressing.push_speed, from(0, 1000));
+  const auto section = [&](std::string_view name, VelocityCorrection correction) {
+    return Section{
+        name, [&dressing, correction](FieldVisitor& rule) { visit_correction(rule, dressing, correction); }};
+  };
+  const std::array sections{section("none", VelocityCorrection::none),
+                            section("published", VelocityCorrection::published),
+                            section("bounded", VelocityCorrection::bounded)};
+  fields.one_of("correction", sections);
+}
+
+/// A body as a pattern needs it.
+struct MeasuredBody {
+  Surface surface;
+  BodyProfile profile;
+};
+
+MeasuredBody measured_body(const SceneSpec& spec) {
+  Surface surface = body_of_garment(spec);
+  try {
+    BodyProfile profile(surface);
+    return {std::move(surface), std::move(profile)};
+  } catch (const MeshError& error) {
+    refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
+  }
+}
+
+GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) {
+  const GarmentSpec& garment = garment_of(spec);
+  try {
+    JeansMeasures measures = garment.jeans.measures;
+    measures.girth = [&](double height) { return profile.hull_girth(height); };
+    measures.crotch_height = profile.crotch_height();
+    const GarmentPattern pattern =
+        jeans_pattern(measures, garment.jeans.nodes, garment.cloth,
+                      [&](double height) { return profile.leg_middle(height).x + beside_the_leg_m; });
+    return build_garment(pattern, {[&](double height) { return profile.front(height); },
+                                   [&](double height) { return profile.back(height); }});
+  } catch (const MeshError& error) {
+    refuse(spec.file, "/garment/jeans", "does not fit: " + printable(error.what(), 1500));
+  }
+}
+
+/// How far before the body its maps lie, m, for cloth whose cells are about `cell` wide.
+double map_offset(const GarmentSpec& garment, double cell) {
+  return garment.skin_m + cell * cell / (8 * least_curvature_radius_m);
+}
+
+}  // namespace
+
+void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
+  GarmentSpec& garment = spec.body.emplace<GarmentSpec>();
+  const std::array bodies{
+      Section{"mannequin", [&](FieldVisitor& body) { visit_mannequin(body, garment); }},
+      Section{"surface_file", [&](FieldVisitor& body) { visit_body_file(body, garment); }}};
+  fields.one_of("body", bodies);
+  visit_length(fields, "pixel_m", garment.pixel_m);
+  fields.number("skin_m", garment.skin_m, from(0, largest_length_m));
+  const std::array patterns{
+      Section{"jeans", [&](FieldVisitor& jeans) { visit_jeans(jeans, garment.jeans); }}};
+  fields.one_of("pattern", patterns);
+  fields.object("cloth", Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
+  fields.object("dressing", Presence::required,
+                [&](FieldVisitor& dressing) { visit_dressing(dressing, garment.dressing); });
+  fields.object("expected", Presence::optional, [&](FieldVisitor& expected) {
+    MeshSize& size = garment.expected.emplace();
+    expected.integer("nodes", size.nodes, 4, most_nodes);
+    expected.integer("springs", size.springs, 6, 6 * most_nodes);
+  });
+}
+
+void check_garment(const SceneSpec& /*spec*/) {}
+
+std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
+  const std::optional<MeshSize>& expected = garment_of(spec).expected;
+  return expected ? std::optional(SceneCounts{expected->nodes, expected->springs}) : std::nullopt;
+}
+
+SceneCounts garment_counts(const SceneSpec& spec) {
+  const GarmentBuild build = cut_and_placed(spec, measured_body(spec).profile);
+  return {build.placed.size(), build.springs.size()};
+}
+
+Surface body_of_garment(const SceneSpec& spec) {
+  const GarmentSpec& garment = garment_of(spec);
+  try {
+    if (const auto* form = std::get_if<MannequinBody>(&garment.body))
+      return mannequin(form->measures, form->resolution);
+    const auto& file = std::get<BodyFile>(garment.body);
+    Surface surface = read_surface(spec.file.parent_path() / file.file);
+    for (Vec3d& point : surface.points) point = file.unit_m * point;
+    return surface;
+  } catch (const MeshError& error) {
+    refuse(spec.file, "/garment/body", "is no body: " + printable(error.what(), 1500));
+  }
+}
+
+System build_garment_scene(const SceneSpec& spec) {
+  const GarmentSpec& garment = garment_of(spec);
+  const MeasuredBody body = measured_body(spec);
+  GarmentBuild build = cut_and_placed(spec, body.profile);
+  System system;
+  system.springs = std::move(build.springs);
+  system.materials = std::move(build.materials);
+  system.node_mass = std::move(build.node_mass);
+  system.gravity = spec.gravity_m_per_s2;
+  system.viscous_damping = spec.viscous_damping_per_s;
+  system.floor = spec.floor;
+  system.start.position = std::move(build.placed);
+  system.start.velocity.resize(system.start.position.size());
+
+  const double mass = std::accumulate(system.node_mass.begin(), system.node_mass.end(), 0.0);
+  const double cell = std::sqrt(mass / garment.cloth.area_density / static_cast<double>(system.nodes()));
+  build.garment.dressing = garment.dressing;
+  build.garment.flat = std::move(build.flat);
+  try {
+    build.garment.body = std::make_shared<BodyMaps>(
+        body.surface, BodyMapSettings{.pixel = garment.pixel_m, .offset = map_offset(garment, cell)});
+  } catch (const std::exception& error) {
+    refuse(spec.file, "/garment/pixel_m", "gives no maps of the body: " + printable(error.what(), 1500));
+  }
+  system.topology = std::move(build.garment);
+  return system;
+}
+
+}  // namespace mssim

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "garment/jeans_outline.h"
+#include "garment/mannequin.h"
+#include "garment/panel_springs.h"
+#include "model/dressing.h"
+#include "scene/bodies_spec.h"
+
+namespace mssim {
+
+/// A dress form made from measures.
+struct MannequinBody {
+  BodyMeasures measures;
+  MannequinResolution resolution;
+};
+
+/// A closed surface in an OBJ or STL file. Paths that are not absolute start at the scene file's folder.
+struct BodyFile {
+  std::string file;
+  double unit_m = 1;  ///< metres in one unit of the file
+};
+
+/// Jeans that fit the body: what the body itself says, its girths and the height of its crotch, is measured.
+struct JeansSpec {
+  std::uint32_t nodes = 0;  ///< about
+  JeansMeasures measures;
+};
+
+/// A body, a garment for it, and how it is dressed.
+struct GarmentSpec {
+  std::variant<MannequinBody, BodyFile> body;
+  double pixel_m = 0.0025;  ///< of the maps of the body
+  double skin_m = 0.003;    ///< that the maps lie before the body's surface, beside what coarse cloth needs
+  JeansSpec jeans;
+  PanelCloth cloth;
+  Dressing dressing;
+  std::optional<MeshSize> expected;
+};
+
+}  // namespace mssim
