@@ -99,6 +99,7 @@ TEST_F(ProvenanceFile, IsRefusedWithThePlaceAndTheValue) {
   EXPECT_THAT(refusal_with("/threads/asked_for", 3000000000), HasSubstr("/threads/asked_for is 3000000000"));
   EXPECT_THAT(refusal_with("/threads/allowed_cpus/1", nullptr), HasSubstr("/threads/allowed_cpus/1 is null"));
   EXPECT_THAT(refusal_with("/threads/environment/OMP_PLACES", 1), HasSubstr("/OMP_PLACES is 1"));
+  EXPECT_THAT(refusal_with("/threads/environment/A\x7F", 1), HasSubstr("/A\\u007f is 1"));
   EXPECT_THAT(refusal_with("/threads", json::array()), HasSubstr("/threads is [] instead of an object"));
   EXPECT_THAT(refusal_with("/build/dirty", "no"), HasSubstr("/build/dirty is \"no\" instead of true or"));
   EXPECT_THAT(refusal_with("/build/compiler", nullptr), HasSubstr("/build/compiler is null"));

@@ -116,7 +116,7 @@ class Place {
     require(value_.is_object(), "an object");
     std::vector<decltype(read(std::string(), *this))> elements;
     for (const auto& [name, value] : value_.items())
-      elements.push_back(read(name, Place(file_, value, pointer_ + '/' + name)));
+      elements.push_back(read(name, Place(file_, value, pointer_ + '/' + printable(name))));
     return elements;
   }
 
