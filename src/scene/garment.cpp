@@ -137,10 +137,23 @@ MeasuredBody measured_body(const SceneSpec& spec) {
   }
 }
 
-GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) {
+/// How far before the body its maps lie, m, for cloth whose cells are about `cell` wide.
+double map_offset(const GarmentSpec& garment, double cell) {
+  return garment.skin_m + cell * cell / (8 * least_curvature_radius_m);
+}
+
+/// Width of a square cell of the average size, m.
+double mean_cell(const GarmentSpec& garment, const std::vector<double>& node_mass) {
+  const double mass = std::accumulate(node_mass.begin(), node_mass.end(), 0.0);
+  return std::sqrt(mass / garment.cloth.area_density / static_cast<double>(node_mass.size()));
+}
+
+/// The garment for a body that is as much wider all round as its maps lie before it.
+GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile, double body_offset) {
   const GarmentSpec& garment = garment_of(spec);
   try {
     JeansMeasures measures = garment.jeans.measures;
+    measures.body_offset = body_offset;
     measures.girth = [&](double height) { return profile.hull_girth(height); };
     measures.crotch_height = profile.crotch_height();
     const GarmentPattern pattern =
@@ -153,9 +166,14 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) {
   }
 }
 
-/// How far before the body its maps lie, m, for cloth whose cells are about `cell` wide.
-double map_offset(const GarmentSpec& garment, double cell) {
-  return garment.skin_m + cell * cell / (8 * least_curvature_radius_m);
+/// The garment, whose cells decide how far before the body its maps lie, which decides how wide it is cut:
+/// coarse cloth cut for the body itself would be too tight for them.
+GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) {
+  const GarmentSpec& garment = garment_of(spec);
+  const double least = JeansMeasures{}.body_offset;
+  GarmentBuild build = cut_and_placed(spec, profile, least);
+  const double offset = map_offset(garment, mean_cell(garment, build.node_mass));
+  return offset > least ? cut_and_placed(spec, profile, offset) : build;
 }
 
 }  // namespace
@@ -221,13 +239,12 @@ System build_garment_scene(const SceneSpec& spec) {
   system.start.position = std::move(build.placed);
   system.start.velocity.resize(system.start.position.size());
 
-  const double mass = std::accumulate(system.node_mass.begin(), system.node_mass.end(), 0.0);
-  const double cell = std::sqrt(mass / garment.cloth.area_density / static_cast<double>(system.nodes()));
   build.garment.dressing = garment.dressing;
   build.garment.flat = std::move(build.flat);
   try {
     build.garment.body = std::make_shared<BodyMaps>(
-        body.surface, BodyMapSettings{.pixel = garment.pixel_m, .offset = map_offset(garment, cell)});
+        body.surface, BodyMapSettings{.pixel = garment.pixel_m,
+                                      .offset = map_offset(garment, mean_cell(garment, system.node_mass))});
   } catch (const std::exception& error) {
     refuse(spec.file, "/garment/pixel_m", "gives no maps of the body: " + printable(error.what(), 1500));
   }
