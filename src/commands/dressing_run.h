@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "backends/dressing/serial_dressing.h"
+#include "backends/dressing/dressing_backend.h"
 #include "commands/prepared_scene.h"
 
 namespace mssim {

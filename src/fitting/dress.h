@@ -4,8 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "backends/dressing/seam_force.h"
-#include "backends/dressing/serial_dressing.h"
+#include "backends/dressing/dressing_backend.h"
 #include "model/system.h"
 
 namespace mssim {

@@ -32,7 +32,7 @@ struct Dressing {
 
   VelocityCorrection correction = VelocityCorrection::bounded;
   double correction_threshold = 0.05;   ///< elongation over rest length
-  double correction_rate = 0.1;         ///< see VelocityCorrection::bounded
+  double correction_rate = 0.5;         ///< see VelocityCorrection::bounded
   std::uint32_t correction_sweeps = 2;  ///< over all springs, forwards and backwards by turns
 };
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/dressing/serial_dressing.h"
+#include "backends/dressing/dressing_backend.h"
 
 namespace mssim {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "backends/dressing/seam_force.h"
 #include "model/vec3.h"
 
 namespace mssim {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "backends/dressing/dressing_backend.h"
 #include "backends/dressing/panel_sheet.h"
 
 namespace mssim {

@@ -81,7 +81,7 @@ PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
   }
   for (const mssim::Joint& joint : garment.joints)
     joints.push_back({place[joint.node], place[joint.edge_first], place[joint.edge_second],
-                      static_cast<float>(joint.edge_share), 0});
+                      static_cast<float>(joint.edge_share)});
   set_state(system.start);
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "backends/aligned_array.h"
-#include "backends/dressing/seam_force.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -45,7 +44,7 @@ struct PanelSheet {
   };
   struct Joint {
     std::size_t node, first, second;  ///< floats
-    float share, force;               ///< of the edge; N at first
+    float share;                      ///< of the edge
   };
 
   /// Throws Unsupported where springs of one row and direction differ in stiffness, and std::invalid_argument

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backends/dressing/correction_order.h"
+#include "backends/dressing/seam_force.h"
 #include "backends/host_lines.h"
 #include "contact/body_maps.h"
 
@@ -235,11 +236,6 @@ class SerialDressing final : public DressingBackend {
 };
 
 }  // namespace
-
-void require_semi_euler(const Integrator& integrator) {
-  if (integrator.name != "semi-euler")
-    throw Unsupported("a garment is dressed with semi-euler only, as published");
-}
 
 std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s) {

@@ -2,19 +2,9 @@
 
 #include <memory>
 
-#include "backends/backend.h"
-#include "backends/dressing/seam_force.h"
+#include "backends/dressing/dressing_backend.h"
 
 namespace mssim {
-
-/// A backend that dresses.
-class DressingBackend : public Backend {
- public:
-  virtual DressingProgress progress() const = 0;
-};
-
-/// Throws Unsupported for another integrator.
-void require_semi_euler(const Integrator& integrator);
 
 /// Algorithm 1 of Vassilev's paper as a straightforward program has it: one thread, an array of nodes, a list
 /// of springs, six loops. `system.topology` is a Garment. Throws Unsupported for another integrator than

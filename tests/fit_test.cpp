@@ -1,0 +1,159 @@
+// How a garment fits, on garments whose fit is known.
+#include "fitting/fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "fitting/fit_bounds.h"
+#include "garment_system.h"
+
+namespace mssim {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+FitBody nobody_around(const Vec3d& middle) {
+  return {[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
+          [middle](const Vec3d& point) {
+            return Vec3d{middle.x, point.y, middle.z};
+          }};
+}
+
+/// A tube of two half ones of 5 x 9 nodes, sewn to each other at both sides; its radius is 0.1 m. The pattern
+/// has every node at the height where it is.
+System tube() {
+  System system = garment_of({{5, 9, 0.04, {0, 0, 0}}, {5, 9, 0.04, {0, 0, 0}}});
+  Garment& garment = garment_in(system);
+  for (std::uint32_t half = 0; half < 2; ++half)
+    for (std::uint32_t row = 0; row < 5; ++row)
+      for (std::uint32_t column = 0; column < 9; ++column) {
+        const double angle = std::numbers::pi * (half + column / 8.0);
+        system.start.position[garment.panels[half].node(row, column)] = {0.1 * std::cos(angle), row * 0.04,
+                                                                         0.1 * std::sin(angle)};
+      }
+  const auto edge = [&](std::uint32_t half, std::uint32_t column) {
+    std::vector<std::uint32_t> nodes;
+    for (std::uint32_t row = 0; row < 5; ++row) nodes.push_back(garment.panels[half].node(row, column));
+    return nodes;
+  };
+  sew(system, edge(0, 0), edge(1, 8), 0.16);
+  sew(system, edge(0, 8), edge(1, 0), 0.16);
+  return system;
+}
+
+TEST(Fit, CountsRowsThatDoNotGoOnceAroundTheirLimb) {
+  const System system = tube();
+  const Fit around = fit_of(system, system.start.position, nobody_around({0, 0, 0.05}));
+  EXPECT_EQ(around.rows, 5U);
+  EXPECT_EQ(around.rows_astray, 0U);
+  EXPECT_LT(around.largest_gap, 1e-15);
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({0.2, 0, 0})).rows_astray, 5U);
+  // One row is drawn aside.
+  std::vector<Vec3d> position = system.start.position;
+  for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
+    for (std::uint32_t column = 0; column < panel.columns; ++column) position[panel.node(2, column)].x += 0.3;
+  EXPECT_EQ(fit_of(system, position, nobody_around({0, 0, 0})).rows_astray, 1U);
+}
+
+TEST(Fit, TellsHowFarUpperEdgesAndMeetingSeamsHangFromThePattern) {
+  System system = tube();
+  Garment& garment = garment_in(system);
+  // A third seam meets the first at the lowest node of the first panel's left edge.
+  garment.seams.emplace_back("third");
+  garment.joints.push_back({garment.panels[0].node(0, 0), garment.panels[1].node(0, 7), 0, 0, 0.01, 1, 2});
+  std::vector<Vec3d> position = system.start.position;
+  for (Vec3d& node : position) node.y += 0.005;
+  position[garment.panels[0].node(0, 0)].y -= 0.025;
+  const Fit fit = fit_of(system, position, nobody_around({}));
+  EXPECT_NEAR(fit.upper_edge_rise, 0.005, 1e-12);
+  EXPECT_NEAR(fit.meeting_rise, -0.02, 1e-12);
+}
+
+TEST(Fit, MeasuresGapsElongationsAndDepths) {
+  System system = garment_of({{2, 3, 0.01, {0, 0, 0}}});
+  Garment& garment = garment_in(system);
+  garment.seams = {"cut"};
+  garment.joints.push_back({0, 1, 2, 0.25, 0.01, 1, 0});
+  std::vector<Vec3d> position = system.start.position;
+  for (Vec3d& node : position) node = 1.03 * node;
+  // The body is what lies under z = 0.002 and left of x = 0.005; cloth is at z = 0.
+  const FitBody body{[](std::span<const Vec3d> points) {
+                       std::vector<double> depths;
+                       for (const Vec3d& point : points)
+                         depths.push_back(point.x < 0.005 ? std::max(0.0, 0.002 - point.z) : 0);
+                       return depths;
+                     },
+                     [](const Vec3d& point) { return point; }};
+  const Fit fit = fit_of(system, position, body);
+  EXPECT_NEAR(fit.largest_gap, 1.03 * 0.0125, 1e-9);
+  for (const double elongation :
+       {fit.elongation_50, fit.elongation_99, fit.elongation_999, fit.elongation_max})
+    EXPECT_NEAR(elongation, 0.03, 1e-6);
+  EXPECT_EQ(fit.nodes_inside, 2U);
+  EXPECT_DOUBLE_EQ(fit.deepest_node, 0.002);
+  // No node is inside, but the middle of what is between them.
+  const std::vector<Vec3d> spanned{{-0.01, 0, 0},    {0.03, 0, 0},    {0.06, 0, 0},
+                                   {-0.01, 0.01, 0}, {0.03, 0.01, 0}, {0.06, 0.01, 0}};
+  const FitBody post{[](std::span<const Vec3d> points) {
+                       std::vector<double> depths;
+                       for (const Vec3d& point : points)
+                         depths.push_back(std::max(0.0, 0.004 - std::abs(point.x)));
+                       return depths;
+                     },
+                     [](const Vec3d& point) { return point; }};
+  const Fit around_post = fit_of(system, spanned, post);
+  EXPECT_EQ(around_post.nodes_inside, 0U);
+  EXPECT_EQ(around_post.deepest_node, 0);
+  EXPECT_NEAR(around_post.deepest_face_sample, 0.004, 1e-12);  // x = 0 is a quarter of the way
+}
+
+TEST(Fit, SamplesBothTrianglesOfEveryCell) {
+  const System system = garment_of({{3, 2, 1, {0, 0, 0}}});
+  std::vector<Vec3d> position = system.start.position;
+  position[3].z = 4;  // the corner far from the first cell's first
+  const std::vector<Vec3d> samples = face_samples(std::get<Garment>(system.topology).panels[0], position);
+  ASSERT_EQ(samples.size(), 2U * 25);
+  EXPECT_EQ(samples[0], (Vec3d{0, 0, 0}));
+  EXPECT_EQ(samples[24], (Vec3d{1, 1, 4}));
+  // In the plane x + y <= 1 the first triangle is flat; beyond it the second rises to the far corner.
+  for (std::size_t i = 0; i < 25; ++i)
+    EXPECT_NEAR(samples[i].z, std::max(0.0, 4 * (samples[i].x + samples[i].y - 1)), 1e-12) << i;
+}
+
+TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
+  DressingResult result;
+  result.seamed_at = 100;
+  result.settled = true;
+  Fit fit;
+  fit.rows = 3;
+  EXPECT_THAT(misfits(result, fit, {}), testing::IsEmpty());
+  fit = {.largest_gap = 0.0011,
+         .nodes_inside = 1,
+         .deepest_node = 0.0012,
+         .deepest_face_sample = 0.002,
+         .upper_edge_rise = -0.021,
+         .meeting_rise = 0.031,
+         .rows = 3,
+         .rows_astray = 1,
+         .elongation_50 = 0,
+         .elongation_99 = 0.061,
+         .elongation_999 = std::numeric_limits<double>::quiet_NaN(),
+         .elongation_max = 1};
+  EXPECT_THAT(
+      misfits({}, fit, {}),
+      ElementsAre(HasSubstr("seams did not close"), HasSubstr("did not come to rest"),
+                  HasSubstr("gap of a seam is 1.1 mm, beyond 1 mm"),
+                  HasSubstr("node inside the body is 1.2 mm"), HasSubstr("face inside the body is 2 mm"),
+                  HasSubstr("99 % stay below is 6.1 %, beyond 6 %"), HasSubstr("99.9 % stay below is nan %"),
+                  HasSubstr("worn is -21 mm, beyond 20 mm"),
+                  HasSubstr("seams meet from where that is worn is 31 mm"), HasSubstr("1 of 3 rows")));
+}
+
+}  // namespace
+}  // namespace mssim
