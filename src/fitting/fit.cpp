@@ -10,10 +10,6 @@
 namespace mssim {
 namespace {
 
-const GarmentPanel& panel_of(const Garment& garment, std::uint32_t node) {
-  return *(std::ranges::upper_bound(garment.panels, node, {}, &GarmentPanel::first_node) - 1);
-}
-
 double largest_gap(const Garment& garment, const std::vector<Vec3d>& position) {
   double largest = 0;
   for (const Joint& joint : garment.joints) {
@@ -27,7 +23,7 @@ double largest_gap(const Garment& garment, const std::vector<Vec3d>& position) {
 /// Whether a spring of the 12-neighbour stencil is one whose elongation counts: one that spans a single cell.
 /// Bending springs, two cells long, may change length by bending.
 bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
-  const GarmentPanel& panel = panel_of(garment, spring.first);
+  const GarmentPanel& panel = garment.panel_of(spring.first);
   const std::uint32_t first = spring.first - panel.first_node, second = spring.second - panel.first_node;
   const auto apart = [](std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; };
   return apart(first / panel.columns, second / panel.columns) <= 1 &&
@@ -86,7 +82,7 @@ std::vector<std::vector<std::uint32_t>> sewn_rows(const Garment& garment) {
   const auto rows_sewn_to = [&](std::uint32_t node) {
     std::map<const GarmentPanel*, std::uint32_t> rows;
     for (auto [to, end] = sewn_to.equal_range(node); to != end; ++to) {
-      const GarmentPanel& panel = panel_of(garment, to->second);
+      const GarmentPanel& panel = garment.panel_of(to->second);
       rows.emplace(&panel, (to->second - panel.first_node) / panel.columns);
     }
     return rows;

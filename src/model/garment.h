@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -48,6 +49,11 @@ struct Garment {
   std::vector<Vec3d> flat;  ///< [nodes] m, z = 0: in the pattern, where y is the height at which it is worn
   Dressing dressing;
   std::shared_ptr<const BodyMaps> body;  ///< none: nothing to dress
+
+  /// The panel that a node belongs to.
+  const GarmentPanel& panel_of(std::uint32_t node) const {
+    return *(std::ranges::upper_bound(panels, node, {}, &GarmentPanel::first_node) - 1);
+  }
 };
 
 }  // namespace mssim

@@ -33,10 +33,6 @@ std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::u
   throw std::invalid_argument("panel " + panel.name + " has a spring that is not of its stencil");
 }
 
-const GarmentPanel& panel_of(const Garment& garment, std::uint32_t node) {
-  return *(std::ranges::upper_bound(garment.panels, node, {}, &GarmentPanel::first_node) - 1);
-}
-
 }  // namespace
 
 PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
@@ -67,7 +63,7 @@ PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
   for (const std::uint32_t pin : system.pins) inverse_mass.data()[place[pin]] = 0;
   for (const Spring& spring : system.springs) {
     std::uint32_t owner = spring.first, other = spring.second;
-    const GarmentPanel& panel = panel_of(garment, std::min(owner, other));
+    const GarmentPanel& panel = garment.panel_of(std::min(owner, other));
     const std::size_t direction = direction_of(panel, owner, other);
     rest[direction].data()[place[owner]] = spring.rest_length;
     const std::size_t row = (owner - panel.first_node) / panel.columns;
