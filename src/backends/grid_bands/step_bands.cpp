@@ -41,10 +41,9 @@ HWY_INLINE void finish_column(const BandLayout& layout, const std::vector<BandPi
 /// first, gathers from.
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void finish_written(const BandLayout& layout, BandPart& part, std::size_t column) {
-  constexpr const Integrator& integrator = integrators[method];
   const auto finish = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
     constexpr Pair pair = static_cast<Pair>(i), stored = written_to<method, stage>(pair);
-    if constexpr (writes_to_gather(integrator, stage, pair))
+    if constexpr (writes_to_gather(integrators[method], stage, pair))
       finish_column(layout, part.pins[part.place(column)], part.column(layout, stored, column));
   };
   [&]<std::size_t... i>(std::index_sequence<i...>) MSSIM_INLINE_LAMBDA {

@@ -43,7 +43,7 @@ struct SlicedBodies {
   /// Cuts the bodies into slices of `slice_lanes` nodes, for at most `thread_count` threads.
   /// Throws Unsupported like SlicedGraph, and for more nodes than offsets can name.
   SlicedBodies(const System& system, const Integrator& method, double dt_s, std::size_t slice_lanes,
-               std::size_t threads);
+               std::size_t thread_count);
   void set_state(const State& state);
   State state() const;
 
