@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "backends/opencl/program.h"
-#include "contact/body_law.h"
 #include "contact_fixture.h"
+#include "model/host_laws.h"
 #include "opencl_ways.h"
 
 namespace mssim {
@@ -29,29 +29,28 @@ Real to(double x) {
 template <class Real>
 class BodyContactOf : public testing::Test {
  protected:
-  using Planes = body_law::BodyPlanes<double>;
-  using Point = body_law::ClothPoint<double>;
-  using Response = body_law::ClothResponse<Real>;
+  using Planes = BodyPlanes<double>;
+  using Point = ClothPoint<double>;
+  using Response = ClothResponse<Real>;
 
   static constexpr double none = -1e30;
   /// Everything from z = -1 to z = 0.
   static constexpr Planes slab{0, 0, 1, 0, 0, 0, -1, 1};
 
-  static body_law::ClothPoint<Real> in_real(const Point& p) {
+  static ClothPoint<Real> in_real(const Point& p) {
     return {to<Real>(p.x), to<Real>(p.y), to<Real>(p.z), to<Real>(p.u), to<Real>(p.v), to<Real>(p.w)};
   }
-  static body_law::BodyContact<Real> met(const Planes& planes, Real x, Real y, Real z) {
-    return body_law::body_contact<Real>(
-        {to<Real>(planes.front_x), to<Real>(planes.front_y), to<Real>(planes.front_z),
-         to<Real>(planes.front_at), to<Real>(planes.back_x), to<Real>(planes.back_y), to<Real>(planes.back_z),
-         to<Real>(planes.back_at)},
-        x, y, z);
+  static BodyContact<Real> met(const Planes& planes, Real x, Real y, Real z) {
+    return body_contact<Real>({to<Real>(planes.front_x), to<Real>(planes.front_y), to<Real>(planes.front_z),
+                               to<Real>(planes.front_at), to<Real>(planes.back_x), to<Real>(planes.back_y),
+                               to<Real>(planes.back_z), to<Real>(planes.back_at)},
+                              x, y, z);
   }
   static Response after(const Planes& planes, const Point& point, double mu = friction) {
     const auto p = in_real(point);
     const Real step = to<Real>(dt);
-    return body_law::body_response(p, met(planes, p.x + step * p.u, p.y + step * p.v, p.z + step * p.w),
-                                   to<Real>(mu), to<Real>(push_speed), step);
+    return body_response(p, met(planes, p.x + step * p.u, p.y + step * p.v, p.z + step * p.w), to<Real>(mu),
+                         to<Real>(push_speed), step);
   }
   static void expect(const Response& got, const std::array<double, 7>& wanted) {
     const std::array<Real, 7> all{got.x, got.y, got.z, got.u, got.v, got.w, got.stuck};
@@ -141,7 +140,7 @@ TYPED_TEST(BodyContactOf, TheResponseFollowsTheNormal) {
 }
 
 TEST(BodyColumn, IsOnTheBorderBesideTheMaps) {
-  const auto column = [](double x) { return body_law::body_column(x, -1.0, 10.0, 19.0); };
+  const auto column = [](double x) { return body_column(x, -1.0, 10.0, 19.0); };
   EXPECT_DOUBLE_EQ(column(-0.75), 2.5);
   EXPECT_EQ(column(0.95), 19);
   for (const double far : {1.5, 1e300, double{HUGE_VAL}, std::nan("")}) EXPECT_EQ(column(far), 19);
@@ -207,16 +206,16 @@ TEST_P(OpenclBodyContact, DoesTheSame) {
   int inside = 0, stuck = 0;
   for (std::size_t i = 0; i < points; ++i) {
     const auto at = [&](std::size_t k) { return in[k * points + i]; };
-    const body_law::ClothPoint<float> p{at(0), at(1), at(2), at(3), at(4), at(5)};
-    const body_law::BodyPlanes<float> planes{at(6), at(7), at(8), at(9), at(10), at(11), at(12), at(13)};
+    const ClothPoint<float> p{at(0), at(1), at(2), at(3), at(4), at(5)};
+    const BodyPlanes<float> planes{at(6), at(7), at(8), at(9), at(10), at(11), at(12), at(13)};
     const auto step = to<float>(dt);
-    const auto met = body_law::body_contact(planes, p.x + step * p.u, p.y + step * p.v, p.z + step * p.w);
-    const auto after = body_law::body_response(p, met, to<float>(friction), to<float>(push_speed), step);
+    const auto met = body_contact(planes, p.x + step * p.u, p.y + step * p.v, p.z + step * p.w);
+    const auto after = body_response(p, met, to<float>(friction), to<float>(push_speed), step);
     inside += met.distance < 0;
     stuck += after.stuck > 0;
     const std::array<float, outputs> wanted{
         after.x, after.y, after.z,     after.u,
-        after.v, after.w, after.stuck, body_law::body_column(p.x, -0.01F, 1000.0F, 15.0F)};
+        after.v, after.w, after.stuck, body_column(p.x, -0.01F, 1000.0F, 15.0F)};
     for (std::size_t k = 0; k < outputs; ++k)
       EXPECT_NEAR(out[k * points + i], wanted[k], k == 7 ? 1e-4 : 2e-6) << i << ", " << k;
   }

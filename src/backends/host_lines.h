@@ -1,45 +1,17 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
 
 #include "integrators/coefficients.h"
+#include "model/host_laws.h"
 #include "model/vec3.h"
 
 namespace mssim {
 
-/// The shared laws and the integrator table's lines for one node at a time on the host: Real is float or
-/// double, a vector is a Vec3<Real>. Code that handles several nodes in one vector register instantiates the
-/// same three texts on its own.
-
-/// a * b + c, in two roundings: a fused one would be a library call on processors without the instruction.
-template <class Real>
-inline Real mul_add(Real a, Real b, Real c) {
-  return a * b + c;
-}
-template <class Real>
-inline Vec3<Real> mul_add(Real a, const Vec3<Real>& b, const Vec3<Real>& c) {
-  return a * b + c;
-}
-
-template <class Real>
-inline Real inverse_sqrt(Real a) {
-  return Real{1} / std::sqrt(a);
-}
-
-template <class Real>
-inline Real where_less(Real a, Real b, Real yes, Real no) {
-  return a < b ? yes : no;
-}
-
-#define MSSIM_LAW       \
-  template <class Real> \
-  inline Real
-#include "kernels/floor_law.h"
-#include "kernels/spring_law.h"
-#undef MSSIM_LAW
+/// The integrator table's lines and the floor for one node at a time on the host: Real is float or double, a
+/// vector is a Vec3<Real>. Code that handles several nodes in one vector register has its own.
 
 #define MSSIM_INLINE [[gnu::always_inline]] inline
 #define MSSIM_INLINE_LAMBDA __attribute__((always_inline))

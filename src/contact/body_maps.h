@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "contact/body_law.h"
 #include "kernels/body_frame.h"
 #include "mesh/surface.h"
+#include "model/host_laws.h"
 #include "model/vec3.h"
 
 namespace mssim {
@@ -21,7 +21,7 @@ struct BodyMapSettings {
 };
 
 /// A pixel's record, on as many bytes as it is long: two lie in a cache line.
-struct alignas(BODY_FLOATS * sizeof(float)) BodyPixel : body_law::BodyPlanes<float> {};
+struct alignas(BODY_FLOATS * sizeof(float)) BodyPixel : BodyPlanes<float> {};
 static_assert(sizeof(BodyPixel) == BODY_FLOATS * sizeof(float));
 
 /// Memory that the maps of `surface` take, bytes. Throws std::invalid_argument for settings out of range and
@@ -64,15 +64,15 @@ class BodyMaps {
   /// How the point (m) stands to the body. Beside the maps the distance is 1e30 m, and for coordinates that
   /// are not finite it is not less than zero: no contact.
   template <class Real>
-  body_law::BodyContact<Real> contact(Real x, Real y, Real z) const {
-    const auto column = static_cast<std::size_t>(body_law::body_column(
+  BodyContact<Real> contact(Real x, Real y, Real z) const {
+    const auto column = static_cast<std::size_t>(body_column(
         x, Real{frame_.left}, Real{frame_.pixels_per_metre}, static_cast<Real>(frame_.columns - 1)));
-    const auto row = static_cast<std::size_t>(body_law::body_column(
+    const auto row = static_cast<std::size_t>(body_column(
         y, Real{frame_.bottom}, Real{frame_.pixels_per_metre}, static_cast<Real>(frame_.rows - 1)));
     const BodyPixel& p = pixels_[row * static_cast<std::size_t>(frame_.columns) + column];
-    return body_law::body_contact(body_law::BodyPlanes<Real>{p.front_x, p.front_y, p.front_z, p.front_at,
-                                                             p.back_x, p.back_y, p.back_z, p.back_at},
-                                  x, y, z);
+    return body_contact(BodyPlanes<Real>{p.front_x, p.front_y, p.front_z, p.front_at, p.back_x, p.back_y,
+                                         p.back_z, p.back_at},
+                        x, y, z);
   }
 
   /// Tests where the step would carry the point, x + dt v, and changes position (m) and velocity (m/s) as
@@ -80,8 +80,8 @@ class BodyMaps {
   template <class Real>
   bool respond(Vec3<Real>& x, Vec3<Real>& v, Real friction, Real push_speed, Real dt) const {
     const auto met = contact(x.x + dt * v.x, x.y + dt * v.y, x.z + dt * v.z);
-    const auto after = body_law::body_response(body_law::ClothPoint<Real>{x.x, x.y, x.z, v.x, v.y, v.z}, met,
-                                               friction, push_speed, dt);
+    const auto after =
+        body_response(ClothPoint<Real>{x.x, x.y, x.z, v.x, v.y, v.z}, met, friction, push_speed, dt);
     x = {after.x, after.y, after.z};
     v = {after.u, after.v, after.w};
     return after.stuck > 0;

@@ -7,15 +7,16 @@
 #include <set>
 #include <utility>
 
+#include "model/host_laws.h"
+
 namespace mssim {
 namespace {
 
 double largest_gap(const Garment& garment, const std::vector<Vec3d>& position) {
   double largest = 0;
   for (const Joint& joint : garment.joints) {
-    const Vec3d &first = position[joint.edge_first], &second = position[joint.edge_second];
-    const Vec3d sewn_to = first + joint.edge_share * (second - first);
-    largest = std::max(largest, length(sewn_to - position[joint.node]));
+    largest = std::max(largest, length(joint_gap(position[joint.node], position[joint.edge_first],
+                                                 position[joint.edge_second], joint.edge_share)));
   }
   return largest;
 }

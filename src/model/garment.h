@@ -35,7 +35,7 @@ struct Joint {
   std::uint32_t node = 0;
   std::uint32_t edge_first = 0;
   std::uint32_t edge_second = 0;  ///< the same as edge_first where it is a node
-  double edge_share = 0;          ///< of the way from first to second, 0 to 1
+  double edge_share = 0;          ///< of the way from first to second, 0 to 1; 0 where it is a node
   double length = 0;              ///< m, the share of the seam that it stands for
   double strength = 1;            ///< factor of the seam's force
   std::uint32_t seam = 0;         ///< index into Garment::seams

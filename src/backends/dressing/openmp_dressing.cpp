@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "backends/dressing/dressing_rules.h"
 #include "backends/dressing/step_panels.h"
 
 namespace mssim {
@@ -29,7 +30,7 @@ class OpenMpDressing final : public DressingBackend {
  private:
   void begin() {
     dressing_.steps = 0;
-    dressing_.progress = {dressing_.garment.joints.size(), dressing_.garment.joints.empty(), 0};
+    dressing_.progress = first_progress(dressing_.garment);
   }
 
   PanelKernel kernel_;

@@ -9,45 +9,38 @@
 
 #include <hwy/highway.h>
 
-#include <cmath>
 #include <cstddef>
 
+#include "backends/dressing/dressing_rules.h"
 #include "backends/dressing/panel_forces-inl.h"
+#include "model/host_laws.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// What an over-elongated spring may do.
-struct CorrectionRule {
-  float limit;       ///< length over rest length beyond which it acts
-  float rate_per_s;  ///< share of the excess that the ends must approach by in a second
-};
+/// Lanes with a spring longer than its limit.
+HWY_INLINE Mask is_elongated(Lanes length_squared, Lanes limit) {
+  return hn::Gt(elongation_excess(length_squared, limit).v, hn::Zero(FloatTag()));
+}
 
 /// The springs of a direction between two rows of nodes, a vector of them side by side: no two have a node in
 /// common.
 HWY_INLINE void correct_between_rows(PanelSheet& sheet, const PanelSheet::Panel& panel, std::size_t row,
-                                     std::size_t direction, const CorrectionRule& rule) {
+                                     std::size_t direction, const CorrectionRule<float>& rule) {
   const auto offset =
       static_cast<std::size_t>(static_cast<std::ptrdiff_t>(panel.stride) + panel_stencil[direction].columns);
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
     const std::size_t at = panel.first + row * panel.stride + column, other = at + offset;
     const Lanes3 d = load_unaligned(sheet.moved, other) - load(sheet.moved, at);
     const Lanes squared = dot(d, d);
-    const Lanes rest = hn::Load(FloatTag(), sheet.rest[direction].data() + at);
-    const Lanes limit = rest * Lanes(rule.limit);
-    const Mask exists = hn::Gt(rest.v, hn::Zero(FloatTag()));
-    Mask acts = hn::And(exists, hn::Gt(squared.v, (limit * limit).v));
+    const Lanes limit = Lanes(hn::Load(FloatTag(), sheet.rest[direction].data() + at)) * Lanes(rule.limit);
+    const Mask acts = is_elongated(squared, limit);
     if (HWY_LIKELY(hn::AllFalse(FloatTag(), acts))) continue;
     const Lanes own_free = hn::Load(FloatTag(), sheet.free.data() + at);
     const Lanes other_free = hn::LoadU(FloatTag(), sheet.free.data() + other);
-    const Lanes mobility = own_free + other_free;
-    const Lanes length = hn::Sqrt(squared.v);
     const Lanes3 own = load(sheet.velocity, at), far = load_unaligned(sheet.velocity, other);
-    const Lanes parting =
-        Lanes(hn::Div(dot(far - own, d).v, length.v)) + Lanes(rule.rate_per_s) * (length - limit);
-    acts = hn::And(
-        acts, hn::And(hn::Gt(parting.v, hn::Zero(FloatTag())), hn::Gt(mobility.v, hn::Zero(FloatTag()))));
-    const Lanes impulse = keep(acts, hn::Div(parting.v, (mobility * length).v));
+    const Lanes impulse = keep(acts, elongation_impulse(squared, dot(far - own, d), limit,
+                                                        Lanes(rule.rate_per_s), own_free + other_free));
     store(sheet.velocity, at, mul_add(own_free * impulse, d, own));
     const Lanes3 after = far - (other_free * impulse) * d;
     hn::StoreU(after.x.v, FloatTag(), sheet.velocity.x.data() + other);
@@ -56,35 +49,28 @@ HWY_INLINE void correct_between_rows(PanelSheet& sheet, const PanelSheet::Panel&
   }
 }
 
-/// One spring of a row, from the node at a float to the next.
-inline void correct_along_row(PanelSheet& sheet, std::size_t at, const CorrectionRule& rule) {
-  float *x = sheet.moved.x.data() + at, *y = sheet.moved.y.data() + at, *z = sheet.moved.z.data() + at;
-  float *u = sheet.velocity.x.data() + at, *v = sheet.velocity.y.data() + at,
-        *w = sheet.velocity.z.data() + at;
-  const float* free = sheet.free.data() + at;
-  const float dx = x[1] - x[0], dy = y[1] - y[0], dz = z[1] - z[0];
-  const float length = std::sqrt(dx * dx + dy * dy + dz * dz);
-  const float limit = sheet.rest[0].data()[at] * rule.limit;
-  const float parting = ((u[1] - u[0]) * dx + (v[1] - v[0]) * dy + (w[1] - w[0]) * dz) / length +
-                        rule.rate_per_s * (length - limit);
-  const float mobility = free[0] + free[1];
-  if (!(parting > 0) || !(mobility > 0)) return;
-  const float impulse = parting / (mobility * length);
-  u[0] += free[0] * impulse * dx, v[0] += free[0] * impulse * dy, w[0] += free[0] * impulse * dz;
-  u[1] -= free[1] * impulse * dx, v[1] -= free[1] * impulse * dy, w[1] -= free[1] * impulse * dz;
+/// One spring of a row that is longer than its limit, from the node at a float to the next.
+inline void correct_along_row(PanelSheet& sheet, std::size_t at, const CorrectionRule<float>& rule) {
+  const Vec3<float> d = sheet.moved.at(at + 1) - sheet.moved.at(at);
+  const Vec3<float> own = sheet.velocity.at(at), far = sheet.velocity.at(at + 1);
+  const float own_free = sheet.free.data()[at], far_free = sheet.free.data()[at + 1];
+  const float impulse =
+      mssim::elongation_impulse(dot(d, d), dot(far - own, d), sheet.rest[0].data()[at] * rule.limit,
+                                rule.rate_per_s, own_free + far_free);
+  sheet.velocity.put(at, own + own_free * impulse * d);
+  sheet.velocity.put(at + 1, far - far_free * impulse * d);
 }
 
 /// The springs along a row, one after the other: a vector of them is looked at together, and those that are
 /// too long, few mostly, are corrected in order.
 HWY_INLINE void correct_row(PanelSheet& sheet, const PanelSheet::Panel& panel, std::size_t row,
-                            const CorrectionRule& rule, bool forwards) {
+                            const CorrectionRule<float>& rule, bool forwards) {
   const std::size_t lanes = lane_count(), vectors = (panel.columns + lanes - 1) / lanes;
   for (std::size_t i = 0; i < vectors; ++i) {
     const std::size_t at = panel.first + row * panel.stride + lanes * (forwards ? i : vectors - 1 - i);
     const Lanes3 d = load_unaligned(sheet.moved, at + 1) - load(sheet.moved, at);
-    const Lanes rest = hn::Load(FloatTag(), sheet.rest[0].data() + at);
-    const Lanes limit = rest * Lanes(rule.limit);
-    const Mask acts = hn::And(hn::Gt(rest.v, hn::Zero(FloatTag())), hn::Gt(dot(d, d).v, (limit * limit).v));
+    const Lanes limit = Lanes(hn::Load(FloatTag(), sheet.rest[0].data() + at)) * Lanes(rule.limit);
+    const Mask acts = is_elongated(dot(d, d), limit);
     if (HWY_LIKELY(hn::AllFalse(FloatTag(), acts))) continue;
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(FloatTag(), acts, bits);
@@ -96,8 +82,8 @@ HWY_INLINE void correct_row(PanelSheet& sheet, const PanelSheet::Panel& panel, s
 }
 
 /// The springs within a block.
-HWY_INLINE void correct_block(PanelSheet& sheet, const PanelSheet::Block& block, const CorrectionRule& rule,
-                              bool forwards) {
+HWY_INLINE void correct_block(PanelSheet& sheet, const PanelSheet::Block& block,
+                              const CorrectionRule<float>& rule, bool forwards) {
   const PanelSheet::Panel& panel = sheet.panels[block.panel];
   for (std::size_t i = 0; i < limited_directions; ++i) {
     const std::size_t direction = forwards ? i : limited_directions - 1 - i;
@@ -115,7 +101,7 @@ HWY_INLINE void correct_block(PanelSheet& sheet, const PanelSheet::Block& block,
 
 /// The springs between a block and the one before it.
 HWY_INLINE void correct_seam_of_blocks(PanelSheet& sheet, const PanelSheet::Block& block,
-                                       const CorrectionRule& rule, bool forwards) {
+                                       const CorrectionRule<float>& rule, bool forwards) {
   const PanelSheet::Panel& panel = sheet.panels[block.panel];
   for (std::size_t i = 1; i < limited_directions; ++i)
     correct_between_rows(sheet, panel, block.begin - 1, forwards ? i : limited_directions - i, rule);

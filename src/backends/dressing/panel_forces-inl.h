@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "backends/dressing/dressing_rules.h"
 #include "backends/dressing/panel_sheet.h"
 #include "backends/lanes-inl.h"
 #include "contact/body_maps.h"
@@ -30,6 +31,7 @@ namespace mssim::HWY_NAMESPACE {
   template <class Real>   \
   HWY_INLINE Name<Real>
 #include "kernels/body_contact.h"
+#include "kernels/elongation_law.h"
 #undef MSSIM_LAW
 #undef MSSIM_STRUCT
 #undef MSSIM_OF
@@ -51,7 +53,8 @@ HWY_INLINE void store(Float3Arrays& a, std::size_t at, const Lanes3& value) {
 
 /// What holds for a whole step.
 struct StepRule {
-  float dt, damping, gravity, friction, push_speed;
+  float dt, push_speed;
+  PhaseRule<float> phase;
   bool has_joints;
   const BodyMaps* body;
 };
@@ -139,7 +142,7 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
   const Mask inside = hn::And(real, hn::Lt(contact.distance.v, hn::Zero(FloatTag())));
   if (hn::AllFalse(FloatTag(), inside)) return inside;
   const ClothResponse<Lanes> after = body_response(ClothPoint<Lanes>{x.x, x.y, x.z, v.x, v.y, v.z}, contact,
-                                                   Lanes(rule.friction), Lanes(rule.push_speed), dt);
+                                                   Lanes(rule.phase.friction), Lanes(rule.push_speed), dt);
   x = {select(inside, after.x, x.x), select(inside, after.y, x.y), select(inside, after.z, x.z)};
   v = {select(inside, after.u, v.x), select(inside, after.v, v.y), select(inside, after.w, v.z)};
   return hn::And(inside, hn::Gt(after.stuck.v, hn::Zero(FloatTag())));
@@ -154,7 +157,7 @@ HWY_INLINE void update_velocities(PanelSheet& sheet, const PanelSheet::Block& bl
   const std::size_t before = std::min<std::size_t>(block.begin, 2);
   for (std::size_t row = block.begin - before; row < block.begin; ++row)
     compute_forces(sheet, panel, row, scratch);
-  const Lanes dt(rule.dt), gravity(rule.gravity), damping(rule.damping);
+  const Lanes dt(rule.dt), gravity(rule.phase.gravity), damping(rule.phase.damping);
   for (std::size_t row = block.begin; row < block.end; ++row) {
     compute_forces(sheet, panel, row, scratch);
     for (std::size_t column = 0; column < panel.columns; column += lane_count()) {

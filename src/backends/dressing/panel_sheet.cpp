@@ -83,10 +83,8 @@ PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
 
 void PanelSheet::set_state(const State& state) {
   for (std::size_t i = 0; i < place.size(); ++i) {
-    const std::size_t at = place[i];
-    const auto x = vec3_cast<float>(state.position[i]), v = vec3_cast<float>(state.velocity[i]);
-    position.x.data()[at] = x.x, position.y.data()[at] = x.y, position.z.data()[at] = x.z;
-    velocity.x.data()[at] = v.x, velocity.y.data()[at] = v.y, velocity.z.data()[at] = v.z;
+    position.put(place[i], vec3_cast<float>(state.position[i]));
+    velocity.put(place[i], vec3_cast<float>(state.velocity[i]));
   }
   sewn.assign(joints.size(), 0);
 }
@@ -94,10 +92,8 @@ void PanelSheet::set_state(const State& state) {
 State PanelSheet::state() const {
   State state;
   for (const std::size_t at : place) {
-    state.position.push_back(
-        vec3_cast<double>(Vec3<float>{position.x.data()[at], position.y.data()[at], position.z.data()[at]}));
-    state.velocity.push_back(
-        vec3_cast<double>(Vec3<float>{velocity.x.data()[at], velocity.y.data()[at], velocity.z.data()[at]}));
+    state.position.push_back(vec3_cast<double>(position.at(at)));
+    state.velocity.push_back(vec3_cast<double>(velocity.at(at)));
   }
   return state;
 }

@@ -24,6 +24,13 @@ struct Float3Arrays {
 
   Float3Arrays() = default;
   explicit Float3Arrays(std::size_t size) : x(size), y(size), z(size) {}
+
+  Vec3<float> at(std::size_t i) const { return {x.data()[i], y.data()[i], z.data()[i]}; }
+  void put(std::size_t i, const Vec3<float>& value) {
+    x.data()[i] = value.x;
+    y.data()[i] = value.y;
+    z.data()[i] = value.z;
+  }
 };
 
 /// A garment's panels as rows of floats, for vectors along the rows. A row is `stride` floats: its nodes,

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "backends/dressing/at_joint.h"
 #include "backends/dressing/correction_order.h"
-#include "backends/dressing/seam_force.h"
+#include "backends/dressing/dressing_rules.h"
 #include "backends/host_lines.h"
 #include "contact/body_maps.h"
 
@@ -24,6 +26,8 @@ class SerialDressing final : public DressingBackend {
         dt_s_(dt_s),
         nodes_(system.nodes()),
         force_(system.nodes()),
+        correction_rule_(correction_rule<Real>(rules_, dt_s)),
+        closing_rule_(closing_rule<Real>(rules_, dt_s)),
         correction_order_(correction_order(garment_, system.springs)) {
     for (const SpringMaterial& material : system.materials)
       stiffness_.push_back(static_cast<Real>(material.stiffness));
@@ -36,9 +40,8 @@ class SerialDressing final : public DressingBackend {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       nodes_[i] = {vec3_cast<Real>(state.position[i]), vec3_cast<Real>(state.velocity[i])};
     sewn_.assign(garment_.joints.size(), 0);
-    open_joints_ = garment_.joints.size();
-    draping_ = garment_.joints.empty();
-    steps_ = seamed_at_ = 0;
+    progress_ = first_progress(garment_);
+    steps_ = 0;
   }
 
   State state() const override {
@@ -52,10 +55,11 @@ class SerialDressing final : public DressingBackend {
 
   std::string device() const override { return "cpu"; }
   int threads() const override { return 1; }
-  DressingProgress progress() const override { return {open_joints_, draping_, seamed_at_}; }
+  DressingProgress progress() const override { return progress_; }
 
   void step(int count) override {
     for (int step = 0; step < count; ++step) {
+      phase_ = phase_rule<Real>(system_, rules_, progress_.draping);
       add_spring_forces();
       add_external_forces();
       add_joint_forces();
@@ -88,20 +92,24 @@ class SerialDressing final : public DressingBackend {
   }
 
   void add_external_forces() {  // loop 2, per mass: what is added up is an acceleration from here on
-    const Real damping = static_cast<Real>(draping_ ? system_.viscous_damping : rules_.seaming_damping);
-    const Real gravity = static_cast<Real>((draping_ ? 1 : rules_.seaming_gravity) * system_.gravity);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (inverse_mass_[i] == 0) continue;
-      force_[i] = inverse_mass_[i] * force_[i] - damping * nodes_[i].v;
-      force_[i].y -= gravity;
+      force_[i] = inverse_mass_[i] * force_[i] - phase_.damping * nodes_[i].v;
+      force_[i].y -= phase_.gravity;
     }
   }
 
-  Vector gap_of(const Joint& joint) const {
-    return between(joint, nodes_[joint.edge_first].x, nodes_[joint.edge_second].x) - nodes_[joint.node].x;
+  /// What the nodes of a joint have, as `of` gives it for a node's number.
+  template <class Of>
+  static auto at_joint(const Joint& joint, const Of& of) {
+    return AtJoint<std::decay_t<decltype(of(0))>>{of(joint.node), of(joint.edge_first),
+                                                  of(joint.edge_second)};
   }
-  static Vector between(const Joint& joint, const Vector& first, const Vector& second) {
-    return first + static_cast<Real>(joint.edge_share) * (second - first);
+  AtJoint<Vector> positions_at(const Joint& joint) const {
+    return at_joint(joint, [&](std::uint32_t i) { return nodes_[i].x; });
+  }
+  AtJoint<Real> inverse_masses_at(const Joint& joint) const {
+    return at_joint(joint, [&](std::uint32_t i) { return inverse_mass_[i]; });
   }
 
   void add_joint_forces() {  // loop 3
@@ -109,23 +117,19 @@ class SerialDressing final : public DressingBackend {
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
       if (sewn_[j] != 0) continue;
       const Joint& joint = garment_.joints[j];
-      const Vector gap = gap_of(joint);
-      const Real distance = std::sqrt(dot(gap, gap));
-      if (distance < static_cast<Real>(rules_.sewn_gap)) {
+      const auto pull = pull_of_joint(rules_, joint, time_s, positions_at(joint), inverse_masses_at(joint));
+      if (!pull) {
         sewn_[j] = 1;
-        --open_joints_;
+        --progress_.open_joints;
         continue;
       }
-      const Vector force = static_cast<Real>(seam_force(rules_, joint, time_s)) / distance * gap;
-      const Real share = static_cast<Real>(joint.edge_share);
-      force_[joint.node] += inverse_mass_[joint.node] * force;
-      force_[joint.edge_first] -= (1 - share) * inverse_mass_[joint.edge_first] * force;
-      force_[joint.edge_second] -= share * inverse_mass_[joint.edge_second] * force;
+      force_[joint.node] += pull->node;
+      force_[joint.edge_first] += pull->first;
+      force_[joint.edge_second] += pull->second;
     }
   }
 
   void update_velocities() {  // loop 4
-    const Real friction = static_cast<Real>(draping_ ? rules_.friction : 0);
     const Real push = static_cast<Real>(rules_.push_speed);
     free_.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -133,13 +137,12 @@ class SerialDressing final : public DressingBackend {
       if (inverse_mass_[i] == 0) continue;
       Node& node = nodes_[i];
       node.v += dt_ * force_[i];
-      if (garment_.body && garment_.body->respond(node.x, node.v, friction, push, dt_)) free_[i] = 0;
+      if (garment_.body && garment_.body->respond(node.x, node.v, phase_.friction, push, dt_)) free_[i] = 0;
     }
   }
 
   void correct_velocities() {  // loop 5
-    if (rules_.correction == VelocityCorrection::none) return;
-    for (std::uint32_t sweep = 0; sweep < rules_.correction_sweeps; ++sweep) {
+    for (std::uint32_t sweep = 0; sweep < correction_sweeps(rules_); ++sweep) {
       if (sweep % 2 == 0)
         for (auto spring = correction_order_.begin(); spring != correction_order_.end(); ++spring)
           correct(system_.springs[*spring]);
@@ -155,19 +158,13 @@ class SerialDressing final : public DressingBackend {
     Node &first = nodes_[spring.first], &second = nodes_[spring.second];
     const Vector d = second.x - first.x;
     const Real squared = dot(d, d);
-    const Real limit =
-        static_cast<Real>(spring.rest_length) * static_cast<Real>(1 + rules_.correction_threshold);
-    const Real mobility = free_[spring.first] + free_[spring.second];
-    if (!(squared > limit * limit) || mobility == 0) return;
-    const Real length = std::sqrt(squared);
-    const Real wanted = rules_.correction == VelocityCorrection::bounded
-                            ? static_cast<Real>(rules_.correction_rate) * (length - limit) / dt_
-                            : Real{0};
-    const Real parting = dot(second.v - first.v, d) / length + wanted;  // m/s, beyond what is allowed
-    if (!(parting > 0)) return;
-    const Vector impulse = parting / (mobility * length) * d;
-    first.v += free_[spring.first] * impulse;
-    second.v -= free_[spring.second] * impulse;
+    const Real limit = static_cast<Real>(spring.rest_length) * correction_rule_.limit;
+    if (!(elongation_excess(squared, limit) > 0)) return;
+    const Real first_free = free_[spring.first], second_free = free_[spring.second];
+    const Real impulse = elongation_impulse(squared, dot(second.v - first.v, d), limit,
+                                            correction_rule_.rate_per_s, first_free + second_free);
+    first.v += first_free * impulse * d;
+    second.v -= second_free * impulse * d;
   }
 
   /// After the correction, which would open them again: the ends of a sewn joint move as one but for what
@@ -176,25 +173,12 @@ class SerialDressing final : public DressingBackend {
     for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
       if (sewn_[j] == 0) continue;
       const Joint& joint = garment_.joints[j];
-      Node &node = nodes_[joint.node], &first = nodes_[joint.edge_first], &second = nodes_[joint.edge_second];
-      const Real share = static_cast<Real>(joint.edge_share);
-      const Real node_mobility = inverse_mass_[joint.node];
-      const Real first_mobility = (1 - share) * inverse_mass_[joint.edge_first];
-      const Real second_mobility = share * inverse_mass_[joint.edge_second];
-      // The two ends of an edge may be the same node.
-      const Real mobility = node_mobility + (joint.edge_first == joint.edge_second
-                                                 ? inverse_mass_[joint.edge_first]
-                                                 : (1 - share) * first_mobility + share * second_mobility);
-      if (mobility == 0) continue;
-      const Vector gap = gap_of(joint);
-      const Real distance = std::sqrt(dot(gap, gap));
-      const Real closing = std::min(static_cast<Real>(rules_.closing_share) / dt_,
-                                    static_cast<Real>(rules_.closing_speed) / (distance + Real{1e-9F}));
-      const Vector impulse =
-          Real{1} / mobility * (between(joint, first.v, second.v) - node.v + closing * gap);
-      node.v += node_mobility * impulse;
-      first.v -= first_mobility * impulse;
-      second.v -= second_mobility * impulse;
+      const AtJoint<Vector> v = at_joint(joint, [&](std::uint32_t i) { return nodes_[i].v; });
+      const AtJoint<Vector> change = closing_of_joint(closing_rule_, static_cast<Real>(joint.edge_share),
+                                                      positions_at(joint), v, inverse_masses_at(joint));
+      nodes_[joint.node].v += change.node;
+      nodes_[joint.edge_first].v += change.first;
+      nodes_[joint.edge_second].v += change.second;
     }
   }
 
@@ -210,12 +194,9 @@ class SerialDressing final : public DressingBackend {
 
   void end_step() {
     ++steps_;
-    if (draping_) return;
-    if (open_joints_ > 0 && static_cast<double>(steps_) * dt_s_ < rules_.longest_seaming_s) return;
+    if (!ends_seaming(rules_, progress_, steps_, dt_s_)) return;
     std::fill(sewn_.begin(), sewn_.end(), std::uint8_t{1});
-    open_joints_ = 0;
-    draping_ = true;
-    seamed_at_ = steps_;
+    progress_ = {0, true, steps_};
   }
 
   const System& system_;
@@ -228,11 +209,13 @@ class SerialDressing final : public DressingBackend {
   std::vector<Real> stiffness_;     ///< [kinds] N/m
   std::vector<Real> inverse_mass_;  ///< [nodes] 1/kg, 0 for a pin
   std::vector<Real> free_;          ///< [nodes] the same, 0 for what friction holds, too
+  PhaseRule<Real> phase_{};
+  CorrectionRule<Real> correction_rule_;
+  ClosingRule<Real> closing_rule_;
   std::vector<std::uint32_t> correction_order_;
   std::vector<std::uint8_t> sewn_;  ///< [joints]
-  std::size_t open_joints_ = 0;
-  bool draping_ = false;
-  std::int64_t steps_ = 0, seamed_at_ = 0;
+  DressingProgress progress_;
+  std::int64_t steps_ = 0;
 };
 
 }  // namespace

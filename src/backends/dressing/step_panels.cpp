@@ -42,8 +42,8 @@ HWY_INLINE void move_block(PanelSheet& sheet, const PanelSheet::Block& block, La
 
 /// Limits what over-elongated springs do, in the order of correction_order.h: a thread's own blocks, and the
 /// springs between each of them and the block before it, which is done when all have passed the barrier.
-HWY_INLINE void correct(PanelSheet& sheet, const CorrectionRule& rule, std::uint32_t sweeps, Share share,
-                        SpinBarrier& barrier) {
+HWY_INLINE void correct(PanelSheet& sheet, const CorrectionRule<float>& rule, std::uint32_t sweeps,
+                        Share share, SpinBarrier& barrier) {
   for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
     const bool forwards = sweep % 2 == 0;
     if (forwards) {
@@ -65,10 +65,7 @@ void end_step(PanelDressing& dressing) {
   PanelSheet& sheet = dressing.sheet;
   const Dressing& rules = dressing.garment.dressing;
   ++dressing.steps;
-  if (dressing.progress.draping) return;
-  if (dressing.progress.open_joints > 0 &&
-      static_cast<double>(dressing.steps) * dressing.dt_s < rules.longest_seaming_s)
-    return;
+  if (!ends_seaming(rules, dressing.progress, dressing.steps, dressing.dt_s)) return;
   std::fill(sheet.sewn.begin(), sheet.sewn.end(), std::uint8_t{1});
   dressing.progress = {0, true, dressing.steps};
 }
@@ -79,11 +76,8 @@ void take_steps(PanelDressing& dressing, int count, std::size_t thread, SpinBarr
   const auto dt = static_cast<float>(dressing.dt_s);
   const std::size_t blocks = sheet.blocks.size();
   const Share share{thread * blocks / dressing.threads, (thread + 1) * blocks / dressing.threads};
-  const CorrectionRule correction{1 + static_cast<float>(rules.correction_threshold),
-                                  rules.correction == VelocityCorrection::bounded
-                                      ? static_cast<float>(rules.correction_rate) / dt
-                                      : 0.0F};
-  const std::uint32_t sweeps = rules.correction == VelocityCorrection::none ? 0 : rules.correction_sweeps;
+  const auto correction = correction_rule<float>(rules, dressing.dt_s);
+  const std::uint32_t sweeps = correction_sweeps(rules);
   ForceScratch scratch(sheet);
   for (int step = 0; step < count; ++step) {
     const bool draping = dressing.progress.draping;
@@ -91,12 +85,8 @@ void take_steps(PanelDressing& dressing, int count, std::size_t thread, SpinBarr
       if (thread == 0) pull_joints(dressing);
       barrier.wait();
     }
-    const StepRule rule{dt,
-                        static_cast<float>(draping ? dressing.system.viscous_damping : rules.seaming_damping),
-                        static_cast<float>((draping ? 1 : rules.seaming_gravity) * dressing.system.gravity),
-                        static_cast<float>(draping ? rules.friction : 0),
-                        static_cast<float>(rules.push_speed),
-                        !draping,
+    const StepRule rule{dt, static_cast<float>(rules.push_speed),
+                        phase_rule<float>(dressing.system, rules, draping), !draping,
                         dressing.garment.body.get()};
     for (std::size_t b = share.begin; b < share.end; ++b)
       update_velocities(sheet, sheet.blocks[b], rule, scratch);
