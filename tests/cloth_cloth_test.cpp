@@ -129,7 +129,7 @@ TEST(ClothCloth, LeavesNothingThatApproachesAfterEnoughSweeps) {
   for (auto& axis : before.velocity) {
     for (float& speed : axis) speed = static_cast<float>(random() % 2000) / 1000 - 1;
   }
-  const auto left_after = [&](int sweeps) {
+  const auto left_after = [&](std::uint32_t sweeps) {
     LayeredCloth cloth = before;
     ClothClothCollision collision = cloth.collision({.friction = 0, .push_speed = 0, .sweeps = sweeps});
     collision.collide(cloth.arrays(), dt);

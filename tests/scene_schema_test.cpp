@@ -126,7 +126,7 @@ TEST(SceneSchema, NamesTheUnitOfEveryFieldThatHasOne) {
     }
   };
   check(committed);
-  EXPECT_EQ(checked, 70);
+  EXPECT_EQ(checked, 72);
 }
 
 }  // namespace

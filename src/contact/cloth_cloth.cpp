@@ -62,7 +62,7 @@ void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
     }
   }
   contacts_ = search_.find({nodes.position[0], nodes.position[1], nodes.position[2]});
-  for (int sweep = 0; sweep < settings_.sweeps; ++sweep) {
+  for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep) {
     for (const ClothContact& contact : contacts_) stop_approach(contact, nodes);
   }
   const auto farthest = static_cast<float>(settings_.push_speed * dt);

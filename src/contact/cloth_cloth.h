@@ -6,20 +6,10 @@
 #include <vector>
 
 #include "contact/cloth_contacts.h"
-#include "contact/cloth_layers.h"
+#include "model/cloth_layers.h"
 #include "model/garment.h"
 
 namespace mssim {
-
-/// How layers of cloth keep apart.
-struct ClothClothSettings {
-  double thickness = 0.003;  ///< m, the distance that layers keep; more than what they approach in a step
-  double friction = 0.3;     ///< Coulomb's coefficient, not negative
-  /// m/s, not negative: layers that are too near, or have crossed, move apart at most so fast. The move is
-  /// one of positions, and leaves no speed behind.
-  double push_speed = 1;
-  int sweeps = 2;  ///< over all contacts in a step, at least 1: more follow stacks of contacts farther
-};
 
 /// The state that a collision changes, as structures of arrays: x, y, z, each [nodes].
 struct NodeArrays {

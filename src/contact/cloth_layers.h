@@ -4,28 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "model/cloth_layers.h"
 #include "model/garment.h"
 #include "model/vec3.h"
 
 namespace mssim {
-
-/// Two panels of a garment that may touch each other: `inner` lies between the body and `outer`.
-struct PanelPair {
-  std::uint32_t inner = 0;  ///< index into Garment::panels
-  std::uint32_t outer = 0;
-
-  bool operator==(const PanelPair&) const = default;
-};
-
-/// Which panels may touch each other, and which way they face.
-///
-/// A panel's right side is where its nodes are seen as the pattern is drawn, columns to the right and rows
-/// upwards: its normal is (direction of the columns) x (direction of the rows), and it points away from the
-/// body, unless the panel is listed as mirrored, like the left half of a pattern that is drawn for the right.
-struct ClothLayers {
-  std::vector<PanelPair> pairs;
-  std::vector<std::uint32_t> mirrored;  ///< panels whose normal points towards the body
-};
 
 /// Every two panels of different layers, the one of the lower layer being the inner one, in ascending order.
 /// Two panels that a joint sews together are left out: they would repel each other at their seam.

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/cloth_layers.h"
 #include "model/dressing.h"
 #include "model/vec3.h"
 
@@ -48,11 +51,19 @@ struct Garment {
   std::vector<Joint> joints;
   std::vector<Vec3d> flat;  ///< [nodes] m, z = 0: in the pattern, where y is the height at which it is worn
   Dressing dressing;
-  std::shared_ptr<const BodyMaps> body;  ///< none: nothing to dress
+  /// [layers] The body as the panels of each layer meet it; layers beyond the last one meet it as that does.
+  /// Empty: nothing to dress.
+  std::vector<std::shared_ptr<const BodyMaps>> body_maps;
+  std::optional<TouchingLayers> touching;  ///< none: layers go through each other
 
   /// The panel that a node belongs to.
   const GarmentPanel& panel_of(std::uint32_t node) const {
     return *(std::ranges::upper_bound(panels, node, {}, &GarmentPanel::first_node) - 1);
+  }
+  /// The body as a panel meets it, or nullptr where there is none.
+  const BodyMaps* body_met_by(const GarmentPanel& panel) const {
+    if (body_maps.empty()) return nullptr;
+    return body_maps[std::min<std::size_t>(panel.layer, body_maps.size() - 1)].get();
   }
 };
 

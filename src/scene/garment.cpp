@@ -1,5 +1,6 @@
 #include "scene/garment.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "contact/body_maps.h"
+#include "contact/cloth_layers.h"
 #include "garment/body_profile.h"
 #include "garment/jeans.h"
 #include "mesh/mesh_error.h"
@@ -176,6 +178,32 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) {
   return offset > least ? cut_and_placed(spec, profile, offset) : build;
 }
 
+void visit_layers(FieldVisitor& fields, ClothClothSettings& layers) {
+  visit_length(fields, "thickness_m", layers.thickness);
+  fields.number("friction", layers.friction, from(0, 100));
+  fields.number("push_speed_m_per_s", layers.push_speed, from(0, 1000));
+  fields.integer("sweeps", layers.sweeps, 1, 1000);
+}
+
+/// The body as each layer meets it: where layers touch, an outer one has no room but for what lies under it.
+std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
+                                                             const Surface& body, double offset) {
+  std::uint32_t outermost = 0;
+  if (garment.touching)
+    for (const GarmentPanel& panel : garment.panels) outermost = std::max(outermost, panel.layer);
+  std::vector<std::shared_ptr<const BodyMaps>> maps;
+  try {
+    for (std::uint32_t layer = 0; layer <= outermost; ++layer) {
+      const double beneath = layer > 0 ? layer * garment.touching->settings.thickness : 0;
+      maps.push_back(std::make_shared<BodyMaps>(
+          body, BodyMapSettings{.pixel = garment_of(spec).pixel_m, .offset = offset + beneath}));
+    }
+  } catch (const std::exception& error) {
+    refuse(spec.file, "/garment/pixel_m", "gives no maps of the body: " + printable(error.what(), 1500));
+  }
+  return maps;
+}
+
 }  // namespace
 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
@@ -192,6 +220,8 @@ void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.object("cloth", Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
   fields.object("dressing", Presence::required,
                 [&](FieldVisitor& dressing) { visit_dressing(dressing, garment.dressing); });
+  fields.object("layers", Presence::optional,
+                [&](FieldVisitor& layers) { visit_layers(layers, garment.layers.emplace()); });
   fields.object("expected", Presence::optional, [&](FieldVisitor& expected) {
     MeshSize& size = garment.expected.emplace();
     expected.integer("nodes", size.nodes, 4, most_nodes);
@@ -241,13 +271,9 @@ System build_garment_scene(const SceneSpec& spec) {
 
   build.garment.dressing = garment.dressing;
   build.garment.flat = std::move(build.flat);
-  try {
-    build.garment.body = std::make_shared<BodyMaps>(
-        body.surface, BodyMapSettings{.pixel = garment.pixel_m,
-                                      .offset = map_offset(garment, mean_cell(garment, system.node_mass))});
-  } catch (const std::exception& error) {
-    refuse(spec.file, "/garment/pixel_m", "gives no maps of the body: " + printable(error.what(), 1500));
-  }
+  if (garment.layers) build.garment.touching = {{layer_pairs(build.garment), {}}, *garment.layers};
+  build.garment.body_maps = maps_for_layers(spec, build.garment, body.surface,
+                                            map_offset(garment, mean_cell(garment, system.node_mass)));
   system.topology = std::move(build.garment);
   return system;
 }

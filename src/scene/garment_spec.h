@@ -8,6 +8,7 @@
 #include "garment/jeans_outline.h"
 #include "garment/mannequin.h"
 #include "garment/panel_springs.h"
+#include "model/cloth_layers.h"
 #include "model/dressing.h"
 #include "scene/bodies_spec.h"
 
@@ -39,6 +40,7 @@ struct GarmentSpec {
   JeansSpec jeans;
   PanelCloth cloth;
   Dressing dressing;
+  std::optional<ClothClothSettings> layers;  ///< that touch each other; none: they go through each other
   std::optional<MeshSize> expected;
 };
 

@@ -56,7 +56,6 @@ struct StepRule {
   float dt, push_speed;
   PhaseRule<float> phase;
   bool has_joints;
-  const BodyMaps* body;
 };
 
 /// Forces of the springs that the last rows own, on their own nodes, N: rows of floats in a ring of three
@@ -170,7 +169,7 @@ HWY_INLINE void update_velocities(PanelSheet& sheet, const PanelSheet::Block& bl
       if (rule.has_joints) a = a + load(sheet.pull, at);
       v = mul_add(dt, keep(real, a), v);
       Lanes free = inverse_mass;
-      if (rule.body != nullptr) free = select(touch_body(*rule.body, rule, real, x, v), Lanes(0.0F), free);
+      if (panel.body != nullptr) free = select(touch_body(*panel.body, rule, real, x, v), Lanes(0.0F), free);
       hn::Store(free.v, FloatTag(), sheet.free.data() + at);
       store(sheet.velocity, at, v);
       store(sheet.moved, at, x);

@@ -40,7 +40,8 @@ PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
   std::size_t floats = 0;
   for (const GarmentPanel& panel : garment.panels) {
     const std::size_t stride = round_up(panel.columns, widest_vector) + widest_vector;
-    panels.push_back({panel.rows, panel.columns, stride, floats + empty_rows * stride, {}});
+    panels.push_back(
+        {panel.rows, panel.columns, stride, floats + empty_rows * stride, {}, garment.body_met_by(panel)});
     for (std::vector<float>& stiffness : panels.back().stiffness) stiffness.assign(panel.rows, 0);
     floats += (panel.rows + 2 * empty_rows) * stride;
     for (std::uint32_t row = 0; row < panel.rows; ++row)

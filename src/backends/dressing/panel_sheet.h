@@ -43,7 +43,8 @@ struct PanelSheet {
     std::size_t rows, columns, stride;
     std::size_t first;  ///< float of row 0, column 0
     std::array<std::vector<float>, panel_stencil.size()>
-        stiffness;  ///< [rows] N/m, of the springs a row owns
+        stiffness;         ///< [rows] N/m, of the springs a row owns
+    const BodyMaps* body;  ///< as the panel's layer meets it; nullptr: none
   };
   /// Rows of a panel that one thread works on.
   struct Block {

@@ -132,12 +132,15 @@ class SerialDressing final : public DressingBackend {
   void update_velocities() {  // loop 4
     const Real push = static_cast<Real>(rules_.push_speed);
     free_.resize(nodes_.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      free_[i] = inverse_mass_[i];
-      if (inverse_mass_[i] == 0) continue;
-      Node& node = nodes_[i];
-      node.v += dt_ * force_[i];
-      if (garment_.body && garment_.body->respond(node.x, node.v, phase_.friction, push, dt_)) free_[i] = 0;
+    for (const GarmentPanel& panel : garment_.panels) {
+      const BodyMaps* const body = garment_.body_met_by(panel);
+      for (std::size_t i = panel.first_node; i < panel.first_node + panel.nodes(); ++i) {
+        free_[i] = inverse_mass_[i];
+        if (inverse_mass_[i] == 0) continue;
+        Node& node = nodes_[i];
+        node.v += dt_ * force_[i];
+        if (body != nullptr && body->respond(node.x, node.v, phase_.friction, push, dt_)) free_[i] = 0;
+      }
     }
   }
 

@@ -86,8 +86,7 @@ void take_steps(PanelDressing& dressing, int count, std::size_t thread, SpinBarr
       barrier.wait();
     }
     const StepRule rule{dt, static_cast<float>(rules.push_speed),
-                        phase_rule<float>(dressing.system, rules, draping), !draping,
-                        dressing.garment.body.get()};
+                        phase_rule<float>(dressing.system, rules, draping), !draping};
     for (std::size_t b = share.begin; b < share.end; ++b)
       update_velocities(sheet, sheet.blocks[b], rule, scratch);
     if (sweeps == 0) barrier.wait();
