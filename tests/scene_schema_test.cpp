@@ -40,6 +40,17 @@ class SchemaWriter final : public FieldVisitor {
     add(key, presence,
         {{"type", "array"}, {"items", number_schema("number", each)}, {"minItems", 3}, {"maxItems", 3}});
   }
+  void choice(std::string_view key, std::span<const std::string_view> words,
+              std::uint32_t& /*target*/) override {
+    add(key, Presence::required, {{"type", "string"}, {"enum", words}});
+  }
+  void points(std::string_view key, std::size_t least, std::size_t most, const Range& each,
+              std::vector<Vec3d>& /*target*/) override {
+    const json point{
+        {"type", "array"}, {"items", number_schema("number", each)}, {"minItems", 2}, {"maxItems", 2}};
+    add(key, Presence::required,
+        {{"type", "array"}, {"items", point}, {"minItems", least}, {"maxItems", most}});
+  }
   void one_of(std::string_view key, std::span<const Section> sections) override {
     json names = json::array();
     for (const Section& section : sections) {
@@ -52,11 +63,10 @@ class SchemaWriter final : public FieldVisitor {
     }
     add(key, Presence::required, {{"type", "string"}, {"enum", names}});
   }
-  void list(std::string_view key, std::size_t most, const FieldList& element) override {
+  void list(std::string_view key, Presence presence, std::size_t most, const FieldList& element) override {
     SchemaWriter item;
     element(item);
-    add(key, Presence::required,
-        {{"type", "array"}, {"minItems", 1}, {"maxItems", most}, {"items", item.schema()}});
+    add(key, presence, {{"type", "array"}, {"minItems", 1}, {"maxItems", most}, {"items", item.schema()}});
   }
   void object(std::string_view key, Presence presence, const FieldList& fields) override {
     SchemaWriter nested;
@@ -126,7 +136,7 @@ TEST(SceneSchema, NamesTheUnitOfEveryFieldThatHasOne) {
     }
   };
   check(committed);
-  EXPECT_EQ(checked, 72);
+  EXPECT_EQ(checked, 105);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "garment/panel_springs.h"
 #include "garment/placement.h"
 #include "garment/seams.h"
+#include "mesh/mesh_error.h"
 #include "model/garment.h"
 #include "model/spring.h"
 
@@ -37,8 +39,18 @@ struct GarmentBuild {
   std::vector<SpringMaterial> materials;
 };
 
-/// Cuts, sews and places a pattern. Throws MeshError, which begins with the panel's or seam's name, for what
-/// mesh_panel, require_cloth, join_seam and place_panel refuse, and for two panels of one name.
+/// Thrown for a panel or a seam of a pattern that cannot be used. what() begins with its name.
+struct PatternError : MeshError {
+  enum class Part { panel, seam };
+  PatternError(const MeshError& error, Part part_, std::size_t index_)
+      : MeshError(error), part(part_), index(index_) {}
+
+  Part part;
+  std::size_t index;  ///< into the pattern's panels or seams
+};
+
+/// Cuts, sews and places a pattern. Throws PatternError for what mesh_panel, require_cloth, join_seam and
+/// place_panel refuse, and for two panels of one name.
 GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body);
 
 }  // namespace mssim

@@ -126,7 +126,7 @@ void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.object("springs", Presence::required, [&](FieldVisitor& springs) {
     visit_material(springs, bodies.springs, above(0, largest_stiffness));
   });
-  fields.list("list", most_bodies,
+  fields.list("list", Presence::required, most_bodies,
               [&](FieldVisitor& element) { visit_body(element, bodies.list.emplace_back()); });
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/vec3.h"
 
@@ -55,12 +56,18 @@ class FieldVisitor {
                        std::uint32_t maximum) = 0;
   /// One line of at most `longest_text` characters.
   virtual void text(std::string_view key, Presence presence, std::string& target) = 0;
+  /// One of several words, of which the target becomes the number.
+  virtual void choice(std::string_view key, std::span<const std::string_view> words,
+                      std::uint32_t& target) = 0;
   /// Three numbers, [x, y, z].
   virtual void vector(std::string_view key, Presence presence, Vec3d& target, const Range& each) = 0;
+  /// A list of `least` to `most` points of a plane, each two numbers, [x, y]; z becomes 0.
+  virtual void points(std::string_view key, std::size_t least, std::size_t most, const Range& each,
+                      std::vector<Vec3d>& target) = 0;
   /// One of several sections: the text at `key` names it, and the object of that name holds it.
   virtual void one_of(std::string_view key, std::span<const Section> sections) = 0;
   /// A list of 1 to `most` objects; `element` is called for each of them, or once where there is no file.
-  virtual void list(std::string_view key, std::size_t most, const FieldList& element) = 0;
+  virtual void list(std::string_view key, Presence presence, std::size_t most, const FieldList& element) = 0;
   /// A nested object; `fields` is called only when it is there.
   virtual void object(std::string_view key, Presence presence, const FieldList& fields) = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -12,11 +13,10 @@
 #include "contact/body_maps.h"
 #include "contact/cloth_layers.h"
 #include "garment/body_profile.h"
-#include "garment/jeans.h"
 #include "mesh/mesh_error.h"
 #include "mesh/surface_file.h"
 #include "model/printable.h"
-#include "scene/material_fields.h"
+#include "scene/garment_cut.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -24,14 +24,6 @@ namespace {
 
 constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
 constexpr double largest_length_m = 10;
-
-/// Cloth of this radius of curvature, of a limb's, say, must not show the body through the faces between its
-/// nodes: their sagitta is h^2 / 8 r.
-constexpr double least_curvature_radius_m = 0.04;
-
-/// A trouser leg begins so far outside the leg's middle: its halves are closed around the leg from there
-/// without being drawn across the other one.
-constexpr double beside_the_leg_m = 0.01;
 
 const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
 
@@ -80,20 +72,6 @@ void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
   fields.number("crotch_ease_m", jeans.measures.crotch_ease, from(0, largest_length_m));
 }
 
-void visit_cloth(FieldVisitor& fields, PanelCloth& cloth) {
-  fields.number("areal_density_kg_per_m2", cloth.area_density, above(0, 1e6));
-  fields.number("structural_n_per_m", cloth.structural.stiffness, above(0, largest_stiffness));
-  fields.number("shear_n_per_m", cloth.shear.stiffness, above(0, largest_stiffness));
-  fields.number("bending_n_per_m", cloth.bending.stiffness, above(0, largest_stiffness));
-  fields.number("least_mass_share", cloth.least_mass_share, from(0, 1));
-  fields.object("waistband", Presence::optional, [&](FieldVisitor& band) {
-    visit_length(band, "height_m", cloth.waistband.height);
-    band.number("stiffness_factor", cloth.waistband.stiffness_factor, above(0, 1000));
-    band.number("mass_factor", cloth.waistband.mass_factor, above(0, 1000));
-    band.number("seam_factor", cloth.waistband.seam_factor, above(0, 1000));
-  });
-}
-
 void visit_correction(FieldVisitor& fields, Dressing& dressing, VelocityCorrection correction) {
   dressing.correction = correction;
   if (correction == VelocityCorrection::none) return;
@@ -139,45 +117,6 @@ MeasuredBody measured_body(const SceneSpec& spec) {
   }
 }
 
-/// How far before the body its maps lie, m, for cloth whose cells are about `cell` wide.
-double map_offset(const GarmentSpec& garment, double cell) {
-  return garment.skin_m + cell * cell / (8 * least_curvature_radius_m);
-}
-
-/// Width of a square cell of the average size, m.
-double mean_cell(const GarmentSpec& garment, const std::vector<double>& node_mass) {
-  const double mass = std::accumulate(node_mass.begin(), node_mass.end(), 0.0);
-  return std::sqrt(mass / garment.cloth.area_density / static_cast<double>(node_mass.size()));
-}
-
-/// The garment for a body that is as much wider all round as its maps lie before it.
-GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile, double body_offset) {
-  const GarmentSpec& garment = garment_of(spec);
-  try {
-    JeansMeasures measures = garment.jeans.measures;
-    measures.body_offset = body_offset;
-    measures.girth = [&](double height) { return profile.hull_girth(height); };
-    measures.crotch_height = profile.crotch_height();
-    const GarmentPattern pattern =
-        jeans_pattern(measures, garment.jeans.nodes, garment.cloth,
-                      [&](double height) { return profile.leg_middle(height).x + beside_the_leg_m; });
-    return build_garment(pattern, {[&](double height) { return profile.front(height); },
-                                   [&](double height) { return profile.back(height); }});
-  } catch (const MeshError& error) {
-    refuse(spec.file, "/garment/jeans", "does not fit: " + printable(error.what(), 1500));
-  }
-}
-
-/// The garment, whose cells decide how far before the body its maps lie, which decides how wide it is cut:
-/// coarse cloth cut for the body itself would be too tight for them.
-GarmentBuild cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) {
-  const GarmentSpec& garment = garment_of(spec);
-  const double least = JeansMeasures{}.body_offset;
-  GarmentBuild build = cut_and_placed(spec, profile, least);
-  const double offset = map_offset(garment, mean_cell(garment, build.node_mass));
-  return offset > least ? cut_and_placed(spec, profile, offset) : build;
-}
-
 void visit_layers(FieldVisitor& fields, ClothClothSettings& layers) {
   visit_length(fields, "thickness_m", layers.thickness);
   fields.number("friction", layers.friction, from(0, 100));
@@ -214,8 +153,13 @@ void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.one_of("body", bodies);
   visit_length(fields, "pixel_m", garment.pixel_m);
   fields.number("skin_m", garment.skin_m, from(0, largest_length_m));
-  const std::array patterns{
-      Section{"jeans", [&](FieldVisitor& jeans) { visit_jeans(jeans, garment.jeans); }}};
+  const auto jeans_of = [&](FieldVisitor& jeans) { visit_jeans(jeans, garment.jeans.emplace()); };
+  const auto pieces_of = [&](FieldVisitor& pieces) { visit_pieces(pieces, garment.pieces.emplace()); };
+  const std::array patterns{Section{"jeans", jeans_of}, Section{"pieces", pieces_of},
+                            Section{"outfit", [&](FieldVisitor& outfit) {
+                                      outfit.object("jeans", Presence::required, jeans_of);
+                                      pieces_of(outfit);
+                                    }}};
   fields.one_of("pattern", patterns);
   fields.object("cloth", Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
   fields.object("dressing", Presence::required,
@@ -229,7 +173,10 @@ void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
   });
 }
 
-void check_garment(const SceneSpec& /*spec*/) {}
+void check_garment(const SceneSpec& spec) {
+  const GarmentSpec& garment = garment_of(spec);
+  if (garment.pieces) check_pieces(spec.file, pieces_pointer(garment), *garment.pieces, most_nodes);
+}
 
 std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
   const std::optional<MeshSize>& expected = garment_of(spec).expected;
@@ -237,7 +184,7 @@ std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
 }
 
 SceneCounts garment_counts(const SceneSpec& spec) {
-  const GarmentBuild build = cut_and_placed(spec, measured_body(spec).profile);
+  const GarmentBuild build = cut_and_placed(spec, measured_body(spec).profile).build;
   return {build.placed.size(), build.springs.size()};
 }
 
@@ -258,7 +205,7 @@ Surface body_of_garment(const SceneSpec& spec) {
 System build_garment_scene(const SceneSpec& spec) {
   const GarmentSpec& garment = garment_of(spec);
   const MeasuredBody body = measured_body(spec);
-  GarmentBuild build = cut_and_placed(spec, body.profile);
+  auto [build, body_offset] = cut_and_placed(spec, body.profile);
   System system;
   system.springs = std::move(build.springs);
   system.materials = std::move(build.materials);
@@ -272,8 +219,7 @@ System build_garment_scene(const SceneSpec& spec) {
   build.garment.dressing = garment.dressing;
   build.garment.flat = std::move(build.flat);
   if (garment.layers) build.garment.touching = {{layer_pairs(build.garment), {}}, *garment.layers};
-  build.garment.body_maps = maps_for_layers(spec, build.garment, body.surface,
-                                            map_offset(garment, mean_cell(garment, system.node_mass)));
+  build.garment.body_maps = maps_for_layers(spec, build.garment, body.surface, body_offset);
   system.topology = std::move(build.garment);
   return system;
 }

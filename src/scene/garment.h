@@ -14,7 +14,7 @@ namespace mssim {
 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec);
 
-/// Nothing that its fields alone do not show.
+/// That the pieces have names, curves and not too many nodes. Throws SceneError.
 void check_garment(const SceneSpec& spec);
 
 std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec);

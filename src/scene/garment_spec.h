@@ -11,6 +11,7 @@
 #include "model/cloth_layers.h"
 #include "model/dressing.h"
 #include "scene/bodies_spec.h"
+#include "scene/garment_pieces.h"
 
 namespace mssim {
 
@@ -37,8 +38,9 @@ struct GarmentSpec {
   std::variant<MannequinBody, BodyFile> body;
   double pixel_m = 0.0025;  ///< of the maps of the body
   double skin_m = 0.003;    ///< that the maps lie before the body's surface, beside what coarse cloth needs
-  JeansSpec jeans;
-  PanelCloth cloth;
+  std::optional<JeansSpec> jeans;
+  std::optional<PiecesSpec> pieces;  ///< one or both of the two
+  PanelCloth cloth;                  ///< of jeans, and of pieces that have none of their own
   Dressing dressing;
   std::optional<ClothClothSettings> layers;  ///< that touch each other; none: they go through each other
   std::optional<MeshSize> expected;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -98,42 +99,48 @@ class JsonReader final : public FieldVisitor {
     if (value == nullptr) return;
     if (!value->is_array() || value->size() != 3) refuse(key, *value, wanted);
     const std::string list = json_pointer(pointer_, key);
-    const auto component = [&](std::size_t i) {
-      return number_of(json_pointer(list, std::to_string(i)), (*value)[i], each,
-                       "a number " + described(each));
-    };
-    target = {component(0), component(1), component(2)};
+    target = {component(list, *value, 0, each), component(list, *value, 1, each),
+              component(list, *value, 2, each)};
+  }
+
+  void points(std::string_view key, std::size_t least, std::size_t most, const Range& each,
+              std::vector<Vec3d>& target) override {
+    const std::string wanted =
+        "a list, [ ... ], of " + std::to_string(least) + " to " + std::to_string(most) + " points [x, y]";
+    const json* value = find(key, Presence::required, wanted);
+    if (value == nullptr) return;
+    const std::string list = json_pointer(pointer_, key);
+    require_length(list, *value, least, most, wanted);
+    target.clear();
+    for (std::size_t i = 0; i < value->size(); ++i) {
+      const json& point = (*value)[i];
+      const std::string pointer = json_pointer(list, std::to_string(i));
+      if (!point.is_array() || point.size() != 2)
+        fail(pointer, "is " + described(point) + ": give a point, two numbers [x, y]");
+      target.push_back({component(pointer, point, 0, each), component(pointer, point, 1, each), 0});
+    }
+  }
+
+  void choice(std::string_view key, std::span<const std::string_view> words, std::uint32_t& target) override {
+    if (const auto number = chosen(key, words)) target = static_cast<std::uint32_t>(*number);
   }
 
   void one_of(std::string_view key, std::span<const Section> sections) override {
     std::vector<std::string_view> names;
     names.reserve(sections.size());
     for (const Section& section : sections) names.push_back(section.name);
-    std::string wanted = "the text " + listed(names, "or");
-    const json* value = find(key, Presence::required, wanted);
-    if (value == nullptr) {
+    if (const auto number = chosen(key, names))
+      object(names[*number], Presence::required, sections[*number].fields);
+    else
       known_.insert(known_.end(), names.begin(), names.end());
-      return;
-    }
-    if (!value->is_string()) refuse(key, *value, wanted);
-    const auto& word = value->get_ref<const std::string&>();
-    const auto match = std::find(names.begin(), names.end(), word);
-    if (match == names.end()) {
-      const std::string_view nearest = nearest_name(word, names);
-      if (!nearest.empty() && names.size() > 1) wanted += ", perhaps " + std::string(nearest);
-      refuse(key, *value, wanted);
-    }
-    object(*match, Presence::required, sections[static_cast<std::size_t>(match - names.begin())].fields);
   }
 
-  void list(std::string_view key, std::size_t most, const FieldList& element) override {
+  void list(std::string_view key, Presence presence, std::size_t most, const FieldList& element) override {
     const std::string wanted = "a list, [ ... ], of 1 to " + std::to_string(most) + " objects";
-    const json* value = find(key, Presence::required, wanted);
+    const json* value = find(key, presence, wanted);
     if (value == nullptr) return;
     const std::string pointer = json_pointer(pointer_, key);
-    if (value->is_array() && (value->empty() || value->size() > most))
-      fail(pointer, "has " + std::to_string(value->size()) + " elements: give " + wanted);
-    if (!value->is_array()) refuse(key, *value, wanted);
+    require_length(pointer, *value, 1, most, wanted);
     for (std::size_t i = 0; i < value->size(); ++i) {
       JsonReader nested(file_, json_pointer(pointer, std::to_string(i)), (*value)[i]);
       element(nested);
@@ -182,6 +189,33 @@ class JsonReader final : public FieldVisitor {
       missing_remedy_ = "is missing: add it as " + wanted;
     }
     return nullptr;
+  }
+
+  /// The number of the word at `key`, none where the key is missing.
+  std::optional<std::size_t> chosen(std::string_view key, std::span<const std::string_view> words) {
+    std::string wanted = "the text " + listed(words, "or");
+    const json* value = find(key, Presence::required, wanted);
+    if (value == nullptr) return std::nullopt;
+    if (!value->is_string()) refuse(key, *value, wanted);
+    const auto& word = value->get_ref<const std::string&>();
+    const auto match = std::find(words.begin(), words.end(), word);
+    if (match == words.end()) {
+      const std::string_view nearest = nearest_name(word, words);
+      if (!nearest.empty() && words.size() > 1) wanted += ", perhaps " + std::string(nearest);
+      refuse(key, *value, wanted);
+    }
+    return static_cast<std::size_t>(match - words.begin());
+  }
+
+  void require_length(std::string_view pointer, const json& value, std::size_t least, std::size_t most,
+                      const std::string& wanted) const {
+    if (!value.is_array()) fail(pointer, "is " + described(value) + ": give " + wanted);
+    if (value.size() < least || value.size() > most)
+      fail(pointer, "has " + std::to_string(value.size()) + " elements: give " + wanted);
+  }
+
+  double component(std::string_view list, const json& value, std::size_t i, const Range& each) const {
+    return number_of(json_pointer(list, std::to_string(i)), value[i], each, "a number " + described(each));
   }
 
   double number_of(std::string_view pointer, const json& value, const Range& range,
