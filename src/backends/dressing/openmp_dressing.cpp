@@ -13,7 +13,12 @@ class OpenMpDressing final : public DressingBackend {
  public:
   OpenMpDressing(const System& system, double dt_s, std::size_t threads, const PanelKernel& kernel)
       : kernel_(kernel),
-        dressing_{system, std::get<Garment>(system.topology), PanelSheet(system), threads, dt_s} {
+        dressing_{system,
+                  std::get<Garment>(system.topology),
+                  PanelSheet(system),
+                  threads,
+                  dt_s,
+                  layer_collision(system, std::get<Garment>(system.topology), static_cast<int>(threads))} {
     begin();
   }
 

@@ -56,6 +56,7 @@ struct StepRule {
   float dt, push_speed;
   PhaseRule<float> phase;
   bool has_joints;
+  bool layers_touch;  ///< before the body is met
 };
 
 /// Forces of the springs that the last rows own, on their own nodes, N: rows of floats in a ring of three
@@ -147,8 +148,30 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
   return hn::And(inside, hn::Gt(after.stuck.v, hn::Zero(FloatTag())));
 }
 
+/// Takes down a vector of nodes, with positions and velocities after the body has been met.
+HWY_INLINE void meet_body(PanelSheet& sheet, const PanelSheet::Panel& panel, const StepRule& rule,
+                          std::size_t at, Lanes3 x, Lanes3 v) {
+  const Lanes inverse_mass = hn::Load(FloatTag(), sheet.inverse_mass.data() + at);
+  const Mask real = hn::Gt(inverse_mass.v, hn::Zero(FloatTag()));
+  Lanes free = inverse_mass;
+  if (panel.body != nullptr) free = select(touch_body(*panel.body, rule, real, x, v), Lanes(0.0F), free);
+  hn::Store(free.v, FloatTag(), sheet.free.data() + at);
+  store(sheet.velocity, at, v);
+  store(sheet.moved, at, x);
+}
+
+/// The same for a block whose layers have met each other.
+HWY_INLINE void meet_body(PanelSheet& sheet, const PanelSheet::Block& block, const StepRule& rule) {
+  const PanelSheet::Panel& panel = sheet.panels[block.panel];
+  for (std::size_t row = block.begin; row < block.end; ++row)
+    for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
+      const std::size_t at = panel.first + row * panel.stride + column;
+      meet_body(sheet, panel, rule, at, load(sheet.moved, at), load(sheet.velocity, at));
+    }
+}
+
 /// Loops 1, 2 and 4 for the nodes of a block: from the positions of the block and of two rows on either side
-/// to its velocities, its moved positions and what may still move.
+/// to its velocities, its moved positions and what may still move; where layers touch, to its velocities.
 HWY_INLINE void update_velocities(PanelSheet& sheet, const PanelSheet::Block& block, const StepRule& rule,
                                   ForceScratch& scratch) {
   const PanelSheet::Panel& panel = sheet.panels[block.panel];
@@ -163,16 +186,18 @@ HWY_INLINE void update_velocities(PanelSheet& sheet, const PanelSheet::Block& bl
       const std::size_t at = panel.first + row * panel.stride + column;
       const Lanes inverse_mass = hn::Load(FloatTag(), sheet.inverse_mass.data() + at);
       const Mask real = hn::Gt(inverse_mass.v, hn::Zero(FloatTag()));
-      Lanes3 x = load(sheet.position, at), v = load(sheet.velocity, at);
+      const Lanes3 x = load(sheet.position, at);
+      Lanes3 v = load(sheet.velocity, at);
       Lanes3 a = inverse_mass * force_on(scratch, row, column) - damping * v;
       a.y = a.y - gravity;
       if (rule.has_joints) a = a + load(sheet.pull, at);
       v = mul_add(dt, keep(real, a), v);
-      Lanes free = inverse_mass;
-      if (panel.body != nullptr) free = select(touch_body(*panel.body, rule, real, x, v), Lanes(0.0F), free);
-      hn::Store(free.v, FloatTag(), sheet.free.data() + at);
-      store(sheet.velocity, at, v);
-      store(sheet.moved, at, x);
+      if (!rule.layers_touch) {
+        meet_body(sheet, panel, rule, at, x, v);
+      } else {
+        store(sheet.velocity, at, v);
+        store(sheet.moved, at, x);
+      }
     }
   }
 }

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "backends/dressing/dressing_backend.h"
+#include "backends/dressing/layer_collision.h"
 #include "backends/dressing/panel_sheet.h"
 
 namespace mssim {
@@ -15,6 +17,7 @@ struct PanelDressing {
   PanelSheet sheet;
   std::size_t threads;
   double dt_s;
+  std::optional<LayerCollision> layers;  ///< that touch
   std::int64_t steps = 0;
   DressingProgress progress = {};
 };

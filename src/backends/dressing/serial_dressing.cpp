@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "backends/dressing/at_joint.h"
 #include "backends/dressing/correction_order.h"
 #include "backends/dressing/dressing_rules.h"
+#include "backends/dressing/layer_collision.h"
 #include "backends/host_lines.h"
 #include "contact/body_maps.h"
 
@@ -28,7 +30,8 @@ class SerialDressing final : public DressingBackend {
         force_(system.nodes()),
         correction_rule_(correction_rule<Real>(rules_, dt_s)),
         closing_rule_(closing_rule<Real>(rules_, dt_s)),
-        correction_order_(correction_order(garment_, system.springs)) {
+        correction_order_(correction_order(garment_, system.springs)),
+        layers_(layer_collision(system, garment_, 1)) {
     for (const SpringMaterial& material : system.materials)
       stiffness_.push_back(static_cast<Real>(material.stiffness));
     for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
@@ -64,6 +67,8 @@ class SerialDressing final : public DressingBackend {
       add_external_forces();
       add_joint_forces();
       update_velocities();
+      collide_layers();
+      meet_body();
       correct_velocities();
       close_sewn_joints();
       move();
@@ -130,16 +135,31 @@ class SerialDressing final : public DressingBackend {
   }
 
   void update_velocities() {  // loop 4
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (inverse_mass_[i] != 0) nodes_[i].v += dt_ * force_[i];
+  }
+
+  void collide_layers() {
+    if (!layers_) return;
+    layers_->collide(
+        dt_s_,
+        [&](std::size_t i) {
+          return NodeState{vec3_cast<float>(nodes_[i].x), vec3_cast<float>(nodes_[i].v)};
+        },
+        [&](std::size_t i, const NodeState& state) {
+          nodes_[i] = {vec3_cast<Real>(state.position), vec3_cast<Real>(state.velocity)};
+        });
+  }
+
+  void meet_body() {  // loop 4, too
     const Real push = static_cast<Real>(rules_.push_speed);
-    free_.resize(nodes_.size());
+    free_ = inverse_mass_;
     for (const GarmentPanel& panel : garment_.panels) {
       const BodyMaps* const body = garment_.body_met_by(panel);
+      if (body == nullptr) continue;
       for (std::size_t i = panel.first_node; i < panel.first_node + panel.nodes(); ++i) {
-        free_[i] = inverse_mass_[i];
         if (inverse_mass_[i] == 0) continue;
-        Node& node = nodes_[i];
-        node.v += dt_ * force_[i];
-        if (body != nullptr && body->respond(node.x, node.v, phase_.friction, push, dt_)) free_[i] = 0;
+        if (body->respond(nodes_[i].x, nodes_[i].v, phase_.friction, push, dt_)) free_[i] = 0;
       }
     }
   }
@@ -216,6 +236,7 @@ class SerialDressing final : public DressingBackend {
   CorrectionRule<Real> correction_rule_;
   ClosingRule<Real> closing_rule_;
   std::vector<std::uint32_t> correction_order_;
+  std::optional<LayerCollision> layers_;
   std::vector<std::uint8_t> sewn_;  ///< [joints]
   DressingProgress progress_;
   std::int64_t steps_ = 0;

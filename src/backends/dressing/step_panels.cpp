@@ -70,43 +70,103 @@ void end_step(PanelDressing& dressing) {
   dressing.progress = {0, true, dressing.steps};
 }
 
-void take_steps(PanelDressing& dressing, int count, std::size_t thread, SpinBarrier& barrier) {
-  PanelSheet& sheet = dressing.sheet;
+/// A thread, its blocks and what it computes forces in.
+struct Worker {
+  Worker(const PanelDressing& dressing, std::size_t number)
+      : thread(number),
+        share{number * dressing.sheet.blocks.size() / dressing.threads,
+              (number + 1) * dressing.sheet.blocks.size() / dressing.threads},
+        scratch(dressing.sheet) {}
+
+  std::size_t thread;
+  Share share;
+  ForceScratch scratch;
+};
+
+StepRule step_rule(const PanelDressing& dressing) {
   const Dressing& rules = dressing.garment.dressing;
-  const auto dt = static_cast<float>(dressing.dt_s);
-  const std::size_t blocks = sheet.blocks.size();
-  const Share share{thread * blocks / dressing.threads, (thread + 1) * blocks / dressing.threads};
-  const auto correction = correction_rule<float>(rules, dressing.dt_s);
-  const std::uint32_t sweeps = correction_sweeps(rules);
-  ForceScratch scratch(sheet);
-  for (int step = 0; step < count; ++step) {
-    const bool draping = dressing.progress.draping;
-    if (!draping) {
-      if (thread == 0) pull_joints(dressing);
-      barrier.wait();
-    }
-    const StepRule rule{dt, static_cast<float>(rules.push_speed),
-                        phase_rule<float>(dressing.system, rules, draping), !draping};
-    for (std::size_t b = share.begin; b < share.end; ++b)
-      update_velocities(sheet, sheet.blocks[b], rule, scratch);
-    if (sweeps == 0) barrier.wait();
-    correct(sheet, correction, sweeps, share, barrier);
-    barrier.wait();
-    if (thread == 0) {
-      close_sewn_joints(dressing);
-      end_step(dressing);
-    }
-    barrier.wait();
-    for (std::size_t b = share.begin; b < share.end; ++b)
-      move_block(sheet, sheet.blocks[b], dt, dressing.system.floor);
+  const bool draping = dressing.progress.draping;
+  return {static_cast<float>(dressing.dt_s), static_cast<float>(rules.push_speed),
+          phase_rule<float>(dressing.system, rules, draping), !draping, dressing.layers.has_value()};
+}
+
+/// Loops 1 to 4, up to where layers meet each other.
+void accelerate(PanelDressing& dressing, Worker& worker, SpinBarrier& barrier) {
+  const StepRule rule = step_rule(dressing);
+  if (rule.has_joints) {
+    if (worker.thread == 0) pull_joints(dressing);
     barrier.wait();
   }
+  for (std::size_t b = worker.share.begin; b < worker.share.end; ++b)
+    update_velocities(dressing.sheet, dressing.sheet.blocks[b], rule, worker.scratch);
+}
+
+/// What is left of a step.
+void move(PanelDressing& dressing, const Worker& worker, SpinBarrier& barrier) {
+  PanelSheet& sheet = dressing.sheet;
+  const Dressing& rules = dressing.garment.dressing;
+  const Share share = worker.share;
+  const StepRule rule = step_rule(dressing);
+  if (rule.layers_touch)
+    for (std::size_t b = share.begin; b < share.end; ++b) meet_body(sheet, sheet.blocks[b], rule);
+  const std::uint32_t sweeps = correction_sweeps(rules);
+  if (sweeps == 0) barrier.wait();
+  correct(sheet, correction_rule<float>(rules, dressing.dt_s), sweeps, share, barrier);
+  barrier.wait();
+  if (worker.thread == 0) {
+    close_sewn_joints(dressing);
+    end_step(dressing);
+  }
+  barrier.wait();
+  for (std::size_t b = share.begin; b < share.end; ++b)
+    move_block(sheet, sheet.blocks[b], Lanes(rule.dt), dressing.system.floor);
+  barrier.wait();
+}
+
+/// Layers of the garment collide.
+void collide_layers(PanelDressing& dressing) {
+  PanelSheet& sheet = dressing.sheet;
+  dressing.layers->collide(
+      dressing.dt_s,
+      [&](std::size_t node) {
+        const std::size_t at = sheet.place[node];
+        return NodeState{sheet.moved.at(at), sheet.velocity.at(at)};
+      },
+      [&](std::size_t node, const NodeState& state) {
+        sheet.moved.put(sheet.place[node], state.position);
+        sheet.velocity.put(sheet.place[node], state.velocity);
+      });
 }
 
 void step_panels(PanelDressing& dressing, int count) {
   SpinBarrier barrier(dressing.threads);
-#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
-  take_steps(dressing, count, static_cast<std::size_t>(omp_get_thread_num()), barrier);
+  std::vector<Worker> workers;
+  for (std::size_t thread = 0; thread < dressing.threads; ++thread) workers.emplace_back(dressing, thread);
+  const int threads = static_cast<int>(dressing.threads);
+  if (!dressing.layers || dressing.layers->threads() == 1) {
+#pragma omp parallel num_threads(threads)
+    {
+      Worker& worker = workers[static_cast<std::size_t>(omp_get_thread_num())];
+      for (int step = 0; step < count; ++step) {
+        accelerate(dressing, worker, barrier);
+        if (dressing.layers) {
+          barrier.wait();
+          if (worker.thread == 0) collide_layers(dressing);
+          barrier.wait();
+        }
+        move(dressing, worker, barrier);
+      }
+    }
+    return;
+  }
+  // The threads of the collision are a team of their own.
+  for (int step = 0; step < count; ++step) {
+#pragma omp parallel num_threads(threads)
+    accelerate(dressing, workers[static_cast<std::size_t>(omp_get_thread_num())], barrier);
+    collide_layers(dressing);
+#pragma omp parallel num_threads(threads)
+    move(dressing, workers[static_cast<std::size_t>(omp_get_thread_num())], barrier);
+  }
 }
 
 PanelKernel panel_kernel() { return {hwy::TargetName(HWY_TARGET), &step_panels}; }
