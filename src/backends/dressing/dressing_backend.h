@@ -17,6 +17,9 @@ struct DressingProgress {
 /// A backend that dresses: its steps are those of Algorithm 1.
 class DressingBackend : public Backend {
  public:
+  /// Takes a state of a garment whose seams are closed, as the start of its draping: all joints are sewn, and
+  /// gravity and friction act from the first step on. set_state() begins with all joints open.
+  virtual void set_draped_state(const State& state) = 0;
   virtual DressingProgress progress() const = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "backends/dressing/openmp_dressing.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -25,6 +27,12 @@ class OpenMpDressing final : public DressingBackend {
   void set_state(const State& state) override {
     dressing_.sheet.set_state(state);
     begin();
+  }
+  void set_draped_state(const State& state) override {
+    dressing_.sheet.set_state(state);
+    std::ranges::fill(dressing_.sheet.sewn, std::uint8_t{1});
+    dressing_.steps = 0;
+    dressing_.progress = {.open_joints = 0, .draping = true, .seamed_at = 0};
   }
   void step(int count) override { kernel_.step(dressing_, count); }
   State state() const override { return dressing_.sheet.state(); }

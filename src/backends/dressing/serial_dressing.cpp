@@ -47,6 +47,12 @@ class SerialDressing final : public DressingBackend {
     steps_ = 0;
   }
 
+  void set_draped_state(const State& state) override {
+    SerialDressing::set_state(state);
+    sewn_.assign(garment_.joints.size(), 1);
+    progress_ = {.open_joints = 0, .draping = true, .seamed_at = 0};
+  }
+
   State state() const override {
     State state;
     for (const Node& node : nodes_) {
