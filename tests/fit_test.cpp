@@ -113,6 +113,28 @@ TEST(Fit, MeasuresGapsElongationsAndDepths) {
   EXPECT_NEAR(around_post.deepest_face_sample, 0.004, 1e-12);  // x = 0 is a quarter of the way
 }
 
+TEST(Fit, TakesTheLayerWhoseUpperEdgesAreFarthestOff) {
+  System system = garment_of({{2, 3, 0.1, {0, 0, 0}}, {2, 3, 0.1, {0, 0, 0.1}}});
+  std::vector<Vec3d> position = system.start.position;
+  for (std::size_t node = 0; node < 12; ++node) position[node].y += node < 6 ? 0.005 : -0.012;
+  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.0035, 1e-6);
+  std::get<Garment>(system.topology).panels[1].layer = 1;
+  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.012, 1e-6);
+  std::get<Garment>(system.topology).panels[0].layer = 2;
+  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.012, 1e-6);
+}
+
+TEST(Fit, CountsWhereLayersCross) {
+  // A square metre at z = 0 and a sheet in the plane x = 0.6 from (y, z) = (0.3, -1) to (2.3, 1): the sheet's
+  // lower side runs through the square, and the square's upper side and diagonal through the sheet.
+  System system = garment_of({{2, 2, 1, {0, 0, 0}}, {2, 2, 2, {0.6, 0.3, -1}, {0, 0, 1}}});
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 0U) << "in one layer";
+  std::get<Garment>(system.topology).panels[1].layer = 1;
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 3U);
+  for (std::size_t node = 4; node < 8; ++node) system.start.position[node].x += 0.5;
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 0U) << "beside it";
+}
+
 TEST(Fit, SamplesBothTrianglesOfEveryCell) {
   const System system = garment_of({{3, 2, 1, {0, 0, 0}}});
   std::vector<Vec3d> position = system.start.position;
@@ -144,7 +166,8 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
          .elongation_50 = 0,
          .elongation_99 = 0.061,
          .elongation_999 = std::numeric_limits<double>::quiet_NaN(),
-         .elongation_max = 1};
+         .elongation_max = 1,
+         .crossings = 4};
   EXPECT_THAT(
       misfits({}, fit, {}),
       ElementsAre(HasSubstr("seams did not close"), HasSubstr("did not come to rest"),
@@ -152,7 +175,8 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
                   HasSubstr("node inside the body is 1.2 mm"), HasSubstr("face inside the body is 2 mm"),
                   HasSubstr("99 % stay below is 6.1 %, beyond 6 %"), HasSubstr("99.9 % stay below is nan %"),
                   HasSubstr("worn is -21 mm, beyond 20 mm"),
-                  HasSubstr("seams meet from where that is worn is 31 mm"), HasSubstr("1 of 3 rows")));
+                  HasSubstr("seams meet from where that is worn is 31 mm"), HasSubstr("1 of 3 rows"),
+                  HasSubstr("cross each other in 4 places, beyond 0")));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "commands/dressing_run.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <optional>
 #include <vector>
@@ -17,16 +19,23 @@
 namespace mssim {
 namespace {
 
+/// The middle of the leg on the point's side, or of the trunk where that is nearer.
+Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
+  if (profile.has_legs()) {
+    const PlanPoint leg = profile.leg_middle(point.y);
+    if (std::abs(point.x) > leg.x / 2) return {point.x < 0 ? -leg.x : leg.x, point.y, leg.z};
+  }
+  const double height = std::clamp(point.y, profile.lowest(), profile.highest());
+  return {0, point.y, (profile.front(height) + profile.back(height)) / 2};
+}
+
 Fit measured_fit(const PreparedScene& scene, const State& state) {
   const Surface surface = body_of_garment(scene.spec);
   const Solid solid(surface);
   const BodyProfile profile(surface);
   return fit_of(scene.system, state.position,
                 {[&](std::span<const Vec3d> points) { return solid.depths(points); },
-                 [&](const Vec3d& point) {
-                   const PlanPoint middle = profile.leg_middle(point.y);
-                   return Vec3d{point.x < 0 ? -middle.x : middle.x, point.y, middle.z};
-                 }});
+                 [&](const Vec3d& point) { return limb_middle(profile, point); }});
 }
 
 }  // namespace
@@ -66,7 +75,8 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
                          {"upper_edge_rise_mm", 1e3 * fit.upper_edge_rise},
                          {"crotch_rise_mm", 1e3 * fit.meeting_rise},
                          {"rows", fit.rows},
-                         {"rows_astray", fit.rows_astray}}},
+                         {"rows_astray", fit.rows_astray},
+                         {"crossings", fit.crossings}}},
                        ListingFormat::table);
   const std::vector<std::string> found = misfits(result, fit, {});
   for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';

@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "contact/cloth_crossings.h"
+#include "contact/cloth_layers.h"
 #include "model/host_laws.h"
 
 namespace mssim {
@@ -50,12 +52,18 @@ double mean_rise(const Garment& garment, const std::vector<Vec3d>& position,
   return nodes.empty() ? 0 : rise / static_cast<double>(nodes.size());
 }
 
-std::vector<std::uint32_t> upper_edges(const Garment& garment) {
-  std::vector<std::uint32_t> nodes;
+/// Of the upper edges of each layer's panels, the mean rise that is farthest off.
+double upper_edge_rise(const Garment& garment, const std::vector<Vec3d>& position) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> edges;
   for (const GarmentPanel& panel : garment.panels)
     for (std::uint32_t column = 0; column < panel.columns; ++column)
-      nodes.push_back(panel.node(panel.rows - 1, column));
-  return nodes;
+      edges[panel.layer].push_back(panel.node(panel.rows - 1, column));
+  double farthest = 0;
+  for (const auto& [layer, nodes] : edges) {
+    const double rise = mean_rise(garment, position, nodes);
+    if (!(std::abs(rise) <= std::abs(farthest))) farthest = rise;
+  }
+  return farthest;
 }
 
 std::vector<std::uint32_t> where_seams_meet(const Garment& garment) {
@@ -155,7 +163,7 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
     const std::vector<double> depths = body.depths(face_samples(panel, position));
     fit.deepest_face_sample = std::max(fit.deepest_face_sample, std::ranges::max(depths));
   }
-  fit.upper_edge_rise = mean_rise(garment, position, upper_edges(garment));
+  fit.upper_edge_rise = upper_edge_rise(garment, position);
   fit.meeting_rise = mean_rise(garment, position, where_seams_meet(garment));
   for (const std::vector<std::uint32_t>& loop : sewn_rows(garment)) {
     Vec3d middle;
@@ -168,6 +176,7 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
   fit.elongation_99 = quantile(sorted, 0.99);
   fit.elongation_999 = quantile(sorted, 0.999);
   fit.elongation_max = sorted.back();
+  fit.crossings = count_crossings(garment, {layer_pairs(garment), {}}, position);
   return fit;
 }
 

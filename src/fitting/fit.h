@@ -16,14 +16,18 @@ struct Fit {
   std::size_t nodes_inside = 0;    ///< of the body
   double deepest_node = 0;         ///< m below the body's surface
   double deepest_face_sample = 0;  ///< m, of 5 x 5 samples in every cell
-  /// m, how far the upper edges of all panels hang above where the pattern puts them, on average; below,
-  /// where negative. The same of the nodes at which seams meet: the crotch.
+  /// m, how far the upper edges of a layer's panels hang above where the pattern puts them, on average;
+  /// below, where negative: of the layer where that is farthest off. The same of the nodes at which seams
+  /// meet: the crotch.
   double upper_edge_rise = 0, meeting_rise = 0;
   /// Rows of two panels, sewn to each other at both ends, which do not go once around the limb between them.
   std::size_t rows = 0, rows_astray = 0;
   /// Elongation over rest length of structural and shear springs: the median, what 99 % and 99.9 % are below,
   /// and the largest.
   double elongation_50 = 0, elongation_99 = 0, elongation_999 = 0, elongation_max = 0;
+  /// Edges of cells that run through a face of another layer (contact/cloth_crossings.h), whether the layers
+  /// touch each other in the simulation or not.
+  std::size_t crossings = 0;
 };
 
 /// What a fit is measured against.

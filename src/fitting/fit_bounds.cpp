@@ -29,6 +29,9 @@ std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, c
   if (fit.rows_astray > 0)
     found.push_back(std::to_string(fit.rows_astray) + " of " + std::to_string(fit.rows) +
                     " rows do not go once around their limb");
+  if (fit.crossings > bounds.crossings)
+    found.push_back("layers of the cloth cross each other in " + std::to_string(fit.crossings) +
+                    " places, beyond " + std::to_string(bounds.crossings));
   return found;
 }
 

@@ -16,6 +16,7 @@ struct FitBounds {
   double elongation_999 = 0.08;    ///< the same of 99.9 %
   double upper_edge_shift = 0.02;  ///< m, up or down
   double meeting_shift = 0.03;     ///< m, up or down
+  std::size_t crossings = 0;       ///< of layers
 };
 
 /// What is out of bounds, a sentence each: that the garment was not sewn in time, did not settle, or a number

@@ -21,6 +21,8 @@ class BodyProfile {
   double lowest() const { return lowest_; }    ///< y, m
   double highest() const { return highest_; }  ///< y, m
 
+  /// Does the section fall apart into two legs below?
+  bool has_legs() const { return crotch_.has_value(); }
   /// The height, m, below which the section falls apart into two legs: where the surface's cut with the plane
   /// x = 0 ends below. Throws MeshError for a surface that does not part there into a left and a right leg.
   double crotch_height() const;
