@@ -266,7 +266,7 @@ TEST(SceneNames, AreTheCommittedOnesByKindAndSize) {
                                    "sphere-small", "torus-medium", "box-medium", "sphere-medium",
                                    "torus-large", "box-large", "sphere-large", "bodies3858", "bodies4737",
                                    "bodies7282", "bodies10223", "bodies20587", "bodies38233", "jeans1k",
-                                   "jeans2k", "jeans4k", "jeans8k", "jeans16k", "jeans64k"));
+                                   "jeans2k", "jeans4k", "outfit", "jeans8k", "jeans16k", "jeans64k"));
 }
 
 TEST(FindScene, FindsByNameAndByPath) {
