@@ -70,7 +70,7 @@ TEST(BodyScenes, OfSeveralBodiesHaveExactlyThePublishedCounts) {
   for (const SceneSpec& spec : body_scenes())
     if (std::get<BodiesSpec>(spec.body).list.size() > 1) {
       const SceneCounts counts = counts_of(spec);
-      ours.emplace(counts.nodes, counts.springs_published);
+      ours.emplace(counts.nodes, counts.springs_published.value());
       EXPECT_EQ(spec.name, "bodies" + std::to_string(counts.nodes));
     }
   EXPECT_EQ(published.size(), 6U);

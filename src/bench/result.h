@@ -13,7 +13,7 @@ struct ResultRow {
   std::string scene;
   std::uint64_t nodes = 0;
   std::uint64_t springs_unique = 0;
-  std::uint64_t springs_published = 0;  ///< as Hong et al. count them
+  std::optional<std::uint64_t> springs_published;  ///< as Hong et al. count them
   std::string backend;
   std::string device;
   int threads = 0;

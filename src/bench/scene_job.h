@@ -15,7 +15,7 @@ namespace mssim {
 struct SceneJob {
   std::string name;
   const System* system = nullptr;
-  std::uint64_t springs_published = 0;
+  std::optional<std::uint64_t> springs_published = {};
   std::string note = {};  ///< for every row
   double dt_s = 0;
   std::vector<const BackendInfo*> backends;

@@ -20,14 +20,14 @@ std::string text_of(const Listing& listing, SummaryFormat format) {
 
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format) {
   if (format == SummaryFormat::github) return github_json(rows).dump(2) + '\n';
-  const auto number = [](const std::optional<double>& value) {
+  const auto number = [](const auto& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
   };
   Listing listing;
   for (const ResultRow& row : rows)
     listing.push_back({{"scene", row.scene},
                        {"nodes", row.nodes},
-                       {"springs_published", row.springs_published},
+                       {"springs_published", number(row.springs_published)},
                        {"integrator", row.integrator},
                        {"backend", row.backend},
                        {"ms_per_step", number(row.ms_per_step)},

@@ -4,6 +4,7 @@
 #include <array>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,15 +68,15 @@ Listing list_scenes(const ExecutionOptions& /*options*/) {
   for (const std::string& name : scene_names()) {
     const SceneSpec spec = find_scene(name);
     const std::optional<SceneCounts> counts = counter.count(spec);
-    const auto number = [&](std::uint64_t SceneCounts::*count) {
-      return counts ? nlohmann::ordered_json((*counts).*count) : nlohmann::ordered_json();
+    const auto number = [](const std::optional<std::uint64_t>& count) {
+      return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
     };
     listing.push_back(
         {{"scene", name},
          {"kind", kind_of(spec).name},
-         {"nodes", number(&SceneCounts::nodes)},
-         {"springs_unique", number(&SceneCounts::springs_unique)},
-         {"springs_published", number(&SceneCounts::springs_published)},
+         {"nodes", number(counts ? std::optional(counts->nodes) : std::nullopt)},
+         {"springs_unique", number(counts ? std::optional(counts->springs_unique) : std::nullopt)},
+         {"springs_published", number(counts ? counts->springs_published : std::nullopt)},
          {"dt_s", spec.dt_s ? nlohmann::ordered_json(*spec.dt_s) : nlohmann::ordered_json("auto")},
          {"description", spec.description}});
   }

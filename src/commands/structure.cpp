@@ -14,7 +14,7 @@ StructureRow structure_of(const PreparedScene& scene) {
   row.scene = scene.spec.name;
   row.nodes = scene.counts.nodes;
   row.springs_unique = scene.counts.springs_unique;
-  row.springs_published = scene.counts.springs_published;
+  row.springs_published = scene.counts.springs_published.value();
   row.tetrahedra = mesh->tetrahedra.size();
   // At the start a body is turned and moved, but not deformed.
   row.smallest_dihedral_angle_deg = smallest_dihedral_angle({scene.system.start.position, mesh->tetrahedra});

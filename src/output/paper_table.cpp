@@ -40,7 +40,7 @@ class Measured {
       rows_.push_back(&row);
       if (std::none_of(scenes_.begin(), scenes_.end(),
                        [&](const Scene& scene) { return scene.name == row.scene; }))
-        scenes_.push_back({row.scene, row.nodes, row.springs_published});
+        scenes_.push_back({row.scene, row.nodes, row.springs_published.value()});
     }
     std::stable_sort(scenes_.begin(), scenes_.end(),
                      [](const Scene& a, const Scene& b) { return a.nodes < b.nodes; });

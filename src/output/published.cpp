@@ -22,7 +22,8 @@ PublishedTable::PublishedTable(const PublishedTableInfo& table_info, const CsvTa
 }
 
 std::optional<double> PublishedTable::ms(std::string_view integrator, std::string_view configuration,
-                                         std::uint64_t nodes, std::uint64_t springs_published) const {
+                                         std::uint64_t nodes,
+                                         std::optional<std::uint64_t> springs_published) const {
   const auto time = std::find_if(times_.begin(), times_.end(), [&](const Time& candidate) {
     return candidate.integrator == integrator && candidate.configuration == configuration &&
            candidate.nodes == nodes && candidate.springs == springs_published;
@@ -31,7 +32,7 @@ std::optional<double> PublishedTable::ms(std::string_view integrator, std::strin
   return time->ms;
 }
 
-bool PublishedTable::has_scene(std::uint64_t nodes, std::uint64_t springs_published) const {
+bool PublishedTable::has_scene(std::uint64_t nodes, std::optional<std::uint64_t> springs_published) const {
   return std::any_of(times_.begin(), times_.end(), [&](const Time& time) {
     return time.nodes == nodes && time.springs == springs_published;
   });

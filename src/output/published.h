@@ -49,9 +49,9 @@ class PublishedTable {
   /// Milliseconds per step, none where the table has none. A scene is told by its nodes and its springs as
   /// the paper counts them, so that another scene of as many nodes has no published time.
   std::optional<double> ms(std::string_view integrator, std::string_view configuration, std::uint64_t nodes,
-                           std::uint64_t springs_published) const;
+                           std::optional<std::uint64_t> springs_published) const;
   /// Does the table have any time for this scene?
-  bool has_scene(std::uint64_t nodes, std::uint64_t springs_published) const;
+  bool has_scene(std::uint64_t nodes, std::optional<std::uint64_t> springs_published) const;
 
  private:
   struct Time {

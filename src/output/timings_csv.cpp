@@ -33,6 +33,14 @@ Column count(std::string_view name, std::uint64_t ResultRow::*field) {
           }};
 }
 
+Column count(std::string_view name, std::optional<std::uint64_t> ResultRow::*field) {
+  return {name,
+          [=](const ResultRow& row) { return row.*field ? std::to_string(*(row.*field)) : std::string(); },
+          [=](ResultRow& row, const CsvTable& table, std::size_t r, std::size_t c) {
+            if (!table.text(r, c).empty()) row.*field = table.count(r, c);
+          }};
+}
+
 int read_int(const CsvTable& table, std::size_t record, std::size_t column) {
   const std::uint64_t value = table.count(record, column);
   if (value > INT_MAX) throw table.complaint(record, column, "is too large");

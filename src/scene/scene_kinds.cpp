@@ -21,14 +21,14 @@ constexpr std::array<SceneKind, 3> kinds{{
     // be
     // divided by three, and the thirds fit tetrahedral meshes.
     {"bodies", visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts, build_bodies},
-    // No garment of Hong et al. has a count.
-    {"garment", visit_garment_fields, check_garment, 1, stated_garment_counts, garment_counts,
+    {"garment", visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, garment_counts,
      build_garment_scene},
 }};
 static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);
 
 SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
-  counts.springs_published = kind_of(spec).published_per_spring * counts.springs_unique;
+  if (const auto per_spring = kind_of(spec).published_per_spring)
+    counts.springs_published = *per_spring * counts.springs_unique;
   return counts;
 }
 

@@ -18,8 +18,9 @@ struct SceneKind {
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
   /// Checks what one field alone cannot show. Throws SceneError.
   void (*check)(const SceneSpec& spec);
-  /// How often a spring is counted in Hong et al.'s tables, by inference from their numbers.
-  std::uint64_t published_per_spring;
+  /// How often a spring is counted in Hong et al.'s tables, by inference from their numbers; none for a kind
+  /// that they do not have.
+  std::optional<std::uint64_t> published_per_spring;
   /// What the file says about nodes and unique springs, none where it says nothing.
   std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
   /// What the scene has of both.

@@ -59,8 +59,9 @@ struct SceneSpec {
 /// The size of a scene as the tables state it.
 struct SceneCounts {
   std::uint64_t nodes = 0;
-  std::uint64_t springs_unique = 0;     ///< each spring once
-  std::uint64_t springs_published = 0;  ///< as Hong et al. count them; how, depends on the scene kind
+  std::uint64_t springs_unique = 0;  ///< each spring once
+  /// As Hong et al. count them; how, depends on the scene kind. None for a kind that they do not have.
+  std::optional<std::uint64_t> springs_published = {};
 };
 
 }  // namespace mssim
