@@ -1,37 +1,81 @@
 #include "fitting/fit_bounds.h"
 
+#include <array>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 
 namespace mssim {
+namespace {
+
+/// A row of the TABLE of a fit's numbers.
+struct FitNumber {
+  std::string_view name;
+  double (*value)(const Fit& fit);
+  double FitBounds::*bound;  ///< on the magnitude; null where there is none
+  double per_unit;           ///< factor to the unit of `name`
+  /// What a sentence says where it is out of bounds: before the value, its unit and factor, and after it.
+  std::string_view before, unit;
+  double per_spoken_unit;
+  std::string_view after;
+};
+
+constexpr double mm = 1e3;
+constexpr double percent = 100;
+
+constexpr std::array<FitNumber, 13> numbers{{
+    {"largest_gap_mm", [](const Fit& f) { return f.largest_gap; }, &FitBounds::largest_gap, mm,
+     "the largest gap of a seam is ", " mm", mm, ""},
+    {"nodes_inside", [](const Fit& f) { return static_cast<double>(f.nodes_inside); }, nullptr, 1, "", "", 1,
+     ""},
+    {"deepest_node_mm", [](const Fit& f) { return f.deepest_node; }, &FitBounds::deepest, mm,
+     "the deepest node inside the body is ", " mm", mm, ""},
+    {"deepest_face_mm", [](const Fit& f) { return f.deepest_face_sample; }, &FitBounds::deepest, mm,
+     "the deepest point of a face inside the body is ", " mm", mm, ""},
+    {"elongation_50", [](const Fit& f) { return f.elongation_50; }, nullptr, 1, "", "", 1, ""},
+    {"elongation_99", [](const Fit& f) { return f.elongation_99; }, &FitBounds::elongation_99, 1,
+     "the elongation that 99 % stay below is ", " %", percent, ""},
+    {"elongation_999", [](const Fit& f) { return f.elongation_999; }, &FitBounds::elongation_999, 1,
+     "the elongation that 99.9 % stay below is ", " %", percent, ""},
+    {"elongation_max", [](const Fit& f) { return f.elongation_max; }, nullptr, 1, "", "", 1, ""},
+    {"upper_edge_rise_mm", [](const Fit& f) { return f.upper_edge_rise; }, &FitBounds::upper_edge_shift, mm,
+     "the upper edge's distance from where it is worn is ", " mm", mm, ""},
+    {"crotch_rise_mm", [](const Fit& f) { return f.meeting_rise; }, &FitBounds::meeting_shift, mm,
+     "the distance of where seams meet from where that is worn is ", " mm", mm, ""},
+    {"rows", [](const Fit& f) { return static_cast<double>(f.rows); }, nullptr, 1, "", "", 1, ""},
+    {"rows_astray", [](const Fit& f) { return static_cast<double>(f.rows_astray); }, &FitBounds::rows_astray,
+     1, "", " rows", 1, " do not go once around their limb"},
+    {"crossings", [](const Fit& f) { return static_cast<double>(f.crossings); }, &FitBounds::crossings, 1,
+     "layers of the cloth cross each other in ", " places", 1, ""},
+}};
+
+bool is_within(const FitNumber& number, const Fit& fit, const FitBounds& bounds) {
+  // A number that is none keeps no bound.
+  return std::abs(number.value(fit)) <= bounds.*number.bound;
+}
+
+}  // namespace
+
+std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
+  std::vector<FitCheck> checks;
+  for (const FitNumber& number : numbers)
+    checks.push_back(
+        {std::string(number.name), number.per_unit * number.value(fit),
+         number.bound != nullptr ? std::optional(is_within(number, fit, bounds)) : std::nullopt});
+  return checks;
+}
 
 std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, const FitBounds& bounds) {
   std::vector<std::string> found;
-  const auto hold = [&](const std::string& what, double value, double bound, double per_unit,
-                        const std::string& unit) {
-    // A number that is none keeps no bound.
-    if (std::abs(value) <= bound) return;
-    std::ostringstream text;
-    text << what << " is " << value * per_unit << unit << ", beyond " << bound * per_unit << unit;
-    found.push_back(text.str());
-  };
   if (!result.seamed_at) found.emplace_back("the seams did not close");
   if (!result.settled) found.emplace_back("the garment did not come to rest");
-  hold("the largest gap of a seam", fit.largest_gap, bounds.largest_gap, 1e3, " mm");
-  hold("the deepest node inside the body", fit.deepest_node, bounds.deepest, 1e3, " mm");
-  hold("the deepest point of a face inside the body", fit.deepest_face_sample, bounds.deepest, 1e3, " mm");
-  hold("the elongation that 99 % stay below", fit.elongation_99, bounds.elongation_99, 100, " %");
-  hold("the elongation that 99.9 % stay below", fit.elongation_999, bounds.elongation_999, 100, " %");
-  hold("the upper edge's distance from where it is worn", fit.upper_edge_rise, bounds.upper_edge_shift, 1e3,
-       " mm");
-  hold("the distance of where seams meet from where that is worn", fit.meeting_rise, bounds.meeting_shift,
-       1e3, " mm");
-  if (fit.rows_astray > 0)
-    found.push_back(std::to_string(fit.rows_astray) + " of " + std::to_string(fit.rows) +
-                    " rows do not go once around their limb");
-  if (fit.crossings > bounds.crossings)
-    found.push_back("layers of the cloth cross each other in " + std::to_string(fit.crossings) +
-                    " places, beyond " + std::to_string(bounds.crossings));
+  for (const FitNumber& number : numbers) {
+    if (number.bound == nullptr || is_within(number, fit, bounds)) continue;
+    std::ostringstream text;
+    text << number.before << number.value(fit) * number.per_spoken_unit << number.unit << number.after
+         << ", beyond " << bounds.*number.bound * number.per_spoken_unit << number.unit;
+    found.push_back(text.str());
+  }
   return found;
 }
 

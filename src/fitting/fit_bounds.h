@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,19 @@ struct FitBounds {
   double elongation_999 = 0.08;    ///< the same of 99.9 %
   double upper_edge_shift = 0.02;  ///< m, up or down
   double meeting_shift = 0.03;     ///< m, up or down
-  std::size_t crossings = 0;       ///< of layers
+  double rows_astray = 0;
+  double crossings = 0;  ///< of layers
 };
+
+/// One number of a fit, for a listing.
+struct FitCheck {
+  std::string name;  ///< ends in its unit
+  double value = 0;
+  std::optional<bool> within;  ///< its bounds; none where it has none
+};
+
+/// All numbers of a fit, in one order.
+std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds);
 
 /// What is out of bounds, a sentence each: that the garment was not sewn in time, did not settle, or a number
 /// of its fit and the bound.
