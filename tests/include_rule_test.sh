@@ -14,7 +14,7 @@ scene        model mesh garment contact
 integrators
 backends     model integrators kernels contact
 fitting      backends model contact
-bench        backends model integrators mssim
+bench        backends model integrators fitting mssim
 output       model bench/result.h bench/provenance.h bench/statistics.h bench/outliers.h bench/comparison.h
 commands     *
 main.cpp     *

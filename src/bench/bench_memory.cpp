@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bench/garment_verification.h"
+
 namespace mssim {
 namespace {
 
@@ -14,6 +16,9 @@ constexpr MemoryUse reference{.node = 2 * spring_list_memory.node - 1,
 constexpr double reference_states = 3;
 /// Those of a verification: the reference's, and the one read back.
 constexpr double verification_states = 2;
+/// Those that a garment's reference keeps, where stretches start and end; and their errors.
+constexpr double garment_states = 4 * stretches;
+constexpr double garment_error_node = 2 * stretches * sizeof(double);
 
 }  // namespace
 
@@ -21,6 +26,7 @@ std::uint64_t bench_memory_needed(const SceneJob& job, const SceneSize& size) {
   const auto nodes = static_cast<double>(size.nodes);
   double held =  // the System
       nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
+  if (size.garment) held += nodes * (garment_states * state_node + garment_error_node);
   double peak = held;
   for (const Integrator* integrator : job.integrators) {
     peak = std::max(peak, held + reference.bytes(*integrator, size.nodes, size.springs, 1) +

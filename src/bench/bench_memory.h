@@ -10,12 +10,14 @@ namespace mssim {
 struct SceneSize {
   std::uint64_t nodes = 0;
   std::uint64_t springs = 0;  ///< unique ones
-  bool grid = false;          ///< a cloth, else bodies
+  bool grid = false;          ///< a cloth, else bodies or a garment
+  bool garment = false;
 };
 
 /// Bytes that bench_scene takes at its peak for a scene of this size, about: the System; all combinations of
 /// the job, because every round takes a sample of each; and the larger of what the reference and what a
-/// verification needs beside them. Of the job, the scene's own part is not looked at.
+/// verification needs beside them; of a garment also the states that its reference keeps. Of the job, the
+/// scene's own part is not looked at.
 std::uint64_t bench_memory_needed(const SceneJob& job, const SceneSize& size);
 
 }  // namespace mssim

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <utility>
 
+#include "backends/dressing/dressing_backend.h"
 #include "bench/combination.h"
+#include "bench/dressing_record.h"
+#include "bench/garment_verification.h"
 #include "bench/machine_peak.h"
 #include "bench/step_cost.h"
 
@@ -22,10 +27,12 @@ constexpr double preparation = 0.3;
 /// Peaks of this machine, by integrator (the working set is its own) and threads.
 using Peaks = std::map<std::pair<const Integrator*, int>, MachinePeak>;
 
-/// Measures the peaks that the combinations are held against, now.
-Peaks measure_peaks(const std::vector<Combination>& combinations, const StepSize& size,
+/// Measures the peaks that the combinations are held against, now. None for a garment: what a step of it has
+/// to do depends on what touches and what is sewn.
+Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
+  if (job.garment) return peaks;
   for (const Combination& combination : combinations) {
     const int threads = combination.row.threads;
     const auto key = std::pair(combination.integrator, threads);
@@ -39,12 +46,28 @@ Peaks measure_peaks(const std::vector<Combination>& combinations, const StepSize
 
 void compare_with_peaks(const Combination& combination, const StepSize& size, const Peaks& peaks,
                         ResultRow& row) {
-  if (!row.ms_per_step) return;
+  if (!row.ms_per_step || row.dressing) return;
   const StepCost cost = step_cost(*combination.integrator, size, combination.steps_per_pass);
   const double seconds = *row.ms_per_step / 1000;
   row.gigabytes_per_second = cost.bytes / seconds / 1e9;
   if (combination.on_host)
     row.roofline_fraction = roofline_fraction(cost, seconds, peaks.at({combination.integrator, row.threads}));
+}
+
+/// Compares a backend with the reference.
+using Verifier = std::function<Verification(Backend& backend)>;
+
+/// Runs the reference. `draped`: the garment, settled; none where the scene is no garment or cannot be
+/// dressed. The verifier is empty where no backend has the scene with this integrator.
+Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
+                       const std::optional<State>& draped) {
+  if (job.garment && !dresses(integrator)) return {};
+  if (job.garment)
+    return [&job, reference = run_garment_reference(*job.system, integrator, job.dt_s, *draped)](
+               Backend& backend) { return verify_garment(backend, *job.system, reference, job.dt_s); };
+  return [&job, reference = run_reference(*job.system, integrator, job.dt_s)](Backend& backend) {
+    return verify(backend, *job.system, reference, job.dt_s);
+  };
 }
 
 /// What the samples so far say.
@@ -118,33 +141,44 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   const auto total = static_cast<double>(combinations(job));
   std::vector<Combination> all;
   const auto done = [&] { return preparation * static_cast<double>(all.size()) / total; };
+  std::optional<State> draped;
+  if (job.garment && std::ranges::any_of(job.integrators, [](const Integrator* i) { return dresses(*i); })) {
+    watch.progress("drape", 0);
+    draped = draped_state(job, watch.stop);
+    if (!draped) return {};
+  }
+  const StepStart start = draped ? StepStart(*draped, true) : StepStart(job.system->start);
   for (const Integrator* integrator : job.integrators) {
     watch.progress("reference " + std::string(integrator->name), done());
     if (watch.stop()) return {};
-    const Reference reference = run_reference(*job.system, *integrator, job.dt_s);
+    const Verifier verifier = make_verifier(job, *integrator, draped);
     for (const BackendInfo* info : job.backends) {
       watch.progress("verify " + std::string(info->name) + " " + std::string(integrator->name), done());
       if (watch.stop()) return {};
-      Combination& combination = all.emplace_back(make_combination(job, *info, *integrator));
-      if (combination.backend) verify_combination(combination, job, reference);
+      Combination& combination = all.emplace_back(make_combination(job, *info, *integrator, start));
+      if (combination.backend) take_verification(combination, verifier(*combination.backend));
+      if (combination.backend && job.garment) {
+        watch.progress("dress with " + std::string(info->name), done());
+        if (!dress_combination(combination, job, watch.stop)) return {};
+      }
       if (combination.backend) calibrate(combination, job);
     }
   }
   const StepSize size = step_size(*job.system);
-  const Peaks peaks = measure_peaks(all, size, watch);
+  const Peaks peaks = measure_peaks(job, all, size, watch);
 
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(20160101);  // any fixed seed: a run can be repeated
   const int restored = restore(all, job.earlier);
-  const auto start = Clock::now();
+  const auto begun = Clock::now();
   for (int round = 0; round < job.rounds; ++round) {
     std::ranges::shuffle(order, random);
     if (round < restored) continue;
     const int measured = round - restored;
-    if (job.deadline && measured > 0 && Clock::now() + (Clock::now() - start) / measured > *job.deadline)
+    if (job.deadline && measured > 0 && Clock::now() + (Clock::now() - begun) / measured > *job.deadline)
       break;
-    tell_round(round, job, start, watch);
+    tell_round(round, job, begun, watch);
     if (!take_round(all, order, job, watch)) {
       if (round == 0) return {};
       break;

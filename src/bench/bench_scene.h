@@ -25,6 +25,10 @@ struct BenchWatch {
 /// steps as fill `sample_seconds`, from the scene's start state, which is set, and warmed up with a step,
 /// outside the timed region. Speed-ups are medians of the ratios within a round.
 ///
+/// A garment is first dressed by each backend, and how it fits then decides with the comparison whether the
+/// row is verified. Its samples start from one draped, settled state (draped_state), in which it touches the
+/// body.
+///
 /// Rounds of which all combinations have an earlier sample are not measured again; what an earlier run did
 /// beyond them is dropped.
 ///

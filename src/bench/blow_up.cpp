@@ -9,11 +9,11 @@ std::optional<std::size_t> first_bad_node(const State& state) {
   return std::nullopt;
 }
 
-std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps) {
+std::optional<BlowUp> find_blow_up(Backend& backend, const StepStart& from, int steps) {
   int good = 0, bad = steps;
   std::optional<std::size_t> node;
   const auto bad_node_after = [&](int count) {
-    backend.set_state(from);
+    begin(backend, from);
     backend.step(count);
     return first_bad_node(backend.state());
   };

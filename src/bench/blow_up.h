@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "backends/backend.h"
+#include "bench/step_start.h"
 
 namespace mssim {
 
@@ -20,7 +20,7 @@ std::optional<std::size_t> first_bad_node(const State& state);
 /// Finds the first bad step of a simulation that was found bad `steps` steps after `from`, by bisection: a
 /// number that is not finite stays so. Leaves the backend in any state. Empty if the simulation is good after
 /// all.
-std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps);
+std::optional<BlowUp> find_blow_up(Backend& backend, const StepStart& from, int steps);
 
 /// "blew up at step 12 (t = 0.0012 s): node 34 is not finite; ..." with the remedy. `steps_before` were taken
 /// before.

@@ -14,16 +14,19 @@
 namespace mssim {
 namespace {
 
-/// Runs the steps of one sample from the start state and returns its wall-clock seconds.
-double time_sample(Backend& backend, const State& start, int steps) {
+/// Runs the steps of one sample and returns its wall-clock seconds.
+double time_sample(Combination& combination, int steps) {
   using Clock = std::chrono::steady_clock;
-  backend.set_state(start);
+  Backend& backend = *combination.backend;
+  begin(backend, combination.start);
   backend.step(1);  // wakes threads and caches up
-  backend.set_state(start);
+  begin(backend, combination.start);
   const auto before = Clock::now();
   backend.step(steps);
   return std::chrono::duration<double>(Clock::now() - before).count();
 }
+
+}  // namespace
 
 void fail(Combination& combination, const std::string& status) {
   combination.row.status = status;
@@ -31,11 +34,11 @@ void fail(Combination& combination, const std::string& status) {
   combination.backend.reset();
 }
 
-}  // namespace
-
-Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator) {
+Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
+                             const StepStart& start) {
   Combination combination;
   combination.integrator = &integrator;
+  combination.start = start;
   ResultRow& row = combination.row;
   row.scene = job.name;
   row.nodes = job.system->nodes();
@@ -59,8 +62,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   return combination;
 }
 
-void verify_combination(Combination& combination, const SceneJob& job, const Reference& reference) {
-  const Verification verification = verify(*combination.backend, *job.system, reference, job.dt_s);
+void take_verification(Combination& combination, const Verification& verification) {
   combination.row.position_error = verification.position_error;
   combination.row.energy_drift = verification.energy_drift;
   combination.row.verified = !verification.failure;
@@ -69,9 +71,7 @@ void verify_combination(Combination& combination, const SceneJob& job, const Ref
 
 void calibrate(Combination& combination, const SceneJob& job) {
   static const double resolution_s = clock_resolution_s();
-  const auto time_steps = [&](int steps) {
-    return time_sample(*combination.backend, job.system->start, steps);
-  };
+  const auto time_steps = [&](int steps) { return time_sample(combination, steps); };
   int steps = 1;
   for (;;) {
     const int fit = sample_steps(time_steps(steps) / steps, job.sample_seconds, resolution_s);
@@ -90,9 +90,9 @@ void calibrate(Combination& combination, const SceneJob& job) {
 }
 
 double sample_ms(Combination& combination, const SceneJob& job) {
-  const double seconds = time_sample(*combination.backend, job.system->start, combination.steps);
+  const double seconds = time_sample(combination, combination.steps);
   if (first_bad_node(combination.backend->state())) {
-    const auto blow_up = find_blow_up(*combination.backend, job.system->start, combination.steps);
+    const auto blow_up = find_blow_up(*combination.backend, combination.start, combination.steps);
     fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s)
                                             : "not finite in one run, finite in the next: a data race"));
   }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "backends/backend.h"
 #include "bench/result.h"
 #include "bench/scene_job.h"
+#include "bench/step_start.h"
 #include "bench/verification.h"
 
 namespace mssim {
@@ -15,20 +17,25 @@ struct Combination {
   const Integrator* integrator = nullptr;
   bool on_host = true;
   int steps_per_pass = 0;
+  StepStart start;                   ///< of every sample
   std::unique_ptr<Backend> backend;  ///< null where the row has no times: it cannot run, or has failed
   int steps = 1;                     ///< in a sample
 };
 
-/// Makes the backend; a reason not to becomes the row's status.
-Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator);
+/// Makes the backend; a reason not to becomes the row's status. `start`: of its samples.
+Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
+                             const StepStart& start);
 
-/// Holds the backend against the reference. The row has failed where it is not near enough.
-void verify_combination(Combination& combination, const SceneJob& job, const Reference& reference);
+/// Ends the combination with a reason.
+void fail(Combination& combination, const std::string& status);
+
+/// Takes what a comparison with the reference has found. The row has failed where it is not near enough.
+void take_verification(Combination& combination, const Verification& verification);
 
 /// Finds how many steps fill a sample, from ever longer trials, and goes on until the backend is warm.
 void calibrate(Combination& combination, const SceneJob& job);
 
-/// Milliseconds a step, in a sample of combination.steps from the scene's start. Sets and warms up what is
+/// Milliseconds a step, in a sample of combination.steps from their start. Sets and warms up what is
 /// needed outside the timed region. The row has failed where the result is not finite.
 double sample_ms(Combination& combination, const SceneJob& job);
 

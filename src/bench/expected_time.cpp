@@ -1,7 +1,9 @@
 #include "bench/expected_time.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "backends/dressing/dressing_backend.h"
 #include "bench/verification.h"
 
 namespace mssim {
@@ -14,6 +16,11 @@ constexpr double built_spring_s = 1.5e-7;   // building the scene
 constexpr double moved_node_s = 4e-8;       // setting a state
 constexpr double peaks_s = 0.5;             // of one working set, with one thread and with all
 constexpr double samples_to_calibrate = 3;  // growing ones, and until the backend is warm
+constexpr double garment_step = 1.7;        // of the plain list, in steps of a cloth's
+constexpr double verified_garment = 4;      // steps of a verification, over those of a cloth's
+
+/// Steps until a garment has settled: the finer its cloth, the more.
+double dressing_steps(double nodes) { return 40 * std::sqrt(nodes); }
 
 }  // namespace
 
@@ -35,12 +42,17 @@ ExpectedTime expected_time(const SceneJob& job, const SceneSize& size) {
   ExpectedTime time;
   time.preparation = springs * built_spring_s;
   for (const Integrator* integrator : job.integrators) {
-    const double list_step = spring_s * springs * static_cast<double>(integrator->stage_count);
-    time.preparation += verification_steps * list_step + peaks_s;
+    if (size.garment && !dresses(*integrator)) continue;
+    const double list_step =
+        spring_s * springs * static_cast<double>(integrator->stage_count) * (size.garment ? garment_step : 1);
+    const double verification = verification_steps * (size.garment ? verified_garment : 1);
+    time.preparation += verification * list_step + (size.garment ? 0 : peaks_s);
+    if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_backends;
     for (const BackendInfo* backend : job.backends) {
       const double step = list_step * (backend->name == "serial" ? 1 : other_backends);
       const double sample = std::max(job.sample_seconds, step) + step + 2 * nodes * moved_node_s;
-      time.preparation += verification_steps * step + samples_to_calibrate * sample;
+      time.preparation += verification * step + samples_to_calibrate * sample;
+      if (size.garment) time.preparation += dressing_steps(nodes) * step;
       time.round += sample;
     }
   }

@@ -9,7 +9,7 @@ namespace mssim {
 
 /// How long bench_scene takes, in seconds.
 struct ExpectedTime {
-  double preparation = 0;  ///< building the scene, references, verification, calibration, peaks
+  double preparation = 0;  ///< building the scene, references, verification, dressing, calibration, peaks
   double round = 0;        ///< one sample of every combination
 };
 

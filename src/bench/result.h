@@ -7,6 +7,23 @@
 
 namespace mssim {
 
+/// A number that says how a dressed garment fits.
+struct FitNumberRecord {
+  std::string name;             ///< ends in its unit
+  std::optional<double> value;  ///< none where it is not finite
+  std::optional<bool> within;   ///< what it must keep; none where it need not keep anything
+};
+
+/// How a backend dressed a garment once, from the start until it had settled.
+struct DressingRecord {
+  std::uint64_t iterations = 0;            ///< steps
+  std::optional<std::uint64_t> seamed_at;  ///< steps after which all seams were closed
+  bool settled = false;
+  double simulated_s = 0;
+  double wall_s = 0;
+  std::vector<FitNumberRecord> fit;
+};
+
 /// One combination of scene, backend and integrator, measured and verified: a row of timings.csv.
 /// Values that do not exist (a failed row's times, a paper time that was never published) are empty.
 struct ResultRow {
@@ -41,6 +58,7 @@ struct ResultRow {
   int outliers = 0;                ///< samples that lie far from the rest (bench/outliers.h); they count too
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
+  std::optional<DressingRecord> dressing;  ///< of a garment
 };
 
 /// Are these, whatever is known of them, of the same scene, backend and integrator?

@@ -8,15 +8,24 @@
 
 #include "backends/backend.h"
 #include "bench/result.h"
+#include "fitting/fit_bounds.h"
 
 namespace mssim {
+
+/// What a garment needs beside its System.
+struct GarmentJob {
+  FitBody body;
+  FitBounds bounds = {};
+  SettlingRule rule = {};
+};
 
 /// What to measure of one scene: every backend with every integrator.
 struct SceneJob {
   std::string name;
   const System* system = nullptr;
   std::optional<std::uint64_t> springs_published = {};
-  std::string note = {};  ///< for every row
+  std::string note = {};                   ///< for every row
+  std::optional<GarmentJob> garment = {};  ///< of a garment: it is dressed, too, and timed as it hangs draped
   double dt_s = 0;
   std::vector<const BackendInfo*> backends;
   std::vector<const Integrator*> integrators;

@@ -17,7 +17,8 @@ std::vector<PlannedScene> planned_scenes(const BenchPlan& plan) {
   for (const std::string& name : plan.timed) {
     const SceneSpec spec = find_scene(name);
     const SceneCounts counts = counts_of(spec);
-    const SceneSize size{counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body)};
+    const SceneSize size{counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body),
+                         std::holds_alternative<GarmentSpec>(spec.body)};
     require_memory(spec, counts, bench_memory_needed(plan.job, size),
                    "name fewer with --backend or --integrator, or make the scene smaller");
     scenes.push_back({spec.name, size, expected_time(plan.job, size)});

@@ -2,9 +2,10 @@
 
 namespace mssim {
 
+bool dresses(const Integrator& integrator) { return integrator.name == "semi-euler"; }
+
 void require_semi_euler(const Integrator& integrator) {
-  if (integrator.name != "semi-euler")
-    throw Unsupported("a garment is dressed with semi-euler only, as published");
+  if (!dresses(integrator)) throw Unsupported("a garment is dressed with semi-euler only, as published");
 }
 
 }  // namespace mssim

@@ -23,6 +23,9 @@ class DressingBackend : public Backend {
   virtual DressingProgress progress() const = 0;
 };
 
+/// Whether garments can be dressed with it.
+bool dresses(const Integrator& integrator);
+
 /// Throws Unsupported for another integrator than semi-euler.
 void require_semi_euler(const Integrator& integrator);
 
