@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "backends/accumulation/race_ways.h"
 #include "backends/backends.h"
 #include "integrators/integrators.h"
+#include "output/garment_table.h"
 #include "output/paper_table.h"
 #include "output/race_table.h"
 #include "output/scaling_table.h"
@@ -25,6 +27,8 @@ constexpr std::array<std::string_view, 6> body_scenes{"bodies3858",  "bodies4737
 constexpr std::array<std::string_view, 2> race_scenes{"cloth40k", "bodies20587"};
 constexpr std::array<std::string_view, 6> ever_larger_cloths{"cloth40k", "cloth200k", "cloth350k",
                                                              "cloth1m",  "cloth4m",   "cloth16m"};
+constexpr std::array<std::string_view, 6> jeans{"jeans1k", "jeans2k",  "jeans4k",
+                                                "jeans8k", "jeans16k", "jeans64k"};
 
 /// The real methods, those that are a paper's integrator under its own name.
 constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
@@ -42,7 +46,7 @@ std::vector<const BackendInfo*> all_race_ways() {
   return rows;
 }
 
-TableMaker tables_of_the_paper() {
+TableMaker tables_of_hong() {
   PaperLegend legend;
   for (const BackendInfo& backend : backends())
     legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
@@ -50,6 +54,16 @@ TableMaker tables_of_the_paper() {
     legend.integrators.push_back({std::string(integrator.name), std::string(integrator.paper_name),
                                   static_cast<int>(integrator.stage_count)});
   return paper_tables(std::move(legend), published_tables());
+}
+
+/// Scenes of both papers are compared in the same way, and each in its own tables.
+TableMaker tables_of_the_papers() {
+  return [hong = tables_of_hong(), vassilev = garment_tables()](std::span<const ResultRow> rows,
+                                                                const Provenance& provenance) {
+    std::vector<ResultTable> tables = hong(rows, provenance);
+    std::ranges::move(vassilev(rows, provenance), std::back_inserter(tables));
+    return tables;
+  };
 }
 
 TableMaker table_of_races() {
@@ -63,9 +77,9 @@ TableMaker table_of_races() {
 
 TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
 
-constexpr Comparison of_backends{all_backends, real_methods, tables_of_the_paper};
+constexpr Comparison of_backends{all_backends, real_methods, tables_of_the_papers};
 
-constexpr std::array<Suite, 5> table{{
+constexpr std::array<Suite, 6> table{{
     {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
     {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
@@ -81,6 +95,12 @@ constexpr std::array<Suite, 5> table{{
      true,
      ever_larger_cloths,
      {all_backends, cheapest_method, table_of_scaling}},
+    {"garment",
+     "jeans on a body, draped and dressed: Figure 6 of Vassilev",
+     false,
+     true,
+     jeans,
+     {all_backends, cheapest_method, garment_tables}},
 }};
 
 bool belongs(const Suite& suite, std::string_view name) {

@@ -7,6 +7,7 @@
 
 #include "output/atomic_file.h"
 #include "output/benchmark_json.h"
+#include "output/garment_csv.h"
 #include "output/github_json.h"
 #include "output/provenance_file.h"
 #include "output/timings_csv.h"
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* timings_name = "timings.csv";
 constexpr const char* samples_name = "samples.csv";
+constexpr const char* garment_name = "garment.csv";
 constexpr const char* benchmark_name = "benchmark.json";
 constexpr const char* github_name = "github.json";
 
@@ -47,7 +49,7 @@ ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker ta
 bool ResultFolder::has_rows() const { return fs::exists(folder_ / timings_name); }
 
 void ResultFolder::clear() const {
-  for (const char* name : {timings_name, samples_name, benchmark_name, github_name}) {
+  for (const char* name : {timings_name, samples_name, garment_name, benchmark_name, github_name}) {
     std::error_code error;
     fs::remove(folder_ / name, error);
     if (error) throw WriteError(write_failure(folder_ / name, "removing it", error.value()));
@@ -64,10 +66,11 @@ void ResultFolder::begin() const {
 }
 
 void ResultFolder::write(std::span<const ResultRow> rows) const {
-  const std::string timings = timings_csv(rows), samples = samples_csv(rows);
+  const std::string timings = timings_csv(rows), samples = samples_csv(rows), garment = garment_csv(rows);
   const std::string benchmark = text_of(benchmark_json(rows, provenance_));
   const std::vector<ResultTable> tables = tables_(rows, provenance_);
   write_file_atomically(folder_ / samples_name, samples);
+  if (!garment.empty()) write_file_atomically(folder_ / garment_name, garment);
   write_file_atomically(folder_ / benchmark_name, benchmark);
   for (const ResultTable& table : tables) {
     write_file_atomically(folder_ / (table.name + ".csv"), table.csv);
@@ -90,6 +93,7 @@ std::vector<ResultRow> read_results(const fs::path& folder) {
   if (!fs::exists(folder / timings_name)) return {};
   std::vector<ResultRow> rows = read_timings(folder / timings_name);
   read_samples(folder / samples_name, rows);
+  if (fs::exists(folder / garment_name)) read_dressings(folder / garment_name, rows);
   return rows;
 }
 

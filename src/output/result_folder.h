@@ -12,9 +12,9 @@
 
 namespace mssim {
 
-/// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, benchmark.json,
-/// provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md. One at a time writes
-/// into it.
+/// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, of garments garment.csv,
+/// benchmark.json, provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md. One at
+/// a time writes into it.
 class ResultFolder {
  public:
   /// Creates the folder and those above it. Throws WriteError, also where another ResultFolder, in any
@@ -49,8 +49,8 @@ class ResultFolder {
   TableMaker tables_;
 };
 
-/// The rows, with their samples, that an earlier run left in a folder; none when it has no timings.csv.
-/// Throws CsvError.
+/// The rows, with their samples and dressings, that an earlier run left in a folder; none when it has no
+/// timings.csv. Throws CsvError.
 std::vector<ResultRow> read_results(const std::filesystem::path& folder);
 
 }  // namespace mssim
