@@ -84,7 +84,8 @@ TEST_F(BodyTrace, ShowsSolidsToXdmfReaders) {
                     Not(HasSubstr("000003")), Not(HasSubstr("3DSMesh"))));
   const Hdf5File h5 = open(file());
   for (int frame = 0; frame < 3; ++frame) {
-    const std::string path = xdmf_dataset("position", static_cast<std::size_t>(frame));
+    const std::string path =
+        xdmf_dataset("position", xdmf_mesh_of(bodies_, {}).parts.front(), static_cast<std::size_t>(frame));
     EXPECT_EQ(shape_of(h5.get(), path), (std::vector<hsize_t>{bodies_.nodes(), 3}));
     EXPECT_EQ(read<float>(h5.get(), path, H5T_NATIVE_FLOAT),
               in_single_precision(state_at(bodies_, frame).position));

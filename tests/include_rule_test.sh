@@ -15,7 +15,7 @@ integrators
 backends     model integrators kernels contact
 fitting      backends model contact
 bench        backends model integrators fitting mssim
-output       model bench/result.h bench/provenance.h bench/statistics.h bench/outliers.h bench/comparison.h
+output       model mesh/surface.h bench/result.h bench/provenance.h bench/statistics.h bench/outliers.h bench/comparison.h
 commands     *
 main.cpp     *
 '

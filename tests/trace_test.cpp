@@ -111,7 +111,8 @@ TEST_F(Trace, ShowsEveryFrameToXdmfReadersEvenAfterItIsRenamed) {
     const State state = state_at(system_, frame);
     for (const auto& [vector, values] :
          {std::pair{"position", state.position}, std::pair{"velocity", state.velocity}}) {
-      const std::string path = xdmf_dataset(vector, static_cast<std::size_t>(frame));
+      const std::string path =
+          xdmf_dataset(vector, xdmf_mesh_of(system_, {}).parts.front(), static_cast<std::size_t>(frame));
       EXPECT_EQ(shape_of(h5.get(), path), (std::vector<hsize_t>{1, rows, columns, 3}));
       EXPECT_EQ(read<float>(h5.get(), path, H5T_NATIVE_FLOAT), in_single_precision(values)) << path;
       EXPECT_THAT(xdmf, HasSubstr(">run.h5:" + path + "<"));

@@ -1,8 +1,6 @@
 #include "commands/dressing_run.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <optional>
 #include <vector>
@@ -15,18 +13,34 @@
 #include "output/listing.h"
 
 namespace mssim {
-int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name) {
+
+int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
+                 const FrameGrid& frames, RunRecorder& recorder) {
   StopRequest stop;
-  const auto before = std::chrono::steady_clock::now();
-  const DressingResult result =
-      dress(backend, scene.system, scene.dt_s, {}, [&](const State& state, std::int64_t iterations) {
-        if (const auto node = first_bad_node(state))
-          throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
-                            std::to_string(*node) + " is not finite");
-        stop.throw_if_requested();
-        return true;
-      });
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  const auto require_good = [&](const State& state, std::int64_t iterations) {
+    if (const auto node = first_bad_node(state))
+      throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
+                        std::to_string(*node) + " is not finite");
+    stop.throw_if_requested();
+  };
+  const auto record = [&](const State& state, std::int64_t iterations) {
+    require_good(state, iterations);
+    recorder.record({iterations, static_cast<double>(iterations) * scene.dt_s, state,
+                     energy_of(scene.system, state), std::nullopt});
+  };
+  DressingResult result;
+  double seconds = 0;
+  recorder.finish_after([&] {
+    const auto before = std::chrono::steady_clock::now();
+    result = dress(
+        backend, scene.system, scene.dt_s, {},
+        [&](const State& state, std::int64_t iterations) {
+          require_good(state, iterations);
+          return true;
+        },
+        recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  });
   const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.spec));
   nlohmann::ordered_json row{
       {"scene", scene.spec.name},

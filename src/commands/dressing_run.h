@@ -4,12 +4,16 @@
 
 #include "backends/dressing/dressing_backend.h"
 #include "commands/prepared_scene.h"
+#include "commands/run_recorder.h"
+#include "model/frame_grid.h"
 
 namespace mssim {
 
 /// Dresses a garment scene by a backend that was made for it, prints how it went and how the garment fits,
-/// and says on stderr what is out of bounds. Returns an ExitCode. Throws NotVerified when the simulation
-/// blows up, naming the step, and Interrupted.
-int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name);
+/// and says on stderr what is out of bounds. Records the start, the frames of the grid and how the garment
+/// rests. Returns an ExitCode. Throws NotVerified when the simulation blows up, naming the step, WriteError
+/// and Interrupted.
+int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
+                 const FrameGrid& frames, RunRecorder& recorder);
 
 }  // namespace mssim

@@ -16,12 +16,9 @@
 #include "commands/dressing_run.h"
 #include "commands/exit_code.h"
 #include "commands/prepared_scene.h"
-#include "commands/run_provenance.h"
+#include "commands/run_recorder.h"
 #include "commands/simulation.h"
 #include "commands/stop_request.h"
-#include "mesh/interruption.h"
-#include "output/energy_curve.h"
-#include "output/h5md_trace.h"
 #include "output/listing.h"
 
 namespace mssim {
@@ -37,8 +34,7 @@ struct RunOptions {
   std::optional<double> dt_s;
   std::optional<double> duration_s;  ///< default_duration_s where it is not given
   double fps = 60;
-  std::string trace;
-  std::string energy_curve;
+  RunFiles files;
   bool no_losses = false;
   ExecutionOptions execution;
 };
@@ -54,13 +50,10 @@ std::unique_ptr<Backend> make_backend(const RunOptions& options, const PreparedS
   return make_reference(scene.system, integrator, scene.dt_s);
 }
 
-/// A garment is dressed until it has settled, and there are no files of that.
-void require_no_frames(const RunOptions& options) {
-  const std::string reason =
-      " does not go with a garment, which is dressed until it has settled; leave it out";
-  if (options.duration_s) throw UsageError("--duration" + reason);
-  if (!options.trace.empty()) throw UsageError("--trace" + reason);
-  if (!options.energy_curve.empty()) throw UsageError("--energy-curve" + reason);
+/// A garment is dressed until it has settled, and its seams and contacts, which do work, have no ledger.
+void warn_of_missing_losses() {
+  std::cerr << "mssim: what is lost of a garment's energy is not accounted for, and not in the files; "
+               "--no-losses says that it is not wanted\n";
 }
 
 /// Tells who waits long for the accounting how to do without it.
@@ -99,48 +92,38 @@ int run(const RunOptions& options) {
   PreparedScene scene = prepare_scene(options.scene);
   warn_of_difference(scene);
   if (options.dt_s) scene.dt_s = *options.dt_s;
-  const bool keeps_energies = !options.trace.empty() || !options.energy_curve.empty();
-  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
-                            keeps_energies && !options.no_losses};
-  if (is_garment(scene.system)) require_no_frames(options);
+  const bool wants_losses = options.files.any() && !options.no_losses;
   const auto backend = make_backend(options, scene, integrator);
-  if (auto* dressing = dynamic_cast<DressingBackend*>(backend.get()))
-    return run_dressing(scene, *dressing, options.backend);
-
-  std::optional<H5mdTrace> trace;
-  if (!options.trace.empty()) {
-    TraceHeader header = trace_header(scene, *backend, options.backend, integrator);
-    header.with_losses = plan.accounts_for_losses;
-    trace.emplace(options.trace, scene.system, header);
+  if (auto* dressing = dynamic_cast<DressingBackend*>(backend.get())) {
+    if (options.duration_s)
+      throw UsageError(
+          "--duration does not go with a garment, which is dressed until it has settled; leave it out");
+    if (wants_losses) warn_of_missing_losses();
+    const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
+    RunRecorder recorder(options.files, scene, *backend, options.backend, integrator, false);
+    return run_dressing(scene, *dressing, options.backend, frames, recorder);
   }
+
+  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
+                            wants_losses};
+  RunRecorder recorder(options.files, scene, *backend, options.backend, integrator, plan.accounts_for_losses);
   if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
-  std::vector<EnergySample> curve;
   std::int64_t steps = 0;
   std::optional<EnergyLosses> losses;
+  double seconds = 0;
   StopRequest stop;
-  const auto before = std::chrono::steady_clock::now();
-  const auto finish = [&] {
-    if (trace) trace->close();
-    if (!options.energy_curve.empty()) write_energy_curve(options.energy_curve, curve, command_line());
-  };
-  try {
+  recorder.finish_after([&] {
+    const auto before = std::chrono::steady_clock::now();
     simulate(*backend, scene.system, integrator, plan, [&](const Frame& frame) {
-      if (trace) trace->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
-      curve.push_back({frame.time_s, frame.energy});
+      recorder.record(frame);
       steps = frame.step;
       losses = frame.losses;
       stop.throw_if_requested();
     });
-  } catch (const NotVerified&) {
-    finish();  // the frames before it are good and show what happened
-    throw;
-  } catch (const Interrupted&) {
-    finish();
-    throw;
-  }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  finish();
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  });
 
+  const std::vector<EnergySample>& curve = recorder.energies();
   const auto loss = [&](double EnergyLosses::*kind) {
     return losses ? or_null(*losses.*kind) : or_null(std::nullopt);
   };
@@ -174,21 +157,26 @@ std::function<int()> declare_run(CLI::App& app) {
   app.add_option("--scene", options->scene, "Scene: a name (see mssim list scenes) or a file")->required();
   app.add_option("--backend", options->backend, "Backend (default: openmp)");
   app.add_option("--integrator", options->integrator, "Integrator (default: semi-euler)");
-  app.add_option("--duration", options->duration_s,
-                 "Simulated seconds (default: 1; a garment is dressed until it has settled)")
+  app.add_option(
+         "--duration", options->duration_s,
+         "Simulated seconds (default: 1; not for garments, which are dressed until they have settled)")
       ->check(positive_number());
-  app.add_option("--fps", options->fps, "Frames per simulated second (default: 60)")
+  app.add_option("--fps", options->fps,
+                 "Frames per simulated second of the trace and the energy curve (default: 60)")
       ->check(positive_number());
   app.add_option("--dt", options->dt_s, "Step in seconds (default: the scene's)")->check(positive_number());
   app.add_option("--precision", options->precision,
                  "single, or double with --backend serial (default: single)")
       ->check(CLI::IsMember({"single", "double"}));
-  app.add_option("--trace", options->trace, "Write an H5MD trace to this .h5 file, and an .xdmf beside it");
-  app.add_option("--energy-curve", options->energy_curve,
+  app.add_option("--trace", options->files.trace,
+                 "Write an H5MD trace to this .h5 file, and an .xdmf beside it");
+  app.add_option("--energy-curve", options->files.energy_curve,
                  "Write the energies of all frames to this CSV file");
-  app.add_flag("--no-losses", options->no_losses,
-               "Do not account for what damping, friction, bounces and the integrator take from the energy, "
-               "which a trace or an energy curve otherwise costs a double-precision step for every step");
+  app.add_flag(
+      "--no-losses", options->no_losses,
+      "Do not account for what damping, friction, bounces and the integrator take from the energy, "
+      "which a trace or an energy curve otherwise costs a double-precision step for every step; for a "
+      "garment it never is");
   declare_execution(app, options->execution);
   return [options] { return run(*options); };
 }

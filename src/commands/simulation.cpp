@@ -27,17 +27,21 @@ std::int64_t count_steps(const SimulationPlan& plan) {
   return static_cast<std::int64_t>(std::llround(exact_steps));
 }
 
+FrameGrid frame_grid(double frames_per_second, double dt_s) {
+  const double steps_per_frame = 1 / (frames_per_second * dt_s);
+  if (!(steps_per_frame >= 1)) {
+    std::ostringstream text;
+    text << frames_per_second << " frames per second are more than one a step of " << dt_s
+         << " s; take --fps " << std::floor(1 / dt_s) << " or less";
+    throw UsageError(text.str());
+  }
+  return {steps_per_frame};
+}
+
 void simulate(Backend& backend, const System& system, const Integrator& integrator,
               const SimulationPlan& plan, const OnFrame& on_frame) {
   const std::int64_t steps = count_steps(plan);
-  const double steps_per_frame = 1 / (plan.frames_per_second * plan.dt_s);
-  if (!(steps_per_frame >= 1)) {
-    std::ostringstream text;
-    text << plan.frames_per_second << " frames per second are more than one a step of " << plan.dt_s
-         << " s; take --fps " << std::floor(1 / plan.dt_s) << " or less";
-    throw UsageError(text.str());
-  }
-
+  const FrameGrid grid = frame_grid(plan.frames_per_second, plan.dt_s);
   std::optional<EnergyLedger> ledger;
   if (plan.accounts_for_losses) ledger.emplace(system, integrator, plan.dt_s);
   const auto losses = [&] { return ledger ? std::optional(ledger->losses()) : std::nullopt; };
@@ -46,8 +50,7 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
   on_frame({0, 0, before, energy_of(system, before), losses()});
   std::int64_t done = 0;
   for (std::int64_t frame = 1; done < steps; ++frame) {
-    const std::int64_t next =
-        std::min<std::int64_t>(steps, std::llround(static_cast<double>(frame) * steps_per_frame));
+    const std::int64_t next = std::min(steps, grid.step_of(frame));
     const int count = static_cast<int>(next - done);
     if (ledger) {
       for (int step = 0; step < count; ++step) ledger->step(backend);

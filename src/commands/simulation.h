@@ -6,6 +6,7 @@
 
 #include "backends/backend.h"
 #include "model/energy.h"
+#include "model/frame_grid.h"
 
 namespace mssim {
 
@@ -39,5 +40,8 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
 
 /// Steps of a plan. Throws UsageError like simulate().
 std::int64_t count_steps(const SimulationPlan& plan);
+
+/// The frames of steps of `dt_s`. Throws UsageError for more than one frame a step.
+FrameGrid frame_grid(double frames_per_second, double dt_s);
 
 }  // namespace mssim

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "backends/dressing/dressing_backend.h"
+#include "model/frame_grid.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -29,8 +30,16 @@ struct DressingResult {
 /// Called after every window with the state and the number of steps; returns whether to go on.
 using OnWindow = std::function<bool(const State& state, std::int64_t iterations)>;
 
-/// Dresses: from the system's start until the seams are closed and the garment has settled.
+/// Moments of a dressing to look at: the start, those of the grid, and the end. They change nothing.
+struct DressingFrames {
+  FrameGrid grid;
+  /// Called with the state and the number of steps; none where nobody looks.
+  std::function<void(const State& state, std::int64_t iterations)> on_frame;
+};
+
+/// Dresses: from the system's start until the seams are closed and the garment has settled. A frame at the
+/// end of a window comes after on_window.
 DressingResult dress(DressingBackend& backend, const System& system, double dt_s, const SettlingRule& rule,
-                     const OnWindow& on_window);
+                     const OnWindow& on_window, const DressingFrames& frames = {});
 
 }  // namespace mssim

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "output/h5md_garment.h"
+#include "output/h5md_tuples.h"
 #include "output/hdf5_write.h"
 #include "output/xdmf.h"
 
@@ -51,6 +51,7 @@ void write_parameters(hid_t file, const Topology& topology, const TraceHeader& h
     write_attribute(parameters.get(), "rows", std::int64_t{grid->rows});
     write_attribute(parameters.get(), "columns", std::int64_t{grid->columns});
   }
+  if (const auto* garment = std::get_if<Garment>(&topology)) write_garment(file, *garment);
   const Hdf5Group units_group = create_group(file, "/parameters/units");
   for (const auto& [quantity, unit] : units)
     write_attribute(units_group.get(), quantity, std::string_view(unit));
@@ -66,31 +67,8 @@ void create_particles(hid_t file, const std::string& particles) {
 }
 
 void write_mass(hid_t file, const std::string& particles, const System& system) {
-  const std::array<hsize_t, 1> shape{system.nodes()};
-  Hdf5Dataset mass = create_dataset(file, particles + "/mass", H5T_IEEE_F64LE, shape, false,
-                                    chunked(shape, Packing::deflated));
-  checked(H5Dwrite(mass.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, system.node_mass.data()),
-          "writing masses");
-  mass.close("writing masses");
-}
-
-/// Tuples of nodes: an empty list has no dataset.
-template <std::size_t size>
-void write_tuples(hid_t file, const std::string& path, const std::string& particles,
-                  std::span<const std::array<std::uint32_t, size>> tuples) {
-  if (tuples.empty()) return;
-  const std::string action = "writing " + path;
-  constexpr hsize_t tuples_per_chunk = 65536;
-  const std::array<hsize_t, 2> shape{tuples.size(), size};
-  const std::array<hsize_t, 2> chunk{std::min(shape[0], tuples_per_chunk), size};
-  const Hdf5Properties properties = chunked(chunk, Packing::deflated);
-  // Readers of H5MD pass over tuples that hold the fill value. HDF5's own is 0, a real node.
-  constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
-  checked(H5Pset_fill_value(properties.get(), H5T_NATIVE_UINT32, &no_node), "setting a fill value");
-  Hdf5Dataset dataset = create_dataset(file, path, H5T_STD_U32LE, shape, false, properties);
-  checked(H5Dwrite(dataset.get(), H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, tuples.data()), action);
-  write_reference(dataset.get(), "particles_group", file, particles);
-  dataset.close(action);
+  write_array(file, particles + "/mass", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+              std::array<hsize_t, 1>{system.nodes()}, system.node_mass.data());
 }
 
 void write_connectivity(hid_t file, const std::string& particles, const System& system) {
@@ -101,6 +79,7 @@ void write_connectivity(hid_t file, const std::string& particles, const System& 
   write_tuples<2>(file, "/connectivity/springs", particles, ends);
   if (const auto* mesh = std::get_if<TetrahedralMesh>(&system.topology))
     write_tuples<4>(file, tetrahedra_dataset, particles, mesh->tetrahedra);
+  if (const auto* garment = std::get_if<Garment>(&system.topology)) write_joints(file, particles, *garment);
 }
 
 }  // namespace
@@ -112,6 +91,8 @@ void require_fitting_topology(const System& system) {
     if (grid->nodes() != nodes) throw std::invalid_argument("a trace needs a grid of all nodes");
     return;
   }
+  if (const auto* garment = std::get_if<Garment>(&system.topology))
+    return require_fitting_garment(*garment, nodes);
   const auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
   const bool fits = std::ranges::all_of(tetrahedra, [&](const Tetrahedron& corners) {
     return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });

@@ -6,6 +6,7 @@
 
 #include "output/atomic_file.h"
 #include "output/file_space.h"
+#include "output/h5md_body.h"
 #include "output/hdf5_write.h"
 #include "output/write_error.h"
 
@@ -67,12 +68,14 @@ std::size_t count_frames(const std::filesystem::path& trace) {
 
 }  // namespace
 
-H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header)
+H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header,
+                     const Surface& body)
     : file_name_(std::move(file)),
-      mesh_(xdmf_mesh_of(system)),
+      mesh_(xdmf_mesh_of(system, body)),
       with_losses_(header.with_losses),
       buffer_(dimensions * system.nodes()) {
   require_fitting_topology(system);
+  require_fitting_body(system, body);
   prepare_hdf5();
   require_replaceable(file_name_);
   require_replaceable(temporary_of(file_name_));
@@ -80,18 +83,19 @@ H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const Tra
   if (xdmf_of(file_name_) == file_name_)
     throw WriteError("cannot write " + file_name_.string() +
                      ": its XDMF would have the same name; choose a name that ends in .h5");
-  guard([&] { create(system, header); });
+  guard([&] { create(system, header, body); });
 }
 
 H5mdTrace::~H5mdTrace() { give_up(); }
 
-void H5mdTrace::create(const System& system, const TraceHeader& header) {
+void H5mdTrace::create(const System& system, const TraceHeader& header, const Surface& body) {
   const std::string temporary = temporary_of(file_name_).string();
   // The default, oldest format: the newer ones leave a file that only h5clear can open after a crash.
   file_ = Hdf5File(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                    "creating " + temporary);
   owns_temporary_ = true;
   write_h5md_head(file_.get(), particles(), system, header);
+  write_static_body(file_.get(), body);
   create_series(system.nodes());
   checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing the head of the trace");
 }
@@ -158,7 +162,7 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
 void H5mdTrace::close() {
   guard([&] {
     const std::string action = "finishing the trace";
-    reserve(room_for_metadata + times_s_.size() * xdmf_bytes_per_frame);
+    reserve(room_for_metadata + times_s_.size() * mesh_.parts.size() * xdmf_bytes_per_part_and_frame);
     map_frames_for_xdmf(file_.get(), mesh_, times_s_.size());
     checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), action);
     for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) dataset->close(action);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/surface.h"
 #include "model/energy.h"
 #include "model/system.h"
 #include "output/h5md_head.h"
@@ -17,7 +18,7 @@ namespace mssim {
 
 /// A trace: the frames of one simulation in an HDF5 file after H5MD 1.1 (https://www.nongnu.org/h5md), with
 /// an XDMF file beside it for viewers. SI units throughout, listed in /parameters/units. PARTICLES is `cloth`
-/// for a system on a grid and `bodies` for one of tetrahedra.
+/// for a system on a grid, `bodies` for one of tetrahedra, and `garment` for one.
 ///
 ///     /h5md                                   author, creator, version of H5MD
 ///     /particles/PARTICLES/{position,velocity}/value  [frames][nodes][3] float32, in the scene's node order
@@ -27,9 +28,15 @@ namespace mssim {
 ///     .../step, .../time                      [frames] int64, float64: the same two datasets everywhere
 ///     /connectivity/springs                   [springs][2] uint32, each unique spring once
 ///     /connectivity/tetrahedra                [tetrahedra][4] uint32, of bodies
+///     /connectivity/joints                    [joints][3] uint32, of a garment: h5md_garment.h
+///     /body/{points,triangles}                of a body that does not move: h5md_body.h
 ///     /parameters                             scene and provenance as JSON, and how it was stepped
+///     /parameters/{panels,joints,seams}       of a garment: h5md_garment.h
 ///     /xdmf/{position,velocity}/FRAME         virtual datasets, one frame each: [1][rows][columns][3] for
 ///                                             a cloth, [nodes][3] for bodies
+///     /xdmf/{position,velocity}/PANEL/FRAME   of a garment, [1][rows][columns][3] for each panel, from 0 on
+///     /xdmf/panel/{PANEL,body}                of a garment, the panel's number for each node, -1 for the
+///     body
 ///
 /// Positions are single precision, as most backends compute them, which halves the file; energies are double.
 ///
@@ -39,8 +46,10 @@ namespace mssim {
 class H5mdTrace {
  public:
   /// Creates NAME.part with everything but frames. The topology of `system` must fit its nodes, of which
-  /// there is one at least (else std::invalid_argument). Throws WriteError.
-  H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header);
+  /// there is one at least, and `body`, which does not move and may be empty, stands beside garments alone
+  /// (else std::invalid_argument). Throws WriteError.
+  H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header,
+            const Surface& body = {});
   H5mdTrace(const H5mdTrace&) = delete;
   H5mdTrace& operator=(const H5mdTrace&) = delete;
   /// Without close(): gives up, keeping NAME.part when it holds frames.
@@ -56,7 +65,7 @@ class H5mdTrace {
   void close();
 
  private:
-  void create(const System& system, const TraceHeader& header);
+  void create(const System& system, const TraceHeader& header, const Surface& body);
   void create_series(std::size_t nodes);
   std::string particles() const { return "/particles/" + mesh_.particles; }
   void append(std::int64_t step, double time_s, const State& state, const Energy& energy,

@@ -34,16 +34,36 @@ void write(hid_t object, const std::string& name, hid_t file_type, hid_t memory_
   attribute.close(action);
 }
 
+/// Strings as HDF5 stores them: of one length, one behind the other.
+struct PackedStrings {
+  Hdf5Type type;
+  std::string bytes;
+};
+
+PackedStrings packed(std::span<const std::string_view> texts) {
+  PackedStrings strings{string_type(std::ranges::max(texts, {}, &std::string_view::size).size()), {}};
+  for (const std::string_view text : texts) {
+    strings.bytes += text;
+    strings.bytes.append(H5Tget_size(strings.type.get()) - text.size(), '\0');
+  }
+  return strings;
+}
+
 void write_strings(hid_t object, const std::string& name, std::span<const std::string_view> texts,
                    const Hdf5Space& space) {
-  const std::size_t length = std::ranges::max(texts, {}, &std::string_view::size).size();
-  const Hdf5Type type = string_type(length);
-  std::string padded;
-  for (const std::string_view text : texts) {
-    padded += text;
-    padded.append(H5Tget_size(type.get()) - text.size(), '\0');
-  }
-  write(object, name, type.get(), type.get(), space, padded.data());
+  const PackedStrings strings = packed(texts);
+  write(object, name, strings.type.get(), strings.type.get(), space, strings.bytes.data());
+}
+
+void write_string_dataset(hid_t parent, const std::string& name, std::span<const std::string_view> texts,
+                          const Hdf5Space& space) {
+  const std::string action = "writing " + name;
+  const PackedStrings strings = packed(texts);
+  const hid_t type = strings.type.get();
+  Hdf5Dataset dataset(
+      H5Dcreate2(parent, name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), action);
+  checked(H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, strings.bytes.data()), action);
+  dataset.close(action);
 }
 
 }  // namespace
@@ -79,14 +99,19 @@ void write_reference(hid_t object, const std::string& name, hid_t file, const st
 }
 
 void write_text(hid_t parent, const std::string& name, std::string_view text) {
-  const std::string action = "writing " + name;
-  const Hdf5Type type = string_type(text.size());
-  const Hdf5Space space = scalar_space();
-  Hdf5Dataset dataset(
-      H5Dcreate2(parent, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-      action);
-  const char* data = text.empty() ? "" : text.data();
-  checked(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), action);
+  write_string_dataset(parent, name, std::span(&text, 1), scalar_space());
+}
+
+void write_texts(hid_t parent, const std::string& name, std::span<const std::string_view> texts) {
+  write_string_dataset(parent, name, texts, list_space(texts.size()));
+}
+
+void write_array(hid_t parent, const std::string& path, hid_t file_type, hid_t memory_type,
+                 std::span<const hsize_t> shape, const void* data) {
+  const std::string action = "writing " + path;
+  Hdf5Dataset dataset =
+      create_dataset(parent, path, file_type, shape, false, chunked(shape, Packing::deflated));
+  checked(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), action);
   dataset.close(action);
 }
 

@@ -27,6 +27,13 @@ void write_reference(hid_t object, const std::string& name, hid_t file, const st
 /// A scalar dataset of one string; unlike attributes it may be longer than 64 KiB.
 void write_text(hid_t parent, const std::string& name, std::string_view text);
 
+/// A dataset of strings, one at least.
+void write_texts(hid_t parent, const std::string& name, std::span<const std::string_view> texts);
+
+/// A dataset of numbers that does not grow, none of its extents 0; `data` holds them in `memory_type`.
+void write_array(hid_t parent, const std::string& path, hid_t file_type, hid_t memory_type,
+                 std::span<const hsize_t> shape, const void* data);
+
 /// How the chunks of a dataset are stored. Every chunk has a Fletcher-32 checksum.
 enum class Packing { plain, deflated };
 
