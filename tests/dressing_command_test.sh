@@ -65,7 +65,5 @@ dress 2 --scene jeans2k --backend opencl
 misfit 'garments are dressed by serial and openmp'
 dress 2 --scene jeans2k --integrator rk4
 misfit 'semi-euler only'
-dress 2 --scene jeans2k --trace "$work/never.h5"
-misfit '.--trace does not go with a garment'
 expect 2 'jeans2k is a garment: bench times cloths and bodies' bench --scene jeans2k
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -135,4 +135,12 @@ start_and_signal INT fall.h5.part run --scene cloth2500 --threads 1 --duration 1
 [ "$(wc -l <fall.csv)" -ge 2 ] || fail "SIGINT loses the energies"
 h5dump -d /particles/cloth/position/step fall.h5 >frames || fail "the trace cannot be read"
 
+# The same while a garment is dressed.
+start_and_signal INT dress.h5.part run --scene jeans16k --backend serial --no-losses --trace dress.h5 --energy-curve dress.csv
+[ "$status" -eq 130 ] || fail "SIGINT while dressing gives exit status $status: $(cat err)"
+[ -s dress.h5 ] && [ -s dress.xdmf ] && [ ! -e dress.h5.part ] || fail "SIGINT loses the trace of a dressing"
+h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"
+frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)
+[ "$frames" -ge 1 ] && [ "$(grep -c '^[0-9]' dress.csv)" -eq "$frames" ] || fail "$frames frames, energies: $(cat dress.csv)"
+
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -8,25 +8,23 @@
 #include "bench/blow_up.h"
 #include "commands/exit_code.h"
 #include "commands/fit_body.h"
-#include "commands/stop_request.h"
 #include "fitting/fit_bounds.h"
 #include "output/listing.h"
 
 namespace mssim {
 
 int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
-                 const FrameGrid& frames, RunRecorder& recorder) {
-  StopRequest stop;
-  const auto require_good = [&](const State& state, std::int64_t iterations) {
+                 const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop) {
+  const auto require_finite = [](const State& state, std::int64_t iterations) {
     if (const auto node = first_bad_node(state))
       throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
                         std::to_string(*node) + " is not finite");
-    stop.throw_if_requested();
   };
   const auto record = [&](const State& state, std::int64_t iterations) {
-    require_good(state, iterations);
+    require_finite(state, iterations);
     recorder.record({iterations, static_cast<double>(iterations) * scene.dt_s, state,
                      energy_of(scene.system, state), std::nullopt});
+    stop.throw_if_requested();
   };
   DressingResult result;
   double seconds = 0;
@@ -35,7 +33,8 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
     result = dress(
         backend, scene.system, scene.dt_s, {},
         [&](const State& state, std::int64_t iterations) {
-          require_good(state, iterations);
+          require_finite(state, iterations);
+          stop.throw_if_requested();
           return true;
         },
         recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});

@@ -5,6 +5,7 @@
 #include "backends/dressing/dressing_backend.h"
 #include "commands/prepared_scene.h"
 #include "commands/run_recorder.h"
+#include "commands/stop_request.h"
 #include "model/frame_grid.h"
 
 namespace mssim {
@@ -14,6 +15,6 @@ namespace mssim {
 /// rests. Returns an ExitCode. Throws NotVerified when the simulation blows up, naming the step, WriteError
 /// and Interrupted.
 int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
-                 const FrameGrid& frames, RunRecorder& recorder);
+                 const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop);
 
 }  // namespace mssim
