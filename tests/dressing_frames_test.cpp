@@ -74,7 +74,7 @@ TEST(DressingFrames, StepsGiveTheSameBitsHoweverTheyAreCut) {
 
 TEST(DressingFrames, ChangeNothing) {
   const System system = hung_squares();
-  for (const auto& backend : backends(system)) {
+  for (const auto& backend : backends(system, 1)) {
     const SettlingRule soon{.distance = 1};  // it moves less in the first window after its seam has closed
     const DressingResult alone = dress(*backend, system, dt_s, soon, always);
     EXPECT_TRUE(alone.settled);
