@@ -29,6 +29,10 @@ dress 0 --scene jeans2k --backend openmp --threads 3
   fail "three threads dress otherwise than one"
 [ "$(value rows_astray)" -eq 0 ] && [ "$(value rows)" -ge 50 ] || fail "rows: $(cat "$work/out")"
 
+# So does it on other bodies, to the same bounds.
+dress 0 --scene jeans4k-hip88 --backend openmp
+dress 0 --scene jeans4k-hip115 --backend openmp
+
 # wrong NAME CHANGE: the scene with a change, as $work/NAME.json
 wrong() {
   sed "$2" "$source/scenes/jeans2k.json" >"$work/$1.json"
