@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "contact/body_maps.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -46,6 +48,11 @@ inline System garment_of(const std::vector<SquarePanel>& panels) {
 }
 
 inline Garment& garment_in(System& system) { return std::get<Garment>(system.topology); }
+
+/// Gives the garment the body that it meets.
+inline void put_on(System& system, const Surface& body, const BodyMapSettings& settings) {
+  garment_in(system).body = std::make_shared<BodyMaps>(body, settings);
+}
 
 /// A seam of joints, node to node.
 inline void sew(System& system, const std::vector<std::uint32_t>& first,

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/dressing/serial_dressing.h"
+#include "contact/solid.h"
+#include "fitting/fit_bounds.h"
+#include "garment/body_profile.h"
+#include "integrators/integrators.h"
+#include "scene/garment.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "scene_files.h"
+
+namespace mssim {
+
+/// A garment scene that may be changed before it is dressed.
+struct DressingCase {
+  SceneSpec spec;
+  System system;
+
+  explicit DressingCase(const std::string& scene) : DressingCase(find_scene(scene)) {}
+  explicit DressingCase(SceneSpec scene) : spec(std::move(scene)), system(build_system(spec)) {
+    round_to_single(system.start);
+  }
+
+  Garment& garment() { return std::get<Garment>(system.topology); }
+  double dt_s() const { return spec.dt_s.value(); }
+};
+
+struct Dressed {
+  DressingResult result;
+  Fit fit;
+  std::vector<std::string> found;  ///< out of bounds
+};
+
+/// Dresses it on one thread and measures the fit on the body's own mesh.
+inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {}) {
+  const auto backend = make_serial_dressing(of.system, *find_integrator("semi-euler"), of.dt_s());
+  Dressed dressed;
+  dressed.result =
+      dress(*backend, of.system, of.dt_s(), rule, [](const State&, std::int64_t) { return true; });
+  const Surface surface = body_of_garment(of.spec);
+  const Solid solid(surface);
+  const BodyProfile profile(surface);
+  dressed.fit = fit_of(of.system, dressed.result.state.position,
+                       {[&](std::span<const Vec3d> points) { return solid.depths(points); },
+                        [&](const Vec3d& point) {
+                          const PlanPoint middle = profile.leg_middle(point.y);
+                          return Vec3d{point.x < 0 ? -middle.x : middle.x, point.y, middle.z};
+                        }});
+  dressed.found = misfits(dressed.result, dressed.fit, {});
+  return dressed;
+}
+
+}  // namespace mssim
