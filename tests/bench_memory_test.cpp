@@ -103,6 +103,13 @@ TEST(BenchMemory, HoldsAllCombinationsAtOnce) {
   EXPECT_GT(needed({"hybrid"}, {"semi-euler", "rk4"}) - needed({"hybrid"}, {"semi-euler"}), hybrid);
 }
 
+TEST(BenchMemory, OfAGarmentHoldsTheStatesOfItsReference) {
+  const SceneJob job = job_of({"openmp"}, {"semi-euler"});
+  // Both ends of 20 stretches while the seams close and of 20 when draped, 48 bytes a node each; 40 errors.
+  EXPECT_EQ(bench_memory_needed(job, {1000, 6000, false, true}),
+            bench_memory_needed(job, {1000, 6000, false, false}) + 1000U * (80 * 48 + 40 * 8));
+}
+
 TEST(BenchMemory, OfSixteenMillionNodesWithAllBackendsFitsInto24GiB) {
   const SceneSize size{16'000'000, 95'960'002, true};
   const std::uint64_t needed = bench_memory_needed(

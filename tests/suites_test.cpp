@@ -53,5 +53,12 @@ TEST(Suites, OfRacesAndScalingMeasureOneMethodOfTheirOwn) {
     EXPECT_THAT(comparison_of_suite(suite).integrators, testing::ElementsAre("semi-euler"));
 }
 
+TEST(Suites, OfGarmentsAreTheJeansOfTheFigureWithTheOneMethodThatDresses) {
+  EXPECT_THAT(scenes_of_suite("garment", true),
+              testing::ElementsAre("jeans1k", "jeans2k", "jeans4k", "jeans8k", "jeans16k", "jeans64k"));
+  EXPECT_THAT(comparison_of_suite("garment").integrators, testing::ElementsAre("semi-euler"));
+  EXPECT_EQ(backends_of("garment"), backends_of("table1"));
+}
+
 }  // namespace
 }  // namespace mssim

@@ -1,10 +1,12 @@
-// What was measured or published: timings.csv, form feed, samples.csv; or a published table alone.
+// What was measured or published: timings.csv, form feed, samples.csv or garment.csv; or a published table
+// alone.
 
 #include <string>
 #include <vector>
 
 #include "fuzz_checks.h"
 #include "output/csv.h"
+#include "output/garment_csv.h"
 #include "output/published.h"
 #include "output/published_bodies.h"
 #include "output/timings_csv.h"
@@ -39,6 +41,14 @@ void check_timings(const CsvTable& timings, std::string_view samples_text) {
   // The writer throws for what is not finite, too.
   const std::string written = timings_csv(*rows);
   require(timings_csv(read_timings(CsvTable("again.csv", written))) == written, "written timings read back");
+
+  // The second part may as well be a garment.csv.
+  unless_refused<CsvError>([&] {
+    std::vector<ResultRow> result = *rows;
+    const CsvTable dressings("garment.csv", samples_text);
+    read_dressings(dressings, result);
+    return result;
+  });
 
   const auto with_samples = unless_refused<CsvError>([&] {
     std::vector<ResultRow> result = *rows;
