@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "contact/body_maps.h"
 #include "contact_fixture.h"
@@ -32,10 +34,14 @@ inline double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-inline bool same_bits(const BodyPixel& a, const BodyPixel& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+template <class Value>
+bool same_bits(const Value& a, const Value& b) {
+  using Words = std::array<std::uint32_t, sizeof(Value) / sizeof(std::uint32_t)>;
+  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
+}
 
 inline bool same_bits(const BodyMaps& a, const BodyMaps& b) {
-  return std::memcmp(&a.frame(), &b.frame(), sizeof(BodyFrame)) == 0 &&
+  return same_bits(a.frame(), b.frame()) &&
          std::equal(a.pixels().begin(), a.pixels().end(), b.pixels().begin(), b.pixels().end(),
                     [](const BodyPixel& p, const BodyPixel& q) { return same_bits(p, q); });
 }

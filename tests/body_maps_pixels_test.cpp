@@ -35,7 +35,8 @@ TEST(BodyMaps, ReachBeyondTheSilhouetteByTheDilation) {
                         double{frame.bottom} + (row + 0.5) * pixel);
     };
     const auto at = [&](int column, int row) -> const BodyPixel& {
-      return maps.pixels()[static_cast<std::size_t>(row * frame.columns + column)];
+      return maps.pixels()[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.columns) +
+                           static_cast<std::size_t>(column)];
     };
     for (int row = 0; row < frame.rows; ++row)
       for (int column = 0; column < frame.columns; ++column) {
@@ -145,8 +146,8 @@ TEST(BodyMaps, TakeNoMoreRoomForMoreTriangles) {
   EXPECT_NEAR(many.frame().columns, few.frame().columns, 1);
   EXPECT_NEAR(many.frame().rows, few.frame().rows, 1);
   for (const BodyMaps* maps : {&few, &many})
-    EXPECT_EQ(maps->pixels().size_bytes(),
-              std::size_t{32} * static_cast<std::size_t>(maps->frame().columns * maps->frame().rows));
+    EXPECT_EQ(maps->pixels().size_bytes(), std::size_t{32} * static_cast<std::size_t>(maps->frame().columns) *
+                                               static_cast<std::size_t>(maps->frame().rows));
 }
 
 std::string complaint(const BodyMapSettings& settings) {
