@@ -94,7 +94,6 @@ int run(const RunOptions& options) {
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const bool wants_losses = options.files.any() && !options.no_losses;
   const auto backend = make_backend(options, scene, integrator);
-  StopRequest stop;  // before there is a file that a signal could leave half-written
   if (auto* dressing = dynamic_cast<DressingBackend*>(backend.get())) {
     if (options.duration_s)
       throw UsageError(
@@ -102,6 +101,7 @@ int run(const RunOptions& options) {
     if (wants_losses) warn_of_missing_losses();
     const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
     RunRecorder recorder(options.files, scene, *backend, options.backend, integrator, false);
+    StopRequest stop;  // last, as below
     return run_dressing(scene, *dressing, options.backend, frames, recorder, stop);
   }
 
@@ -112,6 +112,7 @@ int run(const RunOptions& options) {
   std::int64_t steps = 0;
   std::optional<EnergyLosses> losses;
   double seconds = 0;
+  StopRequest stop;  // after the recorder, whose provenance loads libraries that catch signals themselves
   recorder.finish_after([&] {
     const auto before = std::chrono::steady_clock::now();
     simulate(*backend, scene.system, integrator, plan, [&](const Frame& frame) {
