@@ -1,7 +1,7 @@
 /* The number type of the OpenCL programs: one Real holds MSSIM_LANES neighbouring nodes (1, 4, 8 or 16).
  * CPU drivers do not turn work-items into vector lanes by themselves, so they get wide Reals and few
  * work-items; a GPU does, and gets one node per work-item. The text over Real is the same.
- * Needs MSSIM_LANES; gives the names that spring_law.h and floor_law.h ask for.
+ * Needs MSSIM_LANES; gives the names that the laws (*_law.h, body_contact.h) ask for.
  */
 #define MSSIM_PASTE_(a, b) a##b
 #define MSSIM_PASTE(a, b) MSSIM_PASTE_(a, b)
@@ -10,10 +10,12 @@
 typedef float Real;
 typedef int Mask; /* not 0: true */
 #define load_lanes(from) (*(from))
+#define store_lanes(value, to) (*(to) = (value))
 #else
 typedef MSSIM_PASTE(float, MSSIM_LANES) Real;
 typedef MSSIM_PASTE(int, MSSIM_LANES) Mask; /* sign bit set: true */
 #define load_lanes(from) MSSIM_PASTE(vload, MSSIM_LANES)(0, from)
+#define store_lanes(value, to) MSSIM_PASTE(vstore, MSSIM_LANES)(value, 0, to)
 #endif
 /* At addresses that are multiples of a Real's size. vload and vstore work there too, but PoCL 3.1 takes them
  * apart into scalar pairs where other writes are near. */
@@ -56,6 +58,7 @@ static inline int any_lane(int16 mask) {
 #define MSSIM_INLINE static inline __attribute__((always_inline))
 #define MSSIM_LAW MSSIM_INLINE Real
 #define mul_add(a, b, c) fma(a, b, c)
+#define square_root(a) sqrt(a)
 #define inverse_sqrt(a) (1.0f / sqrt(a))
 #define where_less(a, b, yes, no) select(no, yes, (a) < (b))
 

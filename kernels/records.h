@@ -1,18 +1,28 @@
-/* Nodes as records of eight floats: x y z and a float that is zero, u v w and another. A record is one load
- * of 32 bytes wherever the node lies, so that gathering MSSIM_LANES nodes is that many loads and a
- * transposition in registers. Needs lanes.h.
+/* Records of eight floats. A record is one load of 32 bytes wherever it lies, so that gathering MSSIM_LANES
+ * of them is that many loads and a transposition in registers. Those of nodes are x y z and a float that is
+ * zero, u v w and another. Needs lanes.h.
  */
 #define record_floats 8
+
+/* Every lane's record. */
+typedef struct {
+  Real a0, a1, a2, a3, a4, a5, a6, a7;
+} Records;
+static inline Node node_of_records(Records a) {
+  Node node = {{a.a0, a.a1, a.a2}, {a.a4, a.a5, a.a6}};
+  return node;
+}
+#define load_records(records, of) node_of_records(load_whole_records(records, of))
 
 #if MSSIM_LANES == 1
 
 /* of(lane): the number of the lane's record. */
-#define load_records(records, of) load_record(records, of(0))
-static inline Node load_record(__global const float* records, size_t number) {
-  float4 x = *(__global const float4*)(records + record_floats * number);
-  float4 v = *(__global const float4*)(records + record_floats * number + 4);
-  Node node = {{x.x, x.y, x.z}, {v.x, v.y, v.z}};
-  return node;
+#define load_whole_records(records, of) load_record(records, of(0))
+static inline Records load_record(__global const float* records, size_t number) {
+  float4 a = *(__global const float4*)(records + record_floats * number);
+  float4 b = *(__global const float4*)(records + record_floats * number + 4);
+  Records all = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w};
+  return all;
 }
 
 /* The lane's vector as x y z 0. */
@@ -47,59 +57,59 @@ static inline void store_quads(Vector value, __global float* to, size_t distance
 #define record_at(records, number) (*(__global const float8*)((records) + record_floats * (size_t)(number)))
 
 #if MSSIM_LANES == 4
-#define load_records(records, of)                                                               \
+#define load_whole_records(records, of)                                                         \
   transposed_4(record_at(records, of(0)), record_at(records, of(1)), record_at(records, of(2)), \
                record_at(records, of(3)))
-static inline Node transposed_4(float8 a, float8 b, float8 c, float8 d) {
+static inline Records transposed_4(float8 a, float8 b, float8 c, float8 d) {
   float8 ab_low = low_pairs_8(a, b), ab_high = high_pairs_8(a, b);
   float8 cd_low = low_pairs_8(c, d), cd_high = high_pairs_8(c, d);
   float8 xu = low_halves_8(ab_low, cd_low), yv = high_halves_8(ab_low, cd_low),
-         zw = low_halves_8(ab_high, cd_high);
-  Node node = {{xu.lo, yv.lo, zw.lo}, {xu.hi, yv.hi, zw.hi}};
-  return node;
+         zw = low_halves_8(ab_high, cd_high), last = high_halves_8(ab_high, cd_high);
+  Records all = {xu.lo, yv.lo, zw.lo, last.lo, xu.hi, yv.hi, zw.hi, last.hi};
+  return all;
 }
 #else
-/* Eight nodes: two and two share a register; positions are then in the even, velocities in the odd quarters.
- */
+/* Eight records: two and two share a register; their first halves are then in the even, their second in the
+ * odd quarters. */
 typedef struct {
-  float16 xu, yv, zw;
-} EightNodes;
+  float16 xu, yv, zw, last;
+} EightRecords;
 /* As wider integers, because PoCL 3.1 would move the shuffles that follow to the halves, which doubles them.
  */
 #define beside(a, b) as_float16((ulong8)(as_ulong4(a), as_ulong4(b)))
-static inline EightNodes transposed_8(float8 a, float8 b, float8 c, float8 d, float8 e, float8 f, float8 g,
-                                      float8 h) {
+static inline EightRecords transposed_8(float8 a, float8 b, float8 c, float8 d, float8 e, float8 f, float8 g,
+                                        float8 h) {
   float16 ae = beside(a, e), bf = beside(b, f), cg = beside(c, g), dh = beside(d, h);
   float16 ab_low = low_pairs_16(ae, bf), ab_high = high_pairs_16(ae, bf);
   float16 cd_low = low_pairs_16(cg, dh), cd_high = high_pairs_16(cg, dh);
-  EightNodes nodes = {low_halves_16(ab_low, cd_low), high_halves_16(ab_low, cd_low),
-                      low_halves_16(ab_high, cd_high)};
-  return nodes;
+  EightRecords all = {low_halves_16(ab_low, cd_low), high_halves_16(ab_low, cd_low),
+                      low_halves_16(ab_high, cd_high), high_halves_16(ab_high, cd_high)};
+  return all;
 }
 #define load_eight(records, of, from)                                              \
   transposed_8(record_at(records, of(from)), record_at(records, of(from + 1)),     \
                record_at(records, of(from + 2)), record_at(records, of(from + 3)), \
                record_at(records, of(from + 4)), record_at(records, of(from + 5)), \
                record_at(records, of(from + 6)), record_at(records, of(from + 7)))
-#define positions_of(pair) (pair).s012389ab
-#define velocities_of(pair) (pair).s4567cdef
+#define first_halves(pair) (pair).s012389ab
+#define second_halves(pair) (pair).s4567cdef
 #if MSSIM_LANES == 8
-#define load_records(records, of) node_of_eight(load_eight(records, of, 0))
-static inline Node node_of_eight(EightNodes all) {
-  Node node = {{positions_of(all.xu), positions_of(all.yv), positions_of(all.zw)},
-               {velocities_of(all.xu), velocities_of(all.yv), velocities_of(all.zw)}};
-  return node;
+#define load_whole_records(records, of) records_of_eight(load_eight(records, of, 0))
+static inline Records records_of_eight(EightRecords all) {
+  Records these = {first_halves(all.xu),   first_halves(all.yv),   first_halves(all.zw),
+                   first_halves(all.last), second_halves(all.xu),  second_halves(all.yv),
+                   second_halves(all.zw),  second_halves(all.last)};
+  return these;
 }
 #else
-#define load_records(records, of) node_of_sixteen(load_eight(records, of, 0), load_eight(records, of, 8))
-static inline Node node_of_sixteen(EightNodes low, EightNodes high) {
-  Node node = {{(float16)(positions_of(low.xu), positions_of(high.xu)),
-                (float16)(positions_of(low.yv), positions_of(high.yv)),
-                (float16)(positions_of(low.zw), positions_of(high.zw))},
-               {(float16)(velocities_of(low.xu), velocities_of(high.xu)),
-                (float16)(velocities_of(low.yv), velocities_of(high.yv)),
-                (float16)(velocities_of(low.zw), velocities_of(high.zw))}};
-  return node;
+#define load_whole_records(records, of) \
+  records_of_sixteen(load_eight(records, of, 0), load_eight(records, of, 8))
+#define of_both(halves, field) (float16)(halves(low.field), halves(high.field))
+static inline Records records_of_sixteen(EightRecords low, EightRecords high) {
+  Records these = {of_both(first_halves, xu),   of_both(first_halves, yv),   of_both(first_halves, zw),
+                   of_both(first_halves, last), of_both(second_halves, xu),  of_both(second_halves, yv),
+                   of_both(second_halves, zw),  of_both(second_halves, last)};
+  return these;
 }
 #endif
 #endif

@@ -28,6 +28,8 @@ dress 0 --scene jeans2k --backend openmp --threads 3
 [ "$(value iterations)" = "$iterations" ] && [ "$(value upper_edge_rise_mm)" = "$edge" ] ||
   fail "three threads dress otherwise than one"
 [ "$(value rows_astray)" -eq 0 ] && [ "$(value rows)" -ge 50 ] || fail "rows: $(cat "$work/out")"
+dress 0 --scene jeans1k --backend opencl
+dress 0 --scene jeans1k --backend opencl --memory copy
 
 # So does it on other bodies, to the same bounds.
 dress 0 --scene jeans4k-hip88 --backend openmp
@@ -65,8 +67,12 @@ misfit 'layers of the cloth cross each other in [1-9][0-9]* places, beyond 0'
 wrong thin 's/"girth_m": 0.98/"girth_m": 0.3/'
 dress 2 --scene "$work/thin.json"
 misfit '/garment/body is no body: '
-dress 2 --scene jeans2k --backend opencl
-misfit 'garments are dressed by serial and openmp'
-dress 2 --scene jeans2k --integrator rk4
-misfit 'semi-euler only'
+for backend in threads-mutex hybrid; do
+  dress 2 --scene jeans2k --backend "$backend"
+  misfit 'garments are dressed by serial, openmp and opencl'
+done
+for backend in serial openmp opencl; do
+  dress 2 --scene jeans2k --backend "$backend" --integrator rk4
+  misfit 'semi-euler only'
+done
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

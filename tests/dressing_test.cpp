@@ -9,9 +9,9 @@
 #include "backends/dressing/correction_order.h"
 #include "backends/dressing/openmp_dressing.h"
 #include "backends/dressing/serial_dressing.h"
+#include "dressing_systems.h"
 #include "fitting/dress.h"
 #include "fitting/fit.h"
-#include "garment_system.h"
 #include "integrators/integrators.h"
 #include "largest_distance.h"
 
@@ -23,20 +23,6 @@ const Integrator& semi_euler = *find_integrator("semi-euler");
 
 const FitBody nobody{[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
                      [](const Vec3d& point) { return point; }};
-
-/// Two squares of 10 x 10 nodes in one plane, 30 mm apart, sewn along the edges that face each other.
-System two_squares() {
-  System system = garment_of({{10, 10, 0.01, {0, 0, 0}}, {10, 10, 0.01, {0.12, 0.004, 0.005}}});
-  std::vector<std::uint32_t> right, left;
-  const Garment& garment = garment_in(system);
-  for (std::uint32_t row = 0; row < 10; ++row) {
-    right.push_back(garment.panels[0].node(row, 9));
-    left.push_back(garment.panels[1].node(row, 0));
-  }
-  sew(system, right, left, 0.1);
-  system.viscous_damping = 16;
-  return system;
-}
 
 TEST(Dressing, ClosesTheSeamOfTwoSquaresInFreeSpace) {
   const System system = two_squares();
@@ -193,25 +179,6 @@ TEST(Dressing, InVectorsIsTheReferenceButForRounding) {
     EXPECT_LT(largest_distance(vectors->state().position, reference->state().position), 1e-5)
         << instruction_set;
   }
-}
-
-/// A sheet of several blocks with a heavy hem, hung by two corners, and a second one that is sewn to its
-/// side: many springs are too long on the way.
-System stretched_sheets() {
-  System system = garment_of({{53, 21, 0.01, {0, 0, 0}}, {37, 33, 0.01, {0.25, 0.1, 0.01}}});
-  const Garment& garment = garment_in(system);
-  std::vector<std::uint32_t> right, left;
-  for (std::uint32_t row = 0; row < 37; ++row) {
-    right.push_back(garment.panels[0].node(row + 8, 20));
-    left.push_back(garment.panels[1].node(row, 0));
-  }
-  sew(system, right, left, 0.36);
-  for (std::uint32_t column = 0; column < 21; ++column) system.node_mass[column] *= 20;
-  system.pins = {garment.panels[0].node(52, 0), garment.panels[0].node(52, 20)};
-  system.materials = {{40, 0}, {12, 0}, {1.6, 0}};
-  system.gravity = 9.81;
-  system.viscous_damping = 16;
-  return system;
 }
 
 TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {

@@ -51,7 +51,7 @@ inline Garment& garment_in(System& system) { return std::get<Garment>(system.top
 
 /// Gives the garment the body that it meets.
 inline void put_on(System& system, const Surface& body, const BodyMapSettings& settings) {
-  garment_in(system).body = std::make_shared<BodyMaps>(body, settings);
+  garment_in(system).body_maps = {std::make_shared<BodyMaps>(body, settings)};
 }
 
 /// A seam of joints, node to node.

@@ -95,10 +95,10 @@ void weaken(System& system, std::size_t spring) {
 void stiffen(System& system, GridSpringKind kind) { system.materials.at(kind).stiffness *= 1.01; }
 
 /// The body as its maps have it, farther out.
-std::shared_ptr<const BodyMaps> maps_farther_out(double metres) {
+std::vector<std::shared_ptr<const BodyMaps>> maps_farther_out(double metres) {
   SceneSpec spec = jeans().spec;
   std::get<GarmentSpec>(spec.body).skin_m += metres;
-  return std::get<Garment>(build_system(spec).topology).body;
+  return std::get<Garment>(build_system(spec).topology).body_maps;
 }
 
 TEST(GarmentVerification, FindsEveryMistake) {
@@ -130,8 +130,8 @@ TEST(GarmentVerification, FindsEveryMistake) {
       {"no friction", "when draped", [](System& s) { garment_in(s).dressing.friction = 0; }},
       {"friction 10 % off", "when draped", [](System& s) { garment_in(s).dressing.friction *= 0.9; }},
       {"maps half a millimetre farther out", "seams close",
-       [](System& s) { garment_in(s).body = maps_farther_out(0.0005); }},
-      {"no body at all", "seams close", [](System& s) { garment_in(s).body = nullptr; }},
+       [](System& s) { garment_in(s).body_maps = maps_farther_out(0.0005); }},
+      {"no body at all", "seams close", [](System& s) { garment_in(s).body_maps.clear(); }},
   };
   for (const Mistake& mistake : mistakes) {
     System wrong = jeans().system;

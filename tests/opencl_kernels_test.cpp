@@ -3,14 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "backends/dressing/opencl_dressing.h"
 #include "backends/serial.h"
 #include "cloth_system.h"
+#include "contact/body_maps.h"
+#include "garment_system.h"
 #include "integrators/integrators.h"
 #include "largest_distance.h"
+#include "mesh/sphere_shape.h"
 #include "opencl_ways.h"
 #include "solid_system.h"
 
@@ -57,6 +64,40 @@ TEST_P(OpenclKernels, TakeAFewStepsLikeTheReference) {
       EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6)
           << integrator.name << ", " << system.nodes() << " nodes";
     }
+}
+
+class DressingOpenclKernels : public testing::TestWithParam<int> {};
+
+INSTANTIATE_TEST_SUITE_P(OfEachWidth, DressingOpenclKernels, testing::ValuesIn(opencl_lanes),
+                         [](const auto& test) {
+                           return "dressing_" + std::to_string(test.param) + "_lanes";
+                         });
+
+TEST_P(DressingOpenclKernels, TakeAFewStepsLikeTheReference) {
+  // Two blocks of rows and one; a seam of open joints, and one that is sewn at once.
+  System system = garment_of({{33, 5, 0.01, {-0.0212, 0, 0.0187}}, {17, 3, 0.01, {0.0338, 0, 0.0187}}});
+  Garment& garment = garment_in(system);
+  for (std::uint32_t row = 0; row < 17; ++row)
+    garment.joints.push_back({garment.panels[1].node(row, 0), garment.panels[0].node(row, 4),
+                              garment.panels[0].node(row + 1, 4), 0.3, 0.01, 1, 0});
+  garment.joints.push_back({garment.panels[1].node(16, 2), garment.panels[1].node(15, 2),
+                            garment.panels[1].node(15, 2), 0, 0.01, 1, 0});
+  garment.seams = {"side"};
+  garment.body_maps = {std::make_shared<BodyMaps>(surface_of(SphereShape{0.02, 8}), BodyMapSettings{})};
+  system.pins = {garment.panels[0].node(32, 0)};
+  system.gravity = 9.81;
+  system.floor.height = 0.005;                        // above the lowest row
+  for (Vec3d& x : system.start.position) x.y *= 1.1;  // too long, all
+  round_to_single(system.start);
+  const Integrator& semi_euler = *find_integrator("semi-euler");
+  const auto reference = make_reference(system, semi_euler, dt_s);
+  reference->step(steps);
+  const DeviceInMemory copied = ways_to_memory().front();
+  const int lanes = GetParam();
+  const auto backend = make_opencl_dressing(system, semi_euler, dt_s, copied.device, copied.memory,
+                                            {lanes, lanes == 1 ? std::size_t{8} : 1});
+  backend->step(steps);
+  EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6);
 }
 
 }  // namespace

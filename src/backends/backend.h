@@ -51,7 +51,7 @@ inline bool is_garment(const System& system) { return std::holds_alternative<Gar
 
 /// Throws Unsupported for a garment.
 inline void refuse_garment(const System& system) {
-  if (is_garment(system)) throw Unsupported("garments are dressed by serial and openmp");
+  if (is_garment(system)) throw Unsupported("garments are dressed by serial, openmp and opencl");
 }
 
 /// One simulation under way. All calls block until their work is done: a caller may read the clock around

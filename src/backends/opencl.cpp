@@ -1,5 +1,6 @@
 #include "backends/opencl.h"
 
+#include "backends/dressing/opencl_dressing.h"
 #include "backends/opencl/call.h"
 #include "backends/opencl/grid.h"
 #include "backends/opencl/mesh.h"
@@ -8,7 +9,8 @@ namespace mssim {
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes, DeviceMemory memory) {
-  refuse_garment(system);
+  if (is_garment(system))
+    return make_opencl_dressing(system, integrator, dt_s, device, memory, DressingShape::of(device, lanes));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     if (const auto* grid = std::get_if<GridPatch>(&system.topology))
       return make_opencl_grid(system, *grid, integrator, dt_s, device, memory, lanes);

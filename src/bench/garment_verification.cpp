@@ -33,7 +33,8 @@ std::optional<std::string> follow(Backend& reference, const System& system, cons
                                   double dt_s, std::vector<GarmentStretch>& way) {
   begin(reference, start);
   for (int i = 0; i < stretches; ++i) {
-    GarmentStretch& stretch = way.emplace_back(reference.state(), State{});
+    way.push_back({reference.state(), {}});
+    GarmentStretch& stretch = way.back();
     if (start.draped) excite(system, stretch.start);
     round_to_single(stretch.start);
     reference.step(stretch_steps);

@@ -104,7 +104,8 @@ std::string update_text(const StoredStage& stored_stage) {
     text << "  " << name(stage.lines[line].out) << " = " << sum_of_terms(stage.lines[line], number, line)
          << ";\n";
   if (number + 1 == integrator.stage_count)
-    text << "  touch_floor(&" << name(Slot::x_next) << ", &" << name(Slot::v_next) << ", site.free, step);\n";
+    text << "  touch_floor(&" << name(Slot::x_next) << ", &" << name(Slot::v_next)
+         << ", site.free, &step->surroundings);\n";
   for (std::size_t i = 0; i < memory_slots; ++i)
     if (const Slot slot = static_cast<Slot>(i); writes(stage, slot))
       text << "  " << access(stored_stage, "store", slot, name(slot) + ", ") << ";\n";

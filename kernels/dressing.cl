@@ -1,0 +1,265 @@
+/* What the kernels that dress a garment (dressing_step.cl, dressing_joints.cl) do with its nodes, which lie
+ * in rows (PanelSheet in src/backends/dressing/panel_sheet.h). An array of vectors is three planes, x, y and
+ * z.
+ *
+ * A work-group takes a block of rows. On a GPU its work-items share the nodes, one a Real, and meet at
+ * barriers; on a CPU it is one work-item, which takes MSSIM_LANES neighbours of a row at a time. Every sum
+ * and every correction has the same order either way. The springs of a row are those that its nodes own:
+ * stencil_down and stencil_right are panel_stencil, generated from it.
+ */
+typedef __constant struct DressingParameters* Rules;
+typedef __global const struct DressingBlock* Block;
+
+typedef struct {
+  __global float* position;           /* m, at the beginning of a step */
+  __global float* moved;              /* m, where contact has moved it to within the step */
+  __global float* velocity;           /* m/s */
+  __global float* pull;               /* m/s^2, by joints */
+  __global const float* inverse_mass; /* 1/kg, 0 for pins and for what is no node */
+  __global float* free;               /* the same, 0 for what friction holds, too */
+  __global const float* rest;         /* [direction] m, 0: no spring */
+  __global const float* stiffness;    /* [direction][row] N/m */
+  Rules rules;
+  int plane; /* floats from one component, or direction, to the next */
+} Sheet;
+
+#if MSSIM_LANES == 1
+/* What the items of the group have written so far is there for all of them. */
+#define meet() barrier(CLK_GLOBAL_MEM_FENCE)
+#define first_lane(a) (a)
+#define to_index(a) convert_int(a)
+#else
+#define meet()
+#define first_lane(a) (a).s0
+#define to_index(a) MSSIM_PASTE(convert_int, MSSIM_LANES)(a)
+#endif
+#define item ((int)get_local_id(0))
+#define items ((int)get_local_size(0))
+
+MSSIM_INLINE Vector load_vector(__global const float* from, int plane) {
+  Vector value = {load_aligned(from), load_aligned(from + plane), load_aligned(from + 2 * plane)};
+  return value;
+}
+MSSIM_INLINE Vector load_vector_anywhere(__global const float* from, int plane) {
+  Vector value = {load_lanes(from), load_lanes(from + plane), load_lanes(from + 2 * plane)};
+  return value;
+}
+MSSIM_INLINE void store_vector(Vector value, __global float* to, int plane) {
+  store_aligned(value.x, to);
+  store_aligned(value.y, to + plane);
+  store_aligned(value.z, to + 2 * plane);
+}
+MSSIM_INLINE void store_vector_anywhere(Vector value, __global float* to, int plane) {
+  store_lanes(value.x, to);
+  store_lanes(value.y, to + plane);
+  store_lanes(value.z, to + 2 * plane);
+}
+/* One node's, the same in every lane. */
+MSSIM_INLINE Vector load_one(__global const float* from, int plane) {
+  Vector value = {(Real)(from[0]), (Real)(from[plane]), (Real)(from[2 * plane])};
+  return value;
+}
+MSSIM_INLINE void store_one(Vector value, __global float* to, int plane) {
+  to[0] = first_lane(value.x);
+  to[plane] = first_lane(value.y);
+  to[2 * plane] = first_lane(value.z);
+}
+
+/* MSSIM_LANES neighbours of a row of a block. */
+typedef struct {
+  int row; /* of the block */
+  int at;  /* float of the first */
+} Site;
+MSSIM_INLINE int sites_of_row(Block block) { return (block->columns + MSSIM_LANES - 1) / MSSIM_LANES; }
+MSSIM_INLINE Site site_at(int number, Block block) {
+  Site site;
+  site.row = number / sites_of_row(block);
+  site.at = block->first + site.row * block->stride + number % sites_of_row(block) * MSSIM_LANES;
+  return site;
+}
+
+/* What a spring to nodes at `away` does, N. */
+MSSIM_INLINE Vector spring_force(Vector away, Real rest, float stiffness) {
+  Real pull =
+      spring_pull(dot_product(away, away), (Real)(0.0f), (Real)(stiffness), stiffness * rest, (Real)(0.0f));
+  return times(select(pull, (Real)(0.0f), rest <= 0.0f), away);
+}
+
+/* Loop 1: of each direction the spring that a node owns, and the one that ends at it. */
+MSSIM_INLINE Vector spring_forces(Site site, Block block, const Sheet* sheet) {
+  const Vector own = load_vector(sheet->position + site.at, sheet->plane);
+  Vector sum = no_vector();
+  for (int d = 0; d < stencil_directions; ++d) {
+    const int offset = stencil_down[d] * block->stride + stencil_right[d];
+    __global const float* rest = sheet->rest + d * sheet->plane + site.at;
+    __global const float* stiffness =
+        sheet->stiffness + d * sheet->rules->spring_rows + block->row + site.row;
+    const Vector next = load_vector_anywhere(sheet->position + site.at + offset, sheet->plane);
+    const Vector last = load_vector_anywhere(sheet->position + site.at - offset, sheet->plane);
+    sum = plus(sum, spring_force(minus(next, own), load_aligned(rest), *stiffness));
+    sum = plus(sum, spring_force(minus(last, own), load_lanes(rest - offset), stiffness[-stencil_down[d]]));
+  }
+  return sum;
+}
+
+/* Loop 4's second half: what the body does to nodes. Returns those that friction holds. */
+#define pixel_record(lane) pixel_numbers[lane]
+MSSIM_INLINE Mask touch_body(Block block, __global const float* pixels, float friction, Mask real, Vector* x,
+                             Vector* v, Rules rules) {
+  __global const struct BodyFrame* body = &block->body;
+  const Real dt = (Real)(rules->dt), scale = (Real)(body->pixels_per_metre);
+  const Vector next = times_plus(dt, *v, *x);
+  const Mask column = to_index(body_column(next.x, (Real)(body->left), scale, (Real)(body->columns - 1)));
+  const Mask row = to_index(body_column(next.y, (Real)(body->bottom), scale, (Real)(body->rows - 1)));
+  int pixel_numbers[MSSIM_LANES];
+  store_lanes(block->first_pixel + row * body->columns + column, pixel_numbers);
+  const Records a = load_whole_records(pixels, pixel_record);
+  const struct BodyPlanes planes = {a.a0, a.a1, a.a2, a.a3, a.a4, a.a5, a.a6, a.a7};
+  const struct BodyContact contact = body_contact(planes, next.x, next.y, next.z);
+  const Mask inside = real & (contact.distance < 0.0f);
+  if (!any_lane(inside)) return inside;
+  const struct ClothPoint point = {x->x, x->y, x->z, v->x, v->y, v->z};
+  const struct ClothResponse after =
+      body_response(point, contact, (Real)(friction), (Real)(rules->push_speed), dt);
+  const Vector x_after = {after.x, after.y, after.z}, v_after = {after.u, after.v, after.w};
+  *x = where(inside, x_after, *x);
+  *v = where(inside, v_after, *v);
+  return inside & (after.stuck > 0.0f);
+}
+
+/* Loops 1, 2 and 4 for a site. */
+MSSIM_INLINE void update_site(Site site, Block block, __global const float* pixels, int draping,
+                              const Sheet* sheet) {
+  Rules rules = sheet->rules;
+  const int plane = sheet->plane;
+  __constant struct DressingPhase* phase = draping ? &rules->draping : &rules->seaming;
+  const Real inverse_mass = load_aligned(sheet->inverse_mass + site.at);
+  const Mask real = inverse_mass > 0.0f;
+  Vector x = load_vector(sheet->position + site.at, plane);
+  Vector v = load_vector(sheet->velocity + site.at, plane);
+  Vector a = times(inverse_mass, spring_forces(site, block, sheet));
+  a = minus(a, times((Real)(phase->damping), v));
+  a.y -= phase->gravity;
+  if (!draping) a = plus(a, load_vector(sheet->pull + site.at, plane));
+  v = times_plus((Real)(rules->dt), where(real, a, no_vector()), v);
+  Real free = inverse_mass;
+  if (block->body.columns > 0)
+    free = select(free, (Real)(0.0f), touch_body(block, pixels, phase->friction, real, &x, &v, rules));
+  store_aligned(free, sheet->free + site.at);
+  store_vector(v, sheet->velocity + site.at, plane);
+  store_vector(x, sheet->moved + site.at, plane);
+}
+
+/* Springs of a direction, from a site to rows below, which have no node in common. */
+MSSIM_INLINE void correct_springs(int at, int direction, Block block, const Sheet* sheet) {
+  const int plane = sheet->plane, far_at = at + block->stride + stencil_right[direction];
+  const Vector d =
+      minus(load_vector_anywhere(sheet->moved + far_at, plane), load_vector(sheet->moved + at, plane));
+  const Real squared = dot_product(d, d);
+  const Real limit = load_aligned(sheet->rest + direction * plane + at) * sheet->rules->correction_limit;
+  const Mask acts = elongation_excess(squared, limit) > 0.0f;
+  if (!any_lane(acts)) return;
+  const Vector own = load_vector(sheet->velocity + at, plane);
+  const Vector far = load_vector_anywhere(sheet->velocity + far_at, plane);
+  const Real own_free = load_aligned(sheet->free + at), far_free = load_lanes(sheet->free + far_at);
+  Real impulse = elongation_impulse(squared, dot_product(minus(far, own), d), limit,
+                                    (Real)(sheet->rules->correction_rate), own_free + far_free);
+  impulse = select((Real)(0.0f), impulse, acts);
+  store_vector(times_plus(own_free * impulse, d, own), sheet->velocity + at, plane);
+  store_vector_anywhere(times_plus(-(far_free * impulse), d, far), sheet->velocity + far_at, plane);
+}
+
+/* One spring along a row that is longer than its limit. */
+MSSIM_INLINE void correct_along_row(int at, const Sheet* sheet) {
+  const int plane = sheet->plane;
+  const Vector d = minus(load_one(sheet->moved + at + 1, plane), load_one(sheet->moved + at, plane));
+  const Vector own = load_one(sheet->velocity + at, plane), far = load_one(sheet->velocity + at + 1, plane);
+  const Real own_free = (Real)(sheet->free[at]), far_free = (Real)(sheet->free[at + 1]);
+  const Real impulse = elongation_impulse(dot_product(d, d), dot_product(minus(far, own), d),
+                                          (Real)(sheet->rest[at] * sheet->rules->correction_limit),
+                                          (Real)(sheet->rules->correction_rate), own_free + far_free);
+  store_one(times_plus(own_free * impulse, d, own), sheet->velocity + at, plane);
+  store_one(times_plus(-(far_free * impulse), d, far), sheet->velocity + at + 1, plane);
+}
+
+/* The springs along rows, of a row one after the other: MSSIM_LANES of them are looked at together, and those
+ * that are too long, few mostly, are corrected in order. */
+MSSIM_INLINE void correct_rows(Block block, int forwards, const Sheet* sheet) {
+  const int plane = sheet->plane, sites = sites_of_row(block);
+  for (int row = item; row < block->rows; row += items)
+    for (int i = 0; i < sites; ++i) {
+      const int site = forwards ? i : sites - 1 - i;
+      const int at = block->first + row * block->stride + site * MSSIM_LANES;
+      const Vector d =
+          minus(load_vector_anywhere(sheet->moved + at + 1, plane), load_vector(sheet->moved + at, plane));
+      const Real limit = load_aligned(sheet->rest + at) * sheet->rules->correction_limit;
+      const Real excess = elongation_excess(dot_product(d, d), limit);
+      if (!any_lane(excess > 0.0f)) continue;
+      float excesses[MSSIM_LANES];
+      store_lanes(excess, excesses);
+      for (int k = 0; k < MSSIM_LANES; ++k) {
+        const int lane = forwards ? k : MSSIM_LANES - 1 - k;
+        if (excesses[lane] > 0.0f) correct_along_row(at + lane, sheet);
+      }
+    }
+}
+
+/* The springs of a direction between two rows, the upper of which is a block's, or stands before it (-1). */
+MSSIM_INLINE void correct_between_rows(Block block, int row, int direction, const Sheet* sheet) {
+  const int start = block->first + row * block->stride;
+  for (int column = item * MSSIM_LANES; column < block->columns; column += items * MSSIM_LANES)
+    correct_springs(start + column, direction, block, sheet);
+}
+
+/* The springs of a direction between all rows of a block. On a GPU an item takes a line of them, from the
+ * first row to the last, which has no node in common with another line. */
+MSSIM_INLINE void correct_lines(Block block, int direction, int forwards, const Sheet* sheet) {
+  const int rows = block->rows - 1;
+#if MSSIM_LANES == 1
+  for (int line = item; line < block->columns + rows; line += items)
+    for (int k = 0; k < rows; ++k) {
+      const int row = forwards ? k : rows - 1 - k, right = stencil_right[direction];
+      const int column = line + right * row - (right > 0 ? rows : 0);
+      if (column >= 0 && column < block->columns)
+        correct_springs(block->first + row * block->stride + column, direction, block, sheet);
+    }
+#else
+  for (int k = 0; k < rows; ++k) correct_between_rows(block, forwards ? k : rows - 1 - k, direction, sheet);
+#endif
+}
+
+/* A sweep of loop 5 over the springs within a block, in the order of correction_order.h. */
+MSSIM_INLINE void correct_block(Block block, int forwards, const Sheet* sheet) {
+  for (int i = 0; i < limited_directions; ++i) {
+    const int direction = forwards ? i : limited_directions - 1 - i;
+    if (direction == 0)
+      correct_rows(block, forwards, sheet);
+    else
+      correct_lines(block, direction, forwards, sheet);
+    meet();
+  }
+}
+
+/* The same over the springs between a block and the one before it. */
+MSSIM_INLINE void correct_seam_of_blocks(Block block, int forwards, const Sheet* sheet) {
+  for (int i = 1; i < limited_directions; ++i) {
+    correct_between_rows(block, -1, forwards ? i : limited_directions - i, sheet);
+    meet();
+  }
+}
+
+/* Loop 6: where nodes at x are after the step. What the floor does changes v. */
+MSSIM_INLINE Vector moved_on(Vector x, Vector* v, Mask is_free, Rules rules) {
+  x = times_plus((Real)(rules->dt), *v, x);
+  touch_floor(&x, v, is_free, &rules->surroundings);
+  return x;
+}
+
+/* What every kernel takes first. */
+#define SHEET                                                                                   \
+  __constant struct DressingParameters *rules, __global float *position, __global float *moved, \
+      __global float *velocity, __global float *pull, __global const float *inverse_mass,       \
+      __global float *free, __global const float *rest, __global const float *stiffness,        \
+      __global struct DressingState *state
+#define sheet_of_arguments \
+  { position, moved, velocity, pull, inverse_mass, free, rest, stiffness, rules, rules->plane }

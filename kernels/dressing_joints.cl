@@ -1,0 +1,145 @@
+/* The joints of a garment (joint_law.h), which one work-group takes level by level, one joint a work-item:
+ * those of a level have no node in common, and those that have stand in the levels in the garment's order.
+ * Needs dressing.cl for one lane.
+ */
+typedef __global const struct DressingJoint* Joint;
+
+typedef struct {
+  Joint all;
+  __global const int* level_ends; /* [level] the number of the joint after its last one */
+  __global const int* nodes;      /* the different nodes of all joints, as floats */
+  __global int* sewn;             /* [joint] */
+} Joints;
+
+/* What the three nodes of a joint have of an array. */
+typedef struct {
+  Vector node, first, second;
+} AtJoint;
+MSSIM_INLINE AtJoint load_at_joint(__global const float* array, Joint joint, int plane) {
+  AtJoint at = {load_one(array + joint->node, plane), load_one(array + joint->first, plane),
+                load_one(array + joint->second, plane)};
+  return at;
+}
+
+/* The way from the joint's node to the point that it is sewn to. */
+MSSIM_INLINE Vector gap_of(AtJoint at, Joint joint) {
+  const Real share = (joint->share);
+  const Vector gap = {joint_gap(at.node.x, at.first.x, at.second.x, share),
+                      joint_gap(at.node.y, at.first.y, at.second.y, share),
+                      joint_gap(at.node.z, at.first.z, at.second.z, share)};
+  return gap;
+}
+MSSIM_INLINE struct JointEnds ends_of(Joint joint, const Sheet* sheet) {
+  return joint_ends((joint->share), (sheet->inverse_mass[joint->node]), (sheet->inverse_mass[joint->first]),
+                    (sheet->inverse_mass[joint->second]));
+}
+
+/* Adds to an array what an impulse gives the nodes of a joint, one after the other: the ends of an edge may
+ * be one node. */
+MSSIM_INLINE void add_one(Real s, Vector a, __global float* to, int plane) {
+  store_one(plus(load_one(to, plane), times(s, a)), to, plane);
+}
+MSSIM_INLINE void add_at_joint(struct JointEnds ends, Vector impulse, __global float* array, Joint joint,
+                               int plane) {
+  add_one(ends.node, impulse, array + joint->node, plane);
+  add_one(ends.first, impulse, array + joint->first, plane);
+  add_one(ends.second, impulse, array + joint->second, plane);
+}
+
+/* After loop 5, which would open it again: the ends of a sewn joint move as one but for what closes its gap.
+ */
+MSSIM_INLINE void close_joint(Joint joint, const Sheet* sheet) {
+  const struct JointEnds ends = ends_of(joint, sheet);
+  const Real mobility = joint_mobility(ends, (joint->share));
+  if (mobility == 0.0f) return;
+  const Vector gap = gap_of(load_at_joint(sheet->moved, joint, sheet->plane), joint);
+  const Vector gap_rate = gap_of(load_at_joint(sheet->velocity, joint, sheet->plane), joint);
+  const Real rate =
+      closing_rate(sqrt(dot_product(gap, gap)), (sheet->rules->closing_most), (sheet->rules->closing_speed));
+  const Vector impulse = {closing_impulse(gap.x, gap_rate.x, rate, mobility),
+                          closing_impulse(gap.y, gap_rate.y, rate, mobility),
+                          closing_impulse(gap.z, gap_rate.z, rate, mobility)};
+  add_at_joint(ends, impulse, sheet->velocity, joint, sheet->plane);
+}
+
+/* Loop 3 for an open joint: draws it together, or sews it where it is near enough; returns whether it has. */
+MSSIM_INLINE int pull_joint(Joint joint, int steps, const Sheet* sheet) {
+  Rules rules = sheet->rules;
+  const Vector gap = gap_of(load_at_joint(sheet->position, joint, sheet->plane), joint);
+  const Real distance = sqrt(dot_product(gap, gap));
+  if (distance < rules->sewn_gap) return 1;
+  const Real force =
+      seam_force(rules->seam_force, steps * rules->doublings_per_step, joint->length, joint->strength);
+  add_at_joint(ends_of(joint, sheet), times(force / distance, gap), sheet->pull, joint, sheet->plane);
+  return 0;
+}
+
+/* Loop 3 of the step that comes: sews the joints that are near enough, and sets what the others do. */
+MSSIM_INLINE void pull_joints(const Joints* joints, int steps, __global struct DressingState* state,
+                              const Sheet* sheet) {
+  Rules rules = sheet->rules;
+  for (int i = item; i < rules->joint_nodes; i += items)
+    store_one(no_vector(), sheet->pull + joints->nodes[i], sheet->plane);
+  meet();
+  for (int level = 0; level < rules->joint_levels; ++level) {
+    for (int j = (level > 0 ? joints->level_ends[level - 1] : 0) + item; j < joints->level_ends[level];
+         j += items)
+      if (!joints->sewn[j] && pull_joint(joints->all + j, steps, sheet)) {
+        joints->sewn[j] = 1;
+        atomic_dec(&state->still_open);
+      }
+    meet();
+  }
+}
+
+MSSIM_INLINE void close_sewn_joints(const Joints* joints, const Sheet* sheet) {
+  for (int level = 0; level < sheet->rules->joint_levels; ++level) {
+    for (int j = (level > 0 ? joints->level_ends[level - 1] : 0) + item; j < joints->level_ends[level];
+         j += items)
+      if (joints->sewn[j]) close_joint(joints->all + j, sheet);
+    meet();
+  }
+}
+
+#define JOINTS                                                                                         \
+  __global const struct DressingJoint *all, __global const int *level_ends, __global const int *nodes, \
+      __global int *sewn
+#define joints_of_arguments \
+  { all, level_ends, nodes, sewn }
+
+/* Before the first step. */
+__kernel void begin_joints(SHEET, JOINTS) {
+  const Sheet sheet = sheet_of_arguments;
+  const Joints joints = joints_of_arguments;
+  pull_joints(&joints, 0, state, &sheet);
+}
+
+/* The end of a step. */
+__kernel void step_joints(SHEET, JOINTS) {
+  const Sheet sheet = sheet_of_arguments;
+  const Joints joints = joints_of_arguments;
+  close_sewn_joints(&joints, &sheet);
+  for (int i = item; i < rules->joint_nodes; i += items) {
+    const int at = nodes[i];
+    Vector v = load_one(velocity + at, rules->plane);
+    const Vector x = moved_on(load_one(moved + at, rules->plane), &v, inverse_mass[at] > 0.0f, rules);
+    store_one(x, position + at, rules->plane);
+    store_one(v, velocity + at, rules->plane);
+  }
+  const int was_draping = state->draping, steps = state->steps + 1, open_joints = state->still_open;
+  const int closed = open_joints == 0 || steps >= rules->longest_seaming;
+  meet();
+  if (item == 0) {
+    state->steps = steps;
+    state->open_joints = closed ? 0 : open_joints;
+    if (closed && !was_draping) {
+      state->draping = 1;
+      state->seamed_at = steps;
+    }
+  }
+  if (was_draping) return;
+  if (closed)
+    for (int j = item; j < rules->joints; j += items) sewn[j] = 1;
+  else
+    pull_joints(&joints, steps, state, &sheet);
+}
