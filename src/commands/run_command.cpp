@@ -16,6 +16,7 @@
 #include "commands/dressing_run.h"
 #include "commands/exit_code.h"
 #include "commands/prepared_scene.h"
+#include "commands/run_provenance.h"
 #include "commands/run_recorder.h"
 #include "commands/simulation.h"
 #include "commands/stop_request.h"
@@ -94,25 +95,30 @@ int run(const RunOptions& options) {
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const bool wants_losses = options.files.any() && !options.no_losses;
   const auto backend = make_backend(options, scene, integrator);
-  if (auto* dressing = dynamic_cast<DressingBackend*>(backend.get())) {
-    if (options.duration_s)
-      throw UsageError(
-          "--duration does not go with a garment, which is dressed until it has settled; leave it out");
+  auto* const dressing = dynamic_cast<DressingBackend*>(backend.get());
+  if (dressing && options.duration_s)
+    throw UsageError(
+        "--duration does not go with a garment, which is dressed until it has settled; leave it out");
+  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
+                            wants_losses && !dressing};
+  TraceHeader header;
+  if (!options.files.trace.empty()) header = trace_header(scene, *backend, options.backend, integrator);
+  header.with_losses = plan.accounts_for_losses;
+  // After the header, for which libraries are loaded that catch signals themselves, and before there is a
+  // file.
+  StopRequest stop;
+  if (dressing) {
     if (wants_losses) warn_of_missing_losses();
     const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
-    RunRecorder recorder(options.files, scene, *backend, options.backend, integrator, false);
-    StopRequest stop;  // last, as below
+    RunRecorder recorder(options.files, scene, header);
     return run_dressing(scene, *dressing, options.backend, frames, recorder, stop);
   }
 
-  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
-                            wants_losses};
-  RunRecorder recorder(options.files, scene, *backend, options.backend, integrator, plan.accounts_for_losses);
+  RunRecorder recorder(options.files, scene, header);
   if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
   std::int64_t steps = 0;
   std::optional<EnergyLosses> losses;
   double seconds = 0;
-  StopRequest stop;  // after the recorder, whose provenance loads libraries that catch signals themselves
   recorder.finish_after([&] {
     const auto before = std::chrono::steady_clock::now();
     simulate(*backend, scene.system, integrator, plan, [&](const Frame& frame) {

@@ -9,12 +9,9 @@
 
 namespace mssim {
 
-RunRecorder::RunRecorder(RunFiles files, const PreparedScene& scene, const Backend& backend,
-                         const std::string& backend_name, const Integrator& integrator, bool with_losses)
+RunRecorder::RunRecorder(RunFiles files, const PreparedScene& scene, const TraceHeader& header)
     : files_(std::move(files)) {
   if (files_.trace.empty()) return;
-  TraceHeader header = trace_header(scene, backend, backend_name, integrator);
-  header.with_losses = with_losses;
   trace_.emplace(files_.trace, scene.system, header,
                  is_garment(scene.system) ? body_of_garment(scene.spec) : Surface{});
 }

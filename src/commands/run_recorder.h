@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "backends/backend.h"
 #include "commands/prepared_scene.h"
 #include "commands/simulation.h"
 #include "output/energy_curve.h"
@@ -24,10 +23,8 @@ struct RunFiles {
 /// Writes the frames of a run into its files and keeps their energies.
 class RunRecorder {
  public:
-  /// Begins the trace, if there is to be one, of a scene that `backend` (called `backend_name` in the table)
-  /// steps. Throws WriteError.
-  RunRecorder(RunFiles files, const PreparedScene& scene, const Backend& backend,
-              const std::string& backend_name, const Integrator& integrator, bool with_losses);
+  /// Begins the trace of a scene, if there is to be one. Throws WriteError.
+  RunRecorder(RunFiles files, const PreparedScene& scene, const TraceHeader& header);
 
   /// Whether anything is written.
   bool wanted() const { return files_.any(); }
