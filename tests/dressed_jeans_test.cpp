@@ -105,7 +105,7 @@ TEST(DressedJeans, SewnBeforeTheBodyDoNotGoAroundIt) {
     round_to_single(on.system.start);
   });
   EXPECT_TRUE(jeans.result.seamed_at);
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("rows do not go once around their limb")));
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("rows that do not go once around their limb")));
 }
 
 }  // namespace

@@ -175,8 +175,9 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
                   HasSubstr("node inside the body is 1.2 mm"), HasSubstr("face inside the body is 2 mm"),
                   HasSubstr("99 % stay below is 6.1 %, beyond 6 %"), HasSubstr("99.9 % stay below is nan %"),
                   HasSubstr("worn is -21 mm, beyond 20 mm"),
-                  HasSubstr("seams meet from where that is worn is 31 mm"), HasSubstr("1 of 3 rows"),
-                  HasSubstr("cross each other in 4 places, beyond 0")));
+                  HasSubstr("seams meet from where that is worn is 31 mm"),
+                  HasSubstr("rows that do not go once around their limb is 1, beyond 0"),
+                  HasSubstr("layers of the cloth cross is 4, beyond 0")));
 }
 
 }  // namespace
