@@ -22,7 +22,6 @@ namespace mssim {
 namespace {
 
 using testing::ElementsAre;
-using testing::FloatNear;
 using testing::HasSubstr;
 
 TEST(NearestPoint, IsFoundOnTheInsideTheSidesAndTheCorners) {

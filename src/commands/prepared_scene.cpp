@@ -1,6 +1,7 @@
 #include "commands/prepared_scene.h"
 
 #include <iostream>
+#include <variant>
 
 #include "integrators/stability.h"
 #include "scene/scene_file.h"
@@ -9,7 +10,7 @@
 namespace mssim {
 namespace {
 
-/// Meshes are the only part of a scene that does not follow from its file alone.
+/// Meshes, and bodies to dress, are what does not follow from a scene's file alone.
 std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
   const auto stated = stated_counts(spec);
   if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
@@ -17,7 +18,9 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
   return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
          std::to_string(counts.springs_unique) + " springs where the scene states " +
          std::to_string(stated->nodes) + " and " + std::to_string(stated->springs_unique) +
-         ": another TetGen, or another file, makes another mesh";
+         (std::holds_alternative<GarmentSpec>(spec.body)
+              ? ": another body, or another pattern, makes other panels; state what they have"
+              : ": another TetGen, or another file, makes another mesh");
 }
 
 }  // namespace
