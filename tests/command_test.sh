@@ -118,11 +118,11 @@ for arguments in '--help' 'bench --help' 'run --help' 'compare --help' 'list --h
   grep -q 'Example' "$work/out" || fail "$arguments shows no example"
   [ ! -s "$work/err" ] || fail "$arguments writes to stderr"
 done
-"$mssim" list scenes --format csv | grep -q '^cloth350k,cloth,350000,2094002,4188004,' || fail "list scenes"
+"$mssim" list scenes --format csv | grep '^cloth350k,cloth,350000,2094002,4188004,' >/dev/null || fail "list scenes"
 [ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 5 ] || fail "list integrators"
-"$mssim" list backends | grep -q '^hybrid ' || fail "list backends"
-"$mssim" list ways --format csv | grep -q '^thread-private,12 bytes a node and thread,once,' || fail "list ways"
-"$mssim" list suites --format csv | grep -q '^scaling,true,false,"cloth40k, .* and cloth16m",' || fail "list suites"
-"$mssim" bench --help | tr -s '\n ' ' ' | grep -q 'all: the tables of the paper' || fail "bench --help does not say what all is"
+"$mssim" list backends | grep '^hybrid ' >/dev/null || fail "list backends"
+"$mssim" list ways --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list ways"
+"$mssim" list suites --format csv | grep '^scaling,true,false,"cloth40k, .* and cloth16m",' >/dev/null || fail "list suites"
+"$mssim" bench --help | tr -s '\n ' ' ' | grep 'all: the tables of the paper' >/dev/null || fail "bench --help does not say what all is"
 if "$mssim" list scenes >/dev/full 2>"$work/err"; then fail "a full standard output is no error"; fi
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -62,7 +62,7 @@ run --scene "$work/cloth.json" --energy-curve "$work/curve.csv"
 [ "$(column damping_loss_j)" != - ] || fail "an energy curve goes without losses"
 [ "$(sed -n 2p "$work/curve.csv")" = time_s,kinetic_j,elastic_j,gravitational_j,total_j ] || fail "the curve's header"
 run --scene "$work/cloth.json" --trace "$work/trace.h5" --no-losses
-if h5dump -n "$work/trace.h5" | grep -q _loss; then fail "--no-losses leaves losses in the trace"; fi
+if h5dump -n "$work/trace.h5" | grep _loss >/dev/null; then fail "--no-losses leaves losses in the trace"; fi
 [ "$(column damping_loss_j) $(column energy_imbalance)" = '- -' ] || fail "--no-losses leaves losses in the row"
 run --scene "$work/cloth.json"
 [ "$(column damping_loss_j)" = - ] || fail "losses without a trace"

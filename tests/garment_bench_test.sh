@@ -79,7 +79,7 @@ bench 1 --scene slack.json --backend serial --integrator semi-euler --rounds 1 -
 grep -q 'failed: dressed, .*the elongation that 99.9 % stay below is [0-9.]* %, beyond 8 %' slack/timings.csv || fail "slack: $(cat slack/timings.csv)"
 has slack/garment.csv ms_per_iteration serial ""
 has slack/garment.csv verified serial false
-head -n 1 slack/garment.csv | grep -q elongation_999_within || fail "the fit of what does not fit is not told"
+head -n 1 slack/garment.csv | grep elongation_999_within >/dev/null || fail "the fit of what does not fit is not told"
 
 # Plans, budgets, and what does not go with a garment.
 bench 0 --suite garment --dry-run
@@ -89,7 +89,8 @@ expect 2 'time-budget is too short' bench --scene jeans1k --time-budget 0.1
 expect 2 '.--trace does not go with jeans1k, which is a garment' bench --scene jeans1k --trace --out traced
 [ ! -e traced ] || fail "a folder is made for what is refused"
 bench 0 --scene jeans1k --backend serial --integrator semi-euler --time-budget 20 --rounds 2 --format json
-"$mssim" list scenes --format csv | grep -q '^jeans1k,garment,[0-9]*,[0-9]*,,' || fail "a garment has a published count"
+"$mssim" list scenes --format csv >out
+grep -q '^jeans1k,garment,[0-9]*,[0-9]*,,' out || fail "a garment has a published count"
 
 # Ctrl-C while it dresses ends it soon, and says that there is nothing yet.
 "$mssim" bench --scene jeans64k --backend serial --integrator semi-euler --out stopped >out 2>err </dev/null &
