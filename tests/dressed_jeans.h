@@ -5,11 +5,9 @@
 #include <vector>
 
 #include "backends/dressing/serial_dressing.h"
-#include "contact/solid.h"
+#include "commands/fit_body.h"
 #include "fitting/fit_bounds.h"
-#include "garment/body_profile.h"
 #include "integrators/integrators.h"
-#include "scene/garment.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "scene_files.h"
@@ -22,9 +20,7 @@ struct DressingCase {
   System system;
 
   explicit DressingCase(const std::string& scene) : DressingCase(find_scene(scene)) {}
-  explicit DressingCase(SceneSpec scene) : spec(std::move(scene)), system(build_system(spec)) {
-    round_to_single(system.start);
-  }
+  explicit DressingCase(SceneSpec scene) : spec(std::move(scene)), system(build_system(spec)) {}
 
   Garment& garment() { return std::get<Garment>(system.topology); }
   double dt_s() const { return spec.dt_s.value(); }
@@ -42,15 +38,7 @@ inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {}) {
   Dressed dressed;
   dressed.result =
       dress(*backend, of.system, of.dt_s(), rule, [](const State&, std::int64_t) { return true; });
-  const Surface surface = body_of_garment(of.spec);
-  const Solid solid(surface);
-  const BodyProfile profile(surface);
-  dressed.fit = fit_of(of.system, dressed.result.state.position,
-                       {[&](std::span<const Vec3d> points) { return solid.depths(points); },
-                        [&](const Vec3d& point) {
-                          const PlanPoint middle = profile.leg_middle(point.y);
-                          return Vec3d{point.x < 0 ? -middle.x : middle.x, point.y, middle.z};
-                        }});
+  dressed.fit = fit_of(of.system, dressed.result.state.position, fit_body(of.spec));
   dressed.found = misfits(dressed.result, dressed.fit, {});
   return dressed;
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "garment_system.h"
+#include "scene/garment.h"
 
 namespace mssim {
 namespace {

@@ -1,13 +1,17 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <numbers>
 #include <vector>
 
+#include "backends/dressing/dressing_backend.h"
 #include "contact/body_maps.h"
 #include "garment_system.h"
+#include "largest_distance.h"
 #include "mesh/sphere_shape.h"
 
 namespace mssim {
@@ -76,6 +80,26 @@ inline System sack_around_a_ball() {
   system.viscous_damping = 16;
   system.floor = {-0.175, 0.3, 0.4};
   return system;
+}
+
+/// From a state that it has draped to, a backend goes on as if it had sewn the seams itself; from the same
+/// state with open seams it does not: there is no gravity for a step, until it finds them closed.
+inline void expect_goes_on_when_draped(DressingBackend& backend, const System& system) {
+  backend.set_state(system.start);
+  while (!backend.progress().draping) backend.step(50);
+  const State draped = backend.state();
+  backend.step(40);
+  const State expected = backend.state();
+  backend.set_state(draped);
+  EXPECT_EQ(backend.progress().open_joints, std::get<Garment>(system.topology).joints.size());
+  backend.step(40);
+  EXPECT_GT(largest_distance(backend.state().position, expected.position), 1e-5);
+  backend.set_draped_state(draped);
+  EXPECT_EQ(backend.progress().open_joints, 0U);
+  EXPECT_TRUE(backend.progress().draping);
+  backend.step(40);
+  EXPECT_EQ(backend.state().position, expected.position);
+  EXPECT_EQ(backend.state().velocity, expected.velocity);
 }
 
 }  // namespace mssim

@@ -228,26 +228,8 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
 
 TEST(Dressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
   const System system = stretched_sheets();
-  const auto single = make_serial_dressing(system, semi_euler, dt_s);
-  const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 2);
-  for (DressingBackend* backend : std::initializer_list<DressingBackend*>{single.get(), vectors.get()}) {
-    backend->set_state(system.start);
-    while (!backend->progress().draping) backend->step(50);
-    const State draped = backend->state();
-    backend->step(40);
-    const State expected = backend->state();
-    backend->set_state(
-        draped);  // which has open seams, and no gravity for a step, until it finds them closed
-    EXPECT_EQ(backend->progress().open_joints, 37U);
-    backend->step(40);
-    EXPECT_GT(largest_distance(backend->state().position, expected.position), 1e-5);
-    backend->set_draped_state(draped);
-    EXPECT_EQ(backend->progress().open_joints, 0U);
-    EXPECT_TRUE(backend->progress().draping);
-    backend->step(40);
-    EXPECT_EQ(backend->state().position, expected.position);
-    EXPECT_EQ(backend->state().velocity, expected.velocity);
-  }
+  expect_goes_on_when_draped(*make_serial_dressing(system, semi_euler, dt_s), system);
+  expect_goes_on_when_draped(*make_openmp_dressing(system, semi_euler, dt_s, 2), system);
 }
 
 TEST(Dressing, InSinglePrecisionIsTheReferenceButForRounding) {

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "fitting/fit_bounds.h"
@@ -146,6 +148,20 @@ TEST(Fit, SamplesBothTrianglesOfEveryCell) {
   // In the plane x + y <= 1 the first triangle is flat; beyond it the second rises to the far corner.
   for (std::size_t i = 0; i < 25; ++i)
     EXPECT_NEAR(samples[i].z, std::max(0.0, 4 * (samples[i].x + samples[i].y - 1)), 1e-12) << i;
+}
+
+TEST(FitBounds, StandBesideTheNumbersInTheirUnits) {
+  const std::vector<FitCheck> checks = fit_checks({.largest_gap = 0.0005, .elongation_99 = 0.07}, {});
+  const auto find = [&](const std::string& name) {
+    return *std::ranges::find(checks, name, &FitCheck::name);
+  };
+  EXPECT_DOUBLE_EQ(find("largest_gap_mm").value, 0.5);
+  EXPECT_DOUBLE_EQ(find("largest_gap_mm").bound.value(), 1);
+  EXPECT_TRUE(find("largest_gap_mm").within.value());
+  EXPECT_DOUBLE_EQ(find("elongation_99").bound.value(), 0.06);
+  EXPECT_FALSE(find("elongation_99").within.value());
+  EXPECT_FALSE(find("elongation_max").bound);
+  EXPECT_FALSE(find("elongation_max").within);
 }
 
 TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {

@@ -14,7 +14,7 @@ dress() {
 }
 # value COLUMN: of the row that was printed
 value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR == 2 { print $c }' out; }
-# fit: everything in that row that does not depend on the clock
+# fit: everything printed that does not depend on the clock
 fit() {
   awk 'NR == 1 { for (i = 1; i <= NF; ++i) clock[i] = $i == "wall_s" || $i == "ms_per_iteration" }
        { for (i = 1; i <= NF; ++i) if (!clock[i]) printf "%s ", $i; print "" }' out

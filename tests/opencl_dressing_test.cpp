@@ -140,17 +140,7 @@ TEST(OpenclDressing, CorrectsInEverySweepAsSerialDoes) {
 
 TEST(OpenclDressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
   const System system = stretched_sheets();
-  const auto backend = make(system, shapes().back());
-  while (!backend->progress().draping) backend->step(50);
-  const State draped = backend->state();
-  backend->step(40);
-  const State expected = backend->state();
-  backend->set_draped_state(draped);
-  EXPECT_EQ(backend->progress().open_joints, 0U);
-  EXPECT_TRUE(backend->progress().draping);
-  backend->step(40);
-  EXPECT_EQ(backend->state().position, expected.position);
-  EXPECT_EQ(backend->state().velocity, expected.velocity);
+  expect_goes_on_when_draped(*make(system, shapes().back()), system);
 }
 
 TEST(OpenclDressing, DrapesAtOnceWhatHasNoSeams) {

@@ -51,7 +51,7 @@ TEST(ScalingTable, AsMarkdownHasAColumnASceneAndALineABackend) {
   EXPECT_THAT(markdown, HasSubstr("| backend | small<br>1,000 | large<br>4,000,000 |\n"));
   EXPECT_THAT(markdown, HasSubstr("| `serial` | **500** (1.00×) | **750** (1.50×) |\n"));
   EXPECT_THAT(markdown, HasSubstr("| `openmp` | **250** (1.00×) | unsupported |\n"));
-  EXPECT_THAT(markdown, HasSubstr("- `large`, `openmp`, `semi-euler`: unsupported: too large\n"));
+  EXPECT_THAT(markdown, HasSubstr("- `openmp`, `semi-euler`: unsupported: too large (`large`)\n"));
 }
 
 TEST(ScalingTable, HasNoRatioWhereTheBaseHasNoTime) {

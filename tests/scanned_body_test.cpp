@@ -12,6 +12,7 @@
 
 #include "contact_fixture.h"
 #include "dressed_jeans.h"
+#include "scene/garment.h"
 #include "scene/scene_error.h"
 #include "temporary_folder.h"
 

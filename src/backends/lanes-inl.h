@@ -85,12 +85,8 @@ HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
   return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
 }
 
-#define MSSIM_LAW       \
-  template <class Real> \
-  HWY_INLINE Real
-#include "kernels/floor_law.h"
-#include "kernels/spring_law.h"
-#undef MSSIM_LAW
+#define MSSIM_LAW_INLINE HWY_INLINE
+#include "model/laws-inl.h"
 
 /// What the floor does to the new state of the lanes `under` it (the other lanes keep theirs).
 HWY_INLINE void touch_floor(Mask under, Lanes height, Lanes restitution, Lanes friction, Lanes3& x,

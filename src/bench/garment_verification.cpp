@@ -10,6 +10,7 @@
 #include "bench/blow_up.h"
 #include "bench/statistics.h"
 #include "bench/step_start.h"
+#include "model/quantile.h"
 
 namespace mssim {
 namespace {
@@ -53,9 +54,9 @@ std::optional<std::string> follow(Backend& reference, const System& system, cons
 }
 
 /// What the stretches of one kind say about a backend.
-class Comparison {
+class StretchErrors {
  public:
-  explicit Comparison(const System& system)
+  explicit StretchErrors(const System& system)
       : system_(system), unit_(mean_rest_length(system)), errors_(system.nodes()) {}
 
   /// Steps the backend over all stretches; why it cannot be compared, where it blows up.
@@ -90,10 +91,7 @@ class Comparison {
   double quantile(double share) const {
     std::vector<double> all;
     for (const std::vector<double>& of_node : errors_) all.insert(all.end(), of_node.begin(), of_node.end());
-    const auto at =
-        std::min(static_cast<std::ptrdiff_t>(share * static_cast<double>(all.size())), std::ssize(all) - 1);
-    std::nth_element(all.begin(), all.begin() + at, all.end());
-    return all[static_cast<std::size_t>(at)];
+    return mssim::quantile(std::move(all), share);
   }
 
   double energy_error() const { return energy_error_; }
@@ -124,7 +122,7 @@ GarmentReference run_garment_reference(const System& system, const Integrator& i
 Verification verify_garment(Backend& backend, const System& system, const GarmentReference& reference,
                             double dt_s) {
   Verification result;
-  Comparison seaming(system), draped(system);
+  StretchErrors seaming(system), draped(system);
   result.failure = reference.failure;
   if (!result.failure) result.failure = seaming.run(backend, reference.seaming, false, dt_s);
   if (!result.failure) result.failure = draped.run(backend, reference.draped, true, dt_s);

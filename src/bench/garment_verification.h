@@ -43,12 +43,11 @@ inline constexpr int stretches = verification_steps / stretch_steps;
 ///   show 1.1 to 1.4 u |x| on jeans of 1,000 to 64,000 nodes. On those of 4,000, whatever is 1 % off shows 17
 ///   (bending springs of one panel) to 104 (the seams' force), a missing spring 190, a missing joint 4,000.
 /// - Draped, whoever touches the body lies just where contact begins, and a median says nothing. Of all
-/// errors
-///   of all stretches, half must stay below a random walk of roundings, a quarter of the tolerance, where
-///   float backends show 0.3 u |x| and damping 10 % off 7; nine tenths below the tolerance, where they show
-///   0.7 to 1, friction 10 % off 120, and a correction left out 290. None may exceed what contact, deciding
-///   otherwise in every step, would move a node: the speed at which it moves nodes out, times the stretch's
-///   time, 5,600 to 43,000; they show 400 to 1,900.
+///   errors of all stretches, half must stay below a random walk of roundings, a quarter of the tolerance,
+///   where float backends show 0.3 u |x| and damping 10 % off 7; nine tenths below the tolerance, where they
+///   show 0.7 to 1, friction 10 % off 120, and a correction left out 290. None may exceed what contact,
+///   deciding otherwise in every step, would move a node: the speed at which it moves nodes out, times the
+///   stretch's time, 5,600 to 43,000; they show 400 to 1,900.
 /// tests/garment_verification_test.cpp proves that such mistakes are found.
 GarmentReference run_garment_reference(const System& system, const Integrator& integrator, double dt_s,
                                        const State& draped);

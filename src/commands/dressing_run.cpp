@@ -41,19 +41,24 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   });
   const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.spec));
-  nlohmann::ordered_json row{
-      {"scene", scene.spec.name},
-      {"backend", backend_name},
-      {"threads", backend.threads()},
-      {"nodes", scene.system.nodes()},
-      {"dt_s", scene.dt_s},
-      {"seamed_at", result.seamed_at ? nlohmann::ordered_json(*result.seamed_at) : nlohmann::ordered_json()},
-      {"iterations", result.iterations},
-      {"simulated_s", result.simulated_s},
-      {"wall_s", seconds},
-      {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}};
-  for (const FitCheck& check : fit_checks(fit, {})) row[check.name] = check.value;
-  std::cout << to_text({row}, ListingFormat::table);
+  using Json = nlohmann::ordered_json;
+  const Json dressing{{"scene", scene.spec.name},
+                      {"backend", backend_name},
+                      {"threads", backend.threads()},
+                      {"nodes", scene.system.nodes()},
+                      {"dt_s", scene.dt_s},
+                      {"seamed_at", result.seamed_at ? Json(*result.seamed_at) : Json()},
+                      {"iterations", result.iterations},
+                      {"simulated_s", result.simulated_s},
+                      {"wall_s", seconds},
+                      {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}};
+  Listing fitting;
+  for (const FitCheck& check : fit_checks(fit, {}))
+    fitting.push_back({{"fit", check.name},
+                       {"value", check.value},
+                       {"bound", check.bound ? Json(*check.bound) : Json()},
+                       {"within", check.within ? Json(*check.within) : Json()}});
+  std::cout << to_text({dressing}, ListingFormat::table) << '\n' << to_text(fitting, ListingFormat::table);
   const std::vector<std::string> found = misfits(result, fit, {});
   for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
   return found.empty() ? exit_ok : exit_not_verified;

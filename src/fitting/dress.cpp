@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/quantile.h"
+
 namespace mssim {
 namespace {
 
@@ -14,11 +16,7 @@ double moved(const State& before, const State& after, double share) {
   distances.reserve(after.position.size());
   for (std::size_t i = 0; i < after.position.size(); ++i)
     distances.push_back(length(after.position[i] - before.position[i]));
-  const auto quantile =
-      distances.begin() + std::min(static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size())),
-                                   std::ssize(distances) - 1);
-  std::nth_element(distances.begin(), quantile, distances.end());
-  return *quantile;
+  return quantile(std::move(distances), share);
 }
 
 /// Delivers the frames of a dressing in their order.

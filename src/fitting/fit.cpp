@@ -10,6 +10,7 @@
 #include "contact/cloth_crossings.h"
 #include "contact/cloth_layers.h"
 #include "model/host_laws.h"
+#include "model/quantile.h"
 
 namespace mssim {
 namespace {
@@ -40,7 +41,6 @@ std::vector<double> elongations(const System& system, const Garment& garment,
     if (is_structural_or_shear(garment, spring))
       elongations.push_back(length(position[spring.second] - position[spring.first]) / spring.rest_length -
                             1);
-  std::ranges::sort(elongations);
   return elongations;
 }
 
@@ -126,11 +126,6 @@ int turns_around(const std::vector<std::uint32_t>& loop, const std::vector<Vec3d
   return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
-double quantile(const std::vector<double>& sorted, double share) {
-  return sorted[std::min(static_cast<std::size_t>(share * static_cast<double>(sorted.size())),
-                         sorted.size() - 1)];
-}
-
 }  // namespace
 
 std::vector<Vec3d> face_samples(const GarmentPanel& panel, const std::vector<Vec3d>& position) {
@@ -171,11 +166,11 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
     ++fit.rows;
     fit.rows_astray += std::abs(turns_around(loop, position, body.limb_middle(middle))) == 1 ? 0U : 1U;
   }
-  const std::vector<double> sorted = elongations(system, garment, position);
-  fit.elongation_50 = quantile(sorted, 0.5);
-  fit.elongation_99 = quantile(sorted, 0.99);
-  fit.elongation_999 = quantile(sorted, 0.999);
-  fit.elongation_max = sorted.back();
+  const std::vector<double> longer = elongations(system, garment, position);
+  fit.elongation_50 = quantile(longer, 0.5);
+  fit.elongation_99 = quantile(longer, 0.99);
+  fit.elongation_999 = quantile(longer, 0.999);
+  fit.elongation_max = quantile(longer, 1);
   fit.crossings = count_crossings(garment, {layer_pairs(garment), {}}, position);
   return fit;
 }

@@ -56,10 +56,14 @@ bool is_within(const FitNumber& number, const Fit& fit, const FitBounds& bounds)
 
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
   std::vector<FitCheck> checks;
-  for (const FitNumber& number : numbers)
-    checks.push_back(
-        {std::string(number.name), number.per_unit * number.value(fit),
-         number.bound != nullptr ? std::optional(is_within(number, fit, bounds)) : std::nullopt});
+  for (const FitNumber& number : numbers) {
+    FitCheck& check = checks.emplace_back();
+    check.name = number.name;
+    check.value = number.per_unit * number.value(fit);
+    if (number.bound == nullptr) continue;
+    check.bound = number.per_unit * bounds.*number.bound;
+    check.within = is_within(number, fit, bounds);
+  }
   return checks;
 }
 

@@ -25,7 +25,8 @@ struct FitBounds {
 struct FitCheck {
   std::string name;  ///< ends in its unit
   double value = 0;
-  std::optional<bool> within;  ///< its bounds; none where it has none
+  std::optional<double> bound;  ///< on its magnitude; none where it has none
+  std::optional<bool> within;   ///< whether it keeps it
 };
 
 /// All numbers of a fit, in one order.

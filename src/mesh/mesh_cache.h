@@ -9,10 +9,9 @@
 namespace mssim {
 
 /// Meshes that were made before, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME
-/// or
-/// ~/.cache). A file's name is INPUT-PROGRAM: the hash of what TetGen was given and that of the TetGen that
-/// made it. The cache only saves time: an entry that is missing, damaged or cannot be written is no error,
-/// and several processes may use it at once.
+/// or ~/.cache). A file's name is INPUT-PROGRAM: the hash of what TetGen was given and that of the TetGen
+/// that made it. The cache only saves time: an entry that is missing, damaged or cannot be written is no
+/// error, and several processes may use it at once.
 class MeshCache {
  public:
   MeshCache();

@@ -34,26 +34,8 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
   return a < b ? yes : no;
 }
 
-#define MSSIM_LAW       \
-  template <class Real> \
-  inline Real
-#define MSSIM_STRUCT(Name) \
-  template <class Real>    \
-  struct Name
-#define MSSIM_OF(Name) Name<Real>
-#define MSSIM_GIVES(Name) \
-  template <class Real>   \
-  inline auto
-#include "kernels/floor_law.h"
-#include "kernels/spring_law.h"
-// After what they need.
-#include "kernels/body_contact.h"
-#include "kernels/elongation_law.h"
-#include "kernels/joint_law.h"
-#undef MSSIM_LAW
-#undef MSSIM_STRUCT
-#undef MSSIM_OF
-#undef MSSIM_GIVES
+#define MSSIM_LAW_INLINE inline
+#include "model/laws-inl.h"
 
 /// The way from a joint's node to the point that it is sewn to: kernels/joint_law.h for vectors.
 template <class Real>

@@ -1,8 +1,6 @@
 #include "output/garment_table.h"
 
 #include <algorithm>
-#include <functional>
-#include <map>
 #include <sstream>
 #include <utility>
 
@@ -72,22 +70,6 @@ std::string dressing_cell(const ResultRow& row) {
   return three_digits(row.dressing->wall_s) + " s<br>" + grouped(row.dressing->iterations);
 }
 
-/// What was not measured, one line a reason.
-std::string remarks_on(const Layout& layout) {
-  std::vector<std::pair<std::string, std::string>> remarks;  // reason, scenes
-  for (const ResultRow* row : layout.rows()) {
-    if (counts(*row)) continue;
-    const std::string reason =
-        "`" + row->backend + "`, `" + row->integrator + "`: " + one_cell(status_of(*row));
-    auto known = std::ranges::find(remarks, reason, &std::pair<std::string, std::string>::first);
-    if (known == remarks.end()) known = remarks.insert(remarks.end(), {reason, ""});
-    known->second += (known->second.empty() ? "`" : ", `") + row->scene + "`";
-  }
-  std::string text;
-  for (const auto& [reason, scenes] : remarks) text += "- " + reason + " (" + scenes + ")\n";
-  return text;
-}
-
 class Markdown {
  public:
   explicit Markdown(const Layout& layout) : layout_(layout) {}
@@ -105,8 +87,7 @@ class Markdown {
     out_ << "\nThe whole dressing, once: seconds and iterations from flat panels to jeans that hang settled. "
             "`garment.csv` says how each fits.\n\n";
     add_table("dressing", dressing_cell);
-    const std::string remarks = remarks_on(layout_);
-    if (!remarks.empty()) out_ << "\n## Rows without a time\n\n" << remarks;
+    out_ << rows_without_a_time(layout_.rows());
     return out_.str();
   }
 

@@ -140,7 +140,7 @@ class Markdown {
     add_legend();
     for (const auto& integrator : legend_.integrators)
       if (measured_.has(integrator.name)) add_block(integrator);
-    if (!remarks_.empty()) out_ << "\n## Rows without a time\n\n" << remarks_;
+    out_ << rows_without_a_time(shown_);
     return out_.str();
   }
 
@@ -194,12 +194,12 @@ class Markdown {
     out_ << "| `" << backend.name << "`, **measured** |";
     for (const Scene& scene : measured_.scenes()) {
       const ResultRow* row = measured_.find(scene.name, backend.name, integrator.name);
+      if (row) shown_.push_back(row);
       if (const Timing timing = measured_timing(row); timing.ms) {
         out_ << " **" << three_digits(*timing.ms) << "**" << speedup_suffix(timing, backend.configuration);
       } else if (row) {
         const std::string status = status_of(*row);
         out_ << " " << one_cell(status.substr(0, status.find(':')));
-        remarks_ += remark_on(*row);
       } else {
         out_ << " " << nothing;
       }
@@ -212,7 +212,7 @@ class Markdown {
   const PaperLegend& legend_;
   const PublishedTable& published_;
   std::ostringstream out_;
-  std::string remarks_;
+  std::vector<const ResultRow*> shown_;
 };
 
 }  // namespace

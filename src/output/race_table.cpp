@@ -66,7 +66,6 @@ std::string as_markdown(const std::vector<Line>& lines, const std::vector<RaceLe
   for (const Line& line : lines) rows.push_back(line.row);
   std::ostringstream text;
   text << "# Ways to avoid the data race of the springs\n\n" << measured_on(rows, provenance) << how_to_read;
-  std::string remarks;
   const ResultRow* block = nullptr;
   for (const auto& [row, legend] : lines) {
     if (!block || block->scene != row->scene || block->integrator != row->integrator)
@@ -77,13 +76,12 @@ std::string as_markdown(const std::vector<Line>& lines, const std::vector<RaceLe
     block = row;
     text << "| `" << row->backend << "` | " << timing_cells(*row) << " | " << legend->extra_memory << " | "
          << legend->springs_computed << " | " << legend->repeatable << " |\n";
-    if (!counts(*row)) remarks += remark_on(*row);
   }
   text << "\n## The ways\n\n";
   for (const RaceLegend& way : ways)
     if (std::ranges::any_of(lines, [&](const Line& line) { return line.legend == &way; }))
       text << "- `" << way.way << "`: " << way.description << "\n";
-  if (!remarks.empty()) text << "\n## Rows without a time\n\n" << remarks;
+  text << rows_without_a_time(rows);
   return text.str();
 }
 

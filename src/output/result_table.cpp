@@ -1,7 +1,9 @@
 #include "output/result_table.h"
 
+#include <algorithm>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "output/markdown.h"
 
@@ -21,9 +23,20 @@ std::string measured_on(std::span<const ResultRow* const> rows, const Provenance
   return text.str();
 }
 
-std::string remark_on(const ResultRow& row) {
-  return "- `" + row.scene + "`, `" + row.backend + "`, `" + row.integrator +
-         "`: " + one_cell(status_of(row)) + "\n";
+std::string rows_without_a_time(std::span<const ResultRow* const> rows) {
+  std::vector<std::pair<std::string, std::string>> remarks;  // reason, scenes
+  for (const ResultRow* row : rows) {
+    if (counts(*row)) continue;
+    const std::string reason =
+        "`" + row->backend + "`, `" + row->integrator + "`: " + one_cell(status_of(*row));
+    auto known = std::ranges::find(remarks, reason, &std::pair<std::string, std::string>::first);
+    if (known == remarks.end()) known = remarks.insert(remarks.end(), {reason, ""});
+    known->second += (known->second.empty() ? "`" : ", `") + row->scene + "`";
+  }
+  if (remarks.empty()) return {};
+  std::string text = "\n## Rows without a time\n\n";
+  for (const auto& [reason, scenes] : remarks) text += "- " + reason + " (" + scenes + ")\n";
+  return text;
 }
 
 }  // namespace mssim

@@ -27,7 +27,8 @@ using TableMaker =
 /// with a blank line.
 std::string measured_on(std::span<const ResultRow* const> rows, const Provenance& provenance);
 
-/// "- `scene`, `backend`, `integrator`: status", a line of Markdown.
-std::string remark_on(const ResultRow& row);
+/// The last section of a Markdown file: what became of those of the rows that do not count, one line for each
+/// reason with the scenes that it holds for. Empty where all count.
+std::string rows_without_a_time(std::span<const ResultRow* const> rows);
 
 }  // namespace mssim

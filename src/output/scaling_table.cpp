@@ -77,7 +77,6 @@ std::string as_markdown(std::span<const ResultRow> rows, const std::string& base
          "on `"
       << base << "`. Where a line stays at 1, the cost grows with the number of nodes and no faster.\n";
   const std::vector<std::string> scenes = each_of(rows, &ResultRow::scene);
-  std::string remarks;
   for (const std::string& integrator : each_of(rows, &ResultRow::integrator)) {
     text << "\n## " << integrator << "\n\n| backend |";
     for (const std::string& scene : scenes) {
@@ -92,12 +91,11 @@ std::string as_markdown(std::span<const ResultRow> rows, const std::string& base
       for (const std::string& scene : scenes) {
         const ResultRow* row = find(rows, scene, integrator, backend);
         text << " " << cell(rows, row, base) << " |";
-        if (row && !counts(*row)) remarks += remark_on(*row);
       }
       text << "\n";
     }
   }
-  if (!remarks.empty()) text << "\n## Rows without a time\n\n" << remarks;
+  text << rows_without_a_time(pointers);
   return text.str();
 }
 

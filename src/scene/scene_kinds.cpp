@@ -14,12 +14,10 @@ namespace {
 
 constexpr std::array<SceneKind, 3> kinds{{
     // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
-    // both
-    // of its ends.
+    // both of its ends.
     {"cloth", visit_cloth_fields, check_cloth, 2, stated_cloth_counts, cloth_counts, build_cloth},
     // Those of bodies seem to be the length of the array of packed springs, three values each: all nine can
-    // be
-    // divided by three, and the thirds fit tetrahedral meshes.
+    // be divided by three, and the thirds fit tetrahedral meshes.
     {"bodies", visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts, build_bodies},
     {"garment", visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, garment_counts,
      build_garment_scene},

@@ -20,23 +20,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-#define MSSIM_LAW       \
-  template <class Real> \
-  HWY_INLINE Real
-#define MSSIM_STRUCT(Name) \
-  template <class Real>    \
-  struct Name
-#define MSSIM_OF(Name) Name<Real>
-#define MSSIM_GIVES(Name) \
-  template <class Real>   \
-  HWY_INLINE Name<Real>
-#include "kernels/body_contact.h"
-#include "kernels/elongation_law.h"
-#undef MSSIM_LAW
-#undef MSSIM_STRUCT
-#undef MSSIM_OF
-#undef MSSIM_GIVES
-
 HWY_INLINE Lanes3 load(const Float3Arrays& a, std::size_t at) {
   return {hn::Load(FloatTag(), a.x.data() + at), hn::Load(FloatTag(), a.y.data() + at),
           hn::Load(FloatTag(), a.z.data() + at)};

@@ -1,0 +1,27 @@
+// The laws of kernels/ for a number type `Real` of C++. Included inside a namespace that has what the texts
+// ask for, after MSSIM_LAW_INLINE (what makes a function inline there) is defined; it may be included again
+// elsewhere, so it has no guard.
+
+#define MSSIM_LAW       \
+  template <class Real> \
+  MSSIM_LAW_INLINE Real
+#define MSSIM_STRUCT(Name) \
+  template <class Real>    \
+  struct Name
+#define MSSIM_OF(Name) Name<Real>
+#define MSSIM_GIVES(Name) \
+  template <class Real>   \
+  MSSIM_LAW_INLINE Name<Real>
+
+#include "kernels/floor_law.h"
+#include "kernels/spring_law.h"
+// After what they need.
+#include "kernels/body_contact.h"
+#include "kernels/elongation_law.h"
+#include "kernels/joint_law.h"
+
+#undef MSSIM_LAW
+#undef MSSIM_STRUCT
+#undef MSSIM_OF
+#undef MSSIM_GIVES
+#undef MSSIM_LAW_INLINE
