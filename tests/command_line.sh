@@ -1,7 +1,7 @@
 # Functions of the tests at the command line. Needs $mssim; sets $work (a folder that goes away) and $failures.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-export POCL_CACHE_DIR=$work/pocl
+export POCL_CACHE_DIR=${mssim%/*}/../pocl  # kernels compile for seconds
 failures=0
 
 fail() {
@@ -19,4 +19,9 @@ expect() {
   grep -q -- "$pattern" "$work/err" || fail "stderr does not say \"$pattern\""
   [ "$(wc -l <"$work/err")" -eq 1 ] || fail "stderr has not one line"
   [ ! -s "$work/out" ] || fail "stdout is not empty"
+}
+
+# column_of FILE NAME: that column of a CSV file in which no field before it holds a comma
+column_of() {
+  awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$1"
 }

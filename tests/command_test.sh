@@ -7,11 +7,8 @@ source=$2
 # shellcheck source=tests/command_line.sh
 . "$2/tests/command_line.sh"
 
-# column NAME: that column of $work/results/timings.csv (no field before it may hold a comma)
-column() {
-  awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' \
-    "$work/results/timings.csv"
-}
+# column NAME: of the latest results
+column() { column_of "$work/results/timings.csv" "$1"; }
 
 # Usage.
 expect 2 'nothing to measure' bench
@@ -44,11 +41,6 @@ grep -q '^about [0-9]* s in all$' "$work/out" || fail "--dry-run does not say ho
 [ ! -e "$work/never" ] || fail "--dry-run has made a folder"
 expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite table1 --time-budget 5
 expect 2 'time-budget' bench --scene cloth2500 --time-budget nan
-start=$(date +%s%N)
-"$mssim" bench --scene cloth2500,cloth4900 --backend serial,opencl --integrator semi-euler --threads 1 --time-budget 12 >"$work/out" 2>"$work/err" ||
-  fail "a bench with a time budget exits with $?"
-spent=$((($(date +%s%N) - start) / 1000000))
-[ "$spent" -ge 10800 ] && [ "$spent" -le 13200 ] || fail "a time budget of 12 s was $spent ms"
 
 # Scenes.
 sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
@@ -84,7 +76,6 @@ for file in timings.csv samples.csv table1.csv table1.md benchmark.json provenan
 done
 [ "$(find "$work/results/traces" -name '*.h5' | wc -l)" -eq 15 ] || fail "not 15 traces"
 [ "$(awk -F, 'NR > 1' "$work/results/samples.csv" | wc -l)" -eq 45 ] || fail "not 45 samples"
-column roofline_fraction | awk '!($1 > 0 && $1 <= 1.05) { bad = 1 } END { exit bad }' || fail "a roofline fraction"
 
 # Data copied between host and device: the rows that do so say it.
 "$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite \

@@ -2,7 +2,7 @@
 # goes away), $backends and $failures.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-export POCL_CACHE_DIR=$work/pocl
+export POCL_CACHE_DIR=${mssim%/*}/../pocl  # kernels compile for seconds
 failures=0
 
 # trace SCENE BACKEND INTEGRATOR DURATION: writes $work/trace.h5

@@ -86,14 +86,14 @@ class Check {
       std::size_t end = first + 1;
       while (end < sides.size() && key(sides[end]) == key(sides[first])) ++end;
       const Side& side = sides[first];
-      const std::string edge = "the edge from " + at(side.low) + " to " + at(side.high);
-      if (end - first == 1) fail(edge + " belongs to one triangle only; close the hole there");
+      const auto edge = [&] { return "the edge from " + at(side.low) + " to " + at(side.high); };
+      if (end - first == 1) fail(edge() + " belongs to one triangle only; close the hole there");
       if (end - first > 2)
-        fail(edge + " belongs to " + std::to_string(end - first) +
+        fail(edge() + " belongs to " + std::to_string(end - first) +
              " triangles; an edge of a closed surface joins two, so separate the parts that meet there");
       if (side.upwards == sides[first + 1].upwards)
         fail(corners(side.triangle) + " and " + corners(sides[first + 1].triangle) + " both run along " +
-             edge + " in the same direction; turn one of them round");
+             edge() + " in the same direction; turn one of them round");
       first = end;
     }
   }
