@@ -15,6 +15,7 @@ expect 2 'nothing to measure' bench
 expect 2 'known are bench, run, compare and list' frobnicate
 expect 2 'rounds' bench --rounds 0 --scene cloth2500
 expect 2 'threads' bench --threads -3 --scene cloth2500
+OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;' run --threads 2 --scene cloth2500
 expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
 expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
 expect 2 'Did you mean openmp\|did you mean openmp' bench --scene cloth2500 --backend openpm

@@ -30,8 +30,14 @@ dress 0 --scene jeans2k --backend openmp --threads 3
 [ "$(value iterations)" = "$iterations" ] && [ "$(fit upper_edge_rise_mm)" = "$edge" ] ||
   fail "three threads dress otherwise than one"
 [ "$(fit rows_astray)" -eq 0 ] && [ "$(fit rows)" -ge 50 ] || fail "rows: $(cat "$work/out")"
+# Where OpenMP may not give more, there is one thread, and said to be.
+OMP_THREAD_LIMIT=1 dress 0 --scene jeans1k --backend openmp
+[ "$(value threads)" -eq 1 ] || fail "threads: $(cat "$work/out")"
 dress 0 --scene jeans1k --backend opencl
 dress 0 --scene jeans1k --backend opencl --memory copy
+
+# So does a garment that is drawn in its scene.
+dress 0 --scene skirt --backend openmp
 
 # So does it on other bodies, to the same bounds.
 dress 0 --scene jeans4k-hip88 --backend openmp

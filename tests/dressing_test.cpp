@@ -1,6 +1,7 @@
 // What one step of Algorithm 1 does, on systems whose answer is known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -196,6 +197,22 @@ TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(several.position, one.position) << threads;
     EXPECT_EQ(several.velocity, one.velocity) << threads;
   }
+}
+
+TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
+  const System system = stretched_sheets();
+  const auto one = make_openmp_dressing(system, semi_euler, dt_s, 1);
+  const auto limited = make_openmp_dressing(system, semi_euler, dt_s, 3);
+  one->step(500);
+  limited->step(250);
+  const int levels = omp_get_max_active_levels();
+  omp_set_max_active_levels(1);
+#pragma omp parallel num_threads(2)
+#pragma omp single
+  limited->step(250);  // in a team of one, as OMP_THREAD_LIMIT may have it
+  omp_set_max_active_levels(levels);
+  EXPECT_EQ(limited->state().position, one->state().position);
+  EXPECT_EQ(limited->state().velocity, one->state().velocity);
 }
 
 TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {

@@ -266,8 +266,8 @@ TEST(SceneNames, AreTheCommittedOnesByKindAndSize) {
                            "cloth1m", "cloth4m", "cloth16m", "torus-small", "box-small", "sphere-small",
                            "torus-medium", "box-medium", "sphere-medium", "torus-large", "box-large",
                            "sphere-large", "bodies3858", "bodies4737", "bodies7282", "bodies10223",
-                           "bodies20587", "bodies38233", "jeans1k", "jeans2k", "jeans4k", "jeans4k-hip88",
-                           "jeans4k-hip115", "outfit", "jeans8k", "jeans16k", "jeans64k"));
+                           "bodies20587", "bodies38233", "jeans1k", "jeans2k", "skirt", "jeans4k",
+                           "jeans4k-hip88", "jeans4k-hip115", "outfit", "jeans8k", "jeans16k", "jeans64k"));
 }
 
 TEST(FindScene, FindsByNameAndByPath) {

@@ -2,9 +2,11 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -76,7 +78,13 @@ void declare_execution(CLI::App& app, ExecutionOptions& options) {
 }
 
 ExecutionOptions complete(ExecutionOptions options) {
-  if (options.threads == 0) options.threads = omp_get_num_procs();
+  const int limit = omp_get_thread_limit();
+  if (options.threads == 0) options.threads = std::min(omp_get_num_procs(), limit);
+  if (options.threads > limit)
+    throw UsageError("--threads " + std::to_string(options.threads) +
+                     " is more than OMP_THREAD_LIMIT allows, " + std::to_string(limit) +
+                     "; ask for fewer, or unset it");
+  omp_set_dynamic(0);
   return options;
 }
 

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "backends/dressing/panel_correction-inl.h"
 #include "backends/dressing/panel_forces-inl.h"
@@ -70,17 +72,40 @@ void end_step(PanelDressing& dressing) {
   dressing.progress = {0, true, dressing.steps};
 }
 
-/// A thread, its blocks and what it computes forces in.
+/// A thread, its blocks, what it computes forces in, and where it meets the others.
 struct Worker {
-  Worker(const PanelDressing& dressing, std::size_t number)
+  Worker(const PanelDressing& dressing, std::size_t number, std::size_t threads, SpinBarrier& of_all)
       : thread(number),
-        share{number * dressing.sheet.blocks.size() / dressing.threads,
-              (number + 1) * dressing.sheet.blocks.size() / dressing.threads},
-        scratch(dressing.sheet) {}
+        share{number * dressing.sheet.blocks.size() / threads,
+              (number + 1) * dressing.sheet.blocks.size() / threads},
+        scratch(dressing.sheet),
+        barrier(of_all) {}
 
   std::size_t thread;
   Share share;
   ForceScratch scratch;
+  SpinBarrier& barrier;
+};
+
+/// The threads that the runtime gives to a parallel region: OMP_THREAD_LIMIT may make them fewer than were
+/// asked for.
+class Team {
+ public:
+  /// This thread's part. All threads of a region call it first; it makes parts for as many as there are.
+  Worker& join(const PanelDressing& dressing) {
+#pragma omp single
+    if (const auto threads = static_cast<std::size_t>(omp_get_num_threads()); threads != workers_.size()) {
+      workers_.clear();
+      barrier_.emplace(threads);
+      for (std::size_t thread = 0; thread < threads; ++thread)
+        workers_.emplace_back(dressing, thread, threads, *barrier_);
+    }
+    return workers_[static_cast<std::size_t>(omp_get_thread_num())];
+  }
+
+ private:
+  std::optional<SpinBarrier> barrier_;
+  std::vector<Worker> workers_;
 };
 
 StepRule step_rule(const PanelDressing& dressing) {
@@ -91,18 +116,18 @@ StepRule step_rule(const PanelDressing& dressing) {
 }
 
 /// Loops 1 to 4, up to where layers meet each other.
-void accelerate(PanelDressing& dressing, Worker& worker, SpinBarrier& barrier) {
+void accelerate(PanelDressing& dressing, Worker& worker) {
   const StepRule rule = step_rule(dressing);
   if (rule.has_joints) {
     if (worker.thread == 0) pull_joints(dressing);
-    barrier.wait();
+    worker.barrier.wait();
   }
   for (std::size_t b = worker.share.begin; b < worker.share.end; ++b)
     update_velocities(dressing.sheet, dressing.sheet.blocks[b], rule, worker.scratch);
 }
 
 /// What is left of a step.
-void move(PanelDressing& dressing, const Worker& worker, SpinBarrier& barrier) {
+void move(PanelDressing& dressing, const Worker& worker) {
   PanelSheet& sheet = dressing.sheet;
   const Dressing& rules = dressing.garment.dressing;
   const Share share = worker.share;
@@ -110,17 +135,17 @@ void move(PanelDressing& dressing, const Worker& worker, SpinBarrier& barrier) {
   if (rule.layers_touch)
     for (std::size_t b = share.begin; b < share.end; ++b) meet_body(sheet, sheet.blocks[b], rule);
   const std::uint32_t sweeps = correction_sweeps(rules);
-  if (sweeps == 0) barrier.wait();
-  correct(sheet, correction_rule<float>(rules, dressing.dt_s), sweeps, share, barrier);
-  barrier.wait();
+  if (sweeps == 0) worker.barrier.wait();
+  correct(sheet, correction_rule<float>(rules, dressing.dt_s), sweeps, share, worker.barrier);
+  worker.barrier.wait();
   if (worker.thread == 0) {
     close_sewn_joints(dressing);
     end_step(dressing);
   }
-  barrier.wait();
+  worker.barrier.wait();
   for (std::size_t b = share.begin; b < share.end; ++b)
     move_block(sheet, sheet.blocks[b], Lanes(rule.dt), dressing.system.floor);
-  barrier.wait();
+  worker.barrier.wait();
 }
 
 /// Layers of the garment collide.
@@ -139,33 +164,30 @@ void collide_layers(PanelDressing& dressing) {
 }
 
 void step_panels(PanelDressing& dressing, int count) {
-  SpinBarrier barrier(dressing.threads);
-  std::vector<Worker> workers;
-  for (std::size_t thread = 0; thread < dressing.threads; ++thread) workers.emplace_back(dressing, thread);
-  const int threads = static_cast<int>(dressing.threads);
+  Team team;
   if (!dressing.layers || dressing.layers->threads() == 1) {
-#pragma omp parallel num_threads(threads)
+#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
     {
-      Worker& worker = workers[static_cast<std::size_t>(omp_get_thread_num())];
+      Worker& worker = team.join(dressing);
       for (int step = 0; step < count; ++step) {
-        accelerate(dressing, worker, barrier);
+        accelerate(dressing, worker);
         if (dressing.layers) {
-          barrier.wait();
+          worker.barrier.wait();
           if (worker.thread == 0) collide_layers(dressing);
-          barrier.wait();
+          worker.barrier.wait();
         }
-        move(dressing, worker, barrier);
+        move(dressing, worker);
       }
     }
     return;
   }
   // The threads of the collision are a team of their own.
   for (int step = 0; step < count; ++step) {
-#pragma omp parallel num_threads(threads)
-    accelerate(dressing, workers[static_cast<std::size_t>(omp_get_thread_num())], barrier);
+#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
+    accelerate(dressing, team.join(dressing));
     collide_layers(dressing);
-#pragma omp parallel num_threads(threads)
-    move(dressing, workers[static_cast<std::size_t>(omp_get_thread_num())], barrier);
+#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
+    move(dressing, team.join(dressing));
   }
 }
 
