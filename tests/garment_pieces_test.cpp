@@ -294,5 +294,19 @@ TEST(GarmentPieces, NeedABodyAtTheirHeights) {
   }
 }
 
+TEST(GarmentPieces, AreNotPutOnUnderTheFloor) {
+  std::string text = two_pieces;
+  constexpr std::string_view floor = R"("floor": {"height_m": 0,)";
+  text.replace(text.find(floor), floor.size(), R"("floor": {"height_m": 0.9,)");
+  try {
+    built(text);
+    ADD_FAILURE() << "accepted";
+  } catch (const SceneError& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("/floor/height_m is 0.9, but the garment would start down to 0.8"),
+                      HasSubstr("lower the floor")));
+  }
+}
+
 }  // namespace
 }  // namespace mssim

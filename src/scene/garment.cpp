@@ -17,6 +17,7 @@
 #include "mesh/surface_file.h"
 #include "model/printable.h"
 #include "scene/garment_cut.h"
+#include "scene/json_document.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -206,6 +207,11 @@ System build_garment_scene(const SceneSpec& spec) {
   const GarmentSpec& garment = garment_of(spec);
   const MeasuredBody body = measured_body(spec);
   auto [build, body_offset] = cut_and_placed(spec, body.profile);
+  const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
+  if (lowest_start < spec.floor.height)
+    refuse(spec.file, "/floor/height_m",
+           "is " + shown_number(spec.floor.height) + ", but the garment would start down to " +
+               shown_number(lowest_start) + ": lower the floor or wear the garment higher");
   System system;
   system.springs = std::move(build.springs);
   system.materials = std::move(build.materials);
