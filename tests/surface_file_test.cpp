@@ -39,6 +39,28 @@ TEST(ObjFile, AllFormsOfCornersAndLinesAreRead) {
   EXPECT_EQ(surface.points[4], (Vec3d{2, 2, 2}));
 }
 
+TEST(ObjFile, LinesThatAreNoGeometryAreLeftOut) {
+  const Surface plain = parse_obj("a.obj", obj_tetrahedron);
+  const Surface surface = parse_obj(
+      "a.obj",
+      "# a scan\nmtllib a.mtl\no body\ncstype bezier\ncurv2 1 2 \\\n3 4\ntrace_obj a\nTexture 1 2\n" +
+          obj_points +
+          "vt 0 0 0\nvn nan nan nan\nvp 1\ng a b\ns 1\nusemtl skin\nlod 2\n"
+          "p 1\nl 1 2 \xe9\nf 1 3 2\nf 1 2 4\ncall more.obj\nf 2 3 4\nf 1 4 3\nend\n");
+  EXPECT_EQ(surface.points, plain.points);
+  EXPECT_EQ(surface.triangles, plain.triangles);
+}
+
+TEST(ObjFile, AByteOrderMarkIsLeftOut) {
+  const std::string mark = "\xef\xbb\xbf";
+  EXPECT_EQ(parse_obj("a.obj", mark + obj_tetrahedron).triangles.size(), 4U);
+  EXPECT_THAT(mesh_error_of([&] { parse_obj("a.obj", mark + "v 0 0 o\n"); }),
+              StartsWith("a.obj, line 1: z is \"o\""));
+  EXPECT_THAT(mesh_error_of([&] { parse_obj("a.obj", obj_points + "f 1 2 " + mark + "3\n"); }),
+              HasSubstr("cannot be read"))
+      << "elsewhere it is no mark";
+}
+
 TEST(ObjFile, PointsAtOnePlaceBecomeOne) {
   const Surface surface = parse_obj("a.obj", obj_points + "v -0 0 0\nf 5 3 2\nf 1 2 4\n");
   EXPECT_THAT(surface.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
@@ -80,10 +102,10 @@ INSTANTIATE_TEST_SUITE_P(
                     BrokenText{"v 0 0 0\nf 1 1 x\n", "a.obj, line 2: ", "\"x\" of a face cannot be read"},
                     BrokenText{"v 0 0 0\nf 1 1 99999999999999999999\n", "a.obj, line 2: ", "cannot be read"},
                     BrokenText{"v 0 0 0\nf 1 1 \\\n1\n", "a.obj, line 2: ", "backslash"},
-                    BrokenText{"curv 0 1 2\n", "a.obj, line 1: ", "it begins with \"curv\""},
-                    BrokenText{"PK\x03\x04\n", "a.obj, line 1: ", "it begins with \"PK\\u0003\\u0004\""},
+                    BrokenText{"v 0 0 \\\n0\n", "a.obj, line 1: ", "backslash"},
+                    BrokenText{"PK\x03\x04\n", "a.obj, line 1: ", "without an f line; give an OBJ file"},
                     // Bytes that are not UTF-8 went into the message where char has no sign (arm64).
-                    BrokenText{"\xff\n", "a.obj, line 1: ", "it begins with \"\xef\xbf\xbd\""}));
+                    BrokenText{"v 0 0 \xff\n", "a.obj, line 1: ", "z is \"\xef\xbf\xbd\""}));
 
 /// An ASCII STL file of the tetrahedron above.
 std::string ascii_stl() {
@@ -142,6 +164,10 @@ TEST(StlFile, KeywordsMayBeInCapitalsAndLinesEndInCrLf) {
     text += static_cast<char>(std::toupper(c));
   }
   EXPECT_EQ(parse_stl("a.stl", text).triangles.size(), 4U);
+}
+
+TEST(StlFile, AByteOrderMarkIsLeftOut) {
+  EXPECT_EQ(parse_stl("a.stl", "\xef\xbb\xbf" + ascii_stl()).triangles.size(), 4U);
 }
 
 TEST(StlFile, CutOffAnywhereIsRefused) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
@@ -9,10 +8,6 @@
 namespace mssim {
 namespace {
 
-/// Lines that say nothing about the surface's shape.
-constexpr std::array<std::string_view, 14> left_out{"vt",     "vn", "vp", "g",  "o",   "s",      "usemtl",
-                                                    "mtllib", "l",  "p",  "mg", "lod", "usemap", "maplib"};
-
 class ObjReader {
  public:
   ObjReader(const std::string& name, std::string_view text) : lines_(name, text), merger_(surface_) {}
@@ -20,17 +15,17 @@ class ObjReader {
   Surface read() {
     while (lines_.next()) {
       const std::string_view keyword = lines_.words().front();
+      if (keyword != "v" && keyword != "f") continue;
       if (lines_.words().back() == "\\")
         lines_.fail("the line goes on after a backslash; join it with the next");
       if (keyword == "v")
         vertex();
-      else if (keyword == "f")
+      else
         face();
-      else if (std::find(left_out.begin(), left_out.end(), keyword) == left_out.end())
-        lines_.fail("it begins with " + TextLines::quoted(keyword) +
-                    ", which is no line of a surface of triangles or polygons; export v and f lines only");
     }
-    if (faces_.empty()) lines_.fail("the file ends without an f line; give a surface");
+    if (faces_.empty())
+      lines_.fail(
+          "the file ends without an f line; give an OBJ file with a surface of triangles or polygons");
     for (const Face& face : faces_) add(face);
     return std::move(surface_);
   }

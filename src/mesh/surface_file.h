@@ -9,8 +9,8 @@
 namespace mssim {
 
 /// Reads a surface from the text of a Wavefront OBJ file: its v and f lines. Polygons are cut into triangles
-/// fanning out from their first corner; texture, normals, groups and materials are left out. Points at one
-/// place become one. Throws MeshError that names file, line and value.
+/// fanning out from their first corner; all other lines (texture, normals, groups, materials, curves) are
+/// left out. Points at one place become one. Throws MeshError that names file, line and value.
 Surface parse_obj(const std::string& name, std::string_view text);
 
 /// Reads a surface from the content of an STL file, ASCII or binary. Points at one place become one; normals

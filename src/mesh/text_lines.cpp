@@ -42,7 +42,10 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 TextLines::TextLines(std::string file, std::string_view text, char comment)
-    : file_(std::move(file)), text_(text), comment_(comment) {}
+    : file_(std::move(file)), text_(text), comment_(comment) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
+}
 
 bool TextLines::next() {
   words_.clear();

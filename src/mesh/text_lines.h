@@ -16,7 +16,8 @@ std::string read_text(const std::filesystem::path& file);
 /// MeshError that begins "FILE, line N: ".
 class TextLines {
  public:
-  /// `text` must outlive this; what follows `comment` on a line is left out.
+  /// `text` must outlive this; what follows `comment` on a line is left out, and so is a byte-order mark of
+  /// UTF-8 at the beginning.
   TextLines(std::string file, std::string_view text, char comment = '#');
 
   /// Goes to the next line that has words; false at the end. Throws for one of more than a megabyte: its
