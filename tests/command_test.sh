@@ -12,7 +12,7 @@ column() { column_of "$work/results/timings.csv" "$1"; }
 
 # Usage.
 expect 2 'nothing to measure' bench
-expect 2 'known are bench, run, compare and list' frobnicate
+expect 2 'known are bench, run, compare, measure and list' frobnicate
 expect 2 'rounds' bench --rounds 0 --scene cloth2500
 expect 2 'threads' bench --threads -3 --scene cloth2500
 OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;' run --threads 2 --scene cloth2500

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "garment_system.h"
-#include "scene/garment.h"
+#include "scene/garment_body.h"
 
 namespace mssim {
 namespace {

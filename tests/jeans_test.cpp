@@ -111,14 +111,16 @@ TEST(JeansDraft, BadMeasuresAreRefused) {
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.girth = [](double) { return -1.0; }; }),
               AllOf(StartsWith("jeans: the body's girth at the height 0.86 m is -1 m"),
                     HasSubstr("from 0.2 to 5 m")));
-  EXPECT_EQ(complaint([](JeansMeasures& m) { m.knee_height = 0.08; }),
-            "jeans: the knee's height, which lies above the hem's, is 0.08 m; give a length from 0.1 to 2 m");
+  EXPECT_EQ(
+      complaint([](JeansMeasures& m) { m.knee_height = 0.08; }),
+      "jeans: the knee's height, knee_height_m, which lies above the hem's, is 0.08 m; give a length from "
+      "0.1 to 2 m");
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.waist_height = 0.86; }),
               StartsWith("jeans: the waist's height"));
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.crotch_height = 0.5; }),
               StartsWith("jeans: the crotch line's height"));
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.hem = std::nan(""); }),
-              StartsWith("jeans: the jeans' circumference at the hem is nan"));
+              StartsWith("jeans: the jeans' circumference at the hem, hem_m, is nan"));
 }
 
 TEST(JeansGrid, TheNumberOfNodesIsMetWithCellsAboutSquare) {

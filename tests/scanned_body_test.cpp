@@ -12,7 +12,7 @@
 
 #include "contact_fixture.h"
 #include "dressed_jeans.h"
-#include "scene/garment.h"
+#include "scene/garment_body.h"
 #include "scene/scene_error.h"
 #include "temporary_folder.h"
 
@@ -131,8 +131,9 @@ TEST_F(ScannedBody, ThatStandsAsideIsRefused) {
     build_system(scene_for("body.obj", 1));
     ADD_FAILURE() << "built";
   } catch (const SceneError& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("its section never falls apart into a left and a right leg at x = 0; give "));
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr("/garment/surface_file has no leg on either side of x = 0, where jeans need one: let "));
   }
 }
 

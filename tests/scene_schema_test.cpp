@@ -25,6 +25,9 @@ class SchemaWriter final : public FieldVisitor {
   void number(std::string_view key, double& /*target*/, const Range& range) override {
     add(key, Presence::required, number_schema("number", range));
   }
+  void optional_number(std::string_view key, std::optional<double>& /*target*/, const Range& range) override {
+    add(key, Presence::optional, number_schema("number", range));
+  }
   void number_or_auto(std::string_view key, std::optional<double>& /*target*/, const Range& range) override {
     add(key, Presence::required, {{"oneOf", {number_schema("number", range), {{"const", "auto"}}}}});
   }
@@ -40,9 +43,9 @@ class SchemaWriter final : public FieldVisitor {
     add(key, presence,
         {{"type", "array"}, {"items", number_schema("number", each)}, {"minItems", 3}, {"maxItems", 3}});
   }
-  void choice(std::string_view key, std::span<const std::string_view> words,
+  void choice(std::string_view key, Presence presence, std::span<const std::string_view> words,
               std::uint32_t& /*target*/) override {
-    add(key, Presence::required, {{"type", "string"}, {"enum", words}});
+    add(key, presence, {{"type", "string"}, {"enum", words}});
   }
   void points(std::string_view key, std::size_t least, std::size_t most, const Range& each,
               std::vector<Vec3d>& /*target*/) override {
@@ -136,7 +139,7 @@ TEST(SceneSchema, NamesTheUnitOfEveryFieldThatHasOne) {
     }
   };
   check(committed);
-  EXPECT_EQ(checked, 105);
+  EXPECT_EQ(checked, 107);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "commands/compare_command.h"
 #include "commands/exit_code.h"
 #include "commands/list_command.h"
+#include "commands/measure_command.h"
 #include "commands/run_command.h"
 #include "commands/run_provenance.h"
 #include "mesh/interruption.h"
@@ -27,13 +28,15 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 4> table{{
+constexpr std::array<Command, 5> table{{
     {"bench", "time and verify backends on scenes", "mssim bench --scene cloth350k --out results/today",
      declare_bench},
     {"run", "simulate one scene, tracing it into a file",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
     {"compare", "say which of two runs is faster, and whether that is certain",
      "mssim compare results/yesterday results/today", declare_compare},
+    {"measure", "measure a person's surface, and write a scene of jeans for it",
+     "mssim measure scan.obj --scene my.json", declare_measure},
     {"list", "list scenes, suites, backends, ways, integrators or devices", "mssim list scenes --format csv",
      declare_list},
 }};

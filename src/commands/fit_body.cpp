@@ -7,7 +7,7 @@
 
 #include "contact/solid.h"
 #include "garment/body_profile.h"
-#include "scene/garment.h"
+#include "scene/garment_body.h"
 
 namespace mssim {
 namespace {

@@ -5,7 +5,7 @@
 #include "commands/exit_code.h"
 #include "commands/run_provenance.h"
 #include "mesh/interruption.h"
-#include "scene/garment.h"
+#include "scene/garment_body.h"
 
 namespace mssim {
 

@@ -72,8 +72,8 @@ bool meet(const Segment& a, const Segment& b) {
   const std::string name_a = name_of(a.edge), name_b = name_of(b.edge);
   const std::string who = a.edge == b.edge ? "the " + name_a + " boundary meets itself"
                                            : "the " + name_a + " and the " + name_b + " boundary meet";
-  throw MeshError(piece.name + ": " + who + " near " + place(rounded(0.5 * (a.from + a.to))) +
-                  "; draw them so that they neither cross nor touch");
+  throw FoldedPiece(piece.name + ": " + who + " near " + place(rounded(0.5 * (a.from + a.to))) +
+                    "; draw them so that they neither cross nor touch");
 }
 
 }  // namespace

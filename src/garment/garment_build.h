@@ -43,10 +43,14 @@ struct GarmentBuild {
 struct PatternError : MeshError {
   enum class Part { panel, seam };
   PatternError(const MeshError& error, Part part_, std::size_t index_)
-      : MeshError(error), part(part_), index(index_) {}
+      : MeshError(error),
+        part(part_),
+        index(index_),
+        folded(dynamic_cast<const FoldedPiece*>(&error) != nullptr) {}
 
   Part part;
   std::size_t index;  ///< into the pattern's panels or seams
+  bool folded;        ///< a FoldedPiece
 };
 
 /// Cuts, sews and places a pattern. Throws PatternError for what mesh_panel, require_cloth, join_seam and

@@ -179,19 +179,21 @@ void require_between(double value, double least, double most, const std::string&
 
 void require_measures(const JeansMeasures& m) {
   if (!m.girth) throw MeshError("jeans: the body's girth is missing; give it as a function of the height");
-  require_between(m.hem_height, 0, 2, "the hem's height");
+  require_between(m.hem_height, 0, 2, "the hem's height, hem_height_m,");
   const double least = 0.03;  // between two of the heights
-  require_between(m.knee_height, m.hem_height + least, 2, "the knee's height, which lies above the hem's,");
+  require_between(m.knee_height, m.hem_height + least, 2,
+                  "the knee's height, knee_height_m, which lies above the hem's,");
   require_between(m.crotch_height - m.crotch_ease, m.knee_height + least, 2,
-                  "the crotch line's height, which lies above the knee's,");
+                  "the crotch line's height, the body's less crotch_ease_m, which lies above the knee's,");
   require_between(m.hip_height, m.crotch_height + least, 2,
-                  "the hip's height, which lies above the crotch's,");
-  require_between(m.waist_height, m.hip_height + least, 2, "the waist's height, which lies above the hip's,");
-  require_between(m.knee, 0.1, 2, "the jeans' circumference at the knee");
-  require_between(m.hem, 0.1, 2, "the jeans' circumference at the hem");
-  require_between(m.hip_ease, -0.2, 0.5, "the ease at the hip");
-  require_between(m.waist_ease, -0.2, 0.5, "the ease at the waist");
-  require_between(m.crotch_ease, -0.05, 0.2, "the ease at the crotch");
+                  "the hip's height, hip_height_m, which lies above the crotch's,");
+  require_between(m.waist_height, m.hip_height + least, 2,
+                  "the waist's height, waist_height_m, which lies above the hip's,");
+  require_between(m.knee, 0.1, 2, "the jeans' circumference at the knee, knee_m,");
+  require_between(m.hem, 0.1, 2, "the jeans' circumference at the hem, hem_m,");
+  require_between(m.hip_ease, -0.2, 0.5, "the ease at the hip, hip_ease_m,");
+  require_between(m.waist_ease, -0.2, 0.5, "the ease at the waist, waist_ease_m,");
+  require_between(m.crotch_ease, -0.05, 0.2, "the ease at the crotch, crotch_ease_m,");
   require_between(m.body_offset, 0, 0.05, "the distance between body and cloth");
 }
 
@@ -205,8 +207,10 @@ JeansDraft draft_jeans(const JeansMeasures& measures) {
   double least = -0.03, most = 0.08;  // m: the back inseam shrinks from the one to the other
   const auto back_inseam = [&](double drop) { return back.outline(drop).inseam.length(); };
   if (!(back_inseam(least) > inseam && back_inseam(most) < inseam))
-    throw MeshError("jeans: no crotch point makes the back's inseam as long as the front's of " +
-                    shown(inseam) + " m; take measures that are more like a body's");
+    throw MeshError(
+        "jeans: no crotch point makes the back's inseam as long as the front's of " + shown(inseam) +
+        " m; change the heights (hip_height_m, waist_height_m, knee_height_m, hem_height_m) or the widths "
+        "(knee_m, hem_m) towards the body's");
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = 0.5 * (least + most);
     (back_inseam(middle) > inseam ? least : most) = middle;

@@ -57,9 +57,9 @@ void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
       for (std::size_t i = 0; i < 4; ++i) {
         const Vec3d &here = corner[i], &next = corner[(i + 1) % 4], &before = corner[(i + 3) % 4];
         if (cross(next - here, before - here).z <= 0)
-          throw MeshError(piece.name + ": the cell of row " + std::to_string(row) + " and column " +
-                          std::to_string(column) + " folds over at " + place(here) +
-                          "; straighten the boundaries there or let the grid lines end elsewhere");
+          throw FoldedPiece(piece.name + ": the cell of row " + std::to_string(row) + " and column " +
+                            std::to_string(column) + " folds over at " + place(here) +
+                            "; straighten the boundaries there or let the grid lines end elsewhere");
       }
     }
 }

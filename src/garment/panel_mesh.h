@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "garment/curve.h"
+#include "mesh/mesh_error.h"
 
 namespace mssim {
 
@@ -57,10 +58,15 @@ struct PanelMesh {
   std::vector<std::size_t> edge_nodes(PanelEdge edge) const;
 };
 
+/// Thrown for boundaries that leave a piece no room for its cells.
+struct FoldedPiece : MeshError {
+  using MeshError::MeshError;
+};
+
 /// The bilinearly blended patch of Coons ("Surfaces for computer-aided design of space forms", MIT MAC-TR-41,
 /// 1967) between the four boundaries. Cells are convex and go round counter-clockwise. Throws MeshError,
-/// which begins with the panel's name, for fewer than two rows or columns, corners that do not meet,
-/// boundaries that cross, grid lines that are out of order, and cells that fold over.
+/// which begins with the panel's name, for fewer than two rows or columns, corners that do not meet and grid
+/// lines that are out of order, and as FoldedPiece for boundaries that cross and cells that fold over.
 PanelMesh mesh_panel(const PatternPiece& piece, const PanelGrid& grid);
 
 }  // namespace mssim

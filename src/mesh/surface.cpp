@@ -1,20 +1,15 @@
 #include "mesh/surface.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
+#include "mesh/surface_sides.h"
 
 namespace mssim {
 namespace {
-
-/// One side of a triangle, in the triangle's direction of travel.
-struct Side {
-  std::uint32_t low = 0, high = 0;
-  bool upwards = false;  ///< from low to high
-  std::size_t triangle = 0;
-};
 
 class Check {
  public:
@@ -70,31 +65,19 @@ class Check {
   }
 
   void sides() const {
-    std::vector<Side> sides;
-    sides.reserve(3 * surface_.triangles.size());
-    for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const std::uint32_t from = surface_.triangles[t][corner];
-        const std::uint32_t to = surface_.triangles[t][(corner + 1) % 3];
-        sides.push_back({std::min(from, to), std::max(from, to), from < to, t});
-      }
-    const auto key = [](const Side& side) { return std::pair(side.low, side.high); };
-    std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
-      return std::pair(key(a), a.triangle) < std::pair(key(b), b.triangle);
-    });
+    const std::vector<SurfaceSide> sides = sides_by_edge(surface_);
     for (std::size_t first = 0; first < sides.size();) {
-      std::size_t end = first + 1;
-      while (end < sides.size() && key(sides[end]) == key(sides[first])) ++end;
-      const Side& side = sides[first];
+      const std::span<const SurfaceSide> of_edge = sides_of_edge(sides, first);
+      const SurfaceSide& side = of_edge.front();
       const auto edge = [&] { return "the edge from " + at(side.low) + " to " + at(side.high); };
-      if (end - first == 1) fail(edge() + " belongs to one triangle only; close the hole there");
-      if (end - first > 2)
-        fail(edge() + " belongs to " + std::to_string(end - first) +
+      if (of_edge.size() == 1) fail(edge() + " belongs to one triangle only; close the hole there");
+      if (of_edge.size() > 2)
+        fail(edge() + " belongs to " + std::to_string(of_edge.size()) +
              " triangles; an edge of a closed surface joins two, so separate the parts that meet there");
-      if (side.upwards == sides[first + 1].upwards)
-        fail(corners(side.triangle) + " and " + corners(sides[first + 1].triangle) + " both run along " +
+      if (side.upwards == of_edge.back().upwards)
+        fail(corners(side.triangle) + " and " + corners(of_edge.back().triangle) + " both run along " +
              edge() + " in the same direction; turn one of them round");
-      first = end;
+      first += of_edge.size();
     }
   }
 

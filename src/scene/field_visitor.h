@@ -50,6 +50,7 @@ class FieldVisitor {
   virtual ~FieldVisitor() = default;
 
   virtual void number(std::string_view key, double& target, const Range& range) = 0;
+  virtual void optional_number(std::string_view key, std::optional<double>& target, const Range& range) = 0;
   /// A number, or the text "auto", which leaves the target empty.
   virtual void number_or_auto(std::string_view key, std::optional<double>& target, const Range& range) = 0;
   virtual void integer(std::string_view key, std::uint32_t& target, std::uint32_t minimum,
@@ -57,7 +58,7 @@ class FieldVisitor {
   /// One line of at most `longest_text` characters.
   virtual void text(std::string_view key, Presence presence, std::string& target) = 0;
   /// One of several words, of which the target becomes the number.
-  virtual void choice(std::string_view key, std::span<const std::string_view> words,
+  virtual void choice(std::string_view key, Presence presence, std::span<const std::string_view> words,
                       std::uint32_t& target) = 0;
   /// Three numbers, [x, y, z].
   virtual void vector(std::string_view key, Presence presence, Vec3d& target, const Range& each) = 0;

@@ -12,53 +12,19 @@
 
 #include "contact/body_maps.h"
 #include "contact/cloth_layers.h"
-#include "garment/body_profile.h"
-#include "mesh/mesh_error.h"
-#include "mesh/surface_file.h"
 #include "model/printable.h"
+#include "scene/garment_body.h"
 #include "scene/garment_cut.h"
 #include "scene/json_document.h"
+#include "scene/length_field.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
 namespace {
 
 constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
-constexpr double largest_length_m = 10;
 
 const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
-
-void visit_length(FieldVisitor& fields, std::string_view key, double& target) {
-  fields.number(key, target, above(0, largest_length_m));
-}
-
-void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
-  fields.object(key, Presence::required, [&](FieldVisitor& at) {
-    visit_length(at, "girth_m", girth.girth);
-    visit_length(at, "height_m", girth.height);
-  });
-}
-
-void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
-  auto& [measures, resolution] = garment.body.emplace<MannequinBody>();
-  visit_girth(fields, "bust", measures.bust);
-  visit_girth(fields, "waist", measures.waist);
-  visit_girth(fields, "hip", measures.hip);
-  visit_girth(fields, "thigh", measures.thigh);
-  visit_girth(fields, "knee", measures.knee);
-  visit_girth(fields, "ankle", measures.ankle);
-  visit_length(fields, "crotch_height_m", measures.crotch_height);
-  fields.number("hip_depth_over_width", measures.hip_aspect, above(0, 10));
-  fields.number("thigh_gap_m", measures.thigh_gap, from(0, largest_length_m));
-  visit_length(fields, "stance_m", measures.stance);
-  fields.integer("cells_around", resolution.cells_around, 16, 512);
-}
-
-void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
-  auto& body = garment.body.emplace<BodyFile>();
-  fields.text("file", Presence::required, body.file);
-  fields.number("unit_m", body.unit_m, above(0, 1e6));
-}
 
 void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
   fields.integer("nodes", jeans.nodes, fewest_nodes, most_nodes);
@@ -102,22 +68,6 @@ void visit_dressing(FieldVisitor& fields, Dressing& dressing) {
   fields.one_of("correction", sections);
 }
 
-/// A body as a pattern needs it.
-struct MeasuredBody {
-  Surface surface;
-  BodyProfile profile;
-};
-
-MeasuredBody measured_body(const SceneSpec& spec) {
-  Surface surface = body_of_garment(spec);
-  try {
-    BodyProfile profile(surface);
-    return {std::move(surface), std::move(profile)};
-  } catch (const MeshError& error) {
-    refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
-  }
-}
-
 void visit_layers(FieldVisitor& fields, ClothClothSettings& layers) {
   visit_length(fields, "thickness_m", layers.thickness);
   fields.number("friction", layers.friction, from(0, 100));
@@ -148,10 +98,7 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
   GarmentSpec& garment = spec.body.emplace<GarmentSpec>();
-  const std::array bodies{
-      Section{"mannequin", [&](FieldVisitor& body) { visit_mannequin(body, garment); }},
-      Section{"surface_file", [&](FieldVisitor& body) { visit_body_file(body, garment); }}};
-  fields.one_of("body", bodies);
+  visit_body_fields(fields, garment);
   visit_length(fields, "pixel_m", garment.pixel_m);
   fields.number("skin_m", garment.skin_m, from(0, largest_length_m));
   const auto jeans_of = [&](FieldVisitor& jeans) { visit_jeans(jeans, garment.jeans.emplace()); };
@@ -175,6 +122,7 @@ void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
 }
 
 void check_garment(const SceneSpec& spec) {
+  check_body(spec);
   const GarmentSpec& garment = garment_of(spec);
   if (garment.pieces) check_pieces(spec.file, pieces_pointer(garment), *garment.pieces, most_nodes);
 }
@@ -187,20 +135,6 @@ std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
 SceneCounts garment_counts(const SceneSpec& spec) {
   const GarmentBuild build = cut_and_placed(spec, measured_body(spec).profile).build;
   return {build.placed.size(), build.springs.size()};
-}
-
-Surface body_of_garment(const SceneSpec& spec) {
-  const GarmentSpec& garment = garment_of(spec);
-  try {
-    if (const auto* form = std::get_if<MannequinBody>(&garment.body))
-      return mannequin(form->measures, form->resolution);
-    const auto& file = std::get<BodyFile>(garment.body);
-    Surface surface = read_surface(spec.file.parent_path() / file.file);
-    for (Vec3d& point : surface.points) point = file.unit_m * point;
-    return surface;
-  } catch (const MeshError& error) {
-    refuse(spec.file, "/garment/body", "is no body: " + printable(error.what(), 1500));
-  }
 }
 
 System build_garment_scene(const SceneSpec& spec) {

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "mesh/surface.h"
 #include "model/system.h"
 #include "scene/field_visitor.h"
 #include "scene/scene_spec.h"
@@ -25,8 +24,5 @@ SceneCounts garment_counts(const SceneSpec& spec);
 /// Panels placed around the body, at rest, and the maps of the body that they collide with. Deterministic.
 /// Throws SceneError when the body cannot be measured or the pattern does not fit together.
 System build_garment_scene(const SceneSpec& spec);
-
-/// The body that the garment is for. Throws SceneError.
-Surface body_of_garment(const SceneSpec& spec);
 
 }  // namespace mssim

@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "garment/jeans.h"
+#include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
 #include "model/printable.h"
+#include "scene/json_document.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -51,6 +53,40 @@ double widest_mean_cell(const GarmentPattern& pattern, const GarmentBuild& build
   return widest;
 }
 
+[[noreturn]] void refuse_measure(const SceneSpec& spec, const char* field, double value,
+                                 const std::string& rest) {
+  refuse(spec.file, jeans_pointer(garment_of(spec)) + '/' + field, "is " + shown_number(value) + rest);
+}
+
+/// That the body reaches as far as the jeans do. Throws SceneError, which names the field to change.
+void require_body_there(const SceneSpec& spec, const BodyProfile& profile) {
+  const JeansMeasures& jeans = garment_of(spec).jeans->measures;
+  constexpr double waist_raised = 0.04;  // m, of the jeans' upper edge behind, and room
+  if (!profile.has_legs() && std::holds_alternative<BodyFile>(garment_of(spec).body))
+    refuse(spec.file, "/garment/surface_file",
+           "has no leg on either side of x = 0, where jeans need one: let \"up\", \"facing\" and \"move_m\" "
+           "say how it stands (mssim measure finds them)");
+  if (jeans.hem_height < profile.lowest())
+    refuse_measure(
+        spec, "hem_height_m", jeans.hem_height,
+        ", and the body begins at the height " + shown(profile.lowest()) + " m: give a higher one");
+  if (jeans.waist_height + waist_raised > profile.highest())
+    refuse_measure(spec, "waist_height_m", jeans.waist_height,
+                   ", and the body ends at the height " + shown(profile.highest()) +
+                       " m, but the jeans' back rises 0.04 m above their waist: give a lower one");
+}
+
+/// What is wrong with jeans whose panels, which nobody drew, cannot be cut.
+std::string uncut_jeans(const JeansMeasures& jeans, const BodyProfile& profile) {
+  const auto at = [](double height) { return " m around at the height " + shown(height); };
+  return "cannot be cut for this body: it measures " + shown(profile.hull_girth(jeans.hip_height)) +
+         at(jeans.hip_height) + " (hip_height_m) and " + shown(profile.hull_girth(jeans.waist_height)) +
+         at(jeans.waist_height) + " (waist_height_m), and parts into legs at " +
+         shown(profile.crotch_height()) +
+         " m; give the heights of its hip and waist, and knee_height_m and hem_height_m evenly below (mssim "
+         "measure finds them)";
+}
+
 /// Jeans for a body that is as much wider all round as its maps lie before it.
 GarmentPattern jeans_for(const GarmentSpec& garment, const BodyProfile& profile, double body_offset) {
   JeansMeasures measures = garment.jeans->measures;
@@ -71,10 +107,13 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern
   } catch (const PatternError& error) {
     const bool is_panel = error.part == PatternError::Part::panel;
     const std::size_t of_jeans = is_panel ? jeans.panels.size() : jeans.seams.size();
+    if (error.index < of_jeans)
+      refuse(spec.file, jeans_pointer(garment),
+             error.folded ? uncut_jeans(garment.jeans->measures, profile)
+                          : "does not fit: " + printable(error.what(), 1500));
     refuse(spec.file,
-           error.index < of_jeans ? jeans_pointer(garment)
-                                  : pieces_pointer(garment) + (is_panel ? "/panels/" : "/seams/") +
-                                        std::to_string(error.index - of_jeans),
+           pieces_pointer(garment) + (is_panel ? "/panels/" : "/seams/") +
+               std::to_string(error.index - of_jeans),
            "does not fit: " + printable(error.what(), 1500));
   }
 }
@@ -82,6 +121,7 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern
 FittedGarment cut_and_placed(const SceneSpec& spec, const BodyProfile& profile, double body_offset) {
   const GarmentSpec& garment = garment_of(spec);
   GarmentPattern jeans;
+  if (garment.jeans) require_body_there(spec, profile);
   try {
     if (garment.jeans) jeans = jeans_for(garment, profile, body_offset);
   } catch (const MeshError& error) {

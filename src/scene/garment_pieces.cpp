@@ -16,7 +16,7 @@ void visit_boundary(FieldVisitor& fields, std::string_view key, BoundarySpec& bo
   fields.object(key, Presence::required, [&](FieldVisitor& drawn) {
     constexpr std::array<std::string_view, 2> curves{"polyline", "bezier"};
     std::uint32_t curve = 0;
-    drawn.choice("curve", curves, curve);
+    drawn.choice("curve", Presence::required, curves, curve);
     boundary.is_bezier = curve == 1;
     drawn.points("points_m", 2, most_points, from(-largest_length_m, largest_length_m), boundary.points);
   });
@@ -32,7 +32,7 @@ void visit_piece(FieldVisitor& fields, PieceSpec& piece) {
   fields.object("placement", Presence::required, [&](FieldVisitor& placement) {
     constexpr std::array<std::string_view, 2> sides{"front", "back"};
     std::uint32_t side = 0;
-    placement.choice("side", sides, side);
+    placement.choice("side", Presence::required, sides, side);
     piece.behind = side == 1;
     placement.number("axis_m", piece.axis_m, from(-largest_length_m, largest_length_m));
     placement.number("distance_m", piece.distance_m, above(0, largest_length_m));
@@ -46,7 +46,7 @@ void visit_stretch(FieldVisitor& fields, std::string_view key, SeamStretch& stre
   fields.object(key, Presence::required, [&](FieldVisitor& sewn) {
     sewn.text("panel", Presence::required, stretch.panel);
     auto edge = static_cast<std::uint32_t>(stretch.edge);
-    sewn.choice("edge", panel_edge_names, edge);
+    sewn.choice("edge", Presence::required, panel_edge_names, edge);
     stretch.edge = static_cast<PanelEdge>(edge);
     sewn.number("from", stretch.from, from(0, 1));
     sewn.number("to", stretch.to, from(0, 1));

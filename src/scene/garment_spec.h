@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include "garment/body_stance.h"
 #include "garment/jeans_outline.h"
 #include "garment/mannequin.h"
 #include "garment/panel_springs.h"
@@ -21,10 +22,11 @@ struct MannequinBody {
   MannequinResolution resolution;
 };
 
-/// A closed surface in an OBJ or STL file. Paths that are not absolute start at the scene file's folder.
+/// A surface in an OBJ or STL file. Paths that are not absolute start at the scene file's folder.
 struct BodyFile {
   std::string file;
-  double unit_m = 1;  ///< metres in one unit of the file
+  BodyStance stance;
+  std::optional<double> close_holes_m;  ///< size of the largest opening that is closed; none: there are none
 };
 
 /// Jeans that fit the body: what the body itself says, its girths and the height of its crotch, is measured.

@@ -60,6 +60,12 @@ class JsonReader final : public FieldVisitor {
       target = number_of(json_pointer(pointer_, key), *value, range, wanted);
   }
 
+  void optional_number(std::string_view key, std::optional<double>& target, const Range& range) override {
+    const std::string wanted = "a number " + described(range);
+    if (const json* value = find(key, Presence::optional, wanted))
+      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
+  }
+
   void number_or_auto(std::string_view key, std::optional<double>& target, const Range& range) override {
     const std::string wanted = "a number " + described(range) + ", or \"auto\"";
     const json* value = find(key, Presence::required, wanted);
@@ -121,15 +127,16 @@ class JsonReader final : public FieldVisitor {
     }
   }
 
-  void choice(std::string_view key, std::span<const std::string_view> words, std::uint32_t& target) override {
-    if (const auto number = chosen(key, words)) target = static_cast<std::uint32_t>(*number);
+  void choice(std::string_view key, Presence presence, std::span<const std::string_view> words,
+              std::uint32_t& target) override {
+    if (const auto number = chosen(key, presence, words)) target = static_cast<std::uint32_t>(*number);
   }
 
   void one_of(std::string_view key, std::span<const Section> sections) override {
     std::vector<std::string_view> names;
     names.reserve(sections.size());
     for (const Section& section : sections) names.push_back(section.name);
-    if (const auto number = chosen(key, names))
+    if (const auto number = chosen(key, Presence::required, names))
       object(names[*number], Presence::required, sections[*number].fields);
     else
       known_.insert(known_.end(), names.begin(), names.end());
@@ -192,9 +199,10 @@ class JsonReader final : public FieldVisitor {
   }
 
   /// The number of the word at `key`, none where the key is missing.
-  std::optional<std::size_t> chosen(std::string_view key, std::span<const std::string_view> words) {
+  std::optional<std::size_t> chosen(std::string_view key, Presence presence,
+                                    std::span<const std::string_view> words) {
     std::string wanted = "the text " + listed(words, "or");
-    const json* value = find(key, Presence::required, wanted);
+    const json* value = find(key, presence, wanted);
     if (value == nullptr) return std::nullopt;
     if (!value->is_string()) refuse(key, *value, wanted);
     const auto& word = value->get_ref<const std::string&>();

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "fuzz_checks.h"
+#include "garment/stance_guess.h"
 #include "mesh/mesh_error.h"
+#include "mesh/openings.h"
 #include "mesh/surface_file.h"
 #include "model/decimal.h"
 
@@ -47,11 +49,21 @@ void check_surface(const Surface& surface) {
   require(again.points == surface.points && again.triangles == surface.triangles,
           "written surfaces read back");
 
+  unless_refused<MeshError>([&] { return guess_stance(surface, {}); });
+  const std::size_t openings = openings_of(surface).size();
+  unless_refused<MeshError>([&] {
+    Surface filled = surface;
+    require(close_openings(filled, HUGE_VAL).size() == openings, "all openings are closed");
+    require(openings_of(filled).empty(), "no closed opening leaves another");
+    return true;
+  });
+
   const auto closed = unless_refused<MeshError>([&] {
     validate_surface(surface, "surface");
     return true;
   });
   if (!closed) return;
+  require(openings == 0, "a closed surface has no openings");
   require(surface.triangles.size() % 2 == 0, "a closed surface has three edges for two triangles");
   require(std::isfinite(volume_of(surface)) && volume_of(surface) > 0, "a closed surface has a volume");
 }
