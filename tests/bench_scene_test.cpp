@@ -48,6 +48,12 @@ std::unique_ptr<Backend> right_for_a_while(const System& system, const Integrato
 }
 constexpr BackendInfo flaky{"flaky", "", "fails in the end", false, right_for_a_while, {}, {}};
 
+/// What a row looks like that a verification has found wrong.
+void fail_row(ResultRow& row, const std::string& status) {
+  row.status = status;
+  row.verified = false;
+}
+
 class BenchScene : public testing::Test {
  protected:
   BenchScene() {
@@ -144,6 +150,51 @@ TEST_F(BenchScene, TakesAsManyRoundsAsFitBeforeADeadlineAndAtLeastOne) {
   EXPECT_EQ(run().front().rounds, 1);
   job_.deadline = std::chrono::steady_clock::now() + std::chrono::seconds(4);
   EXPECT_GT(run().front().rounds, 3);
+}
+
+TEST_F(BenchScene, OnlySamplesWhatAnEarlierProcessHasVerified) {
+  job_.verified = run();
+  job_.verified->at(0).position_error = 1e-7;  // not what a verification would find
+  job_.verified->at(1).verified = false;
+  fail_row(job_.verified->at(2), "failed: not near enough");
+  kept_.clear();
+  const std::vector<ResultRow> rows = run();
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].status, "ok");
+  EXPECT_TRUE(rows[0].verified);
+  EXPECT_EQ(rows[0].position_error, 1e-7);
+  EXPECT_EQ(rows[0].note, "verified by an earlier process");
+  EXPECT_EQ(rows[0].rounds, 3);
+  EXPECT_EQ(rows[0].roofline_fraction, std::nullopt);
+  EXPECT_EQ(rows[1].status, "failed: not verified");
+  EXPECT_EQ(rows[2].status, "failed: not near enough");
+  for (const int wrong : {1, 2}) {
+    EXPECT_FALSE(rows[wrong].verified);
+    EXPECT_EQ(rows[wrong].rounds, 0);
+  }
+  EXPECT_EQ(rows[3].status, "ok");
+  EXPECT_EQ(kept_.size(), 3U);
+}
+
+TEST_F(BenchScene, DoesNotTakeOverWhatWasVerifiedOfAnotherSystemOrPlace) {
+  job_.integrators = {find_integrator("semi-euler")};
+  job_.backends = {find_backend("serial")};
+  const std::vector<ResultRow> verified = run();
+  const auto status_with = [&](auto change) {
+    job_.verified = verified;
+    change(job_.verified->front());
+    const ResultRow row = run().front();
+    EXPECT_FALSE(row.verified);
+    EXPECT_EQ(row.ms_per_step, std::nullopt);
+    return row.status;
+  };
+  EXPECT_THAT(status_with([](ResultRow& row) { row.threads = 7; }), HasSubstr("with 7 threads, and this is"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.device = "a GPU"; }),
+              HasSubstr("on a GPU with 1 thread,"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.dt_s = 0.5; }), HasSubstr("in steps of 0.5 s"));
+  EXPECT_THAT(status_with([](ResultRow& row) { ++row.nodes; }), HasSubstr("failed: verified was 100 nodes"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.springs_unique = 1; }), HasSubstr("and 1 springs"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.backend = "openmp"; }), HasSubstr("no earlier process"));
 }
 
 TEST_F(BenchScene, SaysWhatFailedInTheMidstOfTheRounds) {

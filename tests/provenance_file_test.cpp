@@ -32,6 +32,8 @@ Provenance full_provenance() {
   provenance.thread_environment = {{"GOMP_SPINCOUNT", "1"}, {"OMP_PLACES", "cores"}};
   provenance.opencl_devices = {"platform: device, driver 1"};
   provenance.tetgen = "1.5";
+  provenance.program_fnv1a_64 = 0x123456789abcdef0;
+  provenance.device_memory = "copy";
   provenance.scenes = {{"cloth2500", 0xfedcba9876543210}, {"mine", 1}};
   return provenance;
 }
@@ -122,7 +124,8 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
   for (const auto& [pointer, value] : flat.items()) {
     const json::json_pointer place(pointer);
     if (document[place.parent_pointer()].is_array() || pointer.starts_with("/scenes_fnv1a_64/") ||
-        pointer.starts_with("/threads/environment/") || pointer == "/cpu/turbo")
+        pointer.starts_with("/threads/environment/") || pointer == "/cpu/turbo" ||
+        pointer == "/program_fnv1a_64" || pointer == "/device_memory")
       continue;
     EXPECT_EQ(refusal_with(pointer, gone), pointer + " is missing: give a provenance.json that mssim wrote");
     ++values;
@@ -135,8 +138,11 @@ TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   document["cpu"].erase("turbo");
   document.erase("noise");
   document.erase("earlier_starts_utc");
+  document.erase("program_fnv1a_64");
+  document.erase("device_memory");
   const Provenance old = read_provenance(put("old.json", document.dump()));
   EXPECT_EQ(old.machine.turbo, std::nullopt);
+  EXPECT_EQ(old.program_fnv1a_64, std::nullopt);
   EXPECT_TRUE(old.noise.empty());
   EXPECT_TRUE(old.earlier_starts_utc.empty());
   EXPECT_EQ(old.started_utc, full_provenance().started_utc);

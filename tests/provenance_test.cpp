@@ -97,6 +97,7 @@ TEST(Provenance, TellsWhatRanWhereAndHow) {
   EXPECT_THAT(json["command_line"], ElementsAre("mssim", "bench", "--threads", "2"));
   EXPECT_EQ(json["build"]["commit"], build_info().commit);
   EXPECT_EQ(json["build"]["compiler"], build_info().compiler);
+  EXPECT_EQ(json["program_fnv1a_64"].get<std::string>().size(), 16U);
   EXPECT_EQ(json["threads"]["asked_for"], 2);
   EXPECT_EQ(json["threads"]["environment"]["OMP_PLACES"], "cores");
   EXPECT_GE(json["threads"]["allowed_cpus"].size(), 1U);
@@ -130,9 +131,10 @@ TEST(Provenance, HoldsTheseFactsAndNoOthers) {
   std::vector<std::string> facts;
   const nlohmann::json json = to_json(gather_provenance({"mssim"}, 1));
   for (const auto& [name, value] : json.items()) facts.push_back(name);
-  EXPECT_THAT(facts, ElementsAre("build", "command_line", "cpu", "earlier_starts_utc", "kernel",
-                                 "load_average", "memory_bytes", "noise", "opencl_devices",
-                                 "operating_system", "scenes_fnv1a_64", "started_utc", "tetgen", "threads"));
+  EXPECT_THAT(facts,
+              ElementsAre("build", "command_line", "cpu", "device_memory", "earlier_starts_utc", "kernel",
+                          "load_average", "memory_bytes", "noise", "opencl_devices", "operating_system",
+                          "program_fnv1a_64", "scenes_fnv1a_64", "started_utc", "tetgen", "threads"));
 }
 
 }  // namespace

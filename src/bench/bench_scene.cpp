@@ -28,11 +28,11 @@ constexpr double preparation = 0.3;
 using Peaks = std::map<std::pair<const Integrator*, int>, MachinePeak>;
 
 /// Measures the peaks that the combinations are held against, now. None for a garment: what a step of it has
-/// to do depends on what touches and what is sewn.
+/// to do depends on what touches and what is sewn; and none where only samples are wanted.
 Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
-  if (job.garment) return peaks;
+  if (job.garment || job.verified) return peaks;
   for (const Combination& combination : combinations) {
     const int threads = combination.row.threads;
     const auto key = std::pair(combination.integrator, threads);
@@ -50,8 +50,9 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
   const StepCost cost = step_cost(*combination.integrator, size, combination.steps_per_pass);
   const double seconds = *row.ms_per_step / 1000;
   row.gigabytes_per_second = cost.bytes / seconds / 1e9;
-  if (combination.on_host)
-    row.roofline_fraction = roofline_fraction(cost, seconds, peaks.at({combination.integrator, row.threads}));
+  if (const auto peak = peaks.find({combination.integrator, row.threads});
+      combination.on_host && peak != peaks.end())
+    row.roofline_fraction = roofline_fraction(cost, seconds, peak->second);
 }
 
 /// Compares a backend with the reference.
@@ -149,15 +150,23 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   }
   const StepStart start = draped ? StepStart(*draped, true) : StepStart(job.system->start);
   for (const Integrator* integrator : job.integrators) {
-    watch.progress("reference " + std::string(integrator->name), done());
-    if (watch.stop()) return {};
-    const Verifier verifier = make_verifier(job, *integrator, draped);
+    Verifier verifier;
+    if (!job.verified) {
+      watch.progress("reference " + std::string(integrator->name), done());
+      if (watch.stop()) return {};
+      verifier = make_verifier(job, *integrator, draped);
+    }
     for (const BackendInfo* info : job.backends) {
-      watch.progress("verify " + std::string(info->name) + " " + std::string(integrator->name), done());
+      watch.progress((job.verified ? "prepare " : "verify ") + std::string(info->name) + " " +
+                         std::string(integrator->name),
+                     done());
       if (watch.stop()) return {};
       Combination& combination = all.emplace_back(make_combination(job, *info, *integrator, start));
-      if (combination.backend) take_verification(combination, verifier(*combination.backend));
-      if (combination.backend && job.garment) {
+      if (combination.backend && job.verified)
+        take_verification(combination, *job.verified);
+      else if (combination.backend)
+        take_verification(combination, verifier(*combination.backend));
+      if (combination.backend && job.garment && !job.verified) {
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, watch.stop)) return {};
       }

@@ -29,6 +29,9 @@ struct BenchWatch {
 /// row is verified. Its samples start from one draped, settled state (draped_state), in which it touches the
 /// body.
 ///
+/// With job.verified nothing is verified, dressed or held against the machine's peaks again: combinations are
+/// right or wrong as those rows say, and samples are taken of the right ones.
+///
 /// Rounds of which all combinations have an earlier sample are not measured again; what an earlier run did
 /// beyond them is dropped.
 ///

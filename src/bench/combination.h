@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "backends/backend.h"
 #include "bench/result.h"
@@ -32,7 +33,13 @@ void fail(Combination& combination, const std::string& status);
 /// Takes what a comparison with the reference has found. The row has failed where it is not near enough.
 void take_verification(Combination& combination, const Verification& verification);
 
-/// Finds how many steps fill a sample, from ever longer trials, and goes on until the backend is warm.
+/// Takes over what an earlier process has found, and notes it in the row. The row has failed where it had
+/// failed there, or where what was verified there is not what runs here.
+void take_verification(Combination& combination, const std::vector<ResultRow>& verified);
+
+/// Finds how many steps fill a sample, from ever longer trials, and goes on until the backend is warm. With
+/// job.verified the first trial of a tenth of a sample decides, and the first samples warm the backend up:
+/// the processes that are only sampled are many and short, and each counts with its least sample.
 void calibrate(Combination& combination, const SceneJob& job);
 
 /// Milliseconds a step, in a sample of combination.steps from their start. Sets and warms up what is

@@ -45,14 +45,14 @@ ExpectedTime expected_time(const SceneJob& job, const SceneSize& size) {
     if (size.garment && !dresses(*integrator)) continue;
     const double list_step =
         spring_s * springs * static_cast<double>(integrator->stage_count) * (size.garment ? garment_step : 1);
-    const double verification = verification_steps * (size.garment ? verified_garment : 1);
-    time.preparation += verification * list_step + (size.garment ? 0 : peaks_s);
+    const double verification = job.verified ? 0 : verification_steps * (size.garment ? verified_garment : 1);
+    time.preparation += verification * list_step + (size.garment || job.verified ? 0 : peaks_s);
     if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_backends;
     for (const BackendInfo* backend : job.backends) {
       const double step = list_step * (backend->name == "serial" ? 1 : other_backends);
       const double sample = std::max(job.sample_seconds, step) + step + 2 * nodes * moved_node_s;
       time.preparation += verification * step + samples_to_calibrate * sample;
-      if (size.garment) time.preparation += dressing_steps(nodes) * step;
+      if (size.garment && !job.verified) time.preparation += dressing_steps(nodes) * step;
       time.round += sample;
     }
   }

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "backends/process_cpus.h"
 #include "bench/noise.h"
@@ -45,6 +47,14 @@ std::string without_home(std::string_view argument) {
   return result;
 }
 
+/// Of the running program's file; none where it cannot be read.
+std::optional<std::uint64_t> program_hash() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  std::ostringstream bytes;
+  if (!(bytes << file.rdbuf())) return std::nullopt;
+  return fnv1a_64(bytes.view());
+}
+
 std::string now_utc() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
@@ -59,6 +69,7 @@ std::string now_utc() {
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads) {
   Provenance provenance;
   provenance.build = build_info();
+  provenance.program_fnv1a_64 = program_hash();
   provenance.machine = read_machine();
   provenance.threads = threads;
   provenance.allowed_cpus = process_cpus();

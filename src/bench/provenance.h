@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,11 +22,13 @@ struct SceneHash {
 /// host, and of the environment only what steers threads.
 struct Provenance {
   BuildInfo build;
-  Machine machine;                ///< when the run started
-  int threads = 0;                ///< asked for
-  std::vector<int> allowed_cpus;  ///< process_cpus()
+  std::optional<std::uint64_t> program_fnv1a_64;  ///< hash of the program's file; an older mssim did not tell
+  Machine machine;                                ///< when the run started
+  int threads = 0;                                ///< asked for
+  std::vector<int> allowed_cpus;                  ///< process_cpus()
   /// OMP_ and GOMP_ variables, by name.
   std::vector<std::pair<std::string, std::string>> thread_environment;
+  std::string device_memory;  ///< how backends with a device exchange data, where that was asked of them
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
   std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/noise.h)

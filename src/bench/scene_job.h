@@ -35,6 +35,9 @@ struct SceneJob {
   /// No round begins that would probably not end before it, but for the first.
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
+  /// Where an earlier process of the same program has verified every combination: its rows, which tell which
+  /// are right. Then samples are taken and nothing else is done.
+  std::optional<std::vector<ResultRow>> verified = {};
 };
 
 /// Combinations of a job: integrators outermost.

@@ -27,6 +27,7 @@
 #include "commands/stop_request.h"
 #include "commands/structure.h"
 #include "commands/time_budget.h"
+#include "commands/verified_rows.h"
 #include "integrators/integrators.h"
 #include "output/published.h"
 #include "output/result_folder.h"
@@ -126,8 +127,9 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
 
 int run(const BenchOptions& options) {
   // Everything that can be wrong with the input is found before the first measurement.
-  const BenchPlan plan = plan_of(options);
+  BenchPlan plan = plan_of(options);
   Provenance provenance = run_provenance(plan.job.execution.threads);
+  provenance.device_memory = name_of(plan.job.execution.memory);
   for (const std::string& name : plan.described) {
     const SceneSpec spec = find_scene(name);
     require_memory(spec);
@@ -141,6 +143,7 @@ int run(const BenchOptions& options) {
           ", which is a garment: what it is verified with is no continuous motion; leave it out");
     add_scene(provenance, spec.name, spec.source);
   }
+  if (!options.verified.empty()) plan.job.verified = verified_rows(options.verified, provenance, plan);
   const std::vector<PlannedScene> scenes = planned_scenes(plan);
   TimeBudget budget(options.time_budget_s, times_of(scenes));
   if (options.dry_run) {
@@ -216,6 +219,9 @@ std::function<int()> declare_bench(CLI::App& app) {
       "--resume", options->resume,
       "Go on where an earlier run of the same command ended, whatever ended it: keep what OUT has");
   app.add_flag("--overwrite", options->overwrite, "Replace the results that OUT has")->excludes(resume);
+  app.add_option("--verified", options->verified,
+                 "Result folder in which this program has verified all this already: take from there what is "
+                 "right, and only take samples");
   return [options] { return run(*options); };
 }
 

@@ -25,6 +25,7 @@ struct BenchOptions {
   SummaryFormat format = SummaryFormat::table;
   bool resume = false;
   bool overwrite = false;
+  std::string verified;  ///< a folder whose rows need not be verified again; empty: none
 };
 
 /// Rounds of a bench that says nothing of them.

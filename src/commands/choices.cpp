@@ -77,6 +77,10 @@ void declare_execution(CLI::App& app, ExecutionOptions& options) {
       ->check(CLI::IsMember(&device_memories));
 }
 
+std::string name_of(DeviceMemory memory) {
+  return std::ranges::find(device_memories, memory, [](const auto& choice) { return choice.second; })->first;
+}
+
 ExecutionOptions complete(ExecutionOptions options) {
   const int limit = omp_get_thread_limit();
   if (options.threads == 0) options.threads = std::min(omp_get_num_procs(), limit);

@@ -38,6 +38,9 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& target,
 /// Declares --threads, --device and --memory. `options` must outlive the parsing.
 void declare_execution(CLI::App& app, ExecutionOptions& options);
 
+/// The word for it that --memory takes.
+std::string name_of(DeviceMemory memory);
+
 /// `threads` as given or, for 0, one for every processor that this process may use; OpenMP then gives as
 /// many, whatever OMP_DYNAMIC says. Throws UsageError where OMP_THREAD_LIMIT is lower.
 ExecutionOptions complete(ExecutionOptions options);

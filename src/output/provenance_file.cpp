@@ -174,6 +174,10 @@ Provenance read_document(const Place& document) {
       [](const std::string& name, const Place& value) { return std::pair(name, value.text()); });
   provenance.opencl_devices = document["opencl_devices"].list(text_of);
   if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
+  if (const auto program = document.find("program_fnv1a_64"); program && !program->is_null())
+    provenance.program_fnv1a_64 = program->hash();
+  if (const auto memory = document.find("device_memory"); memory && !memory->is_null())
+    provenance.device_memory = memory->text();
   provenance.scenes = document["scenes_fnv1a_64"].members([](const std::string& name, const Place& value) {
     return SceneHash{name, value.hash()};
   });
@@ -203,6 +207,8 @@ json to_json(const Provenance& provenance) {
             {"compiler", build.compiler},
             {"flags", build.flags},
             {"build_type", build.build_type}}},
+          {"program_fnv1a_64",
+           provenance.program_fnv1a_64 ? json(hexadecimal(*provenance.program_fnv1a_64)) : json()},
           {"cpu",
            {{"model", machine.cpu_model},
             {"logical_cpus", machine.logical_cpus},
@@ -218,6 +224,7 @@ json to_json(const Provenance& provenance) {
            {{"asked_for", provenance.threads},
             {"allowed_cpus", provenance.allowed_cpus},
             {"environment", environment}}},
+          {"device_memory", provenance.device_memory.empty() ? json() : json(provenance.device_memory)},
           {"opencl_devices", provenance.opencl_devices},
           {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
           {"noise", provenance.noise},
