@@ -9,18 +9,25 @@ mssim=$1
 export TMPDIR=$work/tmp
 mkdir "$TMPDIR"
 
-# program NAME COMMANDS: a program that finds its result folder in $out, may call `times MS [STATUS [VERIFIED]]` to fill it,
-# and counts its runs in NAME.runs
+# program NAME COMMANDS: a program that finds its result folder in $out and the backends in $backends, may call
+# `times MS [STATUS [VERIFIED [BACKEND]]]` for each row that it has, and counts its runs in NAME.runs. Its help knows
+# --verified where NAME begins with "new-"; then $verified is the folder that it is given, which must have been written.
 program() {
   cat >"$work/$1" <<SCRIPT
 #!/usr/bin/env bash
 [ "\$1" = bench ] || exit 9
+[ "\$2" != --help ] || { case \${0##*/} in new-*) echo "  --verified TEXT" ;; esac; exit 0; }
 echo "\$*" >>"\$0.runs"
-while [ \$# -gt 1 ]; do [ "\$1" = --out ] && out=\$2; shift; done
+verified=
+while [ \$# -gt 1 ]; do
+  case \$1 in --out) out=\$2 ;; --verified) verified=\$2 ;; --backend) backends=\$2 ;; esac
+  shift
+done
+[ -z "\$verified" ] || [ -f "\$verified/timings.csv" ] || exit 8
 times() {
   mkdir -p "\$out"
-  printf '%s\n' scene,backend,integrator,ms_per_step_min,verified,status \
-    "cloth2500,openmp,semi-euler,\$1,\${3-true},\${2-ok}" >"\$out/timings.csv"
+  [ -e "\$out/timings.csv" ] || echo scene,backend,integrator,ms_per_step_min,verified,status >"\$out/timings.csv"
+  echo "cloth2500,\${4-openmp},semi-euler,\$1,\${3-true},\${2-ok}" >>"\$out/timings.csv"
 }
 runs=\$(wc -l <"\$0.runs")
 $2
@@ -57,17 +64,27 @@ warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\""; }
   program crash 'echo "what went wrong"; kill -SEGV $$'
   program deaf 'echo "no such device" >&2; exit 3'
   program silent 'exit 0'
+  program new-steady 'times "1.00$((runs * 7 % 10))"'
+  program new-steady2 'times "1.00$((runs * 3 % 10))"'
+  program new-slow 'times "1.10$((runs * 3 % 10))"'
+  program new-wrong 'times 1.0 ok false; exit 1'
+  program new-refusing '[ -z "$verified" ] || { echo "what is wrong with it"; exit 2; }; times 1'
+  program new-unsure '[ -z "$verified" ] || { times 1 ok false; exit 1; }; times 1'
+  program new-two 'times "1.00$((runs % 7))"; case $backends in *serial*) times "$((runs % 4 + 1)).5" ok true serial; sleep 0.02 ;; esac'
+  program new-two2 'times "1.00$((runs % 5))"; case $backends in *serial*) times "$(((runs ^ 1) % 4 + 1)).5" ok true serial ;; esac'
   program sleepy 'echo $$ >"$0.pid"; sleep 60'
 }
 
 ab 0 steady steady2
 says 'openmp .* same'
-warns '8 rounds in'
-[ "$(wc -l <"$work/steady.runs")" -eq 8 ] || fail "not 8 runs"
+warns '10 rounds in'
+warns 'steady has no bench --verified: each process of both programs verifies again'
+[ "$(wc -l <"$work/steady.runs")" -eq 10 ] || fail "not 10 runs"
 grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 7 --out ' "$work/steady.runs" ||
   fail "the program is not given what was asked for: $(head -n 1 "$work/steady.runs")"
 ab 1 steady slow
 says 'openmp .* slower'
+warns '^mssim: 10 rounds in [0-9]* s$'
 ab 0 steady slow --threshold 20
 says 'openmp .* same'
 ab 0 steady quick --format json
@@ -82,6 +99,51 @@ says 'undecided'
 warns 'the time budget ended'
 (($(date +%s%N) - start < 4000000000)) || fail "the time budget of 2 s is exceeded by far"
 grep -q -- '--backend openmp,serial --integrator rk4 --rounds 7 --threads 2 --out' "$work/wild.runs" || fail "options"
+
+# Verified once: the first run of each verifies, all others rely on its folder, and every one is a process of its own.
+ab 0 new-steady new-steady2
+says 'openmp .* same'
+warns '10 rounds in'
+if grep -q 'verifies again' "$work/err"; then fail "both know --verified"; fi
+for name in new-steady new-steady2; do
+  [ "$(wc -l <"$work/$name.runs")" -eq 11 ] || fail "not 11 runs of $name"
+  grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 1 --out [^ ]*$' \
+    <(head -n 1 "$work/$name.runs") || fail "$name is not asked to verify first"
+  folder=$(sed -n '1s/.*--out //p' "$work/$name.runs")
+  [ "$(grep -c -- "--rounds 7 --verified $folder --out " "$work/$name.runs")" -eq 10 ] ||
+    fail "$name is not sampled ten times with what it has verified"
+done
+ab 1 new-steady new-slow
+says 'openmp .* slower'
+# One that is older: nobody is spared the verification, so that both are measured alike.
+ab 0 steady new-steady2
+warns 'steady has no bench --verified'
+ab 1 new-steady slow
+warns 'slow has no bench --verified'
+says 'openmp .* slower'
+if grep -q -- --verified "$work/steady.runs" "$work/slow.runs" "$work/new-steady.runs" "$work/new-steady2.runs"; then
+  fail "one of the two is not verified again"
+fi
+# What is wrong is found before anything is sampled; and what turns out not to be verified does not count.
+ab 1 new-steady new-wrong
+says 'lost  *failed: not verified'
+warns '^mssim: 0 rounds in'
+ab 2 new-wrong new-steady
+warns 'nothing to compare'
+ab 1 new-steady new-unsure
+says 'lost  *failed: not verified'
+ab 2 new-unsure new-steady
+warns 'not in another (failed: not verified)'
+ab 2 new-steady new-refusing
+warns '^what is wrong with it$'
+warns 'new-refusing bench exited with 2'
+# What is settled is not measured any further.
+ab 0 new-two new-two2 --backend openmp,serial --time-budget 3
+says 'openmp .* same'
+says 'serial .* undecided'
+[ "$(grep -c -- '--backend openmp,serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 10 ] ||
+  fail "openmp is not sampled ten times"
+grep -q -- '--backend serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs" || fail "serial is not gone on with"
 
 # Programs that fail.
 ab 1 steady wrong
@@ -132,4 +194,23 @@ status=0
 cat "$work/out" "$work/err"
 [ "$status" -eq 0 ] || fail "a comparison with itself exits with $status"
 says 'cloth2500  openmp   semi-euler .* same'
+warns '^mssim: 10 rounds in'
+if grep -q 'verifies again' "$work/err"; then fail "it knows --verified itself"; fi
+# And against an older one, which is this one with an option less.
+cat >"$work/older" <<SCRIPT
+#!/usr/bin/env bash
+case "\$*" in
+  *--help) "$mssim" "\$@" | grep -v -- --verified ;;
+  *--verified*) exit 9 ;;
+  *) exec "$mssim" "\$@" ;;
+esac
+SCRIPT
+chmod +x "$work/older"
+status=0
+"$mssim" compare --ab "$work/older" "$mssim" --scene cloth2500 --threads 1 --threshold 1900 --time-budget 60 \
+  >"$work/out" 2>"$work/err" || status=$?
+cat "$work/out" "$work/err"
+[ "$status" -eq 0 ] || fail "a comparison with an older one exits with $status"
+says 'cloth2500  openmp   semi-euler .* same'
+warns 'older has no bench --verified'
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -54,6 +54,12 @@ Verdict verdict_of(const RatioEstimate& ratio, double threshold) {
   return Verdict::undecided;
 }
 
+bool is_certain(const RatioEstimate& ratio, double threshold) {
+  const Verdict verdict = verdict_of(ratio, threshold);
+  if (verdict == Verdict::same || verdict == Verdict::undecided) return verdict == Verdict::same;
+  return ratio.covers && (ratio.low > 1 + threshold || ratio.high < 1 / (1 + threshold));
+}
+
 std::optional<std::size_t> samples_needed(const RatioEstimate& ratio, std::size_t samples, double threshold) {
   const double change = std::abs(std::log(ratio.ratio)), margin = std::log(1 + threshold);
   const double half_width = (std::log(ratio.high) - std::log(ratio.low)) / 2;

@@ -56,6 +56,10 @@ struct RunComparison {
 /// interval lies within the threshold, up or down by the same factor.
 Verdict verdict_of(const RatioEstimate& ratio, double threshold);
 
+/// Whether the verdict is certain to stay: the whole interval lies within the threshold, up or down by the
+/// same factor, or beyond it, and then the change is significant.
+bool is_certain(const RatioEstimate& ratio, double threshold);
+
 /// Samples a side with which such times would be decided, taking intervals to shrink with the square root
 /// of the number; `samples` are those that there were. None beyond most_samples_asked.
 std::optional<std::size_t> samples_needed(const RatioEstimate& ratio, std::size_t samples, double threshold);

@@ -1,16 +1,22 @@
 #include "bench/paired_times.h"
 
-#include <algorithm>
-
+#include "bench/looks.h"
 #include "bench/statistics.h"
 
 namespace mssim {
 
+namespace {
+
+RatioEstimate ratio_at_look(const PairedTimes& times) {
+  return paired_ratio(times.base_ms, times.new_ms, look_at(times.base_ms.size()).share);
+}
+
+}  // namespace
+
 bool is_settled(const PairedTimes& times, double threshold) {
   if (!times.lost.empty()) return true;
-  if (times.base_ms.size() < fewest_pairs) return false;
-  const RatioEstimate ratio = paired_ratio(times.base_ms, times.new_ms);
-  return ratio.high / ratio.low < 1 + threshold;
+  if (times.base_ms.size() != look_at(times.base_ms.size()).pairs) return false;
+  return is_certain(ratio_at_look(times), threshold);
 }
 
 ComparedRow compare_pairs(const PairedTimes& times, double threshold) {
@@ -25,11 +31,11 @@ ComparedRow compare_pairs(const PairedTimes& times, double threshold) {
     return row;
   }
   row.new_ms = median(times.new_ms);
-  row.ratio = paired_ratio(times.base_ms, times.new_ms);
-  if (times.base_ms.size() >= fewest_pairs) row.verdict = verdict_of(*row.ratio, threshold);
+  row.ratio = ratio_at_look(times);
+  if (times.base_ms.size() >= first_look_pairs) row.verdict = verdict_of(*row.ratio, threshold);
   if (row.verdict == Verdict::undecided)
     if (const auto needed = samples_needed(*row.ratio, times.base_ms.size(), threshold))
-      row.samples_needed = std::max(*needed, fewest_pairs);
+      row.samples_needed = look_at(*needed).pairs;
   return row;
 }
 

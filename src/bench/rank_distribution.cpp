@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <ranges>
 
 namespace mssim {
 namespace {
@@ -38,14 +39,11 @@ double RankDistribution::at_most(double statistic) const {
   return deviation_ > 0 ? normal_below((statistic + 0.5 - mean_) / deviation_) : 1;
 }
 
-std::size_t RankDistribution::interval_rank() const {
-  if (!is_exact()) {
-    constexpr double normal_quantile = 1.959963984540054;  // 2.5 % of a normal distribution lie beyond it
-    return static_cast<std::size_t>(std::max(0., std::floor(mean_ + 0.5 - normal_quantile * deviation_)));
-  }
-  constexpr double outside = 0.025;
-  const auto inside = std::ranges::find_if(at_most_, [](double tail) { return tail > outside; });
-  return static_cast<std::size_t>(inside - at_most_.begin());
+std::size_t RankDistribution::interval_rank(double error) const {
+  const auto up_to_mean = std::views::iota(std::size_t{0}, static_cast<std::size_t>(mean_) + 1);
+  const auto inside = std::ranges::partition_point(
+      up_to_mean, [&](std::size_t tail) { return at_most(static_cast<double>(tail)) <= error / 2; });
+  return static_cast<std::size_t>(inside - up_to_mean.begin());
 }
 
 RankDistribution rank_sum_distribution(std::size_t x_size, std::size_t y_size) {

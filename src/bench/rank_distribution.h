@@ -5,6 +5,9 @@
 
 namespace mssim {
 
+/// Of a 95 % interval.
+inline constexpr double usual_error = 0.05;
+
 /// How a rank statistic is distributed where there is nothing to find: exactly, as a table, for samples of
 /// fewer than `exact_below` without ties, else as a normal distribution with continuity correction. Symmetric
 /// about its mean.
@@ -20,10 +23,10 @@ class RankDistribution {
   double at_most(double statistic) const;
   /// P(S >= statistic)
   double at_least(double statistic) const { return at_most(2 * mean_ - statistic); }
-  /// The largest k with P(S < k) <= 2.5 %: from the k-th smallest to the k-th largest of the values whose
-  /// comparisons the statistic counts is a 95 % interval. 0 where there is none, because the sample is too
-  /// small.
-  std::size_t interval_rank() const;
+  /// The largest k with P(S < k) <= error / 2: from the k-th smallest to the k-th largest of the values whose
+  /// comparisons the statistic counts is an interval that misses in `error` of the cases. 0 where there is
+  /// none, because the sample is too small.
+  std::size_t interval_rank(double error = usual_error) const;
 
  private:
   std::vector<double> at_most_;

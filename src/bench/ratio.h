@@ -17,9 +17,11 @@ struct RatioEstimate {
 /// Throws std::invalid_argument for an empty sample or a time that is not finite and positive.
 RatioEstimate ratio_of(std::span<const double> base, std::span<const double> next);
 
-/// next[i] / base[i] of pairs: signed_rank_shift() and signed_rank_test(). Throws like ratio_of(), and for
-/// samples of unequal length.
-RatioEstimate paired_ratio(std::span<const double> base, std::span<const double> next);
+/// next[i] / base[i] of pairs: signed_rank_shift() and signed_rank_test(). `share`: of their errors that this
+/// estimate may make, where it is one of several (looks.h): the interval misses in share times 5 % of the
+/// cases, and p is what the test gives over the share. Throws like ratio_of(), and for samples of unequal
+/// length.
+RatioEstimate paired_ratio(std::span<const double> base, std::span<const double> next, double share = 1);
 
 /// The geometric mean. Throws like ratio_of().
 double geometric_mean(std::span<const double> ratios);

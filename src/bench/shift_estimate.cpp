@@ -18,11 +18,11 @@ double ranked_value(const ComparedValues& values, std::size_t rank) {
 
 }  // namespace
 
-ShiftEstimate shift_of(const ComparedValues& values, const RankDistribution& distribution) {
+ShiftEstimate shift_of(const ComparedValues& values, const RankDistribution& distribution, double error) {
   const double upper = ranked_value(values, values.count / 2 + 1);
   ShiftEstimate estimate{upper, values.least, values.most, false};
   if (values.count % 2 == 0) estimate.shift = std::midpoint(ranked_value(values, values.count / 2), upper);
-  if (const std::size_t rank = distribution.interval_rank(); rank > 0) {
+  if (const std::size_t rank = distribution.interval_rank(error); rank > 0) {
     estimate.low = ranked_value(values, rank);
     estimate.high = ranked_value(values, values.count + 1 - rank);
     estimate.covers = true;

@@ -10,7 +10,7 @@ namespace mssim {
 /// An estimate of how far values are shifted, by the rank test that belongs to it.
 struct ShiftEstimate {
   double shift = 0;          ///< Hodges and Lehmann's: the median of what the test compares
-  double low = 0, high = 0;  ///< the 95 % interval
+  double low = 0, high = 0;  ///< the interval, of 95 % unless another error was asked for
   /// Whether the samples are large enough for such an interval. Else low and high are the outermost values.
   bool covers = false;
 };
@@ -24,7 +24,8 @@ struct ComparedValues {
 };
 
 /// Their median, and the interval that inverts the test whose statistic is so distributed: from the k-th
-/// smallest to the k-th largest of them.
-ShiftEstimate shift_of(const ComparedValues& values, const RankDistribution& distribution);
+/// smallest to the k-th largest of them, which misses in `error` of the cases.
+ShiftEstimate shift_of(const ComparedValues& values, const RankDistribution& distribution,
+                       double error = usual_error);
 
 }  // namespace mssim

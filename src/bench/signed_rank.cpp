@@ -40,7 +40,7 @@ RankTest signed_rank_test(std::span<const double> differences) {
   return {v, distribution.at_most(v), distribution.at_least(v), distribution.is_exact()};
 }
 
-ShiftEstimate signed_rank_shift(std::span<const double> differences) {
+ShiftEstimate signed_rank_shift(std::span<const double> differences, double error) {
   require_values(differences);
   std::vector<double> values(differences.begin(), differences.end());
   std::ranges::sort(values);
@@ -54,7 +54,7 @@ ShiftEstimate signed_rank_shift(std::span<const double> differences) {
     return count;
   };
   return shift_of({values.size() * (values.size() + 1) / 2, values.front(), values.back(), averages_up_to},
-                  signed_rank_distribution(values.size()));
+                  signed_rank_distribution(values.size()), error);
 }
 
 }  // namespace mssim

@@ -18,8 +18,8 @@ RankTest signed_rank_test(std::span<const double> differences);
 
 /// Their centre: Hodges and Lehmann's median of the averages of all pairs of values, each also with itself
 /// (Walsh averages), and the interval that inverts the test, from the k-th smallest to the k-th largest
-/// average. It holds for whatever symmetric distribution.
+/// average; it misses in `error` of the cases, for whatever symmetric distribution.
 /// Source: as above, sections 3.2 and 3.3. Throws like signed_rank_test().
-ShiftEstimate signed_rank_shift(std::span<const double> differences);
+ShiftEstimate signed_rank_shift(std::span<const double> differences, double error = usual_error);
 
 }  // namespace mssim
