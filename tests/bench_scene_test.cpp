@@ -168,7 +168,7 @@ TEST_F(BenchScene, OnlySamplesWhatAnEarlierProcessHasVerified) {
   EXPECT_EQ(rows[0].roofline_fraction, std::nullopt);
   EXPECT_EQ(rows[1].status, "failed: not verified");
   EXPECT_EQ(rows[2].status, "failed: not near enough");
-  for (const int wrong : {1, 2}) {
+  for (const std::size_t wrong : {1UL, 2UL}) {
     EXPECT_FALSE(rows[wrong].verified);
     EXPECT_EQ(rows[wrong].rounds, 0);
   }

@@ -70,8 +70,14 @@ warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\""; }
   program new-wrong 'times 1.0 ok false; exit 1'
   program new-refusing '[ -z "$verified" ] || { echo "what is wrong with it"; exit 2; }; times 1'
   program new-unsure '[ -z "$verified" ] || { times 1 ok false; exit 1; }; times 1'
-  program new-two 'times "1.00$((runs % 7))"; case $backends in *serial*) times "$((runs % 4 + 1)).5" ok true serial; sleep 0.02 ;; esac'
-  program new-two2 'times "1.00$((runs % 5))"; case $backends in *serial*) times "$(((runs ^ 1) % 4 + 1)).5" ok true serial ;; esac'
+  # Each verifies while the other does: they wait for one another, ten seconds at most.
+  meet='touch "$0.here"; i=0; until [ -e "${0%/*}/$other.here" ]; do i=$((i + 1)); [ $i -lt 1000 ] || exit 9; sleep 0.01; done'
+  program new-meeting "other=new-meeting2; $meet; times 1.00\$((runs * 7 % 10))"
+  program new-meeting2 "other=new-meeting; $meet; times 1.00\$((runs * 3 % 10))"
+  program new-two 'times "1.00$((runs % 7))"; times "$((runs % 4 + 1)).5" ok true serial'
+  # What nobody can tell apart goes on, here until it fails in the 14th run.
+  program new-two2 'times "1.00$((runs % 5))"
+    if [ "$runs" -lt 14 ]; then times "$(((runs ^ 1) % 4 + 1)).5" ok true serial; else times 1 "failed: late" false serial; exit 1; fi'
   program sleepy 'echo $$ >"$0.pid"; sleep 60'
 }
 
@@ -98,7 +104,7 @@ ab 0 wild wild2 --time-budget 2 --backend openmp,serial --integrator rk4 --threa
 says 'undecided'
 warns 'the time budget ended'
 (($(date +%s%N) - start < 4000000000)) || fail "the time budget of 2 s is exceeded by far"
-grep -q -- '--backend openmp,serial --integrator rk4 --rounds 7 --threads 2 --out' "$work/wild.runs" || fail "options"
+grep -q -- '--backend openmp,serial --integrator rk4 --rounds 7 --out [^ ]* --threads 2$' "$work/wild.runs" || fail "options"
 
 # Verified once: the first run of each verifies, all others rely on its folder, and every one is a process of its own.
 ab 0 new-steady new-steady2
@@ -110,9 +116,11 @@ for name in new-steady new-steady2; do
   grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 1 --out [^ ]*$' \
     <(head -n 1 "$work/$name.runs") || fail "$name is not asked to verify first"
   folder=$(sed -n '1s/.*--out //p' "$work/$name.runs")
-  [ "$(grep -c -- "--rounds 7 --verified $folder --out " "$work/$name.runs")" -eq 10 ] ||
+  [ "$(grep -c -- "--rounds 7 --out [^ ]* --verified $folder\$" "$work/$name.runs")" -eq 10 ] ||
     fail "$name is not sampled ten times with what it has verified"
 done
+ab 0 new-meeting new-meeting2
+says 'openmp .* same'
 ab 1 new-steady new-slow
 says 'openmp .* slower'
 # One that is older: nobody is spared the verification, so that both are measured alike.
@@ -138,12 +146,13 @@ ab 2 new-steady new-refusing
 warns '^what is wrong with it$'
 warns 'new-refusing bench exited with 2'
 # What is settled is not measured any further.
-ab 0 new-two new-two2 --backend openmp,serial --time-budget 3
+ab 1 new-two new-two2 --backend openmp,serial
 says 'openmp .* same'
-says 'serial .* undecided'
+says 'serial .* lost  *failed: late'
 [ "$(grep -c -- '--backend openmp,serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 10 ] ||
   fail "openmp is not sampled ten times"
-grep -q -- '--backend serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs" || fail "serial is not gone on with"
+[ "$(grep -c -- '--backend serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 3 ] ||
+  fail "serial is not gone on with alone"
 
 # Programs that fail.
 ab 1 steady wrong

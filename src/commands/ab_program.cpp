@@ -21,20 +21,6 @@ namespace fs = std::filesystem;
 /// of them on two processors the ratio of two such spreads by 0.1, that of medians by 0.5.
 constexpr int samples_a_process = 7;
 
-std::vector<std::string> bench_arguments(const std::vector<std::string>& scenes,
-                                         const std::vector<std::string>& backends,
-                                         const std::vector<std::string>& integrators, int rounds) {
-  return {"bench",
-          "--scene",
-          joined(scenes, ","),
-          "--backend",
-          joined(backends, ","),
-          "--integrator",
-          joined(integrators, ","),
-          "--rounds",
-          std::to_string(rounds)};
-}
-
 }  // namespace
 
 AbProgram::AbProgram(const std::string& file, const AbOptions& options) : file_(file), options_(options) {
@@ -56,37 +42,45 @@ bool AbProgram::takes_verified() const {
          result.output.find("--verified") != std::string::npos;
 }
 
-std::vector<CombinationTime> AbProgram::verify() {
-  const std::vector<CombinationTime> rows =
-      results_of(bench_arguments(options_.scenes, options_.backends, options_.integrators, 1),
-                 folder_.path() / "verified");
+ChildProcess AbProgram::verification() const {
+  return bench_process(options_.backends, options_.integrators, 1, verified_folder());
+}
+
+std::vector<CombinationTime> AbProgram::take_verification(const ChildResult& result) {
   verified_ = true;
-  return rows;
+  return rows_of(result, verified_folder());
 }
 
 std::vector<CombinationTime> AbProgram::bench(const std::vector<std::string>& backends,
                                               const std::vector<std::string>& integrators) const {
-  std::vector<std::string> arguments =
-      bench_arguments(options_.scenes, backends, integrators, samples_a_process);
-  if (verified_) {
-    arguments.emplace_back("--verified");
-    arguments.push_back((folder_.path() / "verified").string());
-  }
   const TemporaryFolder folder;
-  return results_of(std::move(arguments), folder.path() / "results");
+  const fs::path out = folder.path() / "results";
+  ChildProcess child = bench_process(backends, integrators, samples_a_process, out);
+  if (verified_) child.arguments.insert(child.arguments.end(), {"--verified", verified_folder().string()});
+  return rows_of(run(child), out);
 }
 
-std::vector<CombinationTime> AbProgram::results_of(std::vector<std::string> arguments,
-                                                   const fs::path& out) const {
+ChildProcess AbProgram::bench_process(const std::vector<std::string>& backends,
+                                      const std::vector<std::string>& integrators, int rounds,
+                                      const fs::path& out) const {
   ChildProcess child = child_;
-  child.arguments = std::move(arguments);
-  if (options_.threads > 0) {
-    child.arguments.emplace_back("--threads");
-    child.arguments.push_back(std::to_string(options_.threads));
-  }
-  child.arguments.emplace_back("--out");
-  child.arguments.push_back(out.string());
-  const ChildResult result = run(child);
+  child.arguments = {"bench",
+                     "--scene",
+                     joined(options_.scenes, ","),
+                     "--backend",
+                     joined(backends, ","),
+                     "--integrator",
+                     joined(integrators, ","),
+                     "--rounds",
+                     std::to_string(rounds),
+                     "--out",
+                     out.string()};
+  if (options_.threads > 0)
+    child.arguments.insert(child.arguments.end(), {"--threads", std::to_string(options_.threads)});
+  return child;
+}
+
+std::vector<CombinationTime> AbProgram::rows_of(const ChildResult& result, const fs::path& out) const {
   // A row that is not verified ends a bench with 1; the row says so itself.
   const bool measured =
       result.signal == 0 && (result.exit_code == exit_ok || result.exit_code == exit_not_verified);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,16 +21,20 @@ class AbProgram {
 
   /// Whether its bench takes --verified, as its help says.
   bool takes_verified() const;
-  /// Verifies everything, once, for all times to come: what a process measures then rests on this one. The
-  /// rows are those of a bench of one round.
-  std::vector<CombinationTime> verify();
-  /// Samples of these backends and integrators, verified here too if verify() has not been called.
+  /// The process that verifies everything, so that what is sampled later can rest on it.
+  ChildProcess verification() const;
+  /// Takes what came of it: the rows of a bench of one round.
+  std::vector<CombinationTime> take_verification(const ChildResult& result);
+  /// Samples of these backends and integrators, which verifies them again where no verification was taken.
   std::vector<CombinationTime> bench(const std::vector<std::string>& backends,
                                      const std::vector<std::string>& integrators) const;
 
  private:
-  std::vector<CombinationTime> results_of(std::vector<std::string> arguments,
-                                          const std::filesystem::path& out) const;
+  ChildProcess bench_process(const std::vector<std::string>& backends,
+                             const std::vector<std::string>& integrators, int rounds,
+                             const std::filesystem::path& out) const;
+  std::vector<CombinationTime> rows_of(const ChildResult& result, const std::filesystem::path& out) const;
+  std::filesystem::path verified_folder() const { return folder_.path() / "verified"; }
   [[noreturn]] void fail(const ChildResult& result) const;
 
   std::string file_;

@@ -7,11 +7,16 @@
 #include <iostream>
 #include <random>
 
+#include "bench/bench_memory.h"
 #include "bench/paired_times.h"
 #include "commands/ab_program.h"
+#include "commands/bench_plan.h"
 #include "commands/exit_code.h"
+#include "commands/planned_scenes.h"
 #include "commands/progress_line.h"
+#include "mesh/child_process.h"
 #include "output/combination_times.h"
+#include "scene/memory.h"
 
 namespace mssim {
 namespace {
@@ -85,6 +90,24 @@ std::vector<std::string> still_wanted(std::string PairedTimes::*member, const st
   return names;
 }
 
+/// Whether the memory does for a bench of either at the same time, with as much again to spare, as far as
+/// this program can tell: one that is compared may have scenes or backends that this one does not know.
+bool both_fit(const AbOptions& options) {
+  BenchOptions bench;
+  bench.scenes = options.scenes;
+  bench.backends = options.backends;
+  bench.integrators = options.integrators;
+  bench.execution.threads = options.threads;
+  try {
+    const BenchPlan plan = plan_of(bench);
+    return std::ranges::all_of(planned_scenes(plan), [&](const PlannedScene& scene) {
+      return bench_memory_needed(plan.job, scene.size) <= memory_available() / 4;
+    });
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 /// Verifies both programs once, where both can rely on it afterwards, and says which combinations there are.
 /// Otherwise every process of either verifies again, and the first round will say it: none.
 std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& options,
@@ -96,11 +119,12 @@ std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& 
           << " has no bench --verified: each process of both programs verifies again, which takes time\n";
       return {};
     }
-  std::array<std::vector<CombinationTime>, 2> rows;
-  for (std::size_t which = 0; which < programs.size(); ++which) {
-    progress.update("verify " + (which == 0 ? options.base : options.next), 0);
-    rows[which] = programs[which].verify();
-  }
+  progress.update("verify both", 0);
+  const std::array processes{programs[0].verification(), programs[1].verification()};
+  // Nothing is timed, and the reference takes one processor.
+  const std::vector<ChildResult> results =
+      both_fit(options) ? run_together(processes) : std::vector{run(processes[0]), run(processes[1])};
+  const std::array rows{programs[0].take_verification(results[0]), programs[1].take_verification(results[1])};
   std::vector<Series> series = combinations_of(rows[0], rows[1], options);
   for (Series& one : series)
     if (const CombinationTime& next = *find(rows[1], one.pairs); !next.least_ms)

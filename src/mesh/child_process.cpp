@@ -8,7 +8,9 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
+#include <deque>
 #include <stdexcept>
 
 #include "mesh/interruption.h"
@@ -70,12 +72,12 @@ void limit(int resource, rlim_t soft, rlim_t hard) {
 }
 
 /// What the child does between fork and exec, where only async-signal-safe calls are allowed: this process
-/// may have threads. Returns errno when something fails.
+/// may have threads. `group`: of processes, 0 for a new one. Returns errno when something fails.
 int become(const char* program, char* const* arguments, char* const* environment, const char* folder,
-           unsigned cpu_seconds, int output) {
-  // A group of its own, so that what it starts in turn can be ended with it; and no orphan if this process is
-  // killed.
-  if (::setpgid(0, 0) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
+           unsigned cpu_seconds, int output, pid_t group) {
+  // A group of their own, so that what it starts in turn can be ended with it; and no orphan if this process
+  // is killed.
+  if (::setpgid(0, group) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return errno;
   if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0) return errno;
@@ -102,46 +104,88 @@ std::string read_tail(int descriptor) {
   return tail;
 }
 
+/// A program under way.
+class Running {
+ public:
+  /// Starts it in that group of processes; 0: in a group of its own, which has the number of its process.
+  Running(const ChildProcess& child, pid_t group, const InterruptionGuard& interruption)
+      : child_(child), output_(child), start_error_(child) {
+    std::vector<std::string> arguments{child.program.filename().string()};
+    arguments.insert(arguments.end(), child.arguments.begin(), child.arguments.end());
+    std::vector<std::string> environment = environment_with(child.environment);
+    const std::vector<char*> argument_pointers = pointers_to(arguments);
+    const std::vector<char*> environment_pointers = pointers_to(environment);
+    process_ = ::fork();
+    if (process_ < 0) fail(child, "fork", errno);
+    if (process_ == 0) {
+      interruption.release_child();
+      const int error = become(child.program.c_str(), argument_pointers.data(), environment_pointers.data(),
+                               child.folder.c_str(), child.cpu_seconds, output_.writer(), group);
+      [[maybe_unused]] const ssize_t written = ::write(start_error_.writer(), &error, sizeof error);
+      ::_exit(127);
+    }
+    // Here as well, so that the group exists before it is watched.
+    ::setpgid(process_, group == 0 ? process_ : group);
+    output_.close_writer();
+    start_error_.close_writer();
+  }
+
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  /// Where it has not ended because another could not be started, it is ended now.
+  ~Running() {
+    if (ended_) return;
+    ::kill(process_, SIGKILL);
+    while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+
+  pid_t process() const { return process_; }
+
+  /// Waits until it has ended.
+  void end() {
+    result_.output = read_tail(output_.reader());
+    if (::read(start_error_.reader(), &error_, sizeof error_) != sizeof error_) error_ = 0;
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0)
+      if (errno != EINTR) fail(child_, "waiting for it", errno);
+    ended_ = true;
+    if (WIFSIGNALED(status))
+      result_.signal = WTERMSIG(status);
+    else
+      result_.exit_code = WEXITSTATUS(status);
+  }
+
+  /// Of one that has ended.
+  const ChildResult& result() const {
+    if (error_ != 0) fail(child_, "starting it", error_);
+    return result_;
+  }
+
+ private:
+  const ChildProcess& child_;
+  Pipe output_, start_error_;  // the latter stays empty when the program starts: exec closes it
+  pid_t process_ = 0;
+  bool ended_ = false;
+  int error_ = 0;
+  ChildResult result_;
+};
+
 }  // namespace
 
-ChildResult run(const ChildProcess& child) {
-  std::vector<std::string> arguments{child.program.filename().string()};
-  arguments.insert(arguments.end(), child.arguments.begin(), child.arguments.end());
-  std::vector<std::string> environment = environment_with(child.environment);
-  const std::vector<char*> argument_pointers = pointers_to(arguments);
-  const std::vector<char*> environment_pointers = pointers_to(environment);
+ChildResult run(const ChildProcess& child) { return run_together({&child, 1}).front(); }
 
-  Pipe output(child);
-  Pipe start_error(child);  // stays empty when the program starts: exec closes it
+std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
   InterruptionGuard interruption;
-  const pid_t process = ::fork();
-  if (process < 0) fail(child, "fork", errno);
-  if (process == 0) {
-    interruption.release_child();
-    const int error = become(child.program.c_str(), argument_pointers.data(), environment_pointers.data(),
-                             child.folder.c_str(), child.cpu_seconds, output.writer());
-    [[maybe_unused]] const ssize_t written = ::write(start_error.writer(), &error, sizeof error);
-    ::_exit(127);
-  }
-  ::setpgid(process, process);  // here as well, so that the group exists before it is watched
-  interruption.watch(process);
-  output.close_writer();
-  start_error.close_writer();
-
-  ChildResult result;
-  result.output = read_tail(output.reader());
-  int error = 0;
-  const bool failed_to_start = ::read(start_error.reader(), &error, sizeof error) == sizeof error;
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0)
-    if (errno != EINTR) fail(child, "waiting for it", errno);
+  std::deque<Running> all;
+  for (const ChildProcess& child : children)
+    all.emplace_back(child, all.empty() ? 0 : all.front().process(), interruption);
+  if (!all.empty()) interruption.watch(all.front().process());
+  for (Running& one : all) one.end();
   interruption.throw_if_interrupted();
-  if (failed_to_start) fail(child, "starting it", error);
-  if (WIFSIGNALED(status))
-    result.signal = WTERMSIG(status);
-  else
-    result.exit_code = WEXITSTATUS(status);
-  return result;
+  std::vector<ChildResult> results;
+  for (const Running& one : all) results.push_back(one.result());
+  return results;
 }
 
 }  // namespace mssim

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,9 @@ struct ChildProcess {
 /// sentence when it cannot be started, Interrupted (interruption.h) when this process was told to end
 /// meanwhile: then the program and all that it started have been killed.
 ChildResult run(const ChildProcess& child);
+
+/// Runs several at the same time, until all have ended: their results, in the same order. Throws like the one
+/// above; where one cannot be started, after the others have ended.
+std::vector<ChildResult> run_together(std::span<const ChildProcess> children);
 
 }  // namespace mssim
