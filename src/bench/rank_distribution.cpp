@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <ranges>
 
 namespace mssim {
 namespace {
@@ -40,10 +39,16 @@ double RankDistribution::at_most(double statistic) const {
 }
 
 std::size_t RankDistribution::interval_rank(double error) const {
-  const auto up_to_mean = std::views::iota(std::size_t{0}, static_cast<std::size_t>(mean_) + 1);
-  const auto inside = std::ranges::partition_point(
-      up_to_mean, [&](std::size_t tail) { return at_most(static_cast<double>(tail)) <= error / 2; });
-  return static_cast<std::size_t>(inside - up_to_mean.begin());
+  // The first statistic whose tail is more than that, which the mean's is.
+  std::size_t first = 0, last = static_cast<std::size_t>(mean_);
+  while (first < last) {
+    const std::size_t middle = std::midpoint(first, last);
+    if (at_most(static_cast<double>(middle)) <= error / 2)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first;
 }
 
 RankDistribution rank_sum_distribution(std::size_t x_size, std::size_t y_size) {
