@@ -75,11 +75,32 @@ sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8
 expect 2 'cannot go on in moved: the CPU was Another CPU .*; the number of threads was 8 and is 1; choose another' \
   "${bench[@]}" --out moved --resume
 expect 2 'resume' bench --scene cloth2500 --resume
+expect 2 'cannot go on in int: it has results of cloth2500, which this command leaves out; choose another' \
+  bench --scene cloth4900 --integrator semi-euler --threads 1 --backend serial,openmp --rounds 6 --out int --resume
+"$mssim" "${scenes[@]}" --backend opencl --rounds 2 --memory copy --out copied >out 2>err || fail "opencl: $(cat err)"
+cp copied/timings.csv kept.csv
+"$mssim" "${scenes[@]}" --backend opencl --rounds 3 --out copied --resume >out 2>err && fail "other devices are mixed"
+grep -q 'cannot go on in copied: the device of opencl was .* (copied memory) and is ' err || fail "other devices: $(cat err)"
+cmp -s kept.csv copied/timings.csv || fail "a refused --resume has changed the rows"
 expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
 "$mssim" bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite >out 2>err ||
   fail "--overwrite exits with $?: $(cat err)"
 [ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"
 [ "$(wc -l <int/samples.csv)" -eq 2 ] || fail "--overwrite left samples"
+
+# Tables of what scenes are count as results, and what is replaced leaves nothing of what was there.
+"$mssim" bench --suite table2 --out tables >out 2>err || fail "table2: $(cat err)"
+expect 2 'tables holds results already' bench --scene cloth2500 --out tables
+expect 2 'cannot go on in tables: it has results of box-large, box-medium, .*, torus-small, which this command leaves out' bench --scene cloth2500 --out tables --resume
+"$mssim" bench --scene jeans1k --backend openmp --rounds 1 --out tables --overwrite >out 2>err || fail "--overwrite of tables: $(cat err)"
+[ ! -e tables/table2.md ] && [ -s tables/figure6.md ] || fail "--overwrite leaves $(ls tables)"
+
+# Two files of one name would share their rows.
+mkdir one two
+cp "$2/scenes/cloth2500.json" one/mine.json
+sed 's/"rows": 50/"rows": 40/' one/mine.json >two/mine.json
+expect 2 'two scenes called mine, one/mine.json and two/mine.json; name one of them, or rename a file' \
+  bench --scene one/mine.json,two/mine.json
 
 # kill -9 at any moment.
 for delay in 0.3 0.7 1.1 1.6; do
@@ -131,14 +152,14 @@ whole full
 [ -n "$(rounds full)" ] || fail "a full disk costs what was measured before"
 
 # SIGINT while a simulation is traced: the frames so far are in whole files.
-start_and_signal INT fall.h5.part run --scene cloth2500 --threads 1 --duration 100 --no-losses --trace fall.h5 --energy-curve fall.csv
+start_and_signal INT fall.h5.part run --scene cloth2500 --threads 1 --duration 100 --trace fall.h5 --energy-curve fall.csv
 [ "$status" -eq 130 ] || fail "SIGINT in a run gives exit status $status: $(cat err)"
 [ -s fall.h5 ] && [ ! -e fall.h5.part ] || fail "SIGINT loses a trace"
 [ "$(wc -l <fall.csv)" -ge 2 ] || fail "SIGINT loses the energies"
 h5dump -d /particles/cloth/position/step fall.h5 >frames || fail "the trace cannot be read"
 
 # The same while a garment is dressed.
-start_and_signal INT dress.h5.part run --scene jeans16k --backend serial --no-losses --trace dress.h5 --energy-curve dress.csv
+start_and_signal INT dress.h5.part run --scene jeans16k --backend serial --trace dress.h5 --energy-curve dress.csv
 [ "$status" -eq 130 ] || fail "SIGINT while dressing gives exit status $status: $(cat err)"
 [ -s dress.h5 ] && [ -s dress.xdmf ] && [ ! -e dress.h5.part ] || fail "SIGINT loses the trace of a dressing"
 h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/bench_scene.h"
+#include "bench/comparability.h"
 #include "commands/bench_plan.h"
 #include "commands/bench_rows.h"
 #include "commands/bench_summary.h"
@@ -29,6 +30,7 @@
 #include "commands/time_budget.h"
 #include "commands/verified_rows.h"
 #include "integrators/integrators.h"
+#include "model/printable.h"
 #include "output/published.h"
 #include "output/result_folder.h"
 #include "scene/scene_file.h"
@@ -91,6 +93,7 @@ void time_scenes(SceneJob job, const std::vector<std::string>& names, const Benc
     job.garment.reset();
     if (is_garment(scene.system)) job.garment.emplace(GarmentJob{.body = fit_body(scene.spec)});
     const auto keep = [&](std::vector<ResultRow> measured) {
+      require_resumable(differences(job.earlier, measured), options.out);
       add_published_times(measured, job.backends, published);
       rows.replace(job.name, std::move(measured));
       if (folder) folder->write(rows.all());
@@ -125,6 +128,16 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
   return rows;
 }
 
+/// Rows and results are told apart by their scene's name.
+void require_distinct_names(const std::vector<SceneSpec>& scenes) {
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene)
+    for (auto other = scenes.begin(); other != scene; ++other)
+      if (other->name == scene->name)
+        throw UsageError("there are two scenes called " + printable(scene->name) + ", " +
+                         printable(other->file.string()) + " and " + printable(scene->file.string()) +
+                         "; name one of them, or rename a file");
+}
+
 int run(const BenchOptions& options) {
   // Everything that can be wrong with the input is found before the first measurement.
   BenchPlan plan = plan_of(options);
@@ -135,14 +148,16 @@ int run(const BenchOptions& options) {
     require_memory(spec);
     add_scene(provenance, spec.name, spec.source);
   }
+  std::vector<SceneSpec> timed;
   for (const std::string& name : plan.timed) {
-    const SceneSpec spec = find_scene(name);
+    const SceneSpec& spec = timed.emplace_back(find_scene(name));
     if (options.trace && std::holds_alternative<GarmentSpec>(spec.body))
       throw UsageError(
           "--trace does not go with " + spec.name +
           ", which is a garment: what it is verified with is no continuous motion; leave it out");
     add_scene(provenance, spec.name, spec.source);
   }
+  require_distinct_names(timed);
   if (!options.verified.empty()) plan.job.verified = verified_rows(options.verified, provenance, plan);
   const std::vector<PlannedScene> scenes = planned_scenes(plan);
   TimeBudget budget(options.time_budget_s, times_of(scenes));

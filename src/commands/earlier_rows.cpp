@@ -1,11 +1,14 @@
 #include "commands/earlier_rows.h"
 
-#include <string>
+#include <algorithm>
+#include <filesystem>
 
 #include "bench/comparability.h"
 #include "commands/exit_code.h"
 #include "commands/measured_run.h"
 #include "model/joined.h"
+#include "model/printable.h"
+#include "output/provenance_file.h"
 
 namespace mssim {
 namespace {
@@ -14,27 +17,38 @@ std::string revision(const BuildInfo& build) {
   return std::string(build.commit) + (build.dirty ? ", changed" : "");
 }
 
-/// One table shall not mix what different programs or machines measured.
+/// One table shall not mix what different programs or machines measured, nor hold rows of which the
+/// provenance says nothing.
 void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
   std::vector<std::string> all = differences(earlier, now);
   if (revision(earlier.build) != revision(now.build))
     all.push_back("the program was of commit " + revision(earlier.build) + " and is of " +
                   revision(now.build));
-  if (all.empty()) return;
-  throw UsageError("--resume cannot go on in " + folder + ": " + joined(all, "; ") +
-                   "; choose another --out, or --overwrite to measure anew");
+  std::vector<std::string> left_out;
+  for (const SceneHash& scene : earlier.scenes)
+    if (std::ranges::find(now.scenes, scene.name, &SceneHash::name) == now.scenes.end())
+      left_out.push_back(printable(scene.name));
+  if (!left_out.empty())
+    all.push_back("it has results of " + joined(left_out, ", ") + ", which this command leaves out");
+  require_resumable(all, folder);
 }
 
 }  // namespace
 
+void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
+  if (!differences.empty())
+    throw UsageError("--resume cannot go on in " + folder + ": " + joined(differences, "; ") +
+                     "; choose another --out, or --overwrite to measure anew");
+}
+
 std::vector<ResultRow> earlier_rows(ResultFolder& folder, const Provenance& now,
                                     const BenchOptions& options) {
-  if (!folder.has_rows()) return {};
+  if (!folder.has_results()) return {};
   if (options.resume) {
-    MeasuredRun earlier = read_run(options.out);
-    require_same_origin(earlier.provenance, now, options.out);
-    folder.go_on_with(earlier.provenance);
-    return std::move(earlier.rows);
+    const Provenance earlier = read_provenance(std::filesystem::path(options.out) / "provenance.json");
+    require_same_origin(earlier, now, options.out);
+    folder.go_on_with(earlier);
+    return folder.has_rows() ? read_run(options.out).rows : std::vector<ResultRow>();
   }
   if (!options.overwrite)
     throw UsageError(options.out +

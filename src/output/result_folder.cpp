@@ -1,6 +1,8 @@
 #include "output/result_folder.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -23,6 +25,9 @@ constexpr const char* samples_name = "samples.csv";
 constexpr const char* garment_name = "garment.csv";
 constexpr const char* benchmark_name = "benchmark.json";
 constexpr const char* github_name = "github.json";
+
+std::string csv_of(std::string_view table) { return std::string(table) + ".csv"; }
+std::string markdown_of(std::string_view table) { return std::string(table) + ".md"; }
 
 /// The folder, which is there afterwards.
 const fs::path& made(const fs::path& folder) {
@@ -48,8 +53,19 @@ ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker ta
 
 bool ResultFolder::has_rows() const { return fs::exists(folder_ / timings_name); }
 
+bool ResultFolder::has_results() const {
+  return has_rows() || std::ranges::any_of(table_names, [&](std::string_view name) {
+           return fs::exists(folder_ / csv_of(name));
+         });
+}
+
 void ResultFolder::clear() const {
-  for (const char* name : {timings_name, samples_name, garment_name, benchmark_name, github_name}) {
+  std::vector<std::string> names{timings_name, samples_name, garment_name, benchmark_name, github_name};
+  for (const std::string_view table : table_names) {
+    names.push_back(csv_of(table));
+    names.push_back(markdown_of(table));
+  }
+  for (const std::string& name : names) {
     std::error_code error;
     fs::remove(folder_ / name, error);
     if (error) throw WriteError(write_failure(folder_ / name, "removing it", error.value()));
@@ -69,12 +85,15 @@ void ResultFolder::write(std::span<const ResultRow> rows) const {
   const std::string timings = timings_csv(rows), samples = samples_csv(rows), garment = garment_csv(rows);
   const std::string benchmark = text_of(benchmark_json(rows, provenance_));
   const std::vector<ResultTable> tables = tables_(rows, provenance_);
+  for (const ResultTable& table : tables)
+    if (std::ranges::find(table_names, table.name) == table_names.end())
+      throw std::invalid_argument("the table " + table.name + " is not in table_names");
   write_file_atomically(folder_ / samples_name, samples);
   if (!garment.empty()) write_file_atomically(folder_ / garment_name, garment);
   write_file_atomically(folder_ / benchmark_name, benchmark);
   for (const ResultTable& table : tables) {
-    write_file_atomically(folder_ / (table.name + ".csv"), table.csv);
-    write_file_atomically(folder_ / (table.name + ".md"), table.markdown);
+    write_file_atomically(folder_ / csv_of(table.name), table.csv);
+    write_file_atomically(folder_ / markdown_of(table.name), table.markdown);
   }
   write_file_atomically(folder_ / timings_name, timings);
 }
@@ -85,8 +104,8 @@ void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
 
 void ResultFolder::write(std::span<const StructureRow> rows) const {
   const StructureTable table = structure_table(rows, provenance_);
-  write_file_atomically(folder_ / "table2.csv", table.csv);
-  write_file_atomically(folder_ / "table2.md", table.markdown);
+  write_file_atomically(folder_ / csv_of("table2"), table.csv);
+  write_file_atomically(folder_ / markdown_of("table2"), table.markdown);
 }
 
 std::vector<ResultRow> read_results(const fs::path& folder) {

@@ -23,7 +23,9 @@ class ResultFolder {
 
   /// Whether an earlier run left rows here.
   bool has_rows() const;
-  /// Removes the rows that an earlier run left. Throws WriteError.
+  /// Whether it left rows or tables.
+  bool has_results() const;
+  /// Removes the rows and tables that an earlier run left. Throws WriteError.
   void clear() const;
   /// Takes the start of the run whose rows stay into this one's provenance.
   void go_on_with(const Provenance& earlier);
@@ -33,7 +35,7 @@ class ResultFolder {
 
   /// Writes all that follows from the rows, each file whole or not at all, timings.csv last: what stands
   /// there has its samples. To be called after every round. Throws WriteError, and std::invalid_argument for
-  /// a number that is not finite, then before any file is touched.
+  /// a number that is not finite and a table that is not in table_names, then before any file is touched.
   void write(std::span<const ResultRow> rows) const;
 
   /// Writes github.json (github_json.h). Throws WriteError.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/provenance.h"
@@ -16,6 +18,10 @@ struct ResultTable {
   std::string csv;
   std::string markdown;
 };
+
+/// Every name of such a table, and table2, which is made of what the scenes are.
+inline constexpr std::array<std::string_view, 6> table_names{"table1", "table2",  "table3",
+                                                             "races",  "scaling", "figure6"};
 
 /// Makes tables of the rows that a run has so far; none where no row belongs into one.
 using TableMaker =
