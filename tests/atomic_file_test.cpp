@@ -15,9 +15,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-class AtomicFile : public TemporaryFolderTest {};
+class AtomicFileTest : public TemporaryFolderTest {};
 
-TEST_F(AtomicFile, ReplacesTheOldTextAndLeavesNothingElse) {
+TEST_F(AtomicFileTest, ReplacesTheOldTextAndLeavesNothingElse) {
   const auto file = folder() / "rows.csv";
   write_file_atomically(file, "old, and longer than the new one\n");
   write_file_atomically(file, "new\n");
@@ -25,7 +25,7 @@ TEST_F(AtomicFile, ReplacesTheOldTextAndLeavesNothingElse) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
 }
 
-TEST_F(AtomicFile, WritesIntoTheWorkingFolderToo) {
+TEST_F(AtomicFileTest, WritesIntoTheWorkingFolderToo) {
   EXPECT_EQ(exit_of_child([&] {
               std::filesystem::current_path(folder());
               write_file_atomically("rows.csv", "text");
@@ -35,7 +35,7 @@ TEST_F(AtomicFile, WritesIntoTheWorkingFolderToo) {
   EXPECT_EQ(text_of(folder() / "rows.csv"), "text");
 }
 
-TEST_F(AtomicFile, NamesFileReasonAndRemedyWhenTheFolderIsMissing) {
+TEST_F(AtomicFileTest, NamesFileReasonAndRemedyWhenTheFolderIsMissing) {
   const auto file = folder() / "missing" / "rows.csv";
   EXPECT_THAT([&] { write_file_atomically(file, "text"); },
               ThrowsMessage<WriteError>(AllOf(HasSubstr("cannot write " + file.string()),
@@ -43,14 +43,14 @@ TEST_F(AtomicFile, NamesFileReasonAndRemedyWhenTheFolderIsMissing) {
                                               HasSubstr("create its folder"))));
 }
 
-TEST_F(AtomicFile, RefusesToReplaceFoldersAndDevices) {
+TEST_F(AtomicFileTest, RefusesToReplaceFoldersAndDevices) {
   EXPECT_THAT([&] { write_file_atomically(folder(), "text"); },
               ThrowsMessage<WriteError>(HasSubstr("is a folder; choose another file name")));
   EXPECT_THAT([] { write_file_atomically("/dev/null", "text"); },
               ThrowsMessage<WriteError>(HasSubstr("not a regular file")));
 }
 
-TEST_F(AtomicFile, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
+TEST_F(AtomicFileTest, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
   const auto file = folder() / "rows.csv";
   write_file_atomically(file, "old\n");
   EXPECT_EQ(exit_of_child([&] {
@@ -64,6 +64,44 @@ TEST_F(AtomicFile, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
             0);
   EXPECT_EQ(text_of(file), "old\n");
   EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
+}
+
+TEST_F(AtomicFileTest, HasOneWriterAtATime) {
+  const auto file = folder() / "rows.csv";
+  const auto writes_too = [&] { write_file_atomically(file, "second"); };
+  {
+    AtomicFile first(file);
+    first.append("first");
+    const auto refused =
+        ThrowsMessage<WriteError>(HasSubstr("another mssim is writing " + file.string() + "; wait until"));
+    EXPECT_THAT(writes_too, refused);
+    EXPECT_EQ(exit_of_child([&] {
+                EXPECT_THAT(writes_too, refused);
+                return testing::Test::HasFailure() ? 1 : 0;
+              }),
+              0);
+    EXPECT_EQ(text_of(temporary_of(file)), "first") << "who is refused has changed nothing";
+    first.move_into_place();
+    writes_too();
+  }
+  EXPECT_EQ(text_of(file), "second");
+  EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
+}
+
+TEST_F(AtomicFileTest, IsKeptOrRemovedWhenItsWriterGivesUp) {
+  const auto file = folder() / "rows.csv";
+  {
+    AtomicFile given_up(file);
+    given_up.append("lost");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder()));
+  {
+    AtomicFile kept(file);
+    kept.append("kept");
+    kept.keep();
+  }
+  EXPECT_EQ(text_of(temporary_of(file)), "kept");
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ grep -q '^bodies38233,bodies,38233,253110,759330,' "$work/out" || fail "bodies38
 [ "$(find "$work/cache/mssim/meshes" -type f | wc -l)" -eq 9 ] || fail "not nine meshes in the cache"
 
 # A body falls: what is lost and what is left balance, and the trace holds its tetrahedra.
-succeed run --scene torus-small --backend serial --duration 0.3 --trace "$work/fall.h5"
+succeed run --scene torus-small --backend serial --duration 0.3 --losses --trace "$work/fall.h5"
 result energy_imbalance | awk '!($1 < 1e-4 && $1 > -1e-4) { bad = 1 } END { exit bad }' || fail "energy: $(cat "$work/out")"
 result friction_loss_j | awk '!($1 > 0) { bad = 1 } END { exit bad }' || fail "no friction: $(cat "$work/out")"
 [ -s "$work/fall.xdmf" ] || fail "no .xdmf"

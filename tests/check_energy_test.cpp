@@ -28,9 +28,9 @@ struct Verdict {
 class CheckEnergy : public TemporaryFolderTest {
  protected:
   CheckEnergy() {
-    std::vector<EnergySample> samples;
-    for (int i = 0; i <= 1000; ++i) samples.push_back({0.001 * i, energy_at(0.001 * i)});
-    write_energy_curve(curve_, samples, "made by a test");
+    EnergyCurve curve(curve_, "made by a test");
+    for (int i = 0; i <= 1000; ++i) curve.append({0.001 * i, energy_at(0.001 * i)});
+    curve.close();
   }
 
   /// A trace of 21 frames up to `end_s`; `change` may alter what is written.

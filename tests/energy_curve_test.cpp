@@ -1,6 +1,6 @@
 #include "output/energy_curve.h"
 
-#include <array>
+#include <csignal>
 #include <limits>
 #include <stdexcept>
 
@@ -9,12 +9,17 @@
 namespace mssim {
 namespace {
 
-class EnergyCurve : public TemporaryFolderTest {};
+class EnergyCurveTest : public TemporaryFolderTest {
+ protected:
+  std::filesystem::path file() const { return folder() / "curve.csv"; }
+};
 
-TEST_F(EnergyCurve, StandsInTheFileBehindItsCommentWithTenDigits) {
-  const std::array<EnergySample, 2> samples{{{0, {0, 1. / 3, 1e-20}}, {0.1, {2, -5, 12345678901.}}}};
-  write_energy_curve(folder() / "curve.csv", samples, "made by hand\n\ntwice");
-  EXPECT_EQ(text_of(folder() / "curve.csv"),
+TEST_F(EnergyCurveTest, StandsInTheFileBehindItsCommentWithTenDigits) {
+  EnergyCurve curve(file(), "made by hand\n\ntwice");
+  curve.append({0, {0, 1. / 3, 1e-20}});
+  curve.append({0.1, {2, -5, 12345678901.}});
+  curve.close();
+  EXPECT_EQ(text_of(file()),
             "# made by hand\n"
             "#\n"
             "# twice\n"
@@ -23,13 +28,30 @@ TEST_F(EnergyCurve, StandsInTheFileBehindItsCommentWithTenDigits) {
             "0.1,2,-5,1.23456789e+10,1.23456789e+10\n");
 }
 
-TEST_F(EnergyCurve, IsNotWrittenWithNumbersThatAreNotFiniteOrTimesThatStandStill) {
-  const auto file = folder() / "curve.csv";
-  const std::array<EnergySample, 1> infinite{{{0, {std::numeric_limits<double>::infinity(), 0, 0}}}};
-  const std::array<EnergySample, 2> still{{{1, {}}, {1, {}}}};
-  EXPECT_THROW(write_energy_curve(file, infinite, ""), std::invalid_argument);
-  EXPECT_THROW(write_energy_curve(file, still, ""), std::invalid_argument);
-  EXPECT_FALSE(std::filesystem::exists(file));
+TEST_F(EnergyCurveTest, RefusesNumbersThatAreNotFiniteAndTimesThatStandStill) {
+  {
+    EnergyCurve curve(file(), "");
+    EXPECT_THROW(curve.append({0, {std::numeric_limits<double>::infinity(), 0, 0}}), std::invalid_argument);
+    curve.append({1, {}});
+    EXPECT_THROW(curve.append({1, {}}), std::invalid_argument);
+  }
+  EXPECT_FALSE(std::filesystem::exists(file()));
+  EXPECT_EQ(text_of(temporary_of(file())), "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n1,0,0,0,0\n");
+}
+
+TEST_F(EnergyCurveTest, KeepsItsSamplesWhenTheProcessIsKilled) {
+  const int status = status_in_child([&] {
+    EnergyCurve curve(file(), "");
+    curve.append({0, {}});
+    return std::raise(SIGKILL);
+  });
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(text_of(temporary_of(file())), "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n0,0,0,0,0\n");
+}
+
+TEST_F(EnergyCurveTest, LeavesNothingWithoutSamples) {
+  { const EnergyCurve curve(file(), "a comment"); }
+  EXPECT_TRUE(std::filesystem::is_empty(folder()));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ failures=0
 # trace SCENE BACKEND INTEGRATOR DURATION: writes $work/trace.h5
 trace() {
   "$mssim" run --scene "$1" --backend "$2" --integrator "$3" --threads 2 --duration "$4" --fps 100 \
-    --trace "$work/trace.h5" --no-losses >"$work/log" || { echo "FAILED: mssim run of $*"; failures=$((failures + 1)); }
+    --trace "$work/trace.h5" >"$work/log" || { echo "FAILED: mssim run of $*"; failures=$((failures + 1)); }
 }
 
 # expect STATUS CURVE.csv TOLERANCE WHAT: check-energy on $work/trace.h5 and that curve must exit with STATUS

@@ -35,7 +35,7 @@ values() {
 sed 's/"rows": 50/"rows": 10/; s/"columns": 50/"columns": 12/; s/"ceiling_height_m": [0-9.]*/"ceiling_height_m": 0.003/; /"pins"/d' \
   "$source/scenes/cloth2500.json" >"$work/cloth.json"
 
-run --scene "$work/cloth.json" --integrator rk4 --trace "$work/trace.h5"
+run --scene "$work/cloth.json" --integrator rk4 --losses --trace "$work/trace.h5"
 losses=(damping friction bounce integration)
 for loss in "${losses[@]}"; do
   [ "$(values "/observables/${loss}_loss/value" | wc -l)" -eq 13 ] || fail "the trace has not 13 values of ${loss}_loss"
@@ -58,23 +58,23 @@ paste <(values /observables/total_energy/value) <(values /observables/damping_lo
        END { print "largest imbalance " worst " J beside " kinetic " J of kinetic energy"; exit !(worst < 1e-3 * kinetic) }' ||
   fail "the sum over the trace does not stay constant"
 
-run --scene "$work/cloth.json" --energy-curve "$work/curve.csv"
-[ "$(column damping_loss_j)" != - ] || fail "an energy curve goes without losses"
+run --scene "$work/cloth.json" --losses --energy-curve "$work/curve.csv"
+[ "$(column damping_loss_j)" != - ] || fail "--losses gives an energy curve no losses"
 [ "$(sed -n 2p "$work/curve.csv")" = time_s,kinetic_j,elastic_j,gravitational_j,total_j ] || fail "the curve's header"
-run --scene "$work/cloth.json" --trace "$work/trace.h5" --no-losses
-if h5dump -n "$work/trace.h5" | grep _loss >/dev/null; then fail "--no-losses leaves losses in the trace"; fi
-[ "$(column damping_loss_j) $(column energy_imbalance)" = '- -' ] || fail "--no-losses leaves losses in the row"
-run --scene "$work/cloth.json"
-[ "$(column damping_loss_j)" = - ] || fail "losses without a trace"
+run --scene "$work/cloth.json" --trace "$work/trace.h5"
+if h5dump -n "$work/trace.h5" | grep _loss >/dev/null; then fail "losses in a trace that nobody asked for"; fi
+[ "$(column damping_loss_j) $(column energy_imbalance)" = '- -' ] || fail "losses in a row that nobody asked for"
+run --scene "$work/cloth.json" --losses
+[ "$(column damping_loss_j)" != - ] || fail "--losses needs a file"
 
-# Who would wait long learns what it costs, and how to do without. The run itself is cut short.
-"$mssim" run --scene cloth2500 --duration 1000 --trace "$work/long.h5" >"$work/row" 2>"$work/err" &
+# Who would wait long learns what it costs. The run itself is cut short.
+"$mssim" run --scene cloth2500 --losses --duration 1000 --trace "$work/long.h5" >"$work/row" 2>"$work/err" &
 long=$!
 for ((i = 0; i < 600; ++i)); do
-  grep -q -- '--no-losses leaves it out' "$work/err" && break
+  grep -q ' s in all' "$work/err" && break
   sleep 0.1
 done
 kill "$long" 2>/dev/null || true
 wait "$long" || true
-grep -q 'about [0-9]* s in all; --no-losses leaves it out' "$work/err" || fail "no word of the cost"
+grep -q -- '--losses takes a double-precision step for every step, about [0-9]* s in all' "$work/err" || fail "no word of the cost"
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -86,6 +86,22 @@ TEST_F(Trace, KeepsAllFramesOnAFullDisk) {
   }
 }
 
+TEST_F(Trace, HasOneWriterAtATime) {
+  H5mdTrace trace(file(), system_, header());
+  write_frame(trace, system_, 0);
+  const auto begin = [&] { H5mdTrace(file(), system_, header()); };
+  const auto refused = ThrowsMessage<WriteError>(HasSubstr("another mssim is writing " + file().string()));
+  EXPECT_THAT(begin, refused);
+  EXPECT_EQ(exit_of_child([&] {
+              EXPECT_THAT(begin, refused);
+              return testing::Test::HasFailure() ? 1 : 0;
+            }),
+            0);
+  write_frame(trace, system_, 1);
+  trace.close();
+  expect_frames(file(), system_, 2);
+}
+
 TEST_F(Trace, CannotBeginInAFolderThatIsMissingOrMayNotBeWritten) {
   const auto begin = [&](const std::filesystem::path& path) { H5mdTrace(path, system_, header()); };
   EXPECT_THAT([&] { begin(folder() / "missing" / "run.h5"); },

@@ -35,12 +35,11 @@ void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const s
     const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
     const auto backend = info.make(scene.system, integrator, scene.dt_s, job.execution);
     TraceHeader header = trace_header(scene, *backend, row.backend, integrator);
-    header.with_losses = true;
     H5mdTrace trace(file, scene.system, header);
-    simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s, true},
-             [&](const Frame& frame) {
+    simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s},
+             {[&](const Frame& frame) {
                trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
-             });
+             }});
     trace.close();
   }
 }

@@ -1,13 +1,16 @@
 #include "commands/dressing_run.h"
 
 #include <chrono>
+#include <iomanip>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "bench/blow_up.h"
 #include "commands/exit_code.h"
 #include "commands/fit_body.h"
+#include "commands/progress_line.h"
 #include "fitting/fit_bounds.h"
 #include "output/listing.h"
 
@@ -30,11 +33,20 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
   double seconds = 0;
   recorder.finish_after([&] {
     const auto before = std::chrono::steady_clock::now();
+    const SettlingRule rule;
+    ProgressLine progress(1, ProgressLine::Log::nothing);
+    progress.begin_scene(scene.spec.name);
+    progress.update("closing seams", 0);
     result = dress(
-        backend, scene.system, scene.dt_s, {},
+        backend, scene.system, scene.dt_s, rule,
         [&](const State& state, std::int64_t iterations) {
           require_finite(state, iterations);
           stop.throw_if_requested();
+          std::ostringstream activity;
+          activity << (backend.progress().draping ? "draping" : "closing seams") << ", " << std::fixed
+                   << std::setprecision(2) << static_cast<double>(iterations) * scene.dt_s
+                   << " s simulated of at most " << rule.longest_s;
+          progress.update(activity.str(), 0);  // when it will have settled, nobody knows
           return true;
         },
         recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});

@@ -16,6 +16,7 @@
 #include "commands/dressing_run.h"
 #include "commands/exit_code.h"
 #include "commands/prepared_scene.h"
+#include "commands/progress_line.h"
 #include "commands/run_provenance.h"
 #include "commands/run_recorder.h"
 #include "commands/simulation.h"
@@ -36,7 +37,7 @@ struct RunOptions {
   std::optional<double> duration_s;  ///< default_duration_s where it is not given
   double fps = 60;
   RunFiles files;
-  bool no_losses = false;
+  bool losses = false;
   ExecutionOptions execution;
 };
 
@@ -51,13 +52,7 @@ std::unique_ptr<Backend> make_backend(const RunOptions& options, const PreparedS
   return make_reference(scene.system, integrator, scene.dt_s);
 }
 
-/// A garment is dressed until it has settled, and its seams and contacts, which do work, have no ledger.
-void warn_of_missing_losses() {
-  std::cerr << "mssim: what is lost of a garment's energy is not accounted for, and not in the files; "
-               "--no-losses says that it is not wanted\n";
-}
-
-/// Tells who waits long for the accounting how to do without it.
+/// Tells who waits long why.
 void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, const Integrator& integrator) {
   constexpr double passes_for_energies = 4;
   constexpr double springs_per_second = 1e8;  // of the double-precision reference, roughly
@@ -66,8 +61,8 @@ void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, c
                          (passes_for_energies + static_cast<double>(integrator.stage_count)) /
                          springs_per_second;
   if (seconds > patience_s)
-    std::cerr << "mssim: accounting for energy losses takes a double-precision step for every step, about "
-              << std::round(seconds) << " s in all; --no-losses leaves it out\n";
+    std::cerr << "mssim: --losses takes a double-precision step for every step, about " << std::round(seconds)
+              << " s in all\n";
 }
 
 /// What the three kinds of energy and the losses add up to at the end, less what they did at the start, over
@@ -92,23 +87,27 @@ int run(const RunOptions& options) {
   require_backend(options.backend);
   PreparedScene scene = prepare_scene(options.scene);
   warn_of_difference(scene);
+  require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
-  const bool wants_losses = options.files.any() && !options.no_losses;
   const auto backend = make_backend(options, scene, integrator);
   auto* const dressing = dynamic_cast<DressingBackend*>(backend.get());
   if (dressing && options.duration_s)
     throw UsageError(
         "--duration does not go with a garment, which is dressed until it has settled; leave it out");
+  if (dressing && options.losses)
+    throw UsageError(
+        "--losses does not go with a garment, on which seams and contacts do work that is not accounted for; "
+        "leave it out");
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
-                            wants_losses && !dressing};
+                            options.losses};
   TraceHeader header;
   if (!options.files.trace.empty()) header = trace_header(scene, *backend, options.backend, integrator);
   header.with_losses = plan.accounts_for_losses;
+  header.in_double = options.precision == "double";
   // After the header, for which libraries are loaded that catch signals themselves, and before there is a
   // file.
   StopRequest stop;
   if (dressing) {
-    if (wants_losses) warn_of_missing_losses();
     const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
     RunRecorder recorder(options.files, scene, header);
     return run_dressing(scene, *dressing, options.backend, frames, recorder, stop);
@@ -121,12 +120,20 @@ int run(const RunOptions& options) {
   double seconds = 0;
   recorder.finish_after([&] {
     const auto before = std::chrono::steady_clock::now();
-    simulate(*backend, scene.system, integrator, plan, [&](const Frame& frame) {
-      recorder.record(frame);
-      steps = frame.step;
-      losses = frame.losses;
-      stop.throw_if_requested();
-    });
+    ProgressLine progress(1, ProgressLine::Log::nothing);
+    progress.begin_scene(scene.spec.name);
+    simulate(*backend, scene.system, integrator, plan,
+             {[&](const Frame& frame) {
+                recorder.record(frame);
+                steps = frame.step;
+                losses = frame.losses;
+                stop.throw_if_requested();
+              },
+              [&](std::int64_t done, std::int64_t all) {
+                progress.update_often("step " + std::to_string(done) + " of " + std::to_string(all),
+                                      static_cast<double>(done) / static_cast<double>(all));
+                stop.throw_if_requested();
+              }});
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   });
 
@@ -179,11 +186,9 @@ std::function<int()> declare_run(CLI::App& app) {
                  "Write an H5MD trace to this .h5 file, and an .xdmf beside it");
   app.add_option("--energy-curve", options->files.energy_curve,
                  "Write the energies of all frames to this CSV file");
-  app.add_flag(
-      "--no-losses", options->no_losses,
-      "Do not account for what damping, friction, bounces and the integrator take from the energy, "
-      "which a trace or an energy curve otherwise costs a double-precision step for every step; for a "
-      "garment it never is");
+  app.add_flag("--losses", options->losses,
+               "Account for what damping, friction, bounces and the integrator take from the energy; takes a "
+               "double-precision step for every step (not for garments)");
   declare_execution(app, options->execution);
   return [options] { return run(*options); };
 }

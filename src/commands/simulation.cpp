@@ -39,7 +39,7 @@ FrameGrid frame_grid(double frames_per_second, double dt_s) {
 }
 
 void simulate(Backend& backend, const System& system, const Integrator& integrator,
-              const SimulationPlan& plan, const OnFrame& on_frame) {
+              const SimulationPlan& plan, const SimulationWatch& watch) {
   const std::int64_t steps = count_steps(plan);
   const FrameGrid grid = frame_grid(plan.frames_per_second, plan.dt_s);
   std::optional<EnergyLedger> ledger;
@@ -47,14 +47,18 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
   const auto losses = [&] { return ledger ? std::optional(ledger->losses()) : std::nullopt; };
   backend.set_state(system.start);
   State before = system.start;
-  on_frame({0, 0, before, energy_of(system, before), losses()});
+  watch.on_frame({0, 0, before, energy_of(system, before), losses()});
   std::int64_t done = 0;
   for (std::int64_t frame = 1; done < steps; ++frame) {
     const std::int64_t next = std::min(steps, grid.step_of(frame));
     const int count = static_cast<int>(next - done);
     if (ledger) {
-      for (int step = 0; step < count; ++step) ledger->step(backend);
+      for (int step = 0; step < count; ++step) {
+        watch.on_progress(done + step, steps);
+        ledger->step(backend);
+      }
     } else {
+      watch.on_progress(done, steps);
       backend.step(count);
     }
     State state = backend.state();
@@ -63,7 +67,7 @@ void simulate(Backend& backend, const System& system, const Integrator& integrat
       throw NotVerified("the simulation " + describe(blow_up, plan.dt_s, done));
     }
     done = next;
-    on_frame({done, static_cast<double>(done) * plan.dt_s, state, energy_of(system, state), losses()});
+    watch.on_frame({done, static_cast<double>(done) * plan.dt_s, state, energy_of(system, state), losses()});
     before = std::move(state);
   }
 }

@@ -28,15 +28,21 @@ struct Frame {
   std::optional<EnergyLosses> losses;  ///< since the start, where the plan asks for them
 };
 
-/// Called with the start and then with every frame.
-using OnFrame = std::function<void(const Frame& frame)>;
+/// What a simulation tells and asks while it runs.
+struct SimulationWatch {
+  /// Called with the start and then with every frame.
+  std::function<void(const Frame& frame)> on_frame;
+  /// Called between steps, with how many of how many are done; what it throws ends the simulation.
+  std::function<void(std::int64_t done, std::int64_t steps)> on_progress = [](std::int64_t /*done*/,
+                                                                              std::int64_t /*steps*/) {};
+};
 
 /// Steps `backend`, which was made for `system` and `integrator`, from the system's start through the whole
 /// duration, which is rounded to whole steps; a frame is the step nearest to its time. Throws NotVerified
 /// when the simulation blows up, naming step, time and node; frames up to then have been delivered. Throws
 /// UsageError for a plan of no steps or of more than one frame a step.
 void simulate(Backend& backend, const System& system, const Integrator& integrator,
-              const SimulationPlan& plan, const OnFrame& on_frame);
+              const SimulationPlan& plan, const SimulationWatch& watch);
 
 /// Steps of a plan. Throws UsageError like simulate().
 std::int64_t count_steps(const SimulationPlan& plan);

@@ -15,6 +15,13 @@ Energy energy_of(const System& system, const State& state) {
   return energy;
 }
 
+std::string_view energies_leave_out(const System& system) {
+  if (!std::holds_alternative<Garment>(system.topology)) return "";
+  return "the work of seams, of contacts and of the correction of elongations; and gravitational energy "
+         "counts "
+         "in full also while seams close, when gravity need not act in full";
+}
+
 double elastic_energy(const System& system, const Spring& spring, const State& state) {
   const Vec3d d = state.position[spring.second] - state.position[spring.first];
   const double stretch = length(d) - static_cast<double>(spring.rest_length);

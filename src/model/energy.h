@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "model/system.h"
 
 namespace mssim {
@@ -23,6 +25,10 @@ struct EnergyLosses {
 
 /// Energy of `state` in double precision. Pinned nodes count, at their constant height.
 Energy energy_of(const System& system, const State& state);
+
+/// What does work on the nodes and is in none of these energies, in words; empty where there is nothing but
+/// what EnergyLosses account for.
+std::string_view energies_leave_out(const System& system);
 
 /// Energy of one spring, J.
 double elastic_energy(const System& system, const Spring& spring, const State& state);

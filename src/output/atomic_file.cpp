@@ -5,8 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <string>
+#include <system_error>
+#include <utility>
 
 #include "output/write_error.h"
 
@@ -19,41 +20,27 @@ namespace fs = std::filesystem;
   throw WriteError(write_failure(file, action, errno));
 }
 
-/// An open file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (is_open()) ::close(descriptor_);
-  }
-  bool is_open() const { return descriptor_ >= 0; }
-  int get() const { return descriptor_; }
-  /// Closes and says whether that worked: some file systems report a failed write only here.
-  bool close() {
-    const int descriptor = descriptor_;
-    descriptor_ = -1;
-    return ::close(descriptor) == 0;
-  }
+/// Whether the open file is the one that stands under this name.
+bool is_named(const Descriptor& open, const fs::path& name) {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(open.get(), &opened) == 0 && ::stat(name.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
 
- private:
-  int descriptor_;
-};
-
-void write_and_sync(const fs::path& file, const fs::path& temporary, std::string_view text) {
+/// Opens the temporary of `file` and locks it, before a byte of it changes.
+Descriptor open_locked(const fs::path& file) {
   constexpr mode_t everyone_as_umask_allows = 0666;
-  Descriptor out(
-      ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, everyone_as_umask_allows));
-  if (!out.is_open()) fail(file, "creating " + temporary.string());
-  while (!text.empty()) {
-    const ssize_t written = ::write(out.get(), text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(file, "writing " + temporary.string());
-    text.remove_prefix(static_cast<std::size_t>(written));
+  const fs::path temporary = temporary_of(file);
+  while (true) {
+    Descriptor part(::open(temporary.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, everyone_as_umask_allows));
+    if (!part.is_open()) fail(file, "creating " + temporary.string());
+    if (!part.lock())
+      throw WriteError("another mssim is writing " + file.string() +
+                       "; wait until it has ended, or choose another file name");
+    // Between opening and locking the writer before may have renamed or removed it.
+    if (is_named(part, temporary)) return part;
   }
-  if (::fsync(out.get()) != 0) fail(file, "syncing " + temporary.string());
-  if (!out.close()) fail(file, "closing " + temporary.string());
 }
 
 void sync_folder_of(const fs::path& file) {
@@ -63,12 +50,6 @@ void sync_folder_of(const fs::path& file) {
   // the rename is done then, only not yet proof against a power failure.
   if (!handle.is_open()) return;
   if (::fsync(handle.get()) != 0 && errno != EINVAL) fail(file, "syncing folder " + folder.string());
-}
-
-void rename_into_place(const fs::path& file) {
-  const fs::path temporary = temporary_of(file);
-  if (::rename(temporary.c_str(), file.c_str()) != 0) fail(file, "renaming " + temporary.string() + " to it");
-  sync_folder_of(file);
 }
 
 }  // namespace
@@ -87,26 +68,48 @@ void require_replaceable(const fs::path& file) {
                    "; choose another file name");
 }
 
-void move_into_place(const fs::path& file) {
-  const fs::path temporary = temporary_of(file);
-  Descriptor written(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!written.is_open()) fail(file, "opening " + temporary.string());
-  if (::fsync(written.get()) != 0) fail(file, "syncing " + temporary.string());
-  if (!written.close()) fail(file, "closing " + temporary.string());
-  rename_into_place(file);
+AtomicFile::AtomicFile(fs::path file) : name_(std::move(file)) {
+  require_replaceable(name_);
+  require_replaceable(temporary_of(name_));
+  part_ = open_locked(name_);
+  if (::ftruncate(part_.get(), 0) != 0) fail(name_, "emptying " + temporary_of(name_).string());
+}
+
+void AtomicFile::remove() {
+  if (!is_under_way()) return;
+  std::error_code ignored;
+  fs::remove(temporary_of(name_), ignored);
+  part_ = Descriptor();
+}
+
+void AtomicFile::append(std::string_view text) {
+  const off_t end = ::lseek(part_.get(), 0, SEEK_END);
+  while (!text.empty()) {
+    const ssize_t written = ::write(part_.get(), text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int error = errno;
+      static_cast<void>(::ftruncate(part_.get(), end));
+      throw WriteError(write_failure(name_, "writing " + temporary_of(name_).string(), error));
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::move_into_place() {
+  const fs::path temporary = temporary_of(name_);
+  if (::fsync(part_.get()) != 0) fail(name_, "syncing " + temporary.string());
+  if (::rename(temporary.c_str(), name_.c_str()) != 0)
+    fail(name_, "renaming " + temporary.string() + " to it");
+  const bool closed = part_.close();
+  if (!closed) fail(name_, "closing it");
+  sync_folder_of(name_);
 }
 
 void write_file_atomically(const fs::path& file, std::string_view text) {
-  require_replaceable(file);
-  const fs::path temporary = temporary_of(file);
-  try {
-    write_and_sync(file, temporary, text);
-    rename_into_place(file);
-  } catch (...) {
-    std::error_code ignored;
-    if (fs::is_regular_file(temporary, ignored)) fs::remove(temporary, ignored);
-    throw;
-  }
+  AtomicFile written(file);
+  written.append(text);
+  written.move_into_place();
 }
 
 }  // namespace mssim

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-
-#include "output/atomic_file.h"
+#include <utility>
 
 namespace mssim {
 namespace {
@@ -35,25 +34,34 @@ void append_comment(std::string& text, std::string_view comment) {
 
 }  // namespace
 
-void write_energy_curve(const std::filesystem::path& file, std::span<const EnergySample> samples,
-                        std::string_view comment) {
+EnergyCurve::EnergyCurve(std::filesystem::path file, std::string_view comment) : file_(std::move(file)) {
   std::string text;
   append_comment(text, comment);
-  text += "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n";
-  const EnergySample* previous = nullptr;
-  for (const EnergySample& sample : samples) {
-    if (previous && !(sample.time_s > previous->time_s))
-      throw std::invalid_argument("energy curve: times must increase");
-    previous = &sample;
-    append_number(text, sample.time_s);
-    for (const double energy :
-         {sample.energy.kinetic, sample.energy.elastic, sample.energy.gravitational, sample.energy.total()}) {
-      text += ',';
-      append_number(text, energy);
-    }
-    text += '\n';
+  file_.append(text + "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n");
+}
+
+void EnergyCurve::append(const EnergySample& sample) {
+  if (samples_ > 0 && !(sample.time_s > last_time_s_))
+    throw std::invalid_argument("energy curve: times must increase");
+  const Energy& energy = sample.energy;
+  std::string line;
+  append_number(line, sample.time_s);
+  for (const double value : {energy.kinetic, energy.elastic, energy.gravitational, energy.total()}) {
+    line += ',';
+    append_number(line, value);
   }
-  write_file_atomically(file, text);
+  file_.append(line + '\n');
+  last_time_s_ = sample.time_s;
+  ++samples_;
+}
+
+std::size_t EnergyCurve::give_up() {
+  if (!file_.is_under_way()) return 0;
+  if (samples_ > 0)
+    file_.keep();
+  else
+    file_.remove();
+  return samples_;
 }
 
 }  // namespace mssim

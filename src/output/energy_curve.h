@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <span>
 #include <string_view>
 
 #include "model/energy.h"
+#include "output/atomic_file.h"
 
 namespace mssim {
 
@@ -14,12 +15,33 @@ struct EnergySample {
   Energy energy;
 };
 
-/// Writes the samples as CSV with the columns time_s,kinetic_j,elastic_j,gravitational_j,total_j, the form
-/// that scripts/check-energy reads. Each line of `comment` stands before the header behind "# ". Numbers have
-/// ten significant digits: far finer than any tolerance a curve is used with. Throws std::invalid_argument
-/// for times that do not increase and for numbers that are not finite, WriteError when the file cannot be
-/// written.
-void write_energy_curve(const std::filesystem::path& file, std::span<const EnergySample> samples,
-                        std::string_view comment);
+/// A CSV file of samples with the columns time_s,kinetic_j,elastic_j,gravitational_j,total_j, the form that
+/// scripts/check-energy reads. Numbers have ten significant digits: far finer than any tolerance a curve is
+/// used with. Until close() the file is called NAME.part and has all samples so far, whatever ends the
+/// process.
+class EnergyCurve {
+ public:
+  /// Each line of `comment` stands before the header behind "# ". Throws WriteError, like AtomicFile.
+  EnergyCurve(std::filesystem::path file, std::string_view comment);
+  EnergyCurve(const EnergyCurve&) = delete;
+  EnergyCurve& operator=(const EnergyCurve&) = delete;
+  /// Without close(): gives up.
+  ~EnergyCurve() { give_up(); }
+
+  const std::filesystem::path& name() const { return file_.name(); }
+
+  /// Throws WriteError, and std::invalid_argument for a time that does not increase and for numbers that are
+  /// not finite; the samples before are then in NAME.part.
+  void append(const EnergySample& sample);
+  /// Gives the file its name. Throws WriteError.
+  void close() { file_.move_into_place(); }
+  /// Ends without giving the file its name; keeps NAME.part when it has samples. Returns how many.
+  std::size_t give_up();
+
+ private:
+  AtomicFile file_;
+  std::size_t samples_ = 0;
+  double last_time_s_ = 0;
+};
 
 }  // namespace mssim

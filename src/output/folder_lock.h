@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "output/descriptor.h"
+
 namespace mssim {
 
 /// Keeps a folder for one writer: a second lock on it fails, in any process, while the first lives. Leaves no
@@ -10,14 +12,9 @@ class FolderLock {
  public:
   /// Throws WriteError when the folder is locked already or cannot be opened.
   explicit FolderLock(const std::filesystem::path& folder);
-  ~FolderLock();
-  FolderLock(FolderLock&& other) noexcept;
-  FolderLock& operator=(FolderLock&&) = delete;
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  int descriptor_ = -1;
+  Descriptor folder_;
 };
 
 }  // namespace mssim

@@ -32,7 +32,8 @@ void require_fitting_garment(const Garment& garment, std::size_t nodes) {
       throw std::invalid_argument("a trace needs panels of rows and columns, one behind the other");
     next += panel.nodes();
   }
-  if (next != nodes) throw std::invalid_argument("a trace needs panels of all nodes");
+  if (next != nodes || garment.flat.size() != nodes)
+    throw std::invalid_argument("a trace needs panels of all nodes, and where these lie in the pattern");
   const bool joined = std::ranges::all_of(garment.joints, [&](const Joint& joint) {
     return std::max({joint.node, joint.edge_first, joint.edge_second}) < nodes &&
            joint.seam < garment.seams.size();
@@ -50,6 +51,10 @@ void write_garment(hid_t file, const Garment& garment) {
        {std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
         std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}})
     write_numbers(file, panels + name, garment.panels, member, H5T_STD_U32LE, H5T_NATIVE_UINT32);
+  std::vector<std::array<double, 2>> flat;
+  for (const Vec3d& node : garment.flat) flat.push_back({node.x, node.y});
+  write_array(file, panels + "/flat", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+              std::array<hsize_t, 2>{flat.size(), 2}, flat.data());
   if (garment.joints.empty()) return;
   write_texts(file, "/parameters/seams",
               std::vector<std::string_view>(garment.seams.begin(), garment.seams.end()));

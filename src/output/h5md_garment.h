@@ -13,6 +13,7 @@ namespace mssim {
 ///
 ///     /parameters/panels/name                 [panels] strings, as in the pattern
 ///     /parameters/panels/{rows,columns,first_node,layer}   [panels] uint32; nodes row by row, row 0 lowest
+///     /parameters/panels/flat                 [nodes][2] float64: x and y in the pattern, m
 ///     /parameters/seams                       [seams] strings, where there are any
 ///     /connectivity/joints                    [joints][3] uint32: a node and the two ends of the edge that
 ///     it
@@ -21,7 +22,7 @@ namespace mssim {
 ///     /parameters/joints/seam                 [joints] uint32, index into /parameters/seams
 
 /// Throws std::invalid_argument unless the panels are all of the nodes in their order, each with two rows and
-/// two columns at least, and joints join nodes for seams that there are.
+/// two columns at least, all nodes lie in the pattern, and joints join nodes for seams that there are.
 void require_fitting_garment(const Garment& garment, std::size_t nodes);
 
 /// Writes panels, seams and the numbers of joints into /parameters, which exists. Throws Hdf5Error.

@@ -20,13 +20,17 @@ struct UnitInfo {
   const char* unit;
 };
 /// In the notation of H5MD's units module. They stand apart, under /parameters/units, because MDAnalysis
-/// refuses a `unit` attribute that is a fixed-length string and knows no metres.
-constexpr std::array<UnitInfo, 5> units{{
+/// refuses a `unit` attribute that is a fixed-length string and knows no metres; without any it must be told
+/// convert_units=False.
+constexpr std::array<UnitInfo, 8> units{{
     {"position", "m"},
     {"velocity", "m s-1"},
     {"time", "s"},
     {"mass", "kg"},
     {"energy", "J"},
+    {"rest_length", "m"},
+    {"stiffness", "N m-1"},
+    {"damping", "N s m-1"},
 }};
 
 void write_metadata(hid_t file, const TraceHeader& header) {
@@ -67,8 +71,24 @@ void create_particles(hid_t file, const std::string& particles) {
 }
 
 void write_mass(hid_t file, const std::string& particles, const System& system) {
-  write_array(file, particles + "/mass", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
-              std::array<hsize_t, 1>{system.nodes()}, system.node_mass.data());
+  write_numbers(file, particles + "/mass", system.node_mass);
+}
+
+/// What a strain or a force is computed from, in the order of /connectivity/springs.
+void write_springs(hid_t file, const System& system) {
+  if (system.springs.empty()) return;
+  const auto write = [&](const std::string& name, const auto& number_of) {
+    std::vector<double> numbers;
+    numbers.reserve(system.springs.size());
+    for (const Spring& spring : system.springs)
+      numbers.push_back(number_of(spring, system.materials[spring.kind]));
+    write_numbers(file, "/parameters/springs/" + name, numbers);
+  };
+  create_group(file, "/parameters/springs");
+  write("rest_length",
+        [](const Spring& spring, const SpringMaterial&) { return double{spring.rest_length}; });
+  write("stiffness", [](const Spring&, const SpringMaterial& material) { return material.stiffness; });
+  write("damping", [](const Spring&, const SpringMaterial& material) { return material.damping; });
 }
 
 void write_connectivity(hid_t file, const std::string& particles, const System& system) {
@@ -108,6 +128,7 @@ void write_h5md_head(hid_t file, const std::string& particles, const System& sys
   create_particles(file, particles);
   write_mass(file, particles, system);
   write_connectivity(file, particles, system);
+  write_springs(file, system);
 }
 
 }  // namespace mssim

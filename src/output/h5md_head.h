@@ -18,6 +18,8 @@ struct TraceHeader {
   std::string integrator;
   double dt_s = 0;
   bool with_losses = false;  ///< whether its frames say what has been taken from the energy
+  /// Whether positions and velocities are stored in double precision, for backends that compute in it.
+  bool in_double = false;
 };
 
 /// Throws std::invalid_argument unless the system has nodes and its topology fits them: a file that points

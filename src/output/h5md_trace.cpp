@@ -42,8 +42,8 @@ Hdf5Dataset create_number_series(hid_t file, const std::string& path, hid_t type
   return create_dataset(file, path, type, none, true, chunked(frames_per_chunk, Packing::plain));
 }
 
-Hdf5Dataset create_vector_series(hid_t file, const std::string& path, hsize_t nodes) {
-  return create_dataset(file, path, H5T_IEEE_F32LE, std::array<hsize_t, 3>{0, nodes, dimensions}, true,
+Hdf5Dataset create_vector_series(hid_t file, const std::string& path, hid_t type, hsize_t nodes) {
+  return create_dataset(file, path, type, std::array<hsize_t, 3>{0, nodes, dimensions}, true,
                         chunked(std::array<hsize_t, 3>{1, nodes, dimensions}, Packing::deflated));
 }
 
@@ -70,18 +70,15 @@ std::size_t count_frames(const std::filesystem::path& trace) {
 
 H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header,
                      const Surface& body)
-    : file_name_(std::move(file)),
-      mesh_(xdmf_mesh_of(system, body)),
-      with_losses_(header.with_losses),
-      buffer_(dimensions * system.nodes()) {
+    : output_(std::move(file)),
+      mesh_(xdmf_mesh_of(system, body, header.in_double)),
+      with_losses_(header.with_losses) {
   require_fitting_topology(system);
   require_fitting_body(system, body);
   prepare_hdf5();
-  require_replaceable(file_name_);
-  require_replaceable(temporary_of(file_name_));
-  require_replaceable(xdmf_of(file_name_));
-  if (xdmf_of(file_name_) == file_name_)
-    throw WriteError("cannot write " + file_name_.string() +
+  require_replaceable(xdmf_of(name()));
+  if (xdmf_of(name()) == name())
+    throw WriteError("cannot write " + name().string() +
                      ": its XDMF would have the same name; choose a name that ends in .h5");
   guard([&] { create(system, header, body); });
 }
@@ -89,29 +86,32 @@ H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const Tra
 H5mdTrace::~H5mdTrace() { give_up(); }
 
 void H5mdTrace::create(const System& system, const TraceHeader& header, const Surface& body) {
-  const std::string temporary = temporary_of(file_name_).string();
+  const std::string temporary = temporary_of(name()).string();
   // The default, oldest format: the newer ones leave a file that only h5clear can open after a crash.
   file_ = Hdf5File(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                    "creating " + temporary);
-  owns_temporary_ = true;
   write_h5md_head(file_.get(), particles(), system, header);
   write_static_body(file_.get(), body);
-  create_series(system.nodes());
+  create_series(system);
   checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing the head of the trace");
 }
 
-void H5mdTrace::create_series(std::size_t nodes) {
+void H5mdTrace::create_series(const System& system) {
   const hid_t file = file_.get();
+  const hsize_t nodes = system.nodes();
   const std::string position = particles() + "/position", velocity = particles() + "/velocity";
   create_group(file, position);
   create_group(file, velocity);
   step_ = create_number_series(file, position + "/step", H5T_STD_I64LE);
   time_ = create_number_series(file, position + "/time", H5T_IEEE_F64LE);
-  position_ = create_vector_series(file, position + "/value", nodes);
-  velocity_ = create_vector_series(file, velocity + "/value", nodes);
+  const hid_t type = mesh_.in_double ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  position_ = create_vector_series(file, position + "/value", type, nodes);
+  velocity_ = create_vector_series(file, velocity + "/value", type, nodes);
   link_step_and_time(file, position, velocity);
 
-  create_group(file, "/observables");
+  const Hdf5Group observables = create_group(file, "/observables");
+  if (const std::string_view work = energies_leave_out(system); !work.empty())
+    write_attribute(observables.get(), "leaves_out", work);
   for (const ObservableInfo& observable : observable_kinds) {
     if (observable.is_loss && !with_losses_) continue;
     create_group(file, observable.path);
@@ -123,8 +123,7 @@ void H5mdTrace::create_series(std::size_t nodes) {
 
 void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy,
                             const std::optional<EnergyLosses>& losses) {
-  if (dimensions * state.position.size() != buffer_.size() ||
-      dimensions * state.velocity.size() != buffer_.size())
+  if (state.position.size() != mesh_.nodes || state.velocity.size() != mesh_.nodes)
     throw std::invalid_argument("a frame's state has another size than the trace's system");
   if (!times_s_.empty() && !(step > last_step_ && time_s > times_s_.back()))
     throw std::invalid_argument("a trace's steps and times must increase");
@@ -138,17 +137,11 @@ void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state
 void H5mdTrace::append(std::int64_t step, double time_s, const State& state, const Energy& energy,
                        const EnergyLosses& losses) {
   const hsize_t frame = times_s_.size();
-  reserve(2 * buffer_.size() * sizeof(float) + room_for_metadata);
-  const auto write_vectors = [&](const Hdf5Dataset& dataset, const std::string& name,
-                                 const std::vector<Vec3d>& vectors) {
-    std::size_t i = 0;
-    for (const Vec3d& vector : vectors)
-      for (const double component : {vector.x, vector.y, vector.z})
-        buffer_[i++] = static_cast<float>(component);
-    write_row(dataset, name, frame, H5T_NATIVE_FLOAT, buffer_.data());
-  };
-  write_vectors(position_, "positions", state.position);
-  write_vectors(velocity_, "velocities", state.velocity);
+  reserve(2 * dimensions * mesh_.nodes * mesh_.bytes_per_number() + room_for_metadata);
+  // HDF5 rounds to single precision where that is what the dataset holds.
+  static_assert(sizeof(Vec3d) == dimensions * sizeof(double));
+  write_row(position_, "positions", frame, H5T_NATIVE_DOUBLE, state.position.data());
+  write_row(velocity_, "velocities", frame, H5T_NATIVE_DOUBLE, state.velocity.data());
   for (std::size_t kind = 0; kind < observables_.size(); ++kind) {
     const double value = observable_kinds[kind].value(energy, losses);
     write_row(observables_[kind], "energies", frame, H5T_NATIVE_DOUBLE, &value);
@@ -168,11 +161,10 @@ void H5mdTrace::close() {
     for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) dataset->close(action);
     for (Hdf5Dataset& observable : observables_) observable.close(action);
     file_.close(action);
-    release_reserved_space(temporary_of(file_name_));
-    move_into_place(file_name_);
-    owns_temporary_ = false;
+    release_reserved_space(temporary_of(name()));
+    output_.move_into_place();
   });
-  write_xdmf(file_name_, mesh_, times_s_);
+  write_xdmf(name(), mesh_, times_s_);
 }
 
 void H5mdTrace::reserve(std::size_t bytes) {
@@ -181,40 +173,39 @@ void H5mdTrace::reserve(std::size_t bytes) {
   checked(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor), "asking for the file descriptor");
   const int error_number = reserve_space(*static_cast<const int*>(descriptor), bytes);
   if (error_number != 0)
-    throw WriteError(
-        write_failure(file_name_, "reserving " + std::to_string(bytes) + " bytes", error_number));
+    throw WriteError(write_failure(name(), "reserving " + std::to_string(bytes) + " bytes", error_number));
 }
 
 void H5mdTrace::guard(const std::function<void()>& write) {
   const auto explain = [&](const std::string& message) {
     const std::size_t kept = give_up();
     if (kept > 0)
-      return message + "; " + temporary_of(file_name_).string() +
+      return message + "; " + temporary_of(name()).string() +
              " keeps the frames written before: " + std::to_string(kept);
     return times_s_.empty() ? message : message + "; the frames written before could not be saved";
   };
   try {
     write();
   } catch (const Hdf5Error& error) {
-    throw WriteError(explain(write_failure(file_name_, error.action, error.error_number, error.what())));
+    throw WriteError(explain(write_failure(name(), error.action, error.error_number, error.what())));
   } catch (const WriteError& error) {
     throw WriteError(explain(error.what()));
   }
 }
 
-/// Closes everything without complaint and removes the temporary file unless it holds frames that can be
-/// read. Returns how many.
+/// Closes everything without complaint. Frames that cannot be read don't count.
 std::size_t H5mdTrace::give_up() {
-  if (!owns_temporary_) return 0;
-  owns_temporary_ = false;
+  if (!output_.is_under_way()) return 0;
   for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) *dataset = {};
   observables_.clear();
   file_ = {};
-  const std::filesystem::path temporary = temporary_of(file_name_);
+  const std::filesystem::path temporary = temporary_of(name());
   release_reserved_space(temporary);
   const std::size_t kept = times_s_.empty() ? 0 : std::min(times_s_.size(), count_frames(temporary));
-  std::error_code ignored;
-  if (kept == 0) std::filesystem::remove(temporary, ignored);
+  if (kept > 0)
+    output_.keep();
+  else
+    output_.remove();
   return kept;
 }
 

@@ -10,6 +10,7 @@
 #include "mesh/surface.h"
 #include "model/energy.h"
 #include "model/system.h"
+#include "output/atomic_file.h"
 #include "output/h5md_head.h"
 #include "output/hdf5_handle.h"
 #include "output/xdmf.h"
@@ -21,12 +22,15 @@ namespace mssim {
 /// for a system on a grid, `bodies` for one of tetrahedra, and `garment` for one.
 ///
 ///     /h5md                                   author, creator, version of H5MD
-///     /particles/PARTICLES/{position,velocity}/value  [frames][nodes][3] float32, in the scene's node order
+///     /particles/PARTICLES/{position,velocity}/value  [frames][nodes][3] float32 or float64, in the scene's
+///                                             node order
 ///     /particles/PARTICLES/mass               [nodes] float64
 ///     /observables/{kinetic,elastic,gravitational,total}_energy/value        [frames] float64
 ///     /observables/{damping,friction,bounce,integration}_loss/value   since the start, with_losses only
+///     /observables                            attribute leaves_out, of a garment: energies_leave_out()
 ///     .../step, .../time                      [frames] int64, float64: the same two datasets everywhere
 ///     /connectivity/springs                   [springs][2] uint32, each unique spring once
+///     /parameters/springs/{rest_length,stiffness,damping}     [springs] float64, in that order
 ///     /connectivity/tetrahedra                [tetrahedra][4] uint32, of bodies
 ///     /connectivity/joints                    [joints][3] uint32, of a garment: h5md_garment.h
 ///     /body/{points,triangles}                of a body that does not move: h5md_body.h
@@ -38,7 +42,8 @@ namespace mssim {
 ///     /xdmf/panel/{PANEL,body}                of a garment, the panel's number for each node, -1 for the
 ///     body
 ///
-/// Positions are single precision, as most backends compute them, which halves the file; energies are double.
+/// Positions and velocities are stored in single precision, as most backends compute them, which halves the
+/// file, or in double, where the header says so; energies are double.
 ///
 /// Until close() the file is called NAME.part. After write_frame() returns, the frame is with the system: a
 /// program that is killed, or a disk that is full, leaves a NAME.part with all frames written so far, without
@@ -63,27 +68,28 @@ class H5mdTrace {
 
   /// Finishes the trace, gives it its name and writes the XDMF. Throws WriteError.
   void close();
+  /// Ends without giving the file its name; keeps NAME.part when it holds frames. Returns how many.
+  std::size_t give_up();
+
+  const std::filesystem::path& name() const { return output_.name(); }
 
  private:
   void create(const System& system, const TraceHeader& header, const Surface& body);
-  void create_series(std::size_t nodes);
+  void create_series(const System& system);
   std::string particles() const { return "/particles/" + mesh_.particles; }
   void append(std::int64_t step, double time_s, const State& state, const Energy& energy,
               const EnergyLosses& losses);
   void reserve(std::size_t bytes);
   void guard(const std::function<void()>& write);
-  std::size_t give_up();
 
-  std::filesystem::path file_name_;
+  AtomicFile output_;
   XdmfMesh mesh_;
   bool with_losses_;
   Hdf5File file_;
   Hdf5Dataset step_, time_, position_, velocity_;  // of the particles
   std::vector<Hdf5Dataset> observables_;           // in the order of their table
-  std::vector<float> buffer_;                      // [nodes][3]
   std::vector<double> times_s_;                    // [frames]
   std::int64_t last_step_ = 0;
-  bool owns_temporary_ = false;  // from its creation until it has its name or is given up
 };
 
 }  // namespace mssim

@@ -33,6 +33,9 @@ herr_t note_innermost(unsigned depth, const H5E_error2_t* entry, void* reason_) 
 void prepare_hdf5() {
   static std::once_flag once;
   std::call_once(once, [] {
+    // HDF5 reads it once, before anything else. A file under way is locked by its AtomicFile, which HDF5's
+    // own locks would take for another program's.
+    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
     H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   });

@@ -115,6 +115,11 @@ void write_array(hid_t parent, const std::string& path, hid_t file_type, hid_t m
   dataset.close(action);
 }
 
+void write_numbers(hid_t parent, const std::string& path, std::span<const double> numbers) {
+  write_array(parent, path, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, std::array<hsize_t, 1>{numbers.size()},
+              numbers.data());
+}
+
 Hdf5Properties chunked(std::span<const hsize_t> chunk, Packing packing) {
   const std::string action = "setting how a dataset is stored";
   // The first level already finds what there is in floating-point numbers after shuffling.

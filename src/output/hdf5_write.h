@@ -34,6 +34,9 @@ void write_texts(hid_t parent, const std::string& name, std::span<const std::str
 void write_array(hid_t parent, const std::string& path, hid_t file_type, hid_t memory_type,
                  std::span<const hsize_t> shape, const void* data);
 
+/// A list of numbers in double precision, one at least.
+void write_numbers(hid_t parent, const std::string& path, std::span<const double> numbers);
+
 /// How the chunks of a dataset are stored. Every chunk has a Fletcher-32 checksum.
 enum class Packing { plain, deflated };
 

@@ -40,12 +40,13 @@ std::string dimensions_of(std::span<const hsize_t> shape) {
   return text;
 }
 
-/// A dataset of the trace as XDMF names it; `number` is its type's name.
+/// A dataset of the trace as XDMF names it; `number` is its type's name, of so many bytes.
 std::string data_item(const std::string& trace, const std::string& dataset, const std::string& dimensions,
-                      std::string_view number) {
+                      std::string_view number, std::size_t bytes = sizeof(float)) {
   std::string item = "<DataItem Dimensions=\"" + dimensions + "\" NumberType=\"";
   item += number;
-  return item + "\" Precision=\"4\" Format=\"HDF\">" + trace + ":" + dataset + "</DataItem>";
+  return item + "\" Precision=\"" + std::to_string(bytes) + "\" Format=\"HDF\">" + trace + ":" + dataset +
+         "</DataItem>";
 }
 
 /// Cells between the nodes, as `dataset` lists their corners.
@@ -83,7 +84,8 @@ std::vector<std::string> part_elements(const std::string& trace, const XdmfMesh&
                                        std::size_t frame) {
   const std::string shape = dimensions_of(part.shape);
   const auto vectors = [&](std::string_view vector) {
-    return data_item(trace, xdmf_dataset(vector, part, frame), shape + " 3", "Float");
+    return data_item(trace, xdmf_dataset(vector, part, frame), shape + " 3", "Float",
+                     mesh.bytes_per_number());
   };
   std::vector<std::string> elements{topology_element(trace, mesh, part), geometry(vectors("position")),
                                     attribute("velocity", "Vector", vectors("velocity"))};
@@ -143,13 +145,13 @@ void number_panels_for_xdmf(hid_t trace, const XdmfMesh& mesh) {
 
 }  // namespace
 
-XdmfMesh xdmf_mesh_of(const System& system, const Surface& body) {
+XdmfMesh xdmf_mesh_of(const System& system, const Surface& body, bool in_double) {
   const hsize_t nodes = system.nodes();
   if (const auto* grid = std::get_if<GridPatch>(&system.topology))
-    return {"cloth", nodes, {{"cloth", {}, 0, {1, grid->rows, grid->columns}}}};
+    return {"cloth", nodes, {{"cloth", {}, 0, {1, grid->rows, grid->columns}}}, in_double};
   if (const auto* mesh = std::get_if<TetrahedralMesh>(&system.topology))
-    return {"bodies", nodes, {{"bodies", {}, 0, {nodes}}}, mesh->tetrahedra.size()};
-  XdmfMesh mesh{"garment", nodes, {}, 0, body.points.size(), body.triangles.size()};
+    return {"bodies", nodes, {{"bodies", {}, 0, {nodes}}}, in_double, mesh->tetrahedra.size()};
+  XdmfMesh mesh{"garment", nodes, {}, in_double, 0, body.points.size(), body.triangles.size()};
   for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
     mesh.parts.push_back({panel.name,
                           static_cast<std::int32_t>(mesh.parts.size()),
@@ -173,6 +175,7 @@ void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) 
   const std::string action = "mapping frames for XDMF";
   constexpr hsize_t dimensions = 3;
   const std::array<hsize_t, 3> all{frames, mesh.nodes, dimensions};
+  const hid_t type = mesh.in_double ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
   const Hdf5Space source(H5Screate_simple(3, all.data(), nullptr), action);
   create_group(trace, "/xdmf");
   if (mesh.parts.front().panel) number_panels_for_xdmf(trace, mesh);
@@ -194,7 +197,7 @@ void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) 
             action);
         // "." is the very file, whatever its name.
         checked(H5Pset_virtual(properties.get(), target.get(), ".", values.c_str(), source.get()), action);
-        create_dataset(trace, xdmf_dataset(vector, part, frame), H5T_IEEE_F32LE, shape, false, properties)
+        create_dataset(trace, xdmf_dataset(vector, part, frame), type, shape, false, properties)
             .close(action);
       }
     }

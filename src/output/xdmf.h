@@ -37,11 +37,15 @@ struct XdmfMesh {
   std::string particles;  ///< "cloth", "bodies" or "garment", the group of nodes in /particles
   hsize_t nodes = 0;      ///< in that group
   std::vector<XdmfPart> parts;
+  bool in_double = false;      ///< positions and velocities
   hsize_t tetrahedra = 0;      ///< in `tetrahedra_dataset`; 0 for structured surfaces
   hsize_t body_points = 0;     ///< of the body that does not move, in `body_points_dataset`
   hsize_t body_triangles = 0;  ///< in `body_triangles_dataset`; 0 where there is no such body
+
+  /// Of positions and velocities.
+  std::size_t bytes_per_number() const { return in_double ? sizeof(double) : sizeof(float); }
 };
-XdmfMesh xdmf_mesh_of(const System& system, const Surface& body);
+XdmfMesh xdmf_mesh_of(const System& system, const Surface& body, bool in_double = false);
 
 /// Path in the trace of the tetrahedra of bodies, [tetrahedra][4] uint32.
 inline constexpr const char* tetrahedra_dataset = "/connectivity/tetrahedra";
@@ -51,8 +55,7 @@ inline constexpr const char* body_points_dataset = "/body/points";
 inline constexpr const char* body_triangles_dataset = "/body/triangles";
 
 /// Path in the trace of the virtual dataset of one part in one frame, for example /xdmf/position/000012 or
-/// /xdmf/position/2/000012. `vector` is "position" or "velocity"; the dataset has the part's shape and [3],
-/// float32.
+/// /xdmf/position/2/000012. `vector` is "position" or "velocity"; the dataset has the part's shape and [3].
 std::string xdmf_dataset(std::string_view vector, const XdmfPart& part, std::size_t frame);
 
 /// Path in the trace of the panel's number at each node of a part, [1][rows][columns] int32, and at each

@@ -74,6 +74,24 @@ SceneSpec parse_scene(const std::filesystem::path& file, std::string text) {
 
 SceneSpec load_scene(const std::filesystem::path& file) { return scene_of(read_json(file)); }
 
+std::vector<std::filesystem::path> files_of(const SceneSpec& spec) {
+  std::vector<std::filesystem::path> files{spec.file};
+  const auto add = [&](const std::string& name) { files.push_back(spec.file.parent_path() / name); };
+  if (const auto* bodies = std::get_if<BodiesSpec>(&spec.body))
+    for (const BodySpec& body : bodies->list) {
+      if (const auto* surface = std::get_if<SurfaceFile>(&body.shape)) add(surface->file);
+      if (const auto* mesh = std::get_if<MeshFiles>(&body.shape)) {
+        add(mesh->node_file);
+        add(mesh->ele_file);
+      }
+      if (const auto* shape = std::get_if<ShapeOfScene>(&body.shape); shape && is_path_of_scene(shape->name))
+        add(shape->name);
+    }
+  if (const auto* garment = std::get_if<GarmentSpec>(&spec.body))
+    if (const auto* body = std::get_if<BodyFile>(&garment->body)) add(body->file);
+  return files;
+}
+
 std::vector<std::string> scene_names() {
   std::vector<std::tuple<std::size_t, std::uint64_t, std::string>> scenes;
   for (std::string& name : names_in_folder()) {
