@@ -131,7 +131,7 @@ TEST_F(BenchGarment, KeepsAnEarlierDressing) {
 TEST_F(BenchGarment, HasFailedWhereItDoesNotFit) {
   job_.garment->bounds.largest_gap = -1;  // no gap keeps that
   const ResultRow row = run().front();
-  EXPECT_THAT(row.status, HasSubstr("failed: dressed, the largest gap of a seam is "));
+  EXPECT_THAT(row.status, HasSubstr("failed: dressed, a seam gapes: the largest gap of a seam is "));
   EXPECT_FALSE(row.verified);
   EXPECT_FALSE(row.ms_per_step);
   ASSERT_TRUE(row.dressing);

@@ -82,7 +82,9 @@ class Person {
     double body = joined(torso_(p), leg_(p), 0.03);
     body = joined(body, ellipsoid(p, {0, 1.585, 0.015}, {0.075, 0.115, 0.095}), 0.03);
     body = joined(body, ellipsoid(p, {0.135, 0.035, 0.055}, {0.042, 0.038, 0.12}), 0.02);
-    return arms_ ? joined(body, arm(p), 0.03) : body;
+    // Rounded at the shoulder; a hand beside the hip stays apart.
+    const double rounding = std::clamp(0.1 * (p.y - 1.0), 0.004, 0.03);
+    return arms_ ? joined(body, arm(p), rounding) : body;
   }
 
  private:

@@ -17,6 +17,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 constexpr SettlingRule soon{.longest_s = 2};
 
@@ -58,7 +59,7 @@ TEST(DressedJeans, WhoseSewnSeamsDoNotCloseGape) {
 TEST(DressedJeans, LookedAtTooEarlyAreNotAtRest) {
   const Dressed jeans = dressed_after([](DressingCase&) {}, {.longest_s = 0.3});
   EXPECT_TRUE(jeans.result.seamed_at);
-  EXPECT_THAT(jeans.found, Contains("the garment did not come to rest"));
+  EXPECT_THAT(jeans.found, Contains(StartsWith("the garment did not come to rest; try ")));
 }
 
 TEST(DressedJeans, SinkIntoABodyWhoseMapsLieInside) {

@@ -17,8 +17,10 @@
 namespace mssim {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 FitBody nobody_around(const Vec3d& middle) {
   return {[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
@@ -161,7 +163,21 @@ TEST(FitBounds, StandBesideTheNumbersInTheirUnits) {
   EXPECT_DOUBLE_EQ(find("elongation_99").bound.value(), 0.06);
   EXPECT_FALSE(find("elongation_99").within.value());
   EXPECT_FALSE(find("elongation_max").bound);
+  EXPECT_EQ(find("elongation_max").shown_bound, "");
+  EXPECT_EQ(find("largest_gap_mm").shown_bound, "1");
+  EXPECT_EQ(find("upper_edge_rise_mm").shown_bound, "±20");
+  EXPECT_EQ(find("crotch_rise_mm").shown_bound, "±30");
   EXPECT_FALSE(find("elongation_max").within);
+}
+
+TEST(FitBounds, TellSlidingDownFromBeingPushedUp) {
+  DressingResult result;
+  result.seamed_at = 100;
+  result.settled = true;
+  EXPECT_THAT(misfits(result, {.upper_edge_rise = 0.021}, {}),
+              ElementsAre(StartsWith("the garment was pushed up: ")));
+  EXPECT_THAT(misfits(result, {.meeting_rise = -0.031}, {}),
+              ElementsAre(StartsWith("the crotch hangs low: ")));
 }
 
 TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
@@ -188,10 +204,15 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
       misfits({}, fit, {}),
       ElementsAre(HasSubstr("seams did not close"), HasSubstr("did not come to rest"),
                   HasSubstr("gap of a seam is 1.1 mm, beyond 1 mm"),
-                  HasSubstr("node inside the body is 1.2 mm"), HasSubstr("face inside the body is 2 mm"),
+                  HasSubstr("node inside the body is 1.2 mm"),
+                  AllOf(StartsWith("the body comes through: "),
+                        HasSubstr("face inside the body is 2 mm, beyond 1 mm"),
+                        HasSubstr("; try a larger skin_m or more nodes")),
                   HasSubstr("99 % stay below is 6.1 %, beyond 6 %"), HasSubstr("99.9 % stay below is nan %"),
-                  HasSubstr("worn is -21 mm, beyond 20 mm"),
-                  HasSubstr("seams meet from where that is worn is 31 mm"),
+                  AllOf(StartsWith("the garment slid down: "), HasSubstr("worn is -21 mm, beyond ±20 mm"),
+                        HasSubstr("; try a lower waist (waist_height_m)")),
+                  AllOf(StartsWith("the crotch was drawn up: "),
+                        HasSubstr("seams meet from where that is worn is 31 mm, beyond ±30 mm")),
                   HasSubstr("rows that do not go once around their limb is 1, beyond 0"),
                   HasSubstr("layers of the cloth cross is 4, beyond 0")));
 }

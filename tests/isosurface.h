@@ -97,8 +97,8 @@ inline Surface isosurface(const DistanceField& field, const FieldBox& box) {
   return surface;
 }
 
-/// Makes a closed surface coarser until it has so many triangles: its shortest edges shrink to points, which
-/// are put on the field's surface. It stays closed and connected as it was.
+/// Makes a closed surface coarser until it has so many triangles: edges shrink to points, which are put on
+/// the field's surface, short ones first, and such as do not bend. It stays closed and connected as it was.
 class Decimation {
  public:
   Decimation(Surface surface, const DistanceField& field)
@@ -107,6 +107,7 @@ class Decimation {
         around_(surface_.points.size()),
         version_(surface_.points.size()),
         left_(surface_.triangles.size()) {
+    for (const Vec3d& point : surface_.points) outwards_.push_back(direction(slope(point)));
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
       for (const std::uint32_t corner : surface_.triangles[t]) around_[corner].push_back(t);
     for (std::uint32_t point = 0; point < around_.size(); ++point)
@@ -128,10 +129,10 @@ class Decimation {
 
   /// As it was when neither of its ends had been moved since.
   struct Edge {
-    double length = 0;
+    double cost = 0;
     std::uint32_t a = 0, b = 0, version_a = 0, version_b = 0;
-    bool operator<(const Edge& other) const {  // the shortest on top
-      return std::tie(length, a, b) > std::tie(other.length, other.a, other.b);
+    bool operator<(const Edge& other) const {  // the cheapest on top
+      return std::tie(cost, a, b) > std::tie(other.cost, other.a, other.b);
     }
   };
 
@@ -148,20 +149,32 @@ class Decimation {
   }
 
   void offer_edge(std::uint32_t a, std::uint32_t b) {
-    edges_.push({length(surface_.points[a] - surface_.points[b]), a, b, version_[a], version_[b]});
+    constexpr double of_a_plane = 0.3;
+    const double bend = length(outwards_[a] - outwards_[b]);
+    const double cost = (of_a_plane + bend) * length(surface_.points[a] - surface_.points[b]);
+    edges_.push({cost, a, b, version_[a], version_[b]});
+  }
+
+  /// The field's gradient.
+  Vec3d slope(const Vec3d& point) const {
+    constexpr double step = 1e-4;
+    const double value = field_(point);
+    return 1 / step *
+           Vec3d{field_(point + Vec3d{step, 0, 0}) - value, field_(point + Vec3d{0, step, 0}) - value,
+                 field_(point + Vec3d{0, 0, step}) - value};
+  }
+
+  static Vec3d direction(const Vec3d& vector) {
+    const double size = length(vector);
+    return size > 0 ? 1 / size * vector : Vec3d{};
   }
 
   /// Two steps of Newton's.
   Vec3d on_surface(Vec3d point) const {
-    constexpr double step = 1e-4;
     for (int turn = 0; turn < 2; ++turn) {
-      const double value = field_(point);
-      const Vec3d slope =
-          1 / step *
-          Vec3d{field_(point + Vec3d{step, 0, 0}) - value, field_(point + Vec3d{0, step, 0}) - value,
-                field_(point + Vec3d{0, 0, step}) - value};
-      if (!(dot(slope, slope) > 0.04)) break;
-      point += -value / dot(slope, slope) * slope;
+      const Vec3d uphill = slope(point);
+      if (!(dot(uphill, uphill) > 0.04)) break;
+      point += -field_(point) / dot(uphill, uphill) * uphill;
     }
     return point;
   }
@@ -197,6 +210,7 @@ class Decimation {
         turns_one(a, b, to) || turns_one(b, a, to))
       return;
     surface_.points[a] = to;
+    outwards_[a] = direction(slope(to));
     for (const std::uint32_t t : Numbers(around_[b])) {
       auto& triangle = surface_.triangles[t];
       if (has(around_[a], t)) {
@@ -236,6 +250,7 @@ class Decimation {
   const DistanceField& field_;
   std::vector<Numbers> around_;  ///< the triangles of each point
   Numbers version_;
+  std::vector<Vec3d> outwards_;  ///< of each point, of length 1
   std::priority_queue<Edge> edges_;
   std::size_t left_;
 };

@@ -85,7 +85,7 @@ void time_scenes(SceneJob job, const std::vector<std::string>& names, const Benc
     const bool finished = is_finished(job, job.name, job.earlier);
     if (finished && !options.trace) continue;
     const PreparedScene scene = prepare_scene(name);
-    warn_of_difference(scene);
+    warn_of_note(scene);
     job.system = &scene.system;
     job.springs_published = scene.counts.springs_published;
     job.note = scene.note;
@@ -122,7 +122,7 @@ std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names)
   std::vector<StructureRow> rows;
   for (const std::string& name : names) {
     const PreparedScene scene = prepare_scene(name);
-    warn_of_difference(scene);
+    warn_of_note(scene);
     rows.push_back(structure_of(scene));
   }
   return rows;

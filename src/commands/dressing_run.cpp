@@ -68,7 +68,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
   for (const FitCheck& check : fit_checks(fit, {}))
     fitting.push_back({{"fit", check.name},
                        {"value", check.value},
-                       {"bound", check.bound ? Json(*check.bound) : Json()},
+                       {"bound", check.bound ? Json(check.shown_bound) : Json()},
                        {"within", check.within ? Json(*check.within) : Json()}});
   std::cout << to_text({dressing}, ListingFormat::table) << '\n' << to_text(fitting, ListingFormat::table);
   const std::vector<std::string> found = misfits(result, fit, {});

@@ -13,10 +13,10 @@ namespace mssim {
 namespace {
 
 struct Body {
-  explicit Body(const Surface& surface) : solid(surface), profile(surface) {}
+  explicit Body(const Surface& surface) : profile(surface), solid(profile.trunk_and_legs().surface) {}
 
-  Solid solid;
   BodyProfile profile;
+  Solid solid;  ///< what the garment meets: an arm beside the hip is nothing to be inside of
 };
 
 /// The middle of the leg on the point's side, or of the trunk where that is nearer.

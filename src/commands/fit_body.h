@@ -5,8 +5,8 @@
 
 namespace mssim {
 
-/// The body of a garment scene, to measure fits against: its own mesh, and the legs that it has. Throws
-/// SceneError.
+/// The body of a garment scene, to measure fits against: the mesh of its trunk and legs, which is what
+/// garments meet. Throws SceneError.
 FitBody fit_body(const SceneSpec& spec);
 
 }  // namespace mssim

@@ -79,6 +79,11 @@ void tell(const MeasureOptions& options, const BodyListing& listing) {
   std::cout << to_text(listing.rows(), options.format);
 }
 
+void tell_of_ignored_parts(const BodyProfile& profile) {
+  const std::string ignored = ignored_parts(profile.trunk_and_legs());
+  if (!ignored.empty()) std::cerr << "mssim: " << ignored << '\n';
+}
+
 /// Measures the body of a file, printing what is found as far as it goes. Throws MeshError.
 MeasuredFile measure_file(const MeasureOptions& options) {
   Surface surface = read_surface(options.body);
@@ -102,6 +107,7 @@ MeasuredFile measure_file(const MeasureOptions& options) {
                           : "it is open at " + std::to_string(openings.size()) +
                                 " places: close them where it was made, or give --close-holes");
     BodyProfile profile(surface, options.body);
+    tell_of_ignored_parts(profile);
     const BodyLandmarks landmarks = find_landmarks(profile);
     listing.add_measures(profile, landmarks);
     tell(options, listing);
@@ -146,10 +152,11 @@ int measure_scene(const MeasureOptions& options) {
     throw UsageError(spec.name +
                      " is a scene without a body to dress: give a garment's, or an .obj or .stl file");
   const auto* file = std::get_if<BodyFile>(&garment->body);
-  const MeasuredBody body = measured_body(spec);
+  const BodyProfile body = measured_body(spec);
+  tell_of_ignored_parts(body);
   BodyListing listing;
   listing.add_stance(file ? file->stance : BodyStance{}, "by the scene");
-  listing.add_measures(body.profile, find_landmarks(body.profile));
+  listing.add_measures(body, find_landmarks(body));
   tell(options, listing);
   return exit_ok;
 }

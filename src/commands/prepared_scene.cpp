@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "integrators/stability.h"
+#include "scene/garment_body.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 
@@ -31,6 +32,10 @@ PreparedScene prepare_scene(std::string_view name_or_file) {
   scene.system = build_system(scene.spec);
   scene.counts = counts_of(scene.spec, scene.system);
   scene.note = difference(scene.spec, scene.counts);
+  if (std::holds_alternative<GarmentSpec>(scene.spec.body))
+    if (const std::string ignored = ignored_parts(measured_body(scene.spec).trunk_and_legs());
+        !ignored.empty())
+      scene.note += (scene.note.empty() ? "" : "; ") + ignored;
   if (scene.spec.dt_s) {
     scene.dt_s = *scene.spec.dt_s;
   } else {
@@ -40,7 +45,7 @@ PreparedScene prepare_scene(std::string_view name_or_file) {
   return scene;
 }
 
-void warn_of_difference(const PreparedScene& scene) {
+void warn_of_note(const PreparedScene& scene) {
   if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
 }
 

@@ -14,13 +14,14 @@ struct PreparedScene {
   System system;
   SceneCounts counts;
   double dt_s = 0;   ///< the scene's, or the largest safe one for `auto`
-  std::string note;  ///< how the scene differs from what its file states; empty where it does not
+  /// How the scene differs from what its file states, and what of a body a garment ignores; or empty.
+  std::string note;
 };
 
 /// Reads, checks and builds the scene of that name or file. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(std::string_view name_or_file);
 
 /// Says the note, if there is one, on stderr.
-void warn_of_difference(const PreparedScene& scene);
+void warn_of_note(const PreparedScene& scene);
 
 }  // namespace mssim

@@ -86,7 +86,7 @@ int run(const RunOptions& options) {
   const Integrator& integrator = require_integrator(options.integrator);
   require_backend(options.backend);
   PreparedScene scene = prepare_scene(options.scene);
-  warn_of_difference(scene);
+  warn_of_note(scene);
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const auto backend = make_backend(options, scene, integrator);

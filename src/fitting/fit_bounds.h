@@ -26,14 +26,15 @@ struct FitCheck {
   std::string name;  ///< ends in its unit
   double value = 0;
   std::optional<double> bound;  ///< on its magnitude; none where it has none
+  std::string shown_bound;      ///< "1", or "±20" where the number may have either sign; empty without bound
   std::optional<bool> within;   ///< whether it keeps it
 };
 
 /// All numbers of a fit, in one order.
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds);
 
-/// What is out of bounds, a sentence each: that the garment was not sewn in time, did not settle, or a number
-/// of its fit and the bound.
+/// What is out of bounds, each what happened, the number and its bound, and what to try: that the garment was
+/// not sewn in time, did not settle, or a number of its fit.
 std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, const FitBounds& bounds);
 
 }  // namespace mssim

@@ -33,14 +33,18 @@ Corners corners_of(const Surface& surface, std::size_t triangle) {
   return {surface.points[a], surface.points[b], surface.points[c]};
 }
 
+TrunkAndLegs checked_body(const Surface& surface, const std::string& name) {
+  validate_surface(surface, name);
+  return trunk_and_legs(surface);
+}
+
 bool nearer_the_back(const PlanPoint& a, const PlanPoint& b) { return a.z < b.z; }
 
 }  // namespace
 
-BodyProfile::BodyProfile(Surface surface, std::string name)
-    : surface_(std::move(surface)), name_(std::move(name)) {
-  validate_surface(surface_, name_);
-  const auto [low, high] = std::minmax_element(surface_.points.begin(), surface_.points.end(),
+BodyProfile::BodyProfile(const Surface& surface, std::string name)
+    : name_(std::move(name)), body_(checked_body(surface, name_)) {
+  const auto [low, high] = std::minmax_element(body_.surface.points.begin(), body_.surface.points.end(),
                                                [](const Vec3d& a, const Vec3d& b) { return a.y < b.y; });
   lowest_ = low->y;
   highest_ = high->y;
@@ -57,8 +61,8 @@ std::size_t BodyProfile::slice_of(double y) const {
 
 void BodyProfile::fill_slices() {
   slices_.resize(256);
-  for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(surface_, t);
+  for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
+    const auto [a, b, c] = corners_of(body_.surface, t);
     const std::size_t last = slice_of(std::max({a.y, b.y, c.y}));
     for (std::size_t slice = slice_of(std::min({a.y, b.y, c.y})); slice <= last; ++slice)
       slices_[slice].push_back(static_cast<std::uint32_t>(t));
@@ -80,9 +84,9 @@ std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> int
 
 std::vector<BodyProfile::Interval> BodyProfile::heights_in_the_middle() const {
   std::vector<Interval> intervals;
-  for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
     Interval interval{highest_, lowest_};
-    cut(corners_of(surface_, t), &Vec3d::x, 0, [&](const Vec3d& point) {
+    cut(corners_of(body_.surface, t), &Vec3d::x, 0, [&](const Vec3d& point) {
       interval = {std::min(interval.low, point.y), std::max(interval.high, point.y)};
     });
     if (interval.low <= interval.high) intervals.push_back(interval);
@@ -98,7 +102,7 @@ std::optional<double> BodyProfile::find_crotch() const {
   if (trunk == middle_.end()) return std::nullopt;
   constexpr double shortest_leg = 0.01;  // m: a round underside's lowest point need not be at x = 0
   const auto has_leg = [&](double sign) {
-    return std::any_of(surface_.points.begin(), surface_.points.end(), [&](const Vec3d& point) {
+    return std::any_of(body_.surface.points.begin(), body_.surface.points.end(), [&](const Vec3d& point) {
       return sign * point.x > 0 && point.y < trunk->low - shortest_leg;
     });
   };
@@ -120,7 +124,7 @@ std::vector<PlanPoint> BodyProfile::section(double y) const {
                     shown(lowest_) + " to " + shown(highest_) + " m");
   std::vector<PlanPoint> points;
   for (const std::uint32_t t : slices_[slice_of(y)])
-    cut(corners_of(surface_, t), &Vec3d::y, y, [&](const Vec3d& point) {
+    cut(corners_of(body_.surface, t), &Vec3d::y, y, [&](const Vec3d& point) {
       points.push_back({point.x, point.z});
     });
   if (points.empty())

@@ -5,19 +5,23 @@
 #include <vector>
 
 #include "garment/convex_hull.h"
+#include "garment/trunk_and_legs.h"
 #include "mesh/surface.h"
 
 namespace mssim {
 
 /// The measures that a pattern needs of a body, mannequin or scan: any closed surface, m, that stands upright
 /// in y, looks to +z and has a leg on either side of the plane x = 0. It may be of several closed parts that
-/// overlap. Measures are of the exact section of the triangles with a horizontal plane; a triangle that lies
-/// in the plane belongs to it.
+/// overlap. Only its trunk and legs count (trunk_and_legs): an arm beside the hip does not make it wider.
+/// Measures are of the exact section of the triangles with a horizontal plane; a triangle that lies in the
+/// plane belongs to it.
 class BodyProfile {
  public:
   /// `name` begins what errors say. Throws MeshError for a surface that is not closed (validate_surface).
-  explicit BodyProfile(Surface surface, std::string name = "body");
+  explicit BodyProfile(const Surface& surface, std::string name = "body");
 
+  /// What is measured, and what garments meet.
+  const TrunkAndLegs& trunk_and_legs() const { return body_; }
   double lowest() const { return lowest_; }    ///< y, m
   double highest() const { return highest_; }  ///< y, m
 
@@ -60,8 +64,8 @@ class BodyProfile {
   std::vector<Interval> heights_in_the_middle() const;
   std::optional<double> find_crotch() const;
 
-  Surface surface_;
   std::string name_;
+  TrunkAndLegs body_;
   double lowest_ = 0, highest_ = 0;
   std::vector<Interval> middle_;  ///< heights at which the section reaches x = 0
   std::optional<double> crotch_;

@@ -20,6 +20,12 @@ std::string cell(const nlohmann::ordered_json& value, int digits) {
   return text.str();
 }
 
+/// How many characters a terminal shows of UTF-8.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }));
+}
+
 std::string aligned(const Listing& listing, int digits) {
   std::vector<std::vector<std::string>> lines{{}};
   std::vector<bool> numeric;
@@ -37,12 +43,12 @@ std::string aligned(const Listing& listing, int digits) {
   }
   std::vector<std::size_t> width(numeric.size());
   for (const auto& line : lines)
-    for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], line[i].size());
+    for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], width_of(line[i]));
   std::string text;
   for (const auto& line : lines) {
     std::string row;
     for (std::size_t i = 0; i < line.size(); ++i) {
-      const std::string padding(width[i] - line[i].size(), ' ');
+      const std::string padding(width[i] - width_of(line[i]), ' ');
       if (i > 0) row += "  ";
       row += numeric[i] ? padding + line[i] : line[i] + padding;
     }

@@ -133,14 +133,14 @@ std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
 }
 
 SceneCounts garment_counts(const SceneSpec& spec) {
-  const GarmentBuild build = cut_and_placed(spec, measured_body(spec).profile).build;
+  const GarmentBuild build = cut_and_placed(spec, measured_body(spec)).build;
   return {build.placed.size(), build.springs.size()};
 }
 
 System build_garment_scene(const SceneSpec& spec) {
   const GarmentSpec& garment = garment_of(spec);
-  const MeasuredBody body = measured_body(spec);
-  auto [build, body_offset] = cut_and_placed(spec, body.profile);
+  const BodyProfile body = measured_body(spec);
+  auto [build, body_offset] = cut_and_placed(spec, body);
   const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
   if (lowest_start < spec.floor.height)
     refuse(spec.file, "/floor/height_m",
@@ -159,7 +159,7 @@ System build_garment_scene(const SceneSpec& spec) {
   build.garment.dressing = garment.dressing;
   build.garment.flat = std::move(build.flat);
   if (garment.layers) build.garment.touching = {{layer_pairs(build.garment), {}}, *garment.layers};
-  build.garment.body_maps = maps_for_layers(spec, build.garment, body.surface, body_offset);
+  build.garment.body_maps = maps_for_layers(spec, build.garment, body.trunk_and_legs().surface, body_offset);
   system.topology = std::move(build.garment);
   return system;
 }

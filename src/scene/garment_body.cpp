@@ -125,14 +125,14 @@ Surface body_of_garment(const SceneSpec& spec) {
   }
 }
 
-MeasuredBody measured_body(const SceneSpec& spec) {
-  Surface surface = body_of_garment(spec);
+BodyProfile measured_body(const SceneSpec& spec) {
+  const Surface surface = body_of_garment(spec);
   try {
     BodyProfile profile(surface);
     const GarmentSpec& garment = garment_of(spec);
     if (const auto* file = std::get_if<BodyFile>(&garment.body); file && garment.jeans)
       require_person(spec, *file, profile);
-    return {std::move(surface), std::move(profile)};
+    return profile;
   } catch (const MeshError& error) {
     refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
   }

@@ -19,13 +19,8 @@ void check_body(const SceneSpec& spec);
 /// says so. Throws SceneError.
 Surface body_of_garment(const SceneSpec& spec);
 
-/// A body as a pattern needs it.
-struct MeasuredBody {
-  Surface surface;
-  BodyProfile profile;
-};
-
-/// Throws SceneError for one that cannot be measured, and for jeans when it is not a person's height.
-MeasuredBody measured_body(const SceneSpec& spec);
+/// The body as a pattern needs it. Throws SceneError for one that cannot be measured, and for jeans when it
+/// is not a person's height.
+BodyProfile measured_body(const SceneSpec& spec);
 
 }  // namespace mssim
