@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backends/dressing/openmp_dressing.h"
+#include "backends/dressing/serial_dressing.h"
 #include "contact/solid.h"
 #include "dressed_jeans.h"
 #include "garment_system.h"

@@ -2,9 +2,11 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "backends/dressing/serial_dressing.h"
+#include "backends/backends.h"
+#include "backends/dressing/dressing_backend.h"
 #include "commands/fit_body.h"
 #include "fitting/fit_bounds.h"
 #include "integrators/integrators.h"
@@ -32,12 +34,14 @@ struct Dressed {
   std::vector<std::string> found;  ///< out of bounds
 };
 
-/// Dresses it on one thread and measures the fit on the body's own mesh.
-inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {}) {
-  const auto backend = make_serial_dressing(of.system, *find_integrator("semi-euler"), of.dt_s());
+/// Dresses it by a backend and measures the fit on the body's own mesh.
+inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {},
+                       std::string_view backend_name = "serial") {
+  const auto backend =
+      find_backend(backend_name)->make(of.system, *find_integrator("semi-euler"), of.dt_s(), {});
   Dressed dressed;
-  dressed.result =
-      dress(*backend, of.system, of.dt_s(), rule, [](const State&, std::int64_t) { return true; });
+  dressed.result = dress(dynamic_cast<DressingBackend&>(*backend), of.system, of.dt_s(), rule,
+                         [](const State&, std::int64_t) { return true; });
   dressed.fit = fit_of(of.system, dressed.result.state.position, fit_body(of.spec));
   dressed.found = misfits(dressed.result, dressed.fit, {});
   return dressed;
