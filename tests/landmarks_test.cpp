@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "body_with_arms.h"
 #include "garment/jeans_for_body.h"
 #include "garment/mannequin.h"
 #include "mesh_fixture.h"
@@ -40,6 +41,15 @@ TEST(Landmarks, AreWhereTheMannequinWasMadeToHaveThem) {
   expect_at(found.waist, other.waist, 0.008);
 }
 
+TEST(Landmarks, OfAPersonAreThoseOfTheTrunkWhereverTheArmsHang) {
+  for (const double degrees : {12.0, 25.0, 45.0}) {
+    PersonForm form;
+    form.arm_angle_degrees = degrees;
+    SCOPED_TRACE(degrees);
+    expect_landmarks(find_landmarks(BodyProfile(body_with_arms(form))), {}, 0.025);
+  }
+}
+
 TEST(Landmarks, WhatTheBodyDoesNotShowIsByProportion) {
   // A trunk that widens all the way up has neither hip nor waist.
   Surface cone = mannequin({}, {48});
@@ -55,9 +65,7 @@ TEST(Landmarks, WhatTheBodyDoesNotShowIsByProportion) {
 }
 
 TEST(Landmarks, NeedLegs) {
-  EXPECT_THAT(mesh_error_of([] {
-                find_landmarks(BodyProfile(unit_cube({-0.5, 0, -0.5})));
-              }),
+  EXPECT_THAT(mesh_error_of([] { find_landmarks(BodyProfile(unit_cube({-0.5, 0, -0.5}))); }),
               HasSubstr("never falls apart into a left and a right leg"));
 }
 

@@ -108,9 +108,10 @@ TEST(Openings, ThatTouchInAPointAreToldApart) {
 TEST(Openings, LargeOnesAreRefusedAndNothingIsFilled) {
   Surface surface = open_sphere(0.5);
   const std::size_t before = surface.triangles.size();
-  EXPECT_THAT(mesh_error_of([&] { close_openings(surface, 0.2); }),
-              AllOf(StartsWith("the opening of "), HasSubstr(" edges around ("), HasSubstr(" is 1.7"),
-                    HasSubstr(" across, and at most 0.2 are closed; close it where the surface was made")));
+  EXPECT_THAT(
+      mesh_error_of([&] { close_openings(surface, 0.2); }),
+      AllOf(StartsWith("the opening of "), HasSubstr(" edges around ("), HasSubstr(" is 1.7"),
+            HasSubstr(" m across, and at most 0.2 m are closed; close it where the surface was made")));
   EXPECT_EQ(surface.triangles.size(), before);
 }
 

@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "body_with_arms.h"
+#include "commands/command.h"
 #include "contact_fixture.h"
 #include "dressed_jeans.h"
 #include "scene/garment_body.h"
@@ -121,6 +123,20 @@ TEST_F(ScannedBody, ThatStandsFurtherBackIsDressedWhereItStands) {
   for (Vec3d& point : surface.points) point.z -= 0.3;
   put("body.obj", as_obj(surface, 1).text);
   EXPECT_THAT(dressed(DressingCase(scene_for("body.obj", 1))).found, IsEmpty());
+}
+
+TEST_F(ScannedBody, OfAPersonIsDressedByTheSceneThatMeasureWritesForIt) {
+  const Surface person =
+      posed(body_with_arms(), {.unit_m = 0.001, .turn_degrees = 90, .shift = {0.4, 0.1, -2}, .z_up = true});
+  const std::string body = put("scan.obj", as_obj(person, 1).text).string();
+  const std::string scene = (folder() / "my.json").string();
+  std::array arguments{"mssim", "measure", body.c_str(), "--scene", scene.c_str()};
+  testing::internal::CaptureStdout();
+  const int code = run_program(arguments.size(), const_cast<char**>(arguments.data()));
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("waist_height"));
+  ASSERT_EQ(code, 0);
+  const DressingCase jeans(load_scene(scene));
+  EXPECT_THAT(dressed(jeans).found, IsEmpty());
 }
 
 TEST_F(ScannedBody, ThatStandsAsideIsRefused) {

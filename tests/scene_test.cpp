@@ -238,6 +238,10 @@ TEST_F(SceneFile, ThatCannotBeReadIsNamedWithTheReason) {
   EXPECT_THAT(error_of(file()), HasSubstr("cannot be opened (Permission denied): check its permissions"));
 }
 
+TEST_F(SceneFile, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(load_scene(write("\xef\xbb\xbf" + good)).description, load_scene(write(good)).description);
+}
+
 TEST_F(SceneFile, ThatIsEmptyOrBlankIsRefused) {
   EXPECT_THAT(error_of(write("")), HasSubstr("is empty: give a scene file"));
   EXPECT_THAT(error_of(write(" \n")),

@@ -183,8 +183,9 @@ void require_measures(const JeansMeasures& m) {
   const double least = 0.03;  // between two of the heights
   require_between(m.knee_height, m.hem_height + least, 2,
                   "the knee's height, knee_height_m, which lies above the hem's,");
-  require_between(m.crotch_height - m.crotch_ease, m.knee_height + least, 2,
-                  "the crotch line's height, the body's less crotch_ease_m, which lies above the knee's,");
+  require_between(
+      m.crotch_height - m.crotch_ease, m.knee_height + least, 2,
+      "the crotch line's height, the body's less crotch_ease_m, which lies above the knee's, knee_height_m,");
   require_between(m.hip_height, m.crotch_height + least, 2,
                   "the hip's height, hip_height_m, which lies above the crotch's,");
   require_between(m.waist_height, m.hip_height + least, 2,

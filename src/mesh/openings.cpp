@@ -106,8 +106,8 @@ std::vector<Opening> close_openings(Surface& surface, double largest) {
   std::vector<Opening> openings = openings_of(surface);
   for (const Opening& opening : openings) {
     if (!(opening.size <= largest))
-      refuse(opening, " is " + shown(opening.size) + " across, and at most " + shown(largest) +
-                          " are closed; close it where the surface was made");
+      refuse(opening, " is " + shown(opening.size) + " m across, and at most " + shown(largest) +
+                          " m are closed; close it where the surface was made");
     if (!opening.is_ring)
       refuse(opening,
              " goes round no hole, since triangles beside it run in different directions; turn them "

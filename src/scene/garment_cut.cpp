@@ -78,10 +78,12 @@ void require_body_there(const SceneSpec& spec, const BodyProfile& profile) {
 
 /// What is wrong with jeans whose panels, which nobody drew, cannot be cut.
 std::string uncut_jeans(const JeansMeasures& jeans, const BodyProfile& profile) {
-  const auto at = [](double height) { return " m around at the height " + shown(height); };
-  return "cannot be cut for this body: it measures " + shown(profile.hull_girth(jeans.hip_height)) +
-         at(jeans.hip_height) + " (hip_height_m) and " + shown(profile.hull_girth(jeans.waist_height)) +
-         at(jeans.waist_height) + " (waist_height_m), and parts into legs at " +
+  const auto girth_at = [&](double height) {
+    const double millimetres = std::round(1000 * profile.hull_girth(height));
+    return shown(millimetres / 1000) + " m around at the height " + shown(height);
+  };
+  return "cannot be cut for this body: it measures " + girth_at(jeans.hip_height) + " (hip_height_m) and " +
+         girth_at(jeans.waist_height) + " (waist_height_m), and parts into legs at " +
          shown(profile.crotch_height()) +
          " m; give the heights of its hip and waist, and knee_height_m and hem_height_m evenly below (mssim "
          "measure finds them)";
