@@ -139,7 +139,7 @@ TEST(SceneSchema, NamesTheUnitOfEveryFieldThatHasOne) {
     }
   };
   check(committed);
-  EXPECT_EQ(checked, 107);
+  EXPECT_EQ(checked, 108);
 }
 
 }  // namespace

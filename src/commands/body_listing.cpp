@@ -38,6 +38,8 @@ void BodyListing::add_stance(const BodyStance& stance, const std::string& how) {
   add("unit", stance.unit_m, "m", name.empty() ? how : name + ", " + how);
   add("up", up_axis_names.at(static_cast<std::size_t>(stance.up)), "", how);
   add("facing", facing_names.at(static_cast<std::size_t>(stance.facing)), "", how);
+  if (stance.turn_deg != 0)
+    add("turn", stance.turn_deg, "degrees", "about the upright axis, towards its left");
   if (!(stance.move == Vec3d{}))
     add("move", place(stance.move), "m",
         "to its left, up, ahead: legs on either side of x = 0, feet on the floor");

@@ -1,6 +1,8 @@
 #include "garment/body_stance.h"
 
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace mssim {
 namespace {
@@ -20,8 +22,14 @@ bool is_level(Facing facing, UpAxis up) { return dot(direction_of(facing), direc
 
 Surface stood_up(Surface body, const BodyStance& stance) {
   const Vec3d up = direction_of(stance.up), ahead = direction_of(stance.facing), left = cross(up, ahead);
-  for (Vec3d& point : body.points)
-    point = stance.unit_m * Vec3d{dot(point, left), dot(point, up), dot(point, ahead)} + stance.move;
+  // Without a turn these are 1 and 0, which change no bit.
+  const double turn = stance.turn_deg * std::numbers::pi / 180, cosine = std::cos(turn),
+               sine = std::sin(turn);
+  for (Vec3d& point : body.points) {
+    const double x = dot(point, left), z = dot(point, ahead);
+    const Vec3d turned{cosine * x + sine * z, dot(point, up), cosine * z - sine * x};
+    point = stance.unit_m * turned + stance.move;
+  }
   return body;
 }
 

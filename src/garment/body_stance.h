@@ -29,7 +29,8 @@ struct BodyStance {
   double unit_m = 1;  ///< metres in one unit of the file
   UpAxis up = UpAxis::y;
   Facing facing = Facing::plus_z;  ///< is_level
-  Vec3d move;                      ///< m, by which the body is moved when it stands so
+  double turn_deg = 0;             ///< by which it is turned about y, from +z towards +x, when it stands so
+  Vec3d move;                      ///< m, by which it is moved then
 };
 
 /// The body of a file as patterns need it.

@@ -32,8 +32,15 @@ struct Candidate {
   Surface body;
   std::vector<LegGap> gaps;
 
-  Candidate(const Surface& surface, UpAxis up, Facing facing)
-      : stance{1, up, facing, {}}, body(stood_up(surface, stance)), gaps(leg_gaps(body)) {}
+  Candidate(const Surface& surface, UpAxis up, Facing facing) : stance{1, up, facing, 0, {}} {
+    stand(surface);
+  }
+
+  /// After a change of stance.
+  void stand(const Surface& surface) {
+    body = stood_up(surface, stance);
+    gaps = leg_gaps(body);
+  }
 
   /// How wide the legs are apart, over all heights: the larger, the more is it legs seen from ahead.
   double apartness() const {
@@ -112,24 +119,36 @@ double turned_degrees(const std::vector<LegGap>& gaps) {
 
 Facing opposite(Facing facing) { return static_cast<Facing>(static_cast<std::uint32_t>(facing) ^ 1U); }
 
+/// Turns the candidate until its legs stand side by side, in whole degrees.
+void turn_ahead(Candidate& best, const Surface& surface) {
+  constexpr int turns = 2;  // seen askew, legs are not quite where they are
+  for (int i = 0; i < turns; ++i) {
+    best.stance.turn_deg -= std::round(turned_degrees(best.gaps));
+    best.stand(surface);
+  }
+}
+
 void find_facing(Candidate& best, const Surface& surface, const GivenStance& given,
                  std::vector<std::string>& doubts) {
   constexpr double clear = 0.15;  // toes of a foot of 25 cm reach 4 cm farther ahead than its heel behind
-  constexpr double askew = 15;    // degrees
-  if (!given.facing) {
-    const double toes = toes_ahead(best.body);
-    if (toes < 0) {
-      best.stance.facing = opposite(best.stance.facing);
-      best.body = stood_up(surface, best.stance);
-      best.gaps = leg_gaps(best.body);
-    }
-    if (std::abs(toes) < clear)
-      doubts.emplace_back("facing: its feet reach about as far ahead as behind; give it with --facing");
+  constexpr double askew = 12;    // degrees: less may be one foot before the other
+  const double turned = std::round(turned_degrees(best.gaps));
+  if (std::abs(turned) > askew && given.facing)
+    doubts.push_back("facing: its legs stand " + shown(turned) +
+                     " degrees beside the axis; turn_deg in the scene's surface_file turns it");
+  if (given.facing) return;
+  if (std::abs(turned) > askew) {
+    turn_ahead(best, surface);
+    doubts.push_back("facing: its legs stand beside the axes, and it is turned by " +
+                     shown(best.stance.turn_deg) + " degrees; give --facing to leave it as it is");
   }
-  const double turned = turned_degrees(best.gaps);
-  if (std::abs(turned) > askew)
-    doubts.push_back("facing: its legs stand " + shown(std::round(turned)) +
-                     " degrees beside the axis; turn it in the file so that it looks along one");
+  const double toes = toes_ahead(best.body);
+  if (toes < 0) {
+    best.stance.facing = opposite(best.stance.facing);
+    best.stand(surface);
+  }
+  if (std::abs(toes) < clear)
+    doubts.emplace_back("facing: its feet reach about as far ahead as behind; give it with --facing");
 }
 
 double unit_of(double height, const GivenStance& given, std::vector<std::string>& doubts) {

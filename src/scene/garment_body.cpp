@@ -1,6 +1,7 @@
 #include "scene/garment_body.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -52,6 +53,9 @@ void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
   fields.choice("facing", Presence::optional, facing_names, facing);
   stance.up = static_cast<UpAxis>(up);
   stance.facing = static_cast<Facing>(facing);
+  std::optional<double> turn_deg;
+  fields.optional_number("turn_deg", turn_deg, from(-360, 360));
+  stance.turn_deg = turn_deg.value_or(0);
   fields.vector("move_m", Presence::optional, stance.move, from(-1e9, 1e9));
   fields.optional_number("close_holes_m", close_holes_m, above(0, largest_length_m));
 }

@@ -18,6 +18,7 @@ ordered_json section_of(const BodyFile& body) {
                        {"unit_m", body.stance.unit_m},
                        {"up", up_axis_names.at(static_cast<std::size_t>(body.stance.up))},
                        {"facing", facing_names.at(static_cast<std::size_t>(body.stance.facing))}};
+  if (body.stance.turn_deg != 0) section["turn_deg"] = body.stance.turn_deg;
   const Vec3d& move = body.stance.move;
   section["move_m"] = {move.x, move.y, move.z};
   if (body.close_holes_m) section["close_holes_m"] = *body.close_holes_m;
