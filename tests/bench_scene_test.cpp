@@ -54,6 +54,26 @@ void fail_row(ResultRow& row, const std::string& status) {
   row.verified = false;
 }
 
+/// A right one that takes two processors whatever it was asked for, as a device that cannot be divided.
+class OnTwoProcessors final : public Backend {
+ public:
+  explicit OnTwoProcessors(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {}
+  void set_state(const State& state) override { serial_->set_state(state); }
+  void step(int count) override { serial_->step(count); }
+  State state() const override { return serial_->state(); }
+  std::string device() const override { return "made up"; }
+  int threads() const override { return 2; }
+
+ private:
+  std::unique_ptr<Backend> serial_;
+};
+
+std::unique_ptr<Backend> on_two_processors(const System& system, const Integrator& integrator, double dt_s,
+                                           const ExecutionOptions& options) {
+  return std::make_unique<OnTwoProcessors>(find_backend("serial")->make(system, integrator, dt_s, options));
+}
+constexpr BackendInfo undividable{"undividable", "", "takes two", false, on_two_processors, {}, {}};
+
 class BenchScene : public testing::Test {
  protected:
   BenchScene() {
@@ -105,6 +125,21 @@ TEST_F(BenchScene, GivesARowForEveryCombinationAndKeepsEveryRound) {
       ASSERT_EQ(kept_[round][i].samples_ms.size(), round + 1);
       EXPECT_EQ(kept_[round][i].samples_ms[round], rows[i].samples_ms[round]);
     }
+}
+
+TEST_F(BenchScene, SaysOfARowThatItTookMoreProcessorsThanWereAskedFor) {
+  job_.backends = {find_backend("openmp"), &undividable};
+  job_.note = "another mesh";
+  const std::vector<ResultRow> rows = run();
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].threads, 1);
+  EXPECT_EQ(rows[0].note, "another mesh");
+  EXPECT_EQ(rows[1].threads, 2);
+  EXPECT_EQ(rows[1].note,
+            "another mesh; on 2 processors instead of 1: the driver of made up cannot divide it");
+  EXPECT_GT(rows[1].roofline_fraction, 0);  // of what two processors can do
+  job_.execution.threads = 2;
+  EXPECT_EQ(run()[1].note, "another mesh");
 }
 
 TEST_F(BenchScene, GoesOnWithTheRoundsThatAllCombinationsHave) {

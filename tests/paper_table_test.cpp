@@ -121,6 +121,31 @@ TEST(PaperTable, ShowsNoTimeThatWasNotVerified) {
   EXPECT_THAT(table.csv, Not(HasSubstr("0.0125")));
 }
 
+TEST(PaperTable, MarksTimesOnMoreProcessorsThanWereAskedFor) {
+  Provenance provenance = made_up_provenance();
+  std::vector<ResultRow> rows = table_rows();
+  for (ResultRow& row : rows) row.threads = row.backend == "hybrid" ? 2 : 1;
+  const auto text = [&] {
+    return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), provenance).markdown;
+  };
+  EXPECT_THAT(text(), Not(HasSubstr("(!)")));
+  provenance.threads = 1;
+  EXPECT_THAT(text(), HasSubstr("| `hybrid`, **measured** | **0.0500** (!) (2.00×) | – |\n"));
+  EXPECT_THAT(text(), HasSubstr("| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"));
+  EXPECT_THAT(text(), HasSubstr("\n(!) on more processors than the 1 asked for, since its device cannot be "
+                                "divided: hybrid (2).\n"));
+}
+
+TEST(PaperTable, SaysWhyThereAreNoSpeedUps) {
+  const auto text = [](const std::vector<ResultRow>& rows) {
+    return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).markdown;
+  };
+  EXPECT_THAT(text({measured_row("openmp", 0.0125, std::nullopt), measured_row("hybrid", 1, std::nullopt)}),
+              HasSubstr("\nspeed-ups are missing, since serial is not among the backends; add it: --backend "
+                        "serial,openmp,hybrid.\n"));
+  EXPECT_THAT(text(table_rows()), Not(HasSubstr("missing")));
+}
+
 TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
   std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
   rows[0].integrator = "rk4-frozen";

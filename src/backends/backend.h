@@ -23,7 +23,7 @@ enum class DeviceMemory : std::uint8_t {
 
 /// What the user chose about where a backend runs.
 struct ExecutionOptions {
-  int threads = 0;  ///< host threads, at least 1
+  int threads = 0;  ///< host threads, and compute units of a device that is a processor; at least 1
   std::string device =
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
   DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
@@ -72,7 +72,8 @@ class Backend {
   virtual State state() const = 0;
   /// What the steps run on, for the `device` column, for example "cpu" or an OpenCL device's name.
   virtual std::string device() const = 0;
-  /// Host threads that take part in a step.
+  /// Processors of this machine that compute a step; of a device with processors of its own, the thread that
+  /// waits for it. More than ExecutionOptions::threads only where a driver cannot keep to it.
   virtual int threads() const = 0;
   /// Whole steps that one pass over the state in memory takes, where stages overlap; 0 where every stage
   /// makes a pass of its own. What a step moves through memory is counted by it.

@@ -56,4 +56,10 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
   return "";
 }
 
+std::string excess_of(const Backend& backend, int threads) {
+  if (backend.threads() <= threads) return "";
+  return "on " + std::to_string(backend.threads()) + " processors instead of " + std::to_string(threads) +
+         ": the driver of " + backend.device() + " cannot divide it";
+}
+
 }  // namespace mssim

@@ -15,6 +15,7 @@
 #include "backends/node_records.h"
 #include "backends/opencl/call.h"
 #include "backends/opencl/device.h"
+#include "backends/opencl/sub_device.h"
 
 namespace mssim {
 namespace {
@@ -29,6 +30,7 @@ class Hybrid final : public Backend {
         device_label_(label_of(device, memory)),
         runs_on_host_(device.type == OpenclDeviceType::cpu),
         threads_(threads),
+        processors_(std::max(threads, threads_of(device))),
         kernel_(node_kernels().front()),
         nodes_(system, integrator, dt_s),
         // All forces are there before a node is written, so that pairs may share memory.
@@ -55,7 +57,7 @@ class Hybrid final : public Backend {
   State state() const override { return read_records(device_.pair(present_).data(), nodes_.packed.place); }
 
   std::string device() const override { return device_label_; }
-  int threads() const override { return threads_; }
+  int threads() const override { return processors_; }  // host and device take turns
   bool runs_on_host() const override { return runs_on_host_; }
 
  private:
@@ -122,7 +124,8 @@ class Hybrid final : public Backend {
   const Integrator& integrator_;
   std::string device_label_;
   bool runs_on_host_;
-  int threads_;
+  int threads_;     // of the host
+  int processors_;  // of the host or the device, whichever takes more
   NodeKernel kernel_;
   HostNodes nodes_;
   SpringDevice device_;
@@ -144,7 +147,7 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const OpenclDevice device = choose_opencl_device(opencl_devices(), options.device);
+  const OpenclDevice device = find_opencl_device(options);
   return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory);
 }
 

@@ -20,7 +20,7 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const OpenclDevice device = choose_opencl_device(opencl_devices(), options.device);
+  const OpenclDevice device = find_opencl_device(options);
   return make_opencl(system, integrator, dt_s, device, lanes_for(device), options.memory);
 }
 

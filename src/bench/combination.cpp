@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/backends.h"
 #include "bench/blow_up.h"
 #include "bench/outliers.h"
 #include "bench/sample_length.h"
@@ -14,6 +15,11 @@
 
 namespace mssim {
 namespace {
+
+void add_to(std::string& note, const std::string& sentence) {
+  if (!note.empty() && !sentence.empty()) note += "; ";
+  note += sentence;
+}
 
 /// Runs the steps of one sample and returns its wall-clock seconds.
 double time_sample(Combination& combination, int steps) {
@@ -61,6 +67,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     combination.backend = info.make(*job.system, integrator, job.dt_s, job.execution);
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
+    add_to(row.note, excess_of(*combination.backend, job.execution.threads));
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
   } catch (const Unavailable& reason) {

@@ -33,7 +33,7 @@ struct ResultRow {
   std::optional<std::uint64_t> springs_published;  ///< as Hong et al. count them
   std::string backend;
   std::string device;
-  int threads = 0;
+  int threads = 0;  ///< processors that compute a step
   std::string integrator;
   double dt_s = 0;
   int rounds = 0;                         ///< samples taken
@@ -75,6 +75,10 @@ std::string combination_name(const A& a) {
 
 /// Is this the time of something that works?
 inline bool counts(const ResultRow& row) { return row.status == "ok" && row.verified; }
+
+/// Did its steps take more processors than these threads, which were asked for? So does a device that its
+/// driver cannot divide.
+inline bool exceeds(const ResultRow& row, int threads) { return row.threads > threads; }
 
 /// The row's status; a row that was measured but not verified has failed.
 inline std::string status_of(const ResultRow& row) {

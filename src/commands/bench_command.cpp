@@ -33,6 +33,7 @@
 #include "model/printable.h"
 #include "output/published.h"
 #include "output/result_folder.h"
+#include "output/result_table.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 
@@ -118,6 +119,15 @@ void time_scenes(SceneJob job, const std::vector<std::string>& names, const Benc
   }
 }
 
+/// Before hours of measuring, not after.
+void warn_of_missing_speedups(const BenchPlan& plan) {
+  std::vector<std::string_view> backends;
+  if (!plan.timed.empty())
+    for (const BackendInfo* backend : plan.job.backends) backends.push_back(backend->name);
+  if (const std::string reason = reason_without_speedups(backends); !reason.empty())
+    std::cerr << "mssim: " << reason << '\n';
+}
+
 std::vector<StructureRow> describe_scenes(const std::vector<std::string>& names) {
   std::vector<StructureRow> rows;
   for (const std::string& name : names) {
@@ -173,6 +183,7 @@ int run(const BenchOptions& options) {
 
   if (!plan.timed.empty())
     for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  warn_of_missing_speedups(plan);
   int code = exit_ok;
   if (!plan.described.empty()) {
     const std::vector<StructureRow> structure = describe_scenes(plan.described);
@@ -183,7 +194,7 @@ int run(const BenchOptions& options) {
   if (!plan.timed.empty()) {
     time_scenes(plan.job, plan.timed, options, published, folder ? &*folder : nullptr, stop, budget, rows);
     if (!plan.described.empty() && options.format == SummaryFormat::table) std::cout << '\n';
-    std::cout << summary(rows.all(), options.format);
+    std::cout << summary(rows.all(), options.format, plan.job.execution.threads);
     if (folder && options.format == SummaryFormat::github) folder->write_for_github(rows.all());
     code = exit_code_of(rows.all(), options);
   }

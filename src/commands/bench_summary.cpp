@@ -2,9 +2,11 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "output/github_json.h"
 #include "output/listing.h"
+#include "output/result_table.h"
 
 namespace mssim {
 namespace {
@@ -16,12 +18,26 @@ std::string text_of(const Listing& listing, SummaryFormat format) {
                                                           : ListingFormat::table);
 }
 
+/// What stands below a table of rows.
+std::string remarks(std::span<const ResultRow> rows, int threads) {
+  std::vector<const ResultRow*> pointers;
+  for (const ResultRow& row : rows) pointers.push_back(&row);
+  std::string text;
+  for (const std::string& sentence : {legend_of_excess(pointers, threads), reason_without_speedups(pointers)})
+    if (!sentence.empty()) text += sentence + '\n';
+  return text;
+}
+
 }  // namespace
 
-std::string summary(std::span<const ResultRow> rows, SummaryFormat format) {
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads) {
   if (format == SummaryFormat::github) return github_json(rows).dump(2) + '\n';
   const auto number = [](const auto& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  const auto threads_cell = [&](const ResultRow& row) -> nlohmann::ordered_json {
+    if (format != SummaryFormat::table || !exceeds(row, threads)) return row.threads;
+    return std::to_string(row.threads).append(mark_of_excess(row, threads));
   };
   Listing listing;
   for (const ResultRow& row : rows)
@@ -30,6 +46,7 @@ std::string summary(std::span<const ResultRow> rows, SummaryFormat format) {
                        {"springs_published", number(row.springs_published)},
                        {"integrator", row.integrator},
                        {"backend", row.backend},
+                       {"threads", threads_cell(row)},
                        {"ms_per_step", number(row.ms_per_step)},
                        {"low", number(row.ms_per_step_low)},
                        {"high", number(row.ms_per_step_high)},
@@ -39,7 +56,7 @@ std::string summary(std::span<const ResultRow> rows, SummaryFormat format) {
                        {"position_error", number(row.position_error)},
                        {"verified", row.verified},
                        {"status", row.status}});
-  return text_of(listing, format);
+  return text_of(listing, format) + (format == SummaryFormat::table ? remarks(rows, threads) : "");
 }
 
 std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {

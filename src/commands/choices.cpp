@@ -66,7 +66,9 @@ CLI::Validator positive_number() {
 }
 
 void declare_execution(CLI::App& app, ExecutionOptions& options) {
-  app.add_option("--threads", options.threads, "Host threads (default: one for every processor)")
+  app.add_option("--threads", options.threads,
+                 "Threads, and compute units of an OpenCL device that is a processor (default: one for every "
+                 "processor)")
       ->check(CLI::Range(1, most_threads));
   app.add_option("--device", options.device,
                  "OpenCL device: its number or a part of its name (see mssim list devices)");

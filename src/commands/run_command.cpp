@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/serial.h"
 #include "commands/choices.h"
 #include "commands/dressing_run.h"
@@ -44,8 +45,13 @@ struct RunOptions {
 std::unique_ptr<Backend> make_backend(const RunOptions& options, const PreparedScene& scene,
                                       const Integrator& integrator) {
   const BackendInfo& info = require_backend(options.backend);
-  if (options.precision == "single")
-    return info.make(scene.system, integrator, scene.dt_s, complete(options.execution));
+  if (options.precision == "single") {
+    const ExecutionOptions execution = complete(options.execution);
+    auto backend = info.make(scene.system, integrator, scene.dt_s, execution);
+    if (const std::string excess = excess_of(*backend, execution.threads); !excess.empty())
+      std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
+    return backend;
+  }
   if (info.make != make_serial)
     throw UsageError("--precision double needs --backend serial, not \"" + options.backend +
                      "\": the other backends compute in single precision only");
@@ -146,6 +152,7 @@ int run(const RunOptions& options) {
       {{{"scene", scene.spec.name},
         {"backend", options.backend},
         {"device", backend->device()},
+        {"threads", backend->threads()},
         {"integrator", options.integrator},
         {"dt_s", scene.dt_s},
         {"steps", steps},

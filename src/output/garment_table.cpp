@@ -75,6 +75,7 @@ class Markdown {
   explicit Markdown(const Layout& layout) : layout_(layout) {}
 
   std::string text(const Provenance& provenance) {
+    threads_ = provenance.threads;
     out_ << "# Figure 6 of Vassilev: milliseconds an iteration against vertices of jeans\n\n"
          << measured_on(layout_.rows(), provenance)
          << "One iteration of Algorithm 1, medians, of jeans that hang draped on the body: springs, joints, "
@@ -87,7 +88,8 @@ class Markdown {
     out_ << "\nThe whole dressing, once: seconds and iterations from flat panels to jeans that hang settled. "
             "`garment.csv` says how each fits.\n\n";
     add_table("dressing", dressing_cell);
-    out_ << rows_without_a_time(layout_.rows());
+    out_ << paragraph(legend_of_excess(layout_.rows(), threads_))
+         << paragraph(reason_without_speedups(layout_.rows())) << rows_without_a_time(layout_.rows());
     return out_.str();
   }
 
@@ -103,7 +105,8 @@ class Markdown {
       out_ << "| " << (is_baseline(line) ? "without: " : "with: ") << "`" << line.first << "` |";
       for (const ResultRow* scene : layout_.scenes()) {
         const ResultRow* row = layout_.find(*scene, line);
-        out_ << " " << (row ? cell(*row) : std::string(nothing)) << " |";
+        out_ << " " << (row ? cell(*row) : std::string(nothing))
+             << (row ? mark_of_excess(*row, threads_) : "") << " |";
       }
       out_ << "\n";
     }
@@ -111,6 +114,7 @@ class Markdown {
 
   const Layout& layout_;
   std::ostringstream out_;
+  int threads_ = 0;  ///< asked for
 };
 
 std::string as_csv(const Layout& layout) {

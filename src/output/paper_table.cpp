@@ -135,12 +135,14 @@ class Markdown {
       : measured_(measured), legend_(legend), published_(published) {}
 
   std::string text(const Provenance& provenance) {
+    threads_ = provenance.threads;
     out_ << "# " << published_.info().title << ", published and measured\n\n"
          << measured_on(measured_.rows(), provenance);
     add_legend();
     for (const auto& integrator : legend_.integrators)
       if (measured_.has(integrator.name)) add_block(integrator);
-    out_ << rows_without_a_time(shown_);
+    out_ << paragraph(legend_of_excess(shown_, threads_)) << paragraph(reason_without_speedups(shown_))
+         << rows_without_a_time(shown_);
     return out_.str();
   }
 
@@ -196,7 +198,8 @@ class Markdown {
       const ResultRow* row = measured_.find(scene.name, backend.name, integrator.name);
       if (row) shown_.push_back(row);
       if (const Timing timing = measured_timing(row); timing.ms) {
-        out_ << " **" << three_digits(*timing.ms) << "**" << speedup_suffix(timing, backend.configuration);
+        out_ << " **" << three_digits(*timing.ms) << "**" << mark_of_excess(*row, threads_)
+             << speedup_suffix(timing, backend.configuration);
       } else if (row) {
         const std::string status = status_of(*row);
         out_ << " " << one_cell(status.substr(0, status.find(':')));
@@ -213,6 +216,7 @@ class Markdown {
   const PublishedTable& published_;
   std::ostringstream out_;
   std::vector<const ResultRow*> shown_;
+  int threads_ = 0;  // asked for
 };
 
 }  // namespace

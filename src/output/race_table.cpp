@@ -81,7 +81,7 @@ std::string as_markdown(const std::vector<Line>& lines, const std::vector<RaceLe
   for (const RaceLegend& way : ways)
     if (std::ranges::any_of(lines, [&](const Line& line) { return line.legend == &way; }))
       text << "- `" << way.way << "`: " << way.description << "\n";
-  text << rows_without_a_time(rows);
+  text << paragraph(reason_without_speedups(rows)) << rows_without_a_time(rows);
   return text.str();
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "output/markdown.h"
 
@@ -22,6 +23,37 @@ std::string measured_on(std::span<const ResultRow* const> rows, const Provenance
        << ".\n\n";
   return text.str();
 }
+
+std::string_view mark_of_excess(const ResultRow& row, int threads) {
+  return exceeds(row, threads) ? " (!)" : "";
+}
+
+std::string legend_of_excess(std::span<const ResultRow* const> rows, int threads) {
+  std::set<std::string> backends;
+  for (const ResultRow* row : rows)
+    if (exceeds(*row, threads)) backends.insert(row->backend + " (" + std::to_string(row->threads) + ")");
+  if (backends.empty()) return {};
+  std::string text = "(!) on more processors than the " + std::to_string(threads) +
+                     " asked for, since its device cannot be divided: ";
+  for (const std::string& backend : backends) text += (backend == *backends.begin() ? "" : ", ") + backend;
+  return text;
+}
+
+std::string reason_without_speedups(std::span<const std::string_view> backends) {
+  if (backends.empty() || std::ranges::find(backends, "serial") != backends.end()) return {};
+  std::string all = "serial";
+  for (const std::string_view backend : backends) all.append(",").append(backend);
+  return "speed-ups are missing, since serial is not among the backends; add it: --backend " + all;
+}
+
+std::string reason_without_speedups(std::span<const ResultRow* const> rows) {
+  std::vector<std::string_view> backends;
+  for (const ResultRow* row : rows)
+    if (std::ranges::find(backends, row->backend) == backends.end()) backends.emplace_back(row->backend);
+  return reason_without_speedups(backends);
+}
+
+std::string paragraph(const std::string& sentence) { return sentence.empty() ? "" : "\n" + sentence + ".\n"; }
 
 std::string rows_without_a_time(std::span<const ResultRow* const> rows) {
   std::vector<std::pair<std::string, std::string>> remarks;  // reason, scenes

@@ -54,7 +54,8 @@ std::vector<std::string> each_of(std::span<const ResultRow> rows, std::string Re
   return values;
 }
 
-std::string cell(std::span<const ResultRow> rows, const ResultRow* row, const std::string& base) {
+std::string cell(std::span<const ResultRow> rows, const ResultRow* row, const std::string& base,
+                 int threads) {
   if (!row) return "–";
   const auto ns = ns_per_node(*row, row->ms_per_step);
   if (!ns) {
@@ -62,7 +63,8 @@ std::string cell(std::span<const ResultRow> rows, const ResultRow* row, const st
     return one_cell(status.substr(0, status.find(':')));
   }
   const auto ratio = growth(rows, *row, base);
-  return "**" + three_digits(*ns) + "**" + (ratio ? " (" + three_digits(*ratio) + "×)" : "");
+  return ("**" + three_digits(*ns) + "**").append(mark_of_excess(*row, threads)) +
+         (ratio ? " (" + three_digits(*ratio) + "×)" : "");
 }
 
 std::string as_markdown(std::span<const ResultRow> rows, const std::string& base,
@@ -90,12 +92,12 @@ std::string as_markdown(std::span<const ResultRow> rows, const std::string& base
       text << "| `" << backend << "` |";
       for (const std::string& scene : scenes) {
         const ResultRow* row = find(rows, scene, integrator, backend);
-        text << " " << cell(rows, row, base) << " |";
+        text << " " << cell(rows, row, base, provenance.threads) << " |";
       }
       text << "\n";
     }
   }
-  text << rows_without_a_time(pointers);
+  text << paragraph(legend_of_excess(pointers, provenance.threads)) << rows_without_a_time(pointers);
   return text.str();
 }
 

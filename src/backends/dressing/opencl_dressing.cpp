@@ -15,6 +15,7 @@
 #include "backends/opencl/buffer.h"
 #include "backends/opencl/call.h"
 #include "backends/opencl/program.h"
+#include "backends/opencl/sub_device.h"
 
 namespace mssim {
 namespace {
@@ -77,9 +78,7 @@ class OpenclDressing final : public DressingBackend {
   }
 
   std::string device() const override { return label_of(device_, memory_); }
-  int threads() const override {
-    return device_.type == OpenclDeviceType::cpu ? static_cast<int>(device_.compute_units) : 1;
-  }
+  int threads() const override { return threads_of(device_); }
   bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
 
  private:

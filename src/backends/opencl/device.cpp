@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "backends/opencl/sub_device.h"
 #include "backends/process_cpus.h"
 
 namespace mssim {
@@ -199,6 +200,10 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
     throw Unavailable("several OpenCL devices have \"" + std::string(wanted) +
                       "\" in their names, choose one by its number: " + listing(fitting));
   return fitting.front();
+}
+
+OpenclDevice find_opencl_device(const ExecutionOptions& options) {
+  return part_of(choose_opencl_device(opencl_devices(), options.device), options.threads);
 }
 
 int lanes_for(const OpenclDevice& device) {

@@ -47,6 +47,11 @@ std::vector<OpenclDevice> opencl_devices();
 /// Throws Unavailable when there is none or when the part fits several; the sentence lists what there is.
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
 
+/// The device of this machine that options.device names; where it is a processor, as many of its compute
+/// units as options.threads, if its driver can divide it (sub_device.h). Throws Unavailable like
+/// choose_opencl_device.
+OpenclDevice find_opencl_device(const ExecutionOptions& options);
+
 /// Nodes or springs per work-item that suit the device: wide vectors for a CPU, whose driver packs nothing by
 /// itself, one for everything else.
 int lanes_for(const OpenclDevice& device);

@@ -15,6 +15,7 @@
 #include "backends/backend.h"
 #include "backends/opencl/buffer.h"
 #include "backends/opencl/device.h"
+#include "backends/opencl/sub_device.h"
 #include "backends/surroundings.h"
 #include "kernels/step_parameters.h"
 
@@ -47,9 +48,7 @@ class OpenclStages : public Backend {
   void step(int count) override;
   State state() const override;
   std::string device() const override { return label_of(device_, memory_); }
-  int threads() const override {
-    return device_.type == OpenclDeviceType::cpu ? static_cast<int>(device_.compute_units) : 1;
-  }
+  int threads() const override { return threads_of(device_); }
   bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
 
  protected:
