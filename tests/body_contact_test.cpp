@@ -186,7 +186,7 @@ TEST_P(OpenclBodyContact, DoesTheSame) {
                                              front.y, front.z, 0.004, back.x, back.y, back.z, 0.03};
     for (std::size_t k = 0; k < inputs; ++k) in[k * points + i] = static_cast<float>(numbers[k]);
   }
-  const cl::Device device(choose_opencl_device(opencl_devices(), "").id, true);
+  const cl::Device device(choose_opencl_device(opencl_offer().devices, "").id, true);
   const cl::Context context(device);
   const cl::CommandQueue queue(context, device);
   const cl::Program program = build_program(

@@ -7,17 +7,19 @@ set -euo pipefail
 rule='
 kernels
 model        kernels
-mesh         model
+process
+mesh         model process
 garment      model mesh
 contact      model kernels mesh/surface.h
 scene        model mesh garment contact
 integrators
-backends     model integrators kernels contact
+backends     model process integrators kernels contact
 fitting      backends model contact
 bench        backends model integrators fitting mssim
 output       model mesh/surface.h bench/result.h bench/provenance.h bench/statistics.h bench/outliers.h bench/comparison.h
 commands     *
 main.cpp     *
+ask_opencl.cpp
 '
 
 # offences ROOT: prints FILE:LINE: what is wrong with each include under ROOT/src and ROOT/kernels that breaks the rule.

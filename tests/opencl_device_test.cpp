@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "backends/opencl/device.h"
+#include "backends/opencl/offer.h"
+#include "backends/opencl/pocl_settings.h"
 
 namespace mssim {
 namespace {
@@ -37,24 +39,24 @@ std::string complaint(const std::vector<OpenclDevice>& devices, const char* want
 TEST(OpenclDevice, OfPoclHasItsThreadsBoundUnlessTheUserSaysOtherwise) {
   const char* const before = std::getenv("POCL_AFFINITY");
   const std::string kept = before != nullptr ? before : "";
-  const auto after_listing = [](const char* chosen) {
+  const auto after_binding = [](const char* chosen) {
     chosen != nullptr ? setenv("POCL_AFFINITY", chosen, 1) : unsetenv("POCL_AFFINITY");
-    static_cast<void>(opencl_devices());
+    bind_pocl_threads();
     const char* const found = std::getenv("POCL_AFFINITY");
     return std::string(found != nullptr ? found : "");
   };
   cpu_set_t all, one;
   ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
   const bool may_use_all = CPU_COUNT(&all) == sysconf(_SC_NPROCESSORS_CONF);
-  EXPECT_EQ(after_listing(nullptr), may_use_all ? "1" : "");
-  EXPECT_EQ(after_listing("0"), "0");
+  EXPECT_EQ(after_binding(nullptr), may_use_all ? "1" : "");
+  EXPECT_EQ(after_binding("0"), "0");
   if (CPU_COUNT(&all) > 1) {  // a process kept to one core
     std::size_t core = 0;
     while (!CPU_ISSET(core, &all)) ++core;
     CPU_ZERO(&one);
     CPU_SET(core, &one);
     ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
-    EXPECT_EQ(after_listing(nullptr), "");
+    EXPECT_EQ(after_binding(nullptr), "");
     ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
   }
   before != nullptr ? setenv("POCL_AFFINITY", kept.c_str(), 1) : unsetenv("POCL_AFFINITY");
@@ -91,7 +93,7 @@ TEST(OpenclDevice, FailuresNameTheCallAndTheError) {
 }
 
 TEST(OpenclDevice, ListNumbersTheDevicesOfThisMachineInOrder) {
-  const auto devices = opencl_devices();
+  const auto devices = opencl_offer().devices;
   ASSERT_FALSE(devices.empty());
   for (std::size_t i = 0; i < devices.size(); ++i) {
     EXPECT_EQ(devices[i].number, static_cast<int>(i));

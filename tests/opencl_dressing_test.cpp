@@ -22,7 +22,7 @@ constexpr double dt_s = 1.5e-4;
 const Integrator& semi_euler = *find_integrator("semi-euler");
 
 std::unique_ptr<DressingBackend> make(const System& system, const DressingShape& shape) {
-  return make_opencl_dressing(system, semi_euler, dt_s, choose_opencl_device(opencl_devices(), ""),
+  return make_opencl_dressing(system, semi_euler, dt_s, choose_opencl_device(opencl_offer().devices, ""),
                               DeviceMemory::shared, shape);
 }
 
@@ -156,10 +156,11 @@ TEST(OpenclDressing, DrapesAtOnceWhatHasNoSeams) {
 
 TEST(OpenclDressing, RefusesWhatItCannotDo) {
   System system = two_squares();
-  EXPECT_THROW(make_opencl_dressing(system, *find_integrator("rk4"), dt_s,
-                                    choose_opencl_device(opencl_devices(), ""), DeviceMemory::shared, {}),
-               Unsupported);
-  OpenclDevice small = choose_opencl_device(opencl_devices(), "");
+  EXPECT_THROW(
+      make_opencl_dressing(system, *find_integrator("rk4"), dt_s,
+                           choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared, {}),
+      Unsupported);
+  OpenclDevice small = choose_opencl_device(opencl_offer().devices, "");
   small.global_memory_bytes = 1000;
   EXPECT_THROW(make_opencl_dressing(system, semi_euler, dt_s, small, DeviceMemory::shared, {}), Unsupported);
   garment_in(system).touching.emplace();

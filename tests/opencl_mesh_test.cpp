@@ -197,7 +197,7 @@ TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
 
 TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
   const System system = solid_block(7, 5, 6);
-  OpenclDevice device = choose_opencl_device(opencl_devices(), "");
+  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
   device.max_allocation_bytes = 1000;
   for (const bool is_hybrid : {false, true}) try {
       if (is_hybrid)

@@ -276,7 +276,7 @@ TEST(OpenclBackends, GiveTheSameBitsForAnyNumberOfComputeUnitsThatShareACloth) {
   for (const Integrator& integrator : integrators) {
     std::vector<std::vector<Vec3d>> found;
     for (const std::uint32_t units : {1U, 2U, 7U, 61U}) {  // to one column a work-item
-      OpenclDevice device = choose_opencl_device(opencl_devices(), "");
+      OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
       device.compute_units = units;
       const auto backend = make_opencl(system, integrator, 2e-4, device, most_opencl_lanes);
       backend->step(31);
@@ -306,7 +306,7 @@ TEST(OpenclBackends, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
 }
 
 TEST(OpenclBackends, SayWhetherTheirMemoryIsCopied) {
-  const std::string name = choose_opencl_device(opencl_devices(), "").name;
+  const std::string name = choose_opencl_device(opencl_offer().devices, "").name;
   for (const std::string_view backend : {"opencl", "hybrid"}) {
     const auto device = [&](DeviceMemory memory) {
       return find_backend(backend)
@@ -320,7 +320,7 @@ TEST(OpenclBackends, SayWhetherTheirMemoryIsCopied) {
 
 TEST(OpenclBackends, SayHowMuchMemoryAClothNeedsThatTheDeviceDoesNotHave) {
   const System system = rippled_cloth(9, 11);
-  OpenclDevice device = choose_opencl_device(opencl_devices(), "");
+  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
   device.max_allocation_bytes = 1000;
   try {
     make_opencl(system, integrators.front(), 2e-4, device, 1);

@@ -9,6 +9,7 @@
 #include "backends/hybrid.h"
 #include "backends/opencl.h"
 #include "backends/opencl/device.h"
+#include "backends/opencl/offer.h"
 
 namespace mssim {
 
@@ -30,7 +31,7 @@ struct DeviceInMemory {
 
 /// All that the first OpenCL device can be tested with: every driver can do less than it does.
 inline std::vector<DeviceInMemory> ways_to_memory() {
-  const OpenclDevice device = choose_opencl_device(opencl_devices(), "");
+  const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
   std::vector<DeviceInMemory> ways{{"copied", device, DeviceMemory::copy}};
   for (const auto& [name, host_memory] : {std::pair{"the device's own, mapped", HostMemory::none},
                                           {"the host's, mapped", HostMemory::mapped},
@@ -49,8 +50,8 @@ struct OpenclWay {
   int threads = 2;  ///< hybrid's
 
   std::unique_ptr<Backend> make(const System& system, const Integrator& integrator, double dt_s) const {
-    return make_in({"", choose_opencl_device(opencl_devices(), ""), DeviceMemory::shared}, system, integrator,
-                   dt_s);
+    return make_in({"", choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared}, system,
+                   integrator, dt_s);
   }
   std::unique_ptr<Backend> make_in(const DeviceInMemory& memory, const System& system,
                                    const Integrator& integrator, double dt_s) const {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "backends/backends.h"
+#include "backends/opencl/offer.h"
 #include "cloth_system.h"
 #include "garment_system.h"
 #include "integrators/integrators.h"
@@ -19,7 +20,7 @@
 namespace mssim {
 namespace {
 
-OpenclDevice processor() { return choose_opencl_device(opencl_devices(), ""); }
+OpenclDevice processor() { return choose_opencl_device(opencl_offer().devices, ""); }
 
 /// Nanoseconds that each thread of this process but the calling one has run.
 std::map<std::string, std::uint64_t> times_of_other_threads() {

@@ -8,11 +8,11 @@
 #include <csignal>
 #include <fstream>
 
-#include "mesh/child_process.h"
-#include "mesh/interruption.h"
 #include "mesh/shape_mesh.h"
 #include "mesh/tetrahedralise.h"
 #include "mesh_fixture.h"
+#include "process/child_process.h"
+#include "process/interruption.h"
 
 namespace mssim {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "backends/hybrid.h"
 #include "backends/opencl.h"
-#include "backends/opencl/device.h"
+#include "backends/opencl/offer.h"
 #include "backends/openmp.h"
 #include "backends/serial.h"
 #include "backends/threads_mutex.h"
@@ -49,7 +49,7 @@ const BackendInfo* find_backend(std::string_view name) {
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options) {
   if (!backend.uses_device) return "";
   try {
-    choose_opencl_device(opencl_devices(), options.device);
+    find_opencl_device(options.device);
   } catch (const Unavailable& reason) {
     return reason.what();
   }

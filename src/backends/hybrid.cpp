@@ -14,7 +14,7 @@
 #include "backends/hybrid/spring_device.h"
 #include "backends/node_records.h"
 #include "backends/opencl/call.h"
-#include "backends/opencl/device.h"
+#include "backends/opencl/offer.h"
 #include "backends/opencl/sub_device.h"
 
 namespace mssim {
@@ -147,7 +147,7 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const OpenclDevice device = find_opencl_device(options);
+  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
   return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory);
 }
 

@@ -4,6 +4,8 @@
 #include "backends/opencl/call.h"
 #include "backends/opencl/grid.h"
 #include "backends/opencl/mesh.h"
+#include "backends/opencl/offer.h"
+#include "backends/opencl/sub_device.h"
 
 namespace mssim {
 
@@ -20,7 +22,7 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const OpenclDevice device = find_opencl_device(options);
+  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
   return make_opencl(system, integrator, dt_s, device, lanes_for(device), options.memory);
 }
 

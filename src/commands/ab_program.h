@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "commands/ab_rounds.h"
-#include "mesh/child_process.h"
-#include "mesh/temporary_folder.h"
 #include "output/combination_times.h"
+#include "process/child_process.h"
+#include "process/temporary_folder.h"
 
 namespace mssim {
 

@@ -14,8 +14,8 @@
 #include "commands/exit_code.h"
 #include "commands/planned_scenes.h"
 #include "commands/progress_line.h"
-#include "mesh/child_process.h"
 #include "output/combination_times.h"
+#include "process/child_process.h"
 #include "scene/memory.h"
 
 namespace mssim {

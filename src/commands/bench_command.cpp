@@ -21,6 +21,7 @@
 #include "commands/earlier_rows.h"
 #include "commands/exit_code.h"
 #include "commands/fit_body.h"
+#include "commands/opencl_notes.h"
 #include "commands/planned_scenes.h"
 #include "commands/prepared_scene.h"
 #include "commands/progress_line.h"
@@ -151,7 +152,9 @@ void require_distinct_names(const std::vector<SceneSpec>& scenes) {
 int run(const BenchOptions& options) {
   // Everything that can be wrong with the input is found before the first measurement.
   BenchPlan plan = plan_of(options);
-  Provenance provenance = run_provenance(plan.job.execution.threads);
+  const bool uses_device =
+      !plan.timed.empty() && std::ranges::any_of(plan.job.backends, &BackendInfo::uses_device);
+  Provenance provenance = run_provenance(plan.job.execution.threads, uses_device && !options.dry_run);
   provenance.device_memory = name_of(plan.job.execution.memory);
   for (const std::string& name : plan.described) {
     const SceneSpec spec = find_scene(name);
@@ -183,6 +186,7 @@ int run(const BenchOptions& options) {
 
   if (!plan.timed.empty())
     for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  if (uses_device) tell_of_opencl();
   warn_of_missing_speedups(plan);
   int code = exit_ok;
   if (!plan.described.empty()) {

@@ -17,11 +17,12 @@
 #include "commands/measure_command.h"
 #include "commands/run_command.h"
 #include "commands/run_provenance.h"
-#include "mesh/interruption.h"
 #include "mesh/mesh_error.h"
 #include "output/csv.h"
 #include "output/provenance_file.h"
 #include "output/write_error.h"
+#include "process/interruption.h"
+#include "process/temporary_folder.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
 
@@ -51,6 +52,7 @@ int run_guarded(const std::function<int()>& run) {
   try {
     return run();
   } catch (const Interrupted& interrupted) {
+    remove_temporary_folder_of_process();
     std::signal(interrupted.signal, SIG_DFL);
     std::raise(interrupted.signal);
     return 128 + interrupted.signal;  // where the signal is blocked

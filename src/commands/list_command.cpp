@@ -11,9 +11,10 @@
 
 #include "backends/accumulation/race_ways.h"
 #include "backends/backends.h"
-#include "backends/opencl/device.h"
+#include "backends/opencl/offer.h"
 #include "commands/choices.h"
 #include "commands/exit_code.h"
+#include "commands/opencl_notes.h"
 #include "commands/suites.h"
 #include "integrators/integrators.h"
 #include "mesh/mesh_error.h"
@@ -131,7 +132,7 @@ Listing list_integrators(const ExecutionOptions& /*options*/) {
 
 Listing list_devices(const ExecutionOptions& /*options*/) {
   Listing listing;
-  for (const OpenclDevice& device : opencl_devices())
+  for (const OpenclDevice& device : opencl_offer().devices)
     listing.push_back({{"number", device.number},
                        {"name", device.name},
                        {"type", name_of(device.type)},
@@ -140,6 +141,9 @@ Listing list_devices(const ExecutionOptions& /*options*/) {
                        {"compute_units", device.compute_units},
                        {"memory_bytes", device.global_memory_bytes},
                        {"float_width", device.preferred_float_width}});
+  tell_of_opencl();
+  if (opencl_offer().devices.empty() && opencl_offer().troubles.empty())
+    std::cerr << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
   return listing;
 }
 
@@ -165,9 +169,6 @@ int run_list(const ListOptions& options) {
   for (const Subject& subject : subjects) {
     if (subject.name != options.subject) continue;
     const Listing listing = subject.list(options.execution);
-    if (listing.empty() && subject.list == list_devices)
-      std::cerr
-          << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
     std::cout << to_text(listing, options.format);
   }
   return exit_ok;

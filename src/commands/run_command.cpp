@@ -16,6 +16,7 @@
 #include "commands/choices.h"
 #include "commands/dressing_run.h"
 #include "commands/exit_code.h"
+#include "commands/opencl_notes.h"
 #include "commands/prepared_scene.h"
 #include "commands/progress_line.h"
 #include "commands/run_provenance.h"
@@ -48,6 +49,7 @@ std::unique_ptr<Backend> make_backend(const RunOptions& options, const PreparedS
   if (options.precision == "single") {
     const ExecutionOptions execution = complete(options.execution);
     auto backend = info.make(scene.system, integrator, scene.dt_s, execution);
+    if (info.uses_device) tell_of_opencl();
     if (const std::string excess = excess_of(*backend, execution.threads); !excess.empty())
       std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
     return backend;

@@ -1,8 +1,11 @@
 #include "commands/run_provenance.h"
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "backends/opencl/device.h"
+#include "backends/backends.h"
+#include "backends/opencl/offer.h"
 #include "mesh/tetgen_program.h"
 #include "model/fnv1a.h"
 #include "output/provenance_file.h"
@@ -43,14 +46,14 @@ std::string command_line() {
   return text;
 }
 
-Provenance run_provenance(int threads) {
+Provenance run_provenance(int threads, bool uses_device) {
   Provenance provenance = gather_provenance(arguments(), threads);
-  try {
-    for (const OpenclDevice& device : opencl_devices())
+  if (uses_device) {
+    const OpenclOffer& offer = opencl_offer();
+    for (const OpenclDevice& device : offer.devices)
       provenance.opencl_devices.push_back(device.platform + ": " + device.name + ", driver " +
                                           device.driver_version);
-  } catch (const Unavailable& reason) {
-    provenance.opencl_devices.emplace_back(reason.what());  // rows that need a device say the same
+    std::ranges::copy(offer.troubles, std::back_inserter(provenance.opencl_devices));
   }
   if (const auto tetgen = find_tetgen())
     provenance.tetgen = tetgen->version + ", fnv1a_64 " + hexadecimal(tetgen->fnv1a_64);
@@ -59,7 +62,7 @@ Provenance run_provenance(int threads) {
 
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
                          const Integrator& integrator) {
-  Provenance provenance = run_provenance(backend.threads());
+  Provenance provenance = run_provenance(backend.threads(), find_backend(backend_name)->uses_device);
   add_scene(provenance, scene.spec.name, scene.spec.source);
   TraceHeader header;
   header.creator_version = build_info().version;

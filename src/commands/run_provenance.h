@@ -17,9 +17,9 @@ void remember_arguments(int argc, char** argv);
 /// The command line in one line, quoted where a shell needs it.
 std::string command_line();
 
-/// Where this run's numbers come from, with the OpenCL devices of the machine. Scenes are added with
-/// add_scene.
-Provenance run_provenance(int threads);
+/// Where this run's numbers come from, with the OpenCL devices of the machine where one may be used:
+/// only then are drivers asked. Scenes are added with add_scene.
+Provenance run_provenance(int threads, bool uses_device);
 
 /// The header of a trace of `scene`, stepped by `backend` (called `backend_name` in the table).
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,

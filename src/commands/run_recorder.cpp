@@ -3,8 +3,8 @@
 #include "commands/exit_code.h"
 #include "commands/output_names.h"
 #include "commands/run_provenance.h"
-#include "mesh/interruption.h"
 #include "output/write_error.h"
+#include "process/interruption.h"
 #include "scene/garment_body.h"
 #include "scene/scene_file.h"
 

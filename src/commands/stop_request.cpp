@@ -4,7 +4,8 @@
 
 #include <string_view>
 
-#include "mesh/interruption.h"
+#include "process/interruption.h"
+#include "process/temporary_folder.h"
 
 namespace mssim {
 namespace {
@@ -29,6 +30,7 @@ StopRequest::~StopRequest() {
   if (received == 0) return;
   const int signal = received;
   received = 0;
+  remove_temporary_folder_of_process();
   std::raise(signal);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/ending_signals.h"
+#include "process/ending_signals.h"
 
 namespace mssim {
 

@@ -8,12 +8,12 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "mesh/child_process.h"
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
-#include "mesh/temporary_folder.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
+#include "process/child_process.h"
+#include "process/temporary_folder.h"
 
 namespace mssim {
 namespace {

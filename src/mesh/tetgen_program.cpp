@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "mesh/child_process.h"
 #include "mesh/text_lines.h"
 #include "model/fnv1a.h"
+#include "process/child_process.h"
 
 namespace mssim {
 namespace {

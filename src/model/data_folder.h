@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 namespace mssim {
 
@@ -8,5 +9,9 @@ namespace mssim {
 /// folder that holds the running program, in the build tree as in an installation. Throws std::runtime_error
 /// with one sentence when it is missing.
 std::filesystem::path data_folder();
+
+/// A program of mssim's that it runs itself: `libexec/mssim` beside the program's `bin` folder holds it.
+/// Throws std::runtime_error when this program cannot be found.
+std::filesystem::path helper_program(std::string_view name);
 
 }  // namespace mssim

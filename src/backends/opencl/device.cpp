@@ -1,27 +1,14 @@
 #include "backends/opencl/device.h"
 
 #include <CL/cl_ext.h>
-#include <unistd.h>
 
 #include <CL/opencl.hpp>
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
-
-#include "backends/opencl/sub_device.h"
-#include "backends/process_cpus.h"
 
 namespace mssim {
 namespace {
-
-/// Strings come with the closing zero, and some drivers pad names with spaces.
-std::string trimmed(std::string text) {
-  const auto blank = [](char c) { return c == '\0' || std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && blank(text.back())) text.pop_back();
-  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
-  return text;
-}
 
 std::string lower(std::string_view text) {
   std::string result(text);
@@ -42,33 +29,6 @@ HostMemory host_memory_of(const cl::Device& device) {
   const cl_int error = clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof can, &can, nullptr);
   return error == CL_SUCCESS && (can & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0 ? HostMemory::fine_grained
                                                                              : HostMemory::mapped;
-}
-
-OpenclDevice describe(const cl::Device& device, const std::string& platform, int number) {
-  return {.number = number,
-          .name = trimmed(device.getInfo<CL_DEVICE_NAME>()),
-          .platform = platform,
-          .driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>()),
-          .type = type_of(device.getInfo<CL_DEVICE_TYPE>()),
-          .compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(),
-          .global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
-          .max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
-          .preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
-          .host_memory = host_memory_of(device),
-          .id = device()};
-}
-
-/// What `query` fills its argument with, or nothing where the driver answers that there is `none`.
-template <class Item, class Query>
-std::vector<Item> all_or_none(Query query, cl_int none) {
-  std::vector<Item> items;
-  try {
-    query(items);
-  } catch (const cl::Error& error) {
-    if (error.err() != none) throw;
-    items.clear();
-  }
-  return items;
 }
 
 std::string listing(std::span<const OpenclDevice> devices) {
@@ -136,14 +96,6 @@ constexpr std::array error_names{
 };
 #undef MSSIM_NAME
 
-/// Asks PoCL for a core of its own for each of its threads, unless the user has decided that. Between short
-/// kernels they sleep, and Linux wakes two of them on one core: the spring forces of 38,233 nodes then took
-/// 200 microseconds on two cores, 110 to 150 with this. PoCL numbers cores from 0, so that a process that is
-/// kept from some of them must not ask. PoCL looks at it once, when it is loaded.
-void bind_pocl_threads() {
-  if (std::ssize(process_cpus()) == sysconf(_SC_NPROCESSORS_CONF)) setenv("POCL_AFFINITY", "1", 0);
-}
-
 }  // namespace
 
 std::string_view name_of(OpenclDeviceType type) {
@@ -158,22 +110,26 @@ std::string_view name_of(OpenclDeviceType type) {
   return "other";
 }
 
-std::vector<OpenclDevice> opencl_devices() {
-  bind_pocl_threads();
-  const OnAllProcessCpus every;  // PoCL starts its threads here
-  try {
-    std::vector<OpenclDevice> devices;
-    // The loader reports a machine without any driver, and a driver one without devices, as an error.
-    for (const cl::Platform& platform :
-         all_or_none<cl::Platform>([](auto& all) { cl::Platform::get(&all); }, CL_PLATFORM_NOT_FOUND_KHR))
-      for (const cl::Device& device : all_or_none<cl::Device>(
-               [&](auto& all) { platform.getDevices(CL_DEVICE_TYPE_ALL, &all); }, CL_DEVICE_NOT_FOUND))
-        devices.push_back(describe(device, trimmed(platform.getInfo<CL_PLATFORM_NAME>()),
-                                   static_cast<int>(devices.size())));
-    return devices;
-  } catch (const cl::Error& error) {
-    throw Unavailable(opencl_failure(error.what(), error.err()));
-  }
+std::string trimmed(std::string text) {
+  const auto blank = [](char c) { return c == '\0' || std::isspace(static_cast<unsigned char>(c)) != 0; };
+  while (!text.empty() && blank(text.back())) text.pop_back();
+  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
+  return text;
+}
+
+OpenclDevice described(cl_device_id id, const std::string& platform, int number) {
+  const cl::Device device(id, true);
+  return {.number = number,
+          .name = trimmed(device.getInfo<CL_DEVICE_NAME>()),
+          .platform = platform,
+          .driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>()),
+          .type = type_of(device.getInfo<CL_DEVICE_TYPE>()),
+          .compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(),
+          .global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
+          .max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
+          .preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
+          .host_memory = host_memory_of(device),
+          .id = id};
 }
 
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted) {
@@ -200,10 +156,6 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
     throw Unavailable("several OpenCL devices have \"" + std::string(wanted) +
                       "\" in their names, choose one by its number: " + listing(fitting));
   return fitting.front();
-}
-
-OpenclDevice find_opencl_device(const ExecutionOptions& options) {
-  return part_of(choose_opencl_device(opencl_devices(), options.device), options.threads);
 }
 
 int lanes_for(const OpenclDevice& device) {

@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "backends/backend.h"
 
@@ -39,18 +38,15 @@ struct OpenclDevice {
 /// "cpu", "gpu" or "other".
 std::string_view name_of(OpenclDeviceType type);
 
-/// All devices of all platforms, in the order of the drivers. Empty when there is no OpenCL driver at all;
-/// throws Unavailable when a driver fails.
-std::vector<OpenclDevice> opencl_devices();
+/// A text from a driver without its closing zero and the spaces that some pad names with.
+std::string trimmed(std::string text);
+
+/// What the device says of itself. Lets cl::Error through.
+OpenclDevice described(cl_device_id id, const std::string& platform, int number);
 
 /// The device that `wanted` names: empty for the first, its number, or a part of its name in any case.
 /// Throws Unavailable when there is none or when the part fits several; the sentence lists what there is.
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
-
-/// The device of this machine that options.device names; where it is a processor, as many of its compute
-/// units as options.threads, if its driver can divide it (sub_device.h). Throws Unavailable like
-/// choose_opencl_device.
-OpenclDevice find_opencl_device(const ExecutionOptions& options);
 
 /// Nodes or springs per work-item that suit the device: wide vectors for a CPU, whose driver packs nothing by
 /// itself, one for everything else.

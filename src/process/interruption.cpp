@@ -1,4 +1,4 @@
-#include "mesh/interruption.h"
+#include "process/interruption.h"
 
 namespace mssim {
 namespace {

@@ -1,4 +1,4 @@
-#include "mesh/child_process.h"
+#include "process/child_process.h"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -13,7 +13,7 @@
 #include <deque>
 #include <stdexcept>
 
-#include "mesh/interruption.h"
+#include "process/interruption.h"
 
 namespace mssim {
 namespace {

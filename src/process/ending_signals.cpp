@@ -1,4 +1,4 @@
-#include "mesh/ending_signals.h"
+#include "process/ending_signals.h"
 
 namespace mssim {
 

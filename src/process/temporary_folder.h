@@ -19,4 +19,11 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// One for the whole process, made when it is first asked for; it goes away when main returns. Throws like
+/// TemporaryFolder.
+const std::filesystem::path& temporary_folder_of_process();
+
+/// Removes it, if there is one, before a signal ends the process.
+void remove_temporary_folder_of_process();
+
 }  // namespace mssim

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <optional>
 
-#include "mesh/ending_signals.h"
+#include "process/ending_signals.h"
 
 namespace mssim {
 

@@ -1,13 +1,22 @@
-#include "mesh/temporary_folder.h"
+#include "process/temporary_folder.h"
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
 namespace mssim {
+namespace {
+
+std::optional<TemporaryFolder>& folder_of_process() {
+  static std::optional<TemporaryFolder> folder;
+  return folder;
+}
+
+}  // namespace
 
 TemporaryFolder::TemporaryFolder() {
   const char* chosen = std::getenv("TMPDIR");
@@ -23,5 +32,13 @@ TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }
+
+const std::filesystem::path& temporary_folder_of_process() {
+  auto& folder = folder_of_process();
+  if (!folder) folder.emplace();
+  return folder->path();
+}
+
+void remove_temporary_folder_of_process() { folder_of_process().reset(); }
 
 }  // namespace mssim
