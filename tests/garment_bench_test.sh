@@ -93,7 +93,7 @@ bench 0 --scene jeans1k --backend serial --integrator semi-euler --time-budget 2
 grep -q '^jeans1k,garment,[0-9]*,[0-9]*,,' out || fail "a garment has a published count"
 
 # Ctrl-C while it dresses ends it soon, and says that there is nothing yet.
-"$mssim" bench --scene jeans64k --backend serial --integrator semi-euler --out stopped >out 2>err </dev/null &
+env --default-signal=INT "$mssim" bench --scene jeans64k --backend serial --integrator semi-euler --out stopped >out 2>err </dev/null &
 process=$!
 for ((i = 0; i < 300; ++i)); do
   if [ -e stopped/provenance.json ]; then break; fi

@@ -29,7 +29,8 @@ whole() {
 start_and_signal() {
   local signal=$1 file=$2 i
   shift 2
-  "$mssim" "$@" >out 2>err </dev/null &
+  # Shells start what runs in the background with SIGINT ignored; env puts it back.
+  env --default-signal=INT "$mssim" "$@" >out 2>err </dev/null &
   local process=$!
   for ((i = 0; i < 600; ++i)); do
     if [ -e "$file" ] || ! kill -0 "$process" 2>/dev/null; then break; fi

@@ -13,7 +13,7 @@ struct PreparedScene {
   SceneSpec spec;
   System system;
   SceneCounts counts;
-  double dt_s = 0;   ///< the scene's, or the largest safe one for `auto`
+  double dt_s = 0;  ///< the scene's, or the largest safe one for `auto`
   /// How the scene differs from what its file states, and what of a body a garment ignores; or empty.
   std::string note;
 };
