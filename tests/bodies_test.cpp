@@ -17,6 +17,7 @@
 #include "mesh/tetgen_files.h"
 #include "output/csv.h"
 #include "output/published_bodies.h"
+#include "scene/body_shapes.h"
 #include "scene/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -75,6 +76,21 @@ TEST(BodyScenes, OfSeveralBodiesHaveExactlyThePublishedCounts) {
     }
   EXPECT_EQ(published.size(), 6U);
   EXPECT_EQ(ours, published);
+}
+
+TEST(LeastCounts, AreTheNodesOfAMeshBeforeItIsMadeAndNoMoreThanItsSprings) {
+  for (const SceneSpec& spec : body_scenes()) {
+    SceneCounts least;
+    for (const BodySpec& body : std::get<BodiesSpec>(spec.body).list) {
+      const SceneCounts counts = least_counts(body.shape, spec.file.parent_path());
+      least.nodes += counts.nodes;
+      least.springs_unique += counts.springs_unique;
+    }
+    const SceneCounts counts = counts_of(spec);
+    EXPECT_EQ(least.nodes, counts.nodes) << spec.name;
+    EXPECT_LE(least.springs_unique, counts.springs_unique) << spec.name;
+    EXPECT_GT(4 * least.springs_unique, counts.springs_unique) << spec.name;
+  }
 }
 
 TEST(BodyScenes, AreBuiltAsStatedAndCounted) {

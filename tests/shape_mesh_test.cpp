@@ -1,5 +1,6 @@
 #include "mesh/shape_mesh.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,6 +49,8 @@ TEST_P(TableTwoBody, HasThePublishedNodesAndAThirdOfThePublishedSprings) {
   EXPECT_FALSE(find_defect(mesh));
   EXPECT_NEAR(volume_of(mesh), volume_of(points.surface), 1e-9 * volume_of(points.surface));
 
+  EXPECT_EQ(point_count(body.shape, body.interior), body.nodes);
+
   // The order of the nodes: surface points, then interior points.
   ASSERT_EQ(points.surface.points.size() + points.interior.size(), body.nodes);
   EXPECT_TRUE(std::equal(points.surface.points.begin(), points.surface.points.end(), mesh.nodes.begin()));
@@ -89,6 +92,17 @@ TEST_P(TableTwoBody, HasNearlyTheVolumeOfItsShape) {
 
 INSTANTIATE_TEST_SUITE_P(HongEtAl, TableTwoBody, testing::ValuesIn(bodies),
                          [](const auto& test) { return std::string(test.param.name); });
+
+TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
+  const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {
+    return mesh_error_of([&] { shape_mesh(shape, interior); });
+  };
+  EXPECT_THAT(
+      complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),
+      testing::StartsWith("its mesh would have 6000007 points or more, with which TetGen takes longer than"));
+  EXPECT_THAT(complaint(SphereShape{1, 1000}, {}), testing::HasSubstr("10000002 points or more"));
+  EXPECT_THAT(complaint(TorusShape{2, 1, 2000, 2001}, {}), testing::HasSubstr("4002000 points or more"));
+}
 
 }  // namespace
 }  // namespace mssim

@@ -14,9 +14,9 @@
 #include "commands/exit_code.h"
 #include "commands/planned_scenes.h"
 #include "commands/progress_line.h"
+#include "model/available_memory.h"
 #include "output/combination_times.h"
 #include "process/child_process.h"
-#include "scene/memory.h"
 
 namespace mssim {
 namespace {
@@ -101,7 +101,7 @@ bool both_fit(const AbOptions& options) {
   try {
     const BenchPlan plan = plan_of(bench);
     return std::ranges::all_of(planned_scenes(plan), [&](const PlannedScene& scene) {
-      return bench_memory_needed(plan.job, scene.size) <= memory_available() / 4;
+      return bench_memory_needed(plan.job, scene.size) <= available_memory() / 4;
     });
   } catch (const std::exception&) {
     return false;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <unordered_map>
 
 #include "mesh/geometry.h"
 #include "mesh/shape_checks.h"
@@ -15,33 +15,35 @@ using Index = std::array<std::uint32_t, 3>;
 /// Numbers the surface points of the grid of corners in the order of their first use.
 class SurfacePoints {
  public:
-  SurfacePoints(const BoxShape& box, Surface& surface)
-      : box_(box),
-        surface_(surface),
-        number_((box.cells[0] + 1) * (box.cells[1] + 1) * (box.cells[2] + 1), none) {}
+  SurfacePoints(const BoxShape& box, Surface& surface) : box_(box), surface_(surface) {}
 
   std::uint32_t operator[](const Index& at) {
     const auto& cells = box_.cells;
-    std::uint32_t& number = number_[(at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2]];
-    if (number == none) {
-      number = static_cast<std::uint32_t>(surface_.points.size());
+    const std::uint32_t corner = (at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2];
+    const auto [entry, is_new] =
+        number_.try_emplace(corner, static_cast<std::uint32_t>(surface_.points.size()));
+    if (is_new) {
       const auto coordinate = [&](std::size_t axis, double size) {
         return size * (at[axis] / static_cast<double>(cells[axis]) - 0.5);
       };
       surface_.points.push_back(
           rounded({coordinate(0, box_.size.x), coordinate(1, box_.size.y), coordinate(2, box_.size.z)}));
     }
-    return number;
+    return entry->second;
   }
 
  private:
-  static constexpr std::uint32_t none = ~0U;
   const BoxShape& box_;
   Surface& surface_;
-  std::vector<std::uint32_t> number_;
+  std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< by the corner's place in the grid
 };
 
 }  // namespace
+
+std::uint64_t surface_point_count(const BoxShape& box) {
+  const std::uint64_t a = box.cells[0], b = box.cells[1], c = box.cells[2];
+  return 2 * (a * b + b * c + c * a) + 2;
+}
 
 Surface surface_of(const BoxShape& box) {
   require_length(box.size.x, "a box's size along x");

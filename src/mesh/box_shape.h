@@ -16,7 +16,10 @@ struct BoxShape {
   bool operator==(const BoxShape&) const = default;
 };
 
-/// The surface with 2 (ab + bc + ca) + 2 points for a x b x c cells. Throws MeshError for a size that is not
+/// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
+std::uint64_t surface_point_count(const BoxShape& box);
+
+/// The surface with so many points. Throws MeshError for a size that is not
 /// positive or for less than one cell.
 Surface surface_of(const BoxShape& box);
 

@@ -1,5 +1,6 @@
 #include "mesh/shape_mesh.h"
 
+#include "mesh/tetgen.h"
 #include "mesh/tetrahedralise.h"
 
 namespace mssim {
@@ -13,6 +14,10 @@ Vec3d half_size(const TorusShape& torus) {
 }
 
 }  // namespace
+
+std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior) {
+  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape) + interior.count;
+}
 
 ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
   return std::visit(
@@ -28,6 +33,7 @@ ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
 }
 
 TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
+  require_meshable(point_count(shape, interior));
   const ShapePoints points = points_of(shape, interior);
   return tetrahedralise(points.surface, points.interior, keep_surface);
 }

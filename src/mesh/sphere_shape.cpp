@@ -70,6 +70,10 @@ class SpherePoints {
 
 }  // namespace
 
+std::uint64_t surface_point_count(const SphereShape& sphere) {
+  return 10 * std::uint64_t{sphere.frequency} * sphere.frequency + 2;
+}
+
 Surface surface_of(const SphereShape& sphere) {
   require_length(sphere.radius_m, "a sphere's radius");
   require_cells(sphere.frequency, 1, "a sphere's triangles along an edge of the icosahedron (frequency)");

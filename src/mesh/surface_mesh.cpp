@@ -1,13 +1,16 @@
 #include "mesh/surface_mesh.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
 #include "mesh/surface_file.h"
+#include "mesh/tetgen.h"
 #include "mesh/tetrahedralise.h"
 
 namespace mssim {
@@ -42,12 +45,19 @@ TetMesh surface_mesh(const SurfaceBody& body) {
   validate_surface(surface, name);
   // A limit far below the body's volume would fill the memory.
   constexpr double most_tetrahedra = 1e7;
+  constexpr double tetrahedra_a_node = 7;  // of a fine mesh, a little fewer
   if (body.largest_volume_m3 > 0 && volume_of(surface) / body.largest_volume_m3 > most_tetrahedra)
     throw MeshError(name + ": tetrahedra of at most " + decimal(body.largest_volume_m3) +
                     " m^3 in a body of " + shown(volume_of(surface)) +
                     " m^3 would be more than ten million; give a larger volume");
+  const double tetrahedra =
+      body.largest_volume_m3 > 0 ? volume_of(surface) / body.largest_volume_m3 : 0;  // at least
+  const auto nodes = std::max(std::uint64_t{surface.points.size()},
+                              static_cast<std::uint64_t>(tetrahedra / tetrahedra_a_node));
   try {
-    return tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3));
+    require_meshable(nodes);
+    return tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3),
+                          nodes - surface.points.size());
   } catch (const MeshError& error) {
     throw MeshError(name + ": " + error.what());
   }

@@ -12,6 +12,7 @@
 #include "mesh/mesh_error.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
+#include "model/available_memory.h"
 #include "process/child_process.h"
 #include "process/temporary_folder.h"
 
@@ -22,6 +23,11 @@ namespace fs = std::filesystem;
 
 /// The mesh of the largest committed body takes 0.2 s; what takes this long never ends.
 constexpr unsigned cpu_seconds = 300;
+
+// A point takes TetGen 40 us where there are thousands, 90 us where there are hundreds of thousands, and 3.8
+// kB.
+constexpr std::uint64_t most_points = 4'000'000;
+constexpr std::uint64_t bytes_a_point = 3800;
 
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
@@ -138,6 +144,21 @@ class Run {
 };
 
 }  // namespace
+
+void require_meshable(std::uint64_t points) {
+  if (points > most_points)
+    throw MeshError("its mesh would have " + std::to_string(points) +
+                    " points or more, with which TetGen takes longer than the " +
+                    std::to_string(cpu_seconds) +
+                    " s of processor time that it is given; make it of at most " +
+                    std::to_string(most_points) + ", with fewer cells, triangles or points");
+}
+
+void require_meshing_memory(std::uint64_t points) {
+  if (const auto shortage = memory_shortage(points * bytes_a_point))
+    throw MeshError("TetGen makes its mesh of " + std::to_string(points) + " points or more, which " +
+                    *shortage + "; close other programs, or give fewer cells, triangles or points");
+}
 
 TetMesh run_tetgen(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior,
                    const std::string& switches) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,12 @@
 #include "mesh/tetgen_program.h"
 
 namespace mssim {
+
+/// Throws MeshError for more points than TetGen meshes in the processor time that it is given.
+void require_meshable(std::uint64_t points);
+
+/// Throws MeshError where TetGen needs more memory than there is for a mesh of so many points.
+void require_meshing_memory(std::uint64_t points);
 
 /// Has TetGen fill a surface with tetrahedra. `switches` are TetGen's, beginning "-p"; `interior` points
 /// become nodes (the switch i is added for them). Runs it as a process in a folder of its own. Throws

@@ -10,7 +10,7 @@
 namespace mssim {
 
 TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
-                       const std::string& switches) {
+                       const std::string& switches, std::uint64_t added_points) {
   const std::uint64_t input = fnv1a_64(switches + '\n' + smesh_text(surface) + node_text(interior));
   const MeshCache cache;
   const auto program = find_tetgen();
@@ -21,6 +21,7 @@ TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interio
         "tetgen");
   }
   if (auto mesh = cache.find(input, program->fnv1a_64)) return *mesh;
+  require_meshing_memory(surface.points.size() + interior.size() + added_points);
   TetMesh mesh = run_tetgen(*program, surface, interior, switches);
   cache.store(input, program->fnv1a_64, mesh);
   return mesh;

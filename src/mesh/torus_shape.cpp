@@ -27,6 +27,10 @@ void require_ring(const TorusShape& torus) {
 
 }  // namespace
 
+std::uint64_t surface_point_count(const TorusShape& torus) {
+  return std::uint64_t{torus.cells_around} * torus.cells_across;
+}
+
 Surface surface_of(const TorusShape& torus) {
   require_ring(torus);
   constexpr double full_turn = 2 * std::numbers::pi;

@@ -10,10 +10,12 @@
 
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
+#include "model/available_memory.h"
 #include "model/printable.h"
 #include "scene/body_shapes.h"
 #include "scene/json_document.h"
 #include "scene/material_fields.h"
+#include "scene/memory.h"
 #include "scene/scene_error.h"
 
 namespace mssim {
@@ -90,6 +92,26 @@ class MeshedShapes {
   std::vector<std::pair<BodyShape, MeshedShape>> shapes_;
 };
 
+/// Meshing takes minutes where there are millions of nodes: what cannot be held afterwards is refused before.
+void require_memory_for_meshes(const SceneSpec& spec) {
+  SceneCounts least;
+  const std::vector<BodySpec>& list = bodies_of(spec).list;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    try {
+      const SceneCounts body = least_counts(list[i].shape, spec.file.parent_path());
+      least.nodes += body.nodes;
+      least.springs_unique += body.springs_unique;
+    } catch (const SceneError& error) {  // of another scene whose shape it takes
+      refuse(spec.file, pointer_to(i), "has no mesh: " + printable(error.what(), 1500));
+    }
+  }
+  if (const auto shortage = memory_shortage(memory_needed(least.nodes, least.springs_unique)))
+    refuse(spec.file, "/bodies",
+           "has at least " + std::to_string(least.nodes) + " nodes and " +
+               std::to_string(least.springs_unique) + " springs and " + *shortage +
+               ": give fewer bodies, or bodies of fewer cells or points");
+}
+
 /// Rodrigues' rotation by `angle` (radians) about the unit vector `axis`.
 Vec3d turned(const Vec3d& r, const Vec3d& axis, double angle) {
   const double c = std::cos(angle);
@@ -149,6 +171,7 @@ std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
 }
 
 SceneCounts bodies_counts(const SceneSpec& spec) {
+  require_memory_for_meshes(spec);
   MeshedShapes shapes(spec);
   SceneCounts counts;
   for (std::size_t i = 0; i < bodies_of(spec).list.size(); ++i) {

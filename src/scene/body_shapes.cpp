@@ -136,6 +136,24 @@ struct Mesher {
   }
 };
 
+/// What is known of a mesh before it is made, one overload a kind. All edges of the surface stay edges of the
+/// mesh, three for a point in the limit; an inner point has four at least, each of which it may share.
+struct LeastCounter {
+  const std::filesystem::path& folder;
+
+  template <class Solid>
+  SceneCounts operator()(const GeneratedShape<Solid>& shape) const {
+    const std::uint64_t outer = surface_point_count(shape.solid), inner = shape.interior.count;
+    return {outer + inner, 3 * outer - 6 + 2 * inner};
+  }
+  SceneCounts operator()(const MeshFiles& /*files*/) const { return {}; }
+  SceneCounts operator()(const SurfaceFile& /*surface*/) const { return {}; }
+  SceneCounts operator()(const ShapeOfScene& shape) const {
+    const SceneSpec scene = scene_of(shape, folder);
+    return least_counts(first_body(shape, scene).shape, scene.file.parent_path());
+  }
+};
+
 }  // namespace
 
 void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
@@ -149,6 +167,10 @@ std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem:
   if (const auto* other = std::get_if<ShapeOfScene>(&body.shape))
     return first_body(*other, scene_of(*other, folder)).expected;
   return body.expected;
+}
+
+SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder) {
+  return std::visit(LeastCounter{folder}, shape);
 }
 
 TetMesh mesh_of(const BodyShape& shape, const std::filesystem::path& folder) {

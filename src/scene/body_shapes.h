@@ -5,6 +5,7 @@
 #include "mesh/tet_mesh.h"
 #include "scene/bodies_spec.h"
 #include "scene/field_visitor.h"
+#include "scene/scene_spec.h"
 
 namespace mssim {
 
@@ -15,6 +16,10 @@ void visit_shape_fields(FieldVisitor& fields, BodySpec& body);
 /// What the scene's file, or the other scene that it names, states about the mesh. `folder` is the scene
 /// file's. Throws SceneError when there is no such scene.
 std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem::path& folder);
+
+/// Nodes and springs that the mesh of the shape has at least, without making it; zero where that is not
+/// known. Throws like stated_size.
+SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder);
 
 /// The mesh of the shape, m, wherever its origin is. `folder` is the scene file's. Throws SceneError when the
 /// shape is that of a scene that cannot be used, MeshError and MissingProgram.

@@ -12,10 +12,6 @@ namespace mssim {
 /// back. The backend under test comes on top.
 std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs);
 
-/// Bytes that this process can still get: what the kernel calls available, or what the address-space limit
-/// (`ulimit -v`) leaves if that is less.
-std::uint64_t memory_available();
-
 /// Throws SceneError when `needed` bytes for a scene of this size are more than the available memory, naming
 /// both and the remedy. `pointer` is the JSON pointer to what sets the size.
 void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts,
