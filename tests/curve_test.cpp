@@ -85,7 +85,7 @@ TEST(Curve, MirroredItsXIsTurnedRound) {
 
 TEST(Curve, WhatIsNoCurveIsRefused) {
   const auto complaint = [](std::vector<Vec3d> points) { return mesh_error_of([&] { Curve{points}; }); };
-  EXPECT_THAT(complaint({{0, 0, 0}}), HasSubstr("has 1 points; give two or more points"));
+  EXPECT_THAT(complaint({{0, 0, 0}}), HasSubstr("has 1 point; give two or more points"));
   EXPECT_THAT(
       complaint({{0, 0, 0}, {1, 2, 0}, {1, 2, 0}}),
       HasSubstr("point 2 of a boundary curve, (1, 2, 0), is the same as the one before it; leave one"));

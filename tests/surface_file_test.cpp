@@ -184,7 +184,7 @@ TEST(StlFile, BrokenBinaryNamesTheByte) {
   EXPECT_THAT(complaint(binary_stl(NAN)), StartsWith("a.stl, byte 96: a corner is at (nan, 0, 0)"));
   EXPECT_THAT(complaint(binary_stl(-2e9F)), HasSubstr("for each axis give a number from -1e9 to 1e9"));
   EXPECT_THAT(complaint(binary_stl() + "more"),
-              StartsWith("a.stl, byte 80: the file promises 4 triangles, which take 284 bytes, and has 288"));
+              StartsWith("a.stl, byte 80: the file promises 4 triangles in 284 bytes, and has 288"));
   std::string absurd = binary_stl();
   absurd.replace(80, 4, "\xff\xff\xff\xff");
   EXPECT_THAT(complaint(absurd), HasSubstr("promises 4294967295 triangles"));

@@ -15,6 +15,7 @@
 #include "bench/garment_verification.h"
 #include "bench/machine_peak.h"
 #include "bench/step_cost.h"
+#include "model/counted.h"
 
 namespace mssim {
 namespace {
@@ -37,7 +38,8 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
     const int threads = combination.row.threads;
     const auto key = std::pair(combination.integrator, threads);
     if (!combination.backend || !combination.on_host || peaks.contains(key)) continue;
-    watch.progress("machine peak with " + std::to_string(threads) + " threads", preparation);
+    watch.progress("machine peak with " + counted(static_cast<std::uint64_t>(threads), "thread"),
+                   preparation);
     const double bytes = working_set_bytes(*combination.integrator, size);
     peaks[key] = measure_peak(threads, static_cast<std::size_t>(bytes));
   }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdio>
 
+#include "model/counted.h"
+
 namespace mssim {
 namespace {
 
@@ -40,8 +42,8 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
         "turbo is on, so that the frequency depends on temperature and neighbours: turn it off");
   const std::size_t cpus = provenance.allowed_cpus.size();
   if (provenance.threads > 1 && cpus > 0 && static_cast<std::size_t>(provenance.threads) > cpus)
-    noise.push_back(std::to_string(provenance.threads) + " threads share " + std::to_string(cpus) +
-                    " logical CPUs: ask for fewer with --threads");
+    noise.push_back(std::to_string(provenance.threads) + " threads share " + counted(cpus, "logical CPU") +
+                    ": ask for fewer with --threads");
   if (provenance.threads > 1 && !binds_threads(provenance))
     noise.emplace_back("threads may move from CPU to CPU: set OMP_PROC_BIND=true");
   return noise;

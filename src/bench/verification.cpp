@@ -6,6 +6,7 @@
 
 #include "backends/serial.h"
 #include "bench/blow_up.h"
+#include "model/counted.h"
 
 namespace mssim {
 namespace {
@@ -92,10 +93,10 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   std::ostringstream why;
   if (!(result.position_error <= reference.tolerance)) {
     why << "position error " << result.position_error << " of a rest length exceeds " << reference.tolerance
-        << " after " << reference.steps << " steps";
+        << " after " << counted(static_cast<std::uint64_t>(reference.steps), "step");
   } else if (!(std::abs(result.energy_drift) <= energy_tolerance)) {
     why << "energy is off by " << result.energy_drift << " of kinetic plus elastic energy, more than "
-        << energy_tolerance << ", after " << reference.steps << " steps";
+        << energy_tolerance << ", after " << counted(static_cast<std::uint64_t>(reference.steps), "step");
   }
   if (!why.str().empty()) result.failure = why.str();
   return result;

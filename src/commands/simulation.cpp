@@ -31,8 +31,8 @@ FrameGrid frame_grid(double frames_per_second, double dt_s) {
   const double steps_per_frame = 1 / (frames_per_second * dt_s);
   if (!(steps_per_frame >= 1)) {
     std::ostringstream text;
-    text << frames_per_second << " frames per second are more than one a step of " << dt_s
-         << " s; take --fps " << std::floor(1 / dt_s) << " or less";
+    text << "--fps " << frames_per_second << " is more than one frame a step of " << dt_s << " s; take --fps "
+         << std::floor(1 / dt_s) << " or less";
     throw UsageError(text.str());
   }
   return {steps_per_frame};

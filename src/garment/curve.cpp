@@ -5,13 +5,13 @@
 
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
+#include "model/counted.h"
 
 namespace mssim {
 
 Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
   if (points_.size() < 2)
-    throw MeshError("a boundary curve has " + std::to_string(points_.size()) +
-                    " points; give two or more points");
+    throw MeshError("a boundary curve has " + counted(points_.size(), "point") + "; give two or more points");
   arcs_.reserve(points_.size());
   const auto point = [this](std::size_t i) {
     return "point " + std::to_string(i) + " of a boundary curve, " + place(points_[i]) + ",";
@@ -27,8 +27,8 @@ Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
 
 Curve Curve::bezier(std::span<const Vec3d> points) {
   if (points.size() < 4 || points.size() % 3 != 1)
-    throw MeshError("a chain of cubic Bezier segments has " + std::to_string(points.size()) +
-                    " points; give 4, 7, 10 or another 3 n + 1 points");
+    throw MeshError("a chain of cubic Bezier segments has " + counted(points.size(), "point") +
+                    "; give 4, 7, 10 or another 3 n + 1 points");
   std::vector<Vec3d> polyline{points.front()};
   polyline.reserve(points.size() / 3 * chords + 1);
   for (std::size_t p = 0; p + 3 < points.size(); p += 3)

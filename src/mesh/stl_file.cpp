@@ -7,6 +7,7 @@
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
 #include "mesh/text_lines.h"
+#include "model/counted.h"
 
 namespace mssim {
 namespace {
@@ -36,8 +37,8 @@ Surface parse_binary(const std::string& name, std::string_view content) {
   const std::size_t due = bytes_before_triangles + count * bytes_of_triangle;
   if (content.size() != due)
     throw MeshError(name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
-                    std::to_string(count) + " triangles, which take " + std::to_string(due) +
-                    " bytes, and has " + std::to_string(content.size()) + "; it is truncated or no STL file");
+                    counted(count, "triangle") + " in " + std::to_string(due) + " bytes, and has " +
+                    std::to_string(content.size()) + "; it is truncated or no STL file");
   if (count == 0) throw MeshError(name + ": the file has no triangles; give a surface");
   Surface surface;
   PointMerger merger(surface);
@@ -130,8 +131,8 @@ Surface parse_stl(const std::string& name, std::string_view content) {
   if (content.empty()) throw MeshError(name + " is empty; give a surface");
   if (!is_binary(content)) return AsciiReader(name, content).read();
   if (content.size() < bytes_before_triangles)
-    throw MeshError(name + " has " + std::to_string(content.size()) +
-                    " bytes, and a binary STL file at least 84; it is truncated or no STL file");
+    throw MeshError(name + " has " + counted(content.size(), "byte") +
+                    ", and a binary STL file at least 84; it is truncated or no STL file");
   return parse_binary(name, content);
 }
 

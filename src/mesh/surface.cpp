@@ -7,6 +7,7 @@
 #include "mesh/geometry.h"
 #include "mesh/mesh_error.h"
 #include "mesh/surface_sides.h"
+#include "model/counted.h"
 
 namespace mssim {
 namespace {
@@ -49,7 +50,7 @@ class Check {
       for (const std::uint32_t point : triangle) {
         if (point >= surface_.points.size())
           fail("triangle " + std::to_string(t) + " (from 0) names point " + std::to_string(point) +
-               " but there are only " + std::to_string(surface_.points.size()) + " points, counted from 0");
+               " but there are only " + counted(surface_.points.size(), "point") + ", counted from 0");
         used[point] = true;
       }
       const Vec3d& a = surface_.points[triangle[0]];

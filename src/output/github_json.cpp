@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "model/counted.h"
 #include "output/csv.h"
 
 namespace mssim {
@@ -11,11 +12,12 @@ nlohmann::ordered_json github_json(std::span<const ResultRow> rows) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const ResultRow& row : rows) {
     if (row.status != "ok" || !row.ms_per_step) continue;
-    list.push_back({{"name", row.scene + '/' + row.backend + '/' + row.integrator},
-                    {"unit", "ms/step"},
-                    {"value", *row.ms_per_step},
-                    {"range", csv_number(row.ms_per_step_low) + " to " + csv_number(row.ms_per_step_high)},
-                    {"extra", row.device + ", " + std::to_string(row.threads) + " threads"}});
+    list.push_back(
+        {{"name", row.scene + '/' + row.backend + '/' + row.integrator},
+         {"unit", "ms/step"},
+         {"value", *row.ms_per_step},
+         {"range", csv_number(row.ms_per_step_low) + " to " + csv_number(row.ms_per_step_high)},
+         {"extra", row.device + ", " + counted(static_cast<std::uint64_t>(row.threads), "thread")}});
   }
   return list;
 }

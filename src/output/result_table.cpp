@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/counted.h"
 #include "output/markdown.h"
 
 namespace mssim {
@@ -15,8 +16,9 @@ std::string measured_on(std::span<const ResultRow* const> rows, const Provenance
   for (const ResultRow* row : rows)
     if (!row->device.empty() && row->device != "cpu") devices.insert(row->device);
   std::ostringstream text;
-  text << "Measured on " << provenance.machine.cpu_model << " (" << provenance.machine.logical_cpus
-       << " logical CPUs) with " << provenance.threads << (provenance.threads == 1 ? " thread" : " threads");
+  text << "Measured on " << provenance.machine.cpu_model << " ("
+       << counted(static_cast<std::uint64_t>(provenance.machine.logical_cpus), "logical CPU") << ") with "
+       << counted(static_cast<std::uint64_t>(provenance.threads), "thread");
   for (const std::string& device : devices) text << "; device " << device;
   text << "; mssim " << provenance.build.version << ", commit " << provenance.build.commit.substr(0, 12)
        << (provenance.build.dirty ? " with uncommitted changes" : "") << "; " << provenance.started_utc

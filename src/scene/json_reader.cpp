@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/counted.h"
 #include "model/printable.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_error.h"
@@ -219,7 +220,7 @@ class JsonReader final : public FieldVisitor {
                       const std::string& wanted) const {
     if (!value.is_array()) fail(pointer, "is " + described(value) + ": give " + wanted);
     if (value.size() < least || value.size() > most)
-      fail(pointer, "has " + std::to_string(value.size()) + " elements: give " + wanted);
+      fail(pointer, "has " + counted(value.size(), "element") + ": give " + wanted);
   }
 
   double component(std::string_view list, const json& value, std::size_t i, const Range& each) const {
