@@ -13,6 +13,7 @@
 #include "backends/process_cpus.h"
 #include "bench/noise.h"
 #include "model/fnv1a.h"
+#include "model/printable.h"
 
 namespace mssim {
 namespace {
@@ -23,7 +24,7 @@ std::vector<std::pair<std::string, std::string>> thread_environment() {
     const std::string_view text = *entry;
     const std::size_t equals = text.find('=');
     if (equals != std::string_view::npos && (text.starts_with("OMP_") || text.starts_with("GOMP_")))
-      variables.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+      variables.emplace_back(escaped(text.substr(0, equals)), escaped(text.substr(equals + 1)));
   }
   std::sort(variables.begin(), variables.end());
   return variables;
@@ -76,8 +77,8 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
   provenance.thread_environment = thread_environment();
   for (const std::string& argument : arguments)
     provenance.command_line.push_back(provenance.command_line.empty()
-                                          ? std::filesystem::path(argument).filename().string()
-                                          : without_home(argument));
+                                          ? escaped(std::filesystem::path(argument).filename().string())
+                                          : escaped(without_home(argument)));
   provenance.noise = noise_of(provenance);
   provenance.started_utc = now_utc();
   return provenance;

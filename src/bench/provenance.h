@@ -33,7 +33,8 @@ struct Provenance {
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
   std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/noise.h)
   std::vector<SceneHash> scenes;
-  std::vector<std::string> command_line;        ///< the program without its folder; the home folder reads ~
+  std::vector<std::string>
+      command_line;  ///< the program without its folder; the home folder reads ~; escaped()
   std::vector<std::string> earlier_starts_utc;  ///< of runs that this one goes on with, as below
   std::string started_utc;                      ///< ISO 8601, for example "2026-01-31T12:00:00Z"
 };

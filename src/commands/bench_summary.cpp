@@ -31,7 +31,8 @@ std::string remarks(std::span<const ResultRow> rows, int threads) {
 }  // namespace
 
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads) {
-  if (format == SummaryFormat::github) return github_json(rows).dump(2) + '\n';
+  if (format == SummaryFormat::github)
+    return github_json(rows).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   const auto number = [](const auto& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
   };

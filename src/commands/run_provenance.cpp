@@ -67,7 +67,7 @@ TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, con
   TraceHeader header;
   header.creator_version = build_info().version;
   header.scene_json = scene.spec.source;
-  header.provenance_json = to_json(provenance).dump(2);
+  header.provenance_json = to_json(provenance).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
   header.backend = backend_name + " on " + backend.device();
   header.integrator = integrator.name;
   header.dt_s = scene.dt_s;

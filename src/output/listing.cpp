@@ -74,7 +74,10 @@ std::string as_csv(const Listing& listing) {
 }  // namespace
 
 std::string to_text(const Listing& listing, ListingFormat format, int digits) {
-  if (format == ListingFormat::json) return nlohmann::ordered_json(listing).dump(2) + '\n';
+  if (format == ListingFormat::json)
+    return nlohmann::ordered_json(listing).dump(2, ' ', false,
+                                                nlohmann::ordered_json::error_handler_t::replace) +
+           '\n';
   if (listing.empty()) return "";
   return format == ListingFormat::csv ? as_csv(listing) : aligned(listing, digits);
 }

@@ -59,7 +59,7 @@ namespace {
 SceneSpec scene_of(JsonDocument document) {
   SceneSpec spec;
   read_fields(document, [&](FieldVisitor& fields) { visit_scene_fields(fields, spec); });
-  spec.name = document.file.stem().string();
+  spec.name = escaped(document.file.stem().string());
   spec.file = std::move(document.file);
   spec.source = std::move(document.text);
   kind_of(spec).check(spec);

@@ -44,7 +44,7 @@ struct ClothSpec {
 
 /// A scene as its file describes it.
 struct SceneSpec {
-  std::string name;            ///< the file's name without .json
+  std::string name;            ///< the file's name without .json, escaped() where it has to be
   std::string description;     ///< one line
   std::optional<double> dt_s;  ///< empty: `auto`, from the stability limit
   double gravity_m_per_s2 = 0;
