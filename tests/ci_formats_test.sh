@@ -40,6 +40,6 @@ END
 # The other formats of the summary.
 [ "$(head -n 1 table.csv | cut -d, -f1-2)" = scene,nodes ] || fail "--format csv prints no table: $(head -n 1 table.csv)"
 [ "$(wc -l <table.csv)" -eq 5 ] || fail "--format csv has not four rows"
-expect 2 'format: xml not in {csv,github,json,table}' bench --scene cloth2500 --format xml
+expect 2 'format: unknown value "xml": known are csv, github, json and table; see mssim bench --help' bench --scene cloth2500 --format xml
 
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -12,19 +12,18 @@ column() { column_of "$work/results/timings.csv" "$1"; }
 
 # Usage.
 expect 2 'nothing to measure' bench
-expect 2 'known are bench, run, compare, measure and list' frobnicate
 expect 2 'rounds' bench --rounds 0 --scene cloth2500
 expect 2 'threads' bench --threads -3 --scene cloth2500
 OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;' run --threads 2 --scene cloth2500
 expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
 expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
-expect 2 'Did you mean openmp\|did you mean openmp' bench --scene cloth2500 --backend openpm
-expect 2 'Known are serial, threads-mutex, openmp, opencl and hybrid' bench --scene cloth2500 --backend cuda
+expect 2 'unknown backend "openpm" (did you mean openmp?)' bench --scene cloth2500 --backend openpm
+expect 2 'known are serial, threads-mutex, openmp, opencl and hybrid' bench --scene cloth2500 --backend cuda
 expect 2 'rk4-frozen' bench --scene cloth2500 --integrator verlet
 expect 2 'cloth2500' bench --scene cloth2501
 expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json
 expect 2 'table1.*races.*scaling' bench --suite table9
-expect 2 'did you mean gather? Known are serial, mutex-per-group' bench --suite races --backend gahter
+expect 2 'did you mean gather?): known are serial, mutex-per-group' bench --suite races --backend gahter
 expect 2 'unknown backend "atomic"' bench --scene cloth2500 --backend atomic
 expect 2 'unknown backend "hybrid"' bench --suite races --backend hybrid
 expect 2 'give --out' bench --scene cloth2500 --trace
@@ -63,6 +62,8 @@ status=0
   status=$?
 [ "$status" -eq 1 ] || fail "a bench that blows up exits with $status"
 [ "$(column verified | sort -u)" = false ] || fail "a row that blew up is verified"
+[ "$(grep -c '^mssim: wild, \(serial\|openmp\), [a-z0-9-]*: failed: ' "$work/err")" -eq 3 ] && grep -q '^mssim: and 3 more$' "$work/err" ||
+  fail "stderr does not say which rows failed and why: $(cat "$work/err")"
 grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timings.csv does not say what failed"
 
 # A bench as it should be.
@@ -94,6 +95,7 @@ status=0
 "$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --backend opencl >"$work/out" 2>&1 ||
   status=$?
 [ "$status" -eq 3 ] || fail "an unavailable backend that was asked for gives $status"
+grep -q '^mssim: cloth2500, opencl, semi-euler: unavailable: ' "$work/out" || fail "stderr does not say what is unavailable: $(cat "$work/out")"
 
 # The ways to avoid the data race: those asked for, and the base of the ratios where it is one of them.
 "$mssim" bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races" >"$work/out" 2>"$work/err" ||
@@ -104,7 +106,7 @@ status=0
 [ ! -e "$work/races/table1.csv" ] || fail "races make Table 1"
 
 # Help and listings.
-for arguments in '--help' 'bench --help' 'run --help' 'compare --help' 'list --help'; do
+for arguments in '--help' 'bench --help' 'run --help' 'check --help' 'compare --help' 'measure --help' 'list --help' 'help --help'; do
   # shellcheck disable=SC2086 # words of their own
   "$mssim" $arguments >"$work/out" 2>"$work/err" || fail "$arguments exits with $?"
   grep -q 'Example' "$work/out" || fail "$arguments shows no example"
@@ -115,6 +117,6 @@ done
 "$mssim" list backends | grep '^hybrid ' >/dev/null || fail "list backends"
 "$mssim" list ways --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list ways"
 "$mssim" list suites --format csv | grep '^scaling,true,false,"cloth40k, .* and cloth16m",' >/dev/null || fail "list suites"
-"$mssim" bench --help | tr -s '\n ' ' ' | grep 'all: the tables of the paper' >/dev/null || fail "bench --help does not say what all is"
+"$mssim" bench --help | tr -s '\n ' ' ' | grep 'tables stands for table1, table2 and table3' >/dev/null || fail "bench --help does not say what tables is"
 if "$mssim" list scenes >/dev/full 2>"$work/err"; then fail "a full standard output is no error"; fi
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

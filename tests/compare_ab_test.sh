@@ -176,9 +176,9 @@ warns 'timings.csv, line 2, column ms_per_step_min: "not-a-number" is not a numb
 ab 3 steady missing
 warns 'cannot run .*missing: give the path'
 expect 2 'needs a --scene' compare --ab "$work/steady" "$work/slow"
-expect 2 'scene requires --ab' compare "$work" "$work" --scene cloth2500
+expect 2 'scene goes with --ab alone' compare "$work" "$work" --scene cloth2500
 expect 2 'time-budget' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --time-budget 0
-expect 2 'excludes' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
+expect 2 'force does not go with --ab' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
 
 # Interrupted: ends the program under way, leaves nothing.
 set -m

@@ -36,6 +36,18 @@ OMP_THREAD_LIMIT=1 dress 0 --scene jeans1k --backend openmp
 dress 0 --scene jeans1k --backend opencl
 dress 0 --scene jeans1k --backend opencl --memory copy
 
+# It is dressed as long as --duration says, whether it has settled by then or not.
+dress 1 --scene jeans1k --duration 0.312
+[ "$(value simulated_s)" = 0.312 ] || fail "0.312 s of dressing: $(cat "$work/out")"
+misfit '^mssim: jeans1k: after 0.312 s the garment is still moving; a longer --duration gives it more time$'
+misfit 'the garment did not come to rest'
+dress 0 --scene jeans1k --duration 3
+settled=$(value iterations)
+dress 0 --scene jeans1k
+[ "$(value iterations)" = "$settled" ] || fail "a garment that settles in time is dressed otherwise"
+dress 2 --scene jeans1k --duration 1e-9
+misfit '.--duration must give between one step and'
+
 # So does a garment that is drawn in its scene.
 dress 0 --scene skirt --backend openmp
 

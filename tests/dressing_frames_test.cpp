@@ -119,6 +119,22 @@ TEST(DressingFrames, AreTheStartThoseOfTheGridAndTheEnd) {
   EXPECT_EQ(steps_at(1).size(), 61U);
 }
 
+TEST(Dressing, EndsWhenTheLongestTimeIsOverAndNoWindowThatIsCutShortCountsAsRest) {
+  const System system = hung_squares();
+  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  // A metre is more than any node moves: whatever counts as a window is one of rest.
+  const auto dressed_for = [&](double longest_s) {
+    return dress(*backend, system, dt_s, {.window_s = 0.003, .distance = 1, .longest_s = longest_s}, always);
+  };
+  const DressingResult settled = dressed_for(1);
+  ASSERT_TRUE(settled.settled);
+  ASSERT_EQ(settled.iterations % 20, 0);
+  const DressingResult cut = dressed_for(settled.simulated_s - 3 * dt_s);
+  EXPECT_EQ(cut.iterations, settled.iterations - 3);
+  EXPECT_FALSE(cut.settled);
+  EXPECT_EQ(dressed_for(dt_s).iterations, 1);
+}
+
 TEST(DressingFrames, EndWhereTheDressingIsEnded) {
   const System system = hung_squares();
   const auto backend = make_serial_dressing(system, semi_euler, dt_s);

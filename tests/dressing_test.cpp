@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/dressing/correction_order.h"
 #include "backends/dressing/openmp_dressing.h"
 #include "backends/dressing/serial_dressing.h"
@@ -24,6 +25,21 @@ const Integrator& semi_euler = *find_integrator("semi-euler");
 
 const FitBody nobody{[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
                      [](const Vec3d& point) { return point; }};
+
+TEST(Dresses, SaysWhichBackendsTakeAGarment) {
+  const System system = two_squares();
+  for (const BackendInfo& backend : mssim::backends()) {
+    bool refused = false;
+    try {
+      backend.make(system, semi_euler, dt_s, {.threads = 1});
+    } catch (const Unsupported&) {
+      refused = true;
+    } catch (const Unavailable&) {
+      continue;  // without a device nobody knows
+    }
+    EXPECT_EQ(dresses(backend), !refused) << backend.name;
+  }
+}
 
 TEST(Dressing, ClosesTheSeamOfTwoSquaresInFreeSpace) {
   const System system = two_squares();

@@ -14,7 +14,7 @@ fall=(run --scene cloth2500 --threads 1)
 frames() { h5dump -H -d /particles/cloth/position/step "$1" | sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p'; }
 
 # A second run into files that are being written: told so, and the first one's are whole.
-env --default-signal=INT "$mssim" "${fall[@]}" --duration 100 --trace tw.h5 --energy-curve tw.csv >out 2>err &
+env --default-signal=INT "$mssim" "${fall[@]}" --duration 10000 --fps 5 --trace tw.h5 --energy-curve tw.csv >out 2>err &
 process=$!
 for ((i = 0; i < 300; ++i)); do
   if [ -s tw.csv.part ] && [ -e tw.h5.part ]; then break; fi

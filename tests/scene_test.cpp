@@ -314,6 +314,14 @@ TEST(NearestName, CountsInsertionsDeletionsReplacementsAndSwaps) {
   EXPECT_EQ(nearest_name("", names), "");
 }
 
+TEST(UnknownName, IsComplainedOfWithTheNearestAndTheKnown) {
+  const std::vector<std::string_view> names{"serial", "openmp", "opencl"};
+  EXPECT_EQ(unknown_name("backend", "openpm", names),
+            "unknown backend \"openpm\" (did you mean openmp?): known are serial, openmp and opencl");
+  EXPECT_EQ(unknown_name("backend", "cuda\n", names),
+            "unknown backend \"cuda\\n\": known are serial, openmp and opencl");
+}
+
 TEST(Printable, KeepsMessagesOnOneLineAndShort) {
   EXPECT_EQ(printable("a\nb\"c\\d"), "a\\nb\"c\\d");
   EXPECT_EQ(printable("\xc3\xa4\xc3\xa4", 3), "\xc3\xa4...");

@@ -1,5 +1,6 @@
 #include "backends/backends.h"
 
+#include <algorithm>
 #include <array>
 
 #include "backends/hybrid.h"
@@ -44,6 +45,11 @@ const BackendInfo* find_backend(std::string_view name) {
   for (const BackendInfo& backend : table)
     if (backend.name == name) return &backend;
   return nullptr;
+}
+
+bool dresses(const BackendInfo& backend) {
+  constexpr std::array<std::string_view, 3> those{"serial", "openmp", "opencl"};
+  return std::ranges::find(those, backend.name) != those.end();
 }
 
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options) {

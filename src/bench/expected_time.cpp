@@ -22,6 +22,16 @@ constexpr double verified_garment = 4;      // steps of a verification, over tho
 /// Steps until a garment has settled: the finer its cloth, the more.
 double dressing_steps(double nodes) { return 40 * std::sqrt(nodes); }
 
+/// Seconds of a step of the plain list.
+double list_step_time(const Integrator& integrator, const SceneSize& size) {
+  return spring_s * static_cast<double>(size.springs) * static_cast<double>(integrator.stage_count) *
+         (size.garment ? garment_step : 1);
+}
+
+double step_time(const BackendInfo& backend, double list_step) {
+  return list_step * (backend.name == "serial" ? 1 : other_backends);
+}
+
 }  // namespace
 
 ExpectedTime total(std::span<const ExpectedTime> scenes) {
@@ -43,13 +53,12 @@ ExpectedTime expected_time(const SceneJob& job, const SceneSize& size) {
   time.preparation = springs * built_spring_s;
   for (const Integrator* integrator : job.integrators) {
     if (size.garment && !dresses(*integrator)) continue;
-    const double list_step =
-        spring_s * springs * static_cast<double>(integrator->stage_count) * (size.garment ? garment_step : 1);
+    const double list_step = list_step_time(*integrator, size);
     const double verification = job.verified ? 0 : verification_steps * (size.garment ? verified_garment : 1);
     time.preparation += verification * list_step + (size.garment || job.verified ? 0 : peaks_s);
     if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_backends;
     for (const BackendInfo* backend : job.backends) {
-      const double step = list_step * (backend->name == "serial" ? 1 : other_backends);
+      const double step = step_time(*backend, list_step);
       const double sample = std::max(job.sample_seconds, step) + step + 2 * nodes * moved_node_s;
       time.preparation += verification * step + samples_to_calibrate * sample;
       if (size.garment && !job.verified) time.preparation += dressing_steps(nodes) * step;
@@ -57,6 +66,14 @@ ExpectedTime expected_time(const SceneJob& job, const SceneSize& size) {
     }
   }
   return time;
+}
+
+double expected_run_time(const BackendInfo& backend, const Integrator& integrator, const SceneSize& size,
+                         double steps) {
+  const double taken =
+      size.garment ? std::min(steps, dressing_steps(static_cast<double>(size.nodes))) : steps;
+  return static_cast<double>(size.springs) * built_spring_s +
+         taken * step_time(backend, list_step_time(integrator, size));
 }
 
 }  // namespace mssim

@@ -24,4 +24,9 @@ double rounds_within(double seconds, const ExpectedTime& time);
 /// at.
 ExpectedTime expected_time(const SceneJob& job, const SceneSize& size);
 
+/// Seconds that simulating `steps` steps takes a backend, as roughly; dressing a garment takes as many as it
+/// needs, but no more. Building the scene is part of it, writing files is not.
+double expected_run_time(const BackendInfo& backend, const Integrator& integrator, const SceneSize& size,
+                         double steps);
+
 }  // namespace mssim

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "commands/bench_rows.h"
 #include "commands/bench_summary.h"
 #include "commands/bench_trace.h"
+#include "commands/bench_verdict.h"
 #include "commands/choices.h"
 #include "commands/earlier_rows.h"
 #include "commands/exit_code.h"
@@ -28,6 +30,7 @@
 #include "commands/run_provenance.h"
 #include "commands/stop_request.h"
 #include "commands/structure.h"
+#include "commands/tell_first.h"
 #include "commands/time_budget.h"
 #include "commands/verified_rows.h"
 #include "integrators/integrators.h"
@@ -35,6 +38,8 @@
 #include "output/published.h"
 #include "output/result_folder.h"
 #include "output/result_table.h"
+#include "output/trace_name.h"
+#include "scene/nearest_name.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 
@@ -50,27 +55,6 @@ void add_published_times(std::vector<ResultRow>& rows, const std::vector<const B
                                    row.nodes, row.springs_published))
         row.paper_ms = ms;
   }
-}
-
-/// Whether one of `names`, which are values of `member`, has no row of a scene that could run: a backend that
-/// has a garment with one of the integrators has it.
-bool has_none(const std::vector<std::string>& names, std::string ResultRow::*member,
-              const std::vector<ResultRow>& rows) {
-  return std::ranges::any_of(rows, [&](const ResultRow& row) {
-    return std::ranges::find(names, row.*member) != names.end() &&
-           std::ranges::none_of(rows, [&](const ResultRow& other) {
-             return other.scene == row.scene && other.*member == row.*member && other.status == "ok";
-           });
-  });
-}
-
-/// 1 when a measured row is wrong; 3 when a backend or integrator that was asked for by name could not run.
-int exit_code_of(const std::vector<ResultRow>& rows, const BenchOptions& options) {
-  for (const ResultRow& row : rows)
-    if (row.status.starts_with("failed") || (row.status == "ok" && !row.verified)) return exit_not_verified;
-  const bool lacks = has_none(options.backends, &ResultRow::backend, rows) ||
-                     has_none(options.integrators, &ResultRow::integrator, rows);
-  return lacks ? exit_unavailable : exit_ok;
 }
 
 /// Measures the plan's scenes, but for what an earlier run has done of them already, and writes the folder
@@ -168,6 +152,10 @@ int run(const BenchOptions& options) {
       throw UsageError(
           "--trace does not go with " + spec.name +
           ", which is a garment: what it is verified with is no continuous motion; leave it out");
+    if (options.trace) {
+      if (const auto problem = trace_name_problem(spec.name + ".h5"))
+        throw UsageError("--trace names traces after their scene, and " + *problem);
+    }
     add_scene(provenance, spec.name, spec.source);
   }
   require_distinct_names(timed);
@@ -200,13 +188,15 @@ int run(const BenchOptions& options) {
     if (!plan.described.empty() && options.format == SummaryFormat::table) std::cout << '\n';
     std::cout << summary(rows.all(), options.format, plan.job.execution.threads);
     if (folder && options.format == SummaryFormat::github) folder->write_for_github(rows.all());
-    code = exit_code_of(rows.all(), options);
+    const BenchVerdict verdict = verdict_of(rows.all(), options.backends, options.integrators);
+    tell_first(verdict.reasons);
+    code = verdict.exit_code;
   }
   if (folder && stop.requested())
     std::cerr << "mssim: " << (rows.all().empty() ? "nothing was measured yet" : "results so far are in ")
-              << (rows.all().empty() ? "" : options.out) << "; --resume goes on\n";
+              << (rows.all().empty() ? "" : escaped(options.out)) << "; --resume goes on\n";
   else if (folder)
-    std::cerr << "mssim: results are in " << options.out << '\n';
+    std::cerr << "mssim: results are in " << escaped(options.out) << '\n';
   stop.throw_if_requested();
   return code;
 }
@@ -215,43 +205,53 @@ int run(const BenchOptions& options) {
 
 std::function<int()> declare_bench(CLI::App& app) {
   const auto options = std::make_shared<BenchOptions>();
-  app.add_option("--scene", options->scenes, "Scenes: names (see mssim list scenes) or files")
-      ->delimiter(',');
+  const std::vector<std::string> names = suite_names();
+  const std::vector<std::string_view> suites(names.begin(), names.end());
+  add_scenes(app, "--scene", options->scenes, "Scenes to measure: names (see mssim list scenes) or files");
   app.add_option("--suite", options->suite,
-                 "Scenes and what is compared on them (see mssim list suites); all: the tables of the paper")
-      ->check(CLI::IsMember(suite_names()));
+                 "Scenes and what is compared on them: " + listed(suites, "or") +
+                     " (see mssim list suites); tables stands for table1, table2 and table3")
+      ->transform(one_of("suite", names))
+      ->type_name("NAME");
   app.add_option("--backend", options->backends, "Backends, or ways with --suite races (default: all)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->type_name("NAME,...");
   app.add_option("--integrator", options->integrators,
                  "Integrators, or all (default: semi-euler,midpoint,rk4; with --suite races, scaling or "
                  "garment semi-euler)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->type_name("NAME,...");
   declare_execution(app, options->execution);
   app.add_option("--rounds", options->rounds,
                  "Samples of each combination (default: 15; with --time-budget at most so many)")
-      ->check(CLI::Range(1, most_rounds));
+      ->check(whole_number(1, most_rounds))
+      ->type_name("N");
   app.add_option("--time-budget", options->time_budget_s,
-                 "Seconds that the measurement is to take, in as many rounds as fit; traces come on top")
-      ->check(positive_number());
+                 "Time that the measurement is to take, in as many rounds as fit; traces come on top")
+      ->check(positive_number())
+      ->type_name("SECONDS");
   app.add_flag("--dry-run", options->dry_run,
                "Print what would be measured and about how long it would take, and do nothing");
+  app.add_option("--out", options->out, "Folder for the results: tables, samples, provenance")
+      ->type_name("FOLDER");
+  CLI::Option* resume = app.add_flag(
+      "--resume", options->resume,
+      "Go on where an earlier run of the same command ended, whatever ended it: keep what the folder has");
+  app.add_flag("--overwrite", options->overwrite, "Replace the results that the folder has")
+      ->excludes(resume);
   app.add_flag("--trace", options->trace,
-               "Trace each combination too, after it has been timed, into OUT/traces");
+               "Trace each combination too, after it has been timed, into FOLDER/traces");
   add_choice<SummaryFormat>(app, "--format", options->format,
                             {{"table", SummaryFormat::table},
                              {"csv", SummaryFormat::csv},
                              {"json", SummaryFormat::json},
                              {"github", SummaryFormat::github}},
                             "What to print: table, csv, json, or github, what github-action-benchmark reads, "
-                            "which is written into OUT too (default: table)");
-  app.add_option("--out", options->out, "Folder for the results: tables, samples, provenance");
-  CLI::Option* resume = app.add_flag(
-      "--resume", options->resume,
-      "Go on where an earlier run of the same command ended, whatever ended it: keep what OUT has");
-  app.add_flag("--overwrite", options->overwrite, "Replace the results that OUT has")->excludes(resume);
+                            "which is written into FOLDER too (default: table)");
   app.add_option("--verified", options->verified,
                  "Result folder in which this program has verified all this already: take from there what is "
-                 "right, and only take samples");
+                 "right, and only take samples")
+      ->type_name("FOLDER");
   return [options] { return run(*options); };
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace CLI {
@@ -20,6 +21,9 @@ struct Command {
 };
 
 std::span<const Command> commands();
+
+/// The complaint about a word that is no row's name.
+std::string unknown_command(std::string_view name);
 
 /// Runs the whole program. Messages go to stderr, results to stdout. Never throws.
 int run_program(int argc, char** argv);

@@ -3,6 +3,7 @@
 #include <array>
 #include <csignal>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -10,14 +11,19 @@
 #include "backends/backend.h"
 #include "bench/build_info.h"
 #include "commands/bench_command.h"
+#include "commands/check_command.h"
 #include "commands/command.h"
 #include "commands/compare_command.h"
 #include "commands/exit_code.h"
+#include "commands/help_command.h"
+#include "commands/help_page.h"
 #include "commands/list_command.h"
 #include "commands/measure_command.h"
 #include "commands/run_command.h"
 #include "commands/run_provenance.h"
+#include "commands/usage_error.h"
 #include "mesh/mesh_error.h"
+#include "model/printable.h"
 #include "output/csv.h"
 #include "output/provenance_file.h"
 #include "output/write_error.h"
@@ -29,21 +35,30 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 5> table{{
-    {"bench", "time and verify backends on scenes", "mssim bench --scene cloth350k --out results/today",
-     declare_bench},
-    {"run", "simulate one scene, tracing it into a file",
+constexpr std::array<Command, 7> table{{
+    {"bench", "Time every backend on scenes, and prove that each computes rightly",
+     "mssim bench --scene cloth350k --out results/today", declare_bench},
+    {"run", "Simulate one scene, and trace it into a file if asked to",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
-    {"compare", "say which of two runs is faster, and whether that is certain",
+    {"check", "Say whether scenes are right, and what they would be and take, without a run",
+     "mssim check my-cloth.json", declare_check},
+    {"compare", "Say which of two benches or programs is faster, and whether that is certain",
      "mssim compare results/yesterday results/today", declare_compare},
-    {"measure", "measure a person's surface, and write a scene of jeans for it",
+    {"measure", "Measure a person's surface, and write a scene of jeans for it",
      "mssim measure scan.obj --scene my.json", declare_measure},
-    {"list", "list scenes, suites, backends, ways, integrators or devices", "mssim list scenes --format csv",
+    {"list", "List scenes, suites, backends, ways, integrators or devices", "mssim list scenes --format csv",
      declare_list},
+    {"help", "Show this page, or that of a command", "mssim help bench", declare_help},
 }};
 
+constexpr std::string_view exit_codes =
+    "Exit codes: 0 all well; 1 a row is not verified, a simulation blew up, a garment\n"
+    "does not fit, or a comparison found a regression; 2 bad usage or input; 3 a\n"
+    "device or program that was asked for is missing; 4 a file could not be read or\n"
+    "written.";
+
 int fail(int code, const std::string& sentence) {
-  std::cerr << "mssim: " << sentence << '\n';
+  std::cerr << "mssim: " << escaped(sentence) << '\n';  // names in it may hold anything
   return code;
 }
 
@@ -85,35 +100,51 @@ int run_guarded(const std::function<int()>& run) {
 
 std::span<const Command> commands() { return table; }
 
+std::string unknown_command(std::string_view name) {
+  std::vector<std::string_view> known;
+  for (const Command& command : commands()) known.push_back(command.name);
+  return unknown_name("command", name, known) + "; see mssim --help";
+}
+
 int run_program(int argc, char** argv) {
   remember_arguments(argc, argv);
   CLI::App app("mssim " + build_info().version + ": benchmark harness for parallel mass-spring simulation",
                "mssim");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", "mssim " + build_info().version + " (" + build_info().commit +
-                                        (build_info().dirty ? ", changed" : "") + ")");
-  std::string examples = "Examples:";
+  const auto page = std::make_shared<HelpPage>();
+  page->label("Positionals", "Arguments");
+  app.formatter(page);
+  app.set_help_flag("-h,--help", "Show this page");
+  app.set_version_flag("-V,--version",
+                       "mssim " + build_info().version + " (" + build_info().commit +
+                           (build_info().dirty ? ", changed" : "") + ")",
+                       "Show the version and the commit that it was built from");
+  app.require_subcommand(0, 1);
+  std::string examples;
   std::function<int()> run;
   for (const Command& command : commands()) {
     CLI::App* sub = app.add_subcommand(std::string(command.name), std::string(command.description));
+    sub->group("Commands");
     sub->footer("Example:\n  " + std::string(command.example));
     examples += "\n  " + std::string(command.example);
     const std::function<int()> body = command.declare(*sub);
     sub->callback([&run, body] { run = body; });
   }
-  app.footer(examples);
-  if (argc > 1 && argv[1][0] != '-') {  // the parser would only ask for a subcommand
-    std::vector<std::string_view> known;
-    for (const Command& command : commands()) known.push_back(command.name);
-    if (std::find(known.begin(), known.end(), argv[1]) == known.end())
-      return fail(exit_bad_input,
-                  "unknown command \"" + std::string(argv[1]) + "\": known are " + listed(known));
+  app.footer("mssim help COMMAND explains a command and its options.\n\nExamples:" + examples + "\n\n" +
+             std::string(exit_codes));
+  if (argc > 1 && argv[1][0] != '-') {  // the parser would take it for a word too many
+    const std::string_view word = argv[1];
+    if (std::ranges::find(commands(), word, &Command::name) == commands().end())
+      return fail(exit_bad_input, unknown_command(word));
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return fail(exit_bad_input, std::string(error.what()) + "; see mssim --help");
+    return fail(exit_bad_input, usage_sentence(error, app));
+  }
+  if (!run) {
+    std::cerr << help_page(app, "mssim");
+    return exit_bad_input;
   }
   const int code = run_guarded(run);
   // Results that could not be written are no results (a full disk; a closed pipe ends the program by

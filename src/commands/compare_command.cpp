@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "commands/choices.h"
 #include "commands/exit_code.h"
 #include "commands/measured_run.h"
+#include "commands/tell_first.h"
+#include "model/counted.h"
 #include "model/joined.h"
 #include "output/comparison_table.h"
 
@@ -49,12 +52,32 @@ void tell(const std::string& what, const std::vector<std::string>& combinations)
   std::cerr << '\n';
 }
 
+/// Why the comparison ends with 1: each combination that is slower or lost.
+std::vector<std::string> regressions(const RunComparison& comparison) {
+  std::vector<std::string> sentences;
+  for (const ComparedRow& row : comparison.rows) {
+    std::ostringstream text;
+    text.precision(3);
+    text << combination_name(row) << ": " << name_of(row.verdict);
+    if (row.verdict == Verdict::slower)
+      text << ", " << row.ratio->ratio << " times the time (" << row.ratio->low << " to " << row.ratio->high
+           << ")";
+    else if (row.verdict == Verdict::lost)
+      text << ", " << row.reason;
+    else
+      continue;
+    sentences.push_back(text.str());
+  }
+  return sentences;
+}
+
 int report(const RunComparison& comparison, ComparisonFormat format) {
   std::cout << to_text(comparison, format);
+  tell_first(regressions(comparison));
   const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
   if (undecided > 0)
-    std::cerr << "mssim: " << undecided << " of " << comparison.rows.size()
-              << " combinations are undecided\n";
+    std::cerr << "mssim: " << undecided << " of " << counted(comparison.rows.size(), "combination")
+              << (undecided == 1 ? " is undecided\n" : " are undecided\n");
   return has_regression(comparison) ? exit_regression : exit_ok;
 }
 
@@ -83,34 +106,41 @@ int run(CompareOptions options) {
 
 std::function<int()> declare_compare(CLI::App& app) {
   const auto options = std::make_shared<CompareOptions>();
-  app.add_option("base", options->ab.base, "BASE: a result folder or a file in it; with --ab a program")
+  app.add_option("BASE", options->ab.base,
+                 "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
       ->required();
-  app.add_option("new", options->ab.next, "NEW: what is compared with it")->required();
+  app.add_option("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
+      ->required();
   app.add_option("--threshold", options->threshold_percent, "A change that matters, in percent (default: 5)")
-      ->check(positive_number());
+      ->check(positive_number())
+      ->type_name("PERCENT");
   add_choice<ComparisonFormat>(app, "--format", options->format,
                                {{"table", ComparisonFormat::table},
                                 {"markdown", ComparisonFormat::markdown},
                                 {"json", ComparisonFormat::json}},
-                               "table, markdown or json (default: table)");
+                               "What to print: table, markdown or json (default: table)");
   CLI::Option* ab =
       app.add_flag("--ab", options->programs,
                    "BASE and NEW are mssim programs: run them by turns, as a new process each time");
   app.add_flag("--force", options->force, "Compare runs of unlike machines, builds, threads or scenes too")
       ->excludes(ab);
-  app.add_option("--scene", options->ab.scenes, "With --ab: scenes to measure")->delimiter(',')->needs(ab);
+  add_scenes(app, "--scene", options->ab.scenes, "With --ab: scenes to measure")->needs(ab);
   app.add_option("--backend", options->ab.backends, "With --ab: backends (default: openmp)")
       ->delimiter(',')
-      ->needs(ab);
+      ->needs(ab)
+      ->type_name("NAME,...");
   app.add_option("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
       ->delimiter(',')
-      ->needs(ab);
+      ->needs(ab)
+      ->type_name("NAME,...");
   app.add_option("--threads", options->ab.threads, "With --ab: threads (default: all processors)")
-      ->check(CLI::Range(1, 4096))
-      ->needs(ab);
+      ->check(whole_number(1, most_threads))
+      ->needs(ab)
+      ->type_name("N");
   app.add_option("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)")
-      ->check(CLI::Range(1., 86400.))
-      ->needs(ab);
+      ->check(number_between(1, 86400))
+      ->needs(ab)
+      ->type_name("SECONDS");
   return [options] { return run(*options); };
 }
 

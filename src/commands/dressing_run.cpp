@@ -17,7 +17,8 @@
 namespace mssim {
 
 int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
-                 const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop) {
+                 const SettlingRule& rule, const FrameGrid& frames, RunRecorder& recorder,
+                 StopRequest& stop) {
   const auto require_finite = [](const State& state, std::int64_t iterations) {
     if (const auto node = first_bad_node(state))
       throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
@@ -33,7 +34,6 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
   double seconds = 0;
   recorder.finish_after([&] {
     const auto before = std::chrono::steady_clock::now();
-    const SettlingRule rule;
     ProgressLine progress(1, ProgressLine::Log::nothing);
     progress.begin_scene(scene.spec.name);
     progress.update("closing seams", 0);
@@ -71,6 +71,9 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
                        {"bound", check.bound ? Json(check.shown_bound) : Json()},
                        {"within", check.within ? Json(*check.within) : Json()}});
   std::cout << to_text({dressing}, ListingFormat::table) << '\n' << to_text(fitting, ListingFormat::table);
+  if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
+    std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
+              << " s the garment is still moving; a longer --duration gives it more time\n";
   const std::vector<std::string> found = misfits(result, fit, {});
   for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
   return found.empty() ? exit_ok : exit_not_verified;

@@ -6,15 +6,16 @@
 #include "commands/prepared_scene.h"
 #include "commands/run_recorder.h"
 #include "commands/stop_request.h"
+#include "fitting/dress.h"
 #include "model/frame_grid.h"
 
 namespace mssim {
 
-/// Dresses a garment scene by a backend that was made for it, prints how it went and how the garment fits,
-/// and says on stderr what is out of bounds. Records the start, the frames of the grid and how the garment
-/// rests. Returns an ExitCode. Throws NotVerified when the simulation blows up, naming the step, WriteError
-/// and Interrupted.
+/// Dresses a garment scene by a backend that was made for it, as long as the rule says, prints how it went
+/// and how the garment fits, and says on stderr what is out of bounds. Records the start, the frames of the
+/// grid and how the garment rests. Returns an ExitCode. Throws NotVerified when the simulation blows up,
+/// naming the step, WriteError and Interrupted.
 int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
-                 const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop);
+                 const SettlingRule& rule, const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop);
 
 }  // namespace mssim

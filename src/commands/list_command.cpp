@@ -73,7 +73,7 @@ Listing list_scenes(const ExecutionOptions& /*options*/) {
       return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
     };
     listing.push_back(
-        {{"scene", name},
+        {{"scene", spec.name},
          {"kind", kind_of(spec).name},
          {"nodes", number(counts ? std::optional(counts->nodes) : std::nullopt)},
          {"springs_unique", number(counts ? std::optional(counts->springs_unique) : std::nullopt)},
@@ -114,7 +114,7 @@ Listing list_suites(const ExecutionOptions& /*options*/) {
   for (const Suite& suite : suites())
     listing.push_back({{"suite", suite.name},
                        {"timed", suite.timed},
-                       {"in_all", suite.in_all},
+                       {"in_tables", suite.in_tables},
                        {"scenes", listed(suite.scenes)},
                        {"description", suite.description}});
   return listing;
@@ -178,14 +178,15 @@ int run_list(const ListOptions& options) {
 
 std::function<int()> declare_list(CLI::App& app) {
   const auto options = std::make_shared<ListOptions>();
-  std::vector<std::string> names;
-  for (const Subject& subject : subjects) names.emplace_back(subject.name);
-  app.add_option("subject", options->subject, "What to list")->required()->check(CLI::IsMember(names));
-  add_choice<ListingFormat>(
-      app, "--format", options->format,
-      {{"table", ListingFormat::table}, {"csv", ListingFormat::csv}, {"json", ListingFormat::json}},
-      "table, csv or json (default: table)");
-  app.add_option("--device", options->execution.device, "OpenCL device that backends are checked with");
+  std::vector<std::string_view> known;
+  for (const Subject& subject : subjects) known.push_back(subject.name);
+  app.add_option("WHAT", options->subject, "What to list: " + listed(known, "or"))
+      ->required()
+      ->transform(one_of("word", {known.begin(), known.end()}));
+  declare_listing_format(app, options->format);
+  app.add_option("--device", options->execution.device,
+                 "OpenCL device that backends are checked with: its number or a part of its name")
+      ->type_name("N|NAME");
   return [options] { return run_list(*options); };
 }
 

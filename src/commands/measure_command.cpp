@@ -63,6 +63,9 @@ void require_free(const MeasureOptions& options) {
   if (scene.extension() != ".json")
     throw UsageError("--scene is " + printable(options.scene, 1000) +
                      ": give a file that ends in .json, as mssim run wants it");
+  if (escaped(options.body) != options.body)
+    throw UsageError(printable(options.body, 1000) +
+                     " has characters that a scene file cannot hold: give the file another name");
   if (fs::exists(scene) && !options.overwrite)
     throw UsageError(printable(options.scene, 1000) +
                      " is there already: give another --scene, or --overwrite to replace it");
@@ -128,10 +131,12 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
   try {
     build_system(load_scene(scene));
   } catch (const SceneError& error) {
-    std::cerr << "mssim: " << options.scene << " is written, but does not work yet: " << error.what() << '\n';
+    std::cerr << "mssim: " << escaped(options.scene)
+              << " is written, but does not work yet: " << escaped(error.what()) << '\n';
     return exit_not_verified;
   }
-  std::cerr << "mssim: wrote " << options.scene << "; mssim run --scene " << options.scene << " dresses it\n";
+  const std::string scene_name = escaped(options.scene);
+  std::cerr << "mssim: wrote " << scene_name << "; mssim run --scene " << scene_name << " dresses it\n";
   return exit_ok;
 }
 
@@ -184,10 +189,11 @@ std::map<std::string, std::optional<Value>> choices_of(const std::array<std::str
 
 std::function<int()> declare_measure(CLI::App& app) {
   const auto options = std::make_shared<MeasureOptions>();
-  app.add_option("body", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
+  app.add_option("BODY", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
       ->required();
   app.add_option("--unit", options->unit,
-                 "Unit of the file: m, cm, mm, inch, foot, or its metres (default: found from the height)");
+                 "Unit of the file: m, cm, mm, inch, foot, or its metres (default: found from the height)")
+      ->type_name("UNIT");
   add_choice(app, "--up", options->up, choices_of<UpAxis>(up_axis_names),
              "Axis of the file along which the body stands: y or z (default: found)");
   add_choice(app, "--facing", options->facing, choices_of<Facing>(facing_names),
@@ -195,12 +201,10 @@ std::function<int()> declare_measure(CLI::App& app) {
   app.add_flag("--close-holes", options->close_holes,
                "Fill openings of the surface that are up to 0.2 m across");
   CLI::Option* scene =
-      app.add_option("--scene", options->scene, "Scene file to write: jeans for the body, for mssim run");
+      app.add_option("--scene", options->scene, "Scene file to write: jeans for the body, for mssim run")
+          ->type_name("FILE");
   app.add_flag("--overwrite", options->overwrite, "Replace the scene file if it is there")->needs(scene);
-  add_choice<ListingFormat>(
-      app, "--format", options->format,
-      {{"table", ListingFormat::table}, {"csv", ListingFormat::csv}, {"json", ListingFormat::json}},
-      "table, csv or json (default: table)");
+  declare_listing_format(app, options->format);
   return [options] { return run_measure(*options); };
 }
 

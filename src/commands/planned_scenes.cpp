@@ -12,13 +12,17 @@
 
 namespace mssim {
 
+SceneSize size_of(const SceneSpec& spec, const SceneCounts& counts) {
+  return {counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body),
+          std::holds_alternative<GarmentSpec>(spec.body)};
+}
+
 std::vector<PlannedScene> planned_scenes(const BenchPlan& plan) {
   std::vector<PlannedScene> scenes;
   for (const std::string& name : plan.timed) {
     const SceneSpec spec = find_scene(name);
     const SceneCounts counts = counts_of(spec);
-    const SceneSize size{counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body),
-                         std::holds_alternative<GarmentSpec>(spec.body)};
+    const SceneSize size = size_of(spec, counts);
     require_memory(spec, counts, bench_memory_needed(plan.job, size),
                    "name fewer with --backend or --integrator, or make the scene smaller");
     scenes.push_back({spec.name, size, expected_time(plan.job, size)});

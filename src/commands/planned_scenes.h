@@ -6,8 +6,12 @@
 
 #include "bench/expected_time.h"
 #include "commands/bench_plan.h"
+#include "scene/scene_spec.h"
 
 namespace mssim {
+
+/// What the memory and the time of a scene with these counts depend on.
+SceneSize size_of(const SceneSpec& spec, const SceneCounts& counts);
 
 /// A scene that a bench is to time, before it is built.
 struct PlannedScene {

@@ -3,7 +3,6 @@
 #include <iostream>
 #include <variant>
 
-#include "integrators/stability.h"
 #include "scene/garment_body.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -36,13 +35,13 @@ PreparedScene prepare_scene(std::string_view name_or_file) {
     if (const std::string ignored = ignored_parts(measured_body(scene.spec).trunk_and_legs());
         !ignored.empty())
       scene.note += (scene.note.empty() ? "" : "; ") + ignored;
-  if (scene.spec.dt_s) {
-    scene.dt_s = *scene.spec.dt_s;
-  } else {
-    const StiffnessBound bound = stiffness_bound(scene.system);
-    scene.dt_s = auto_dt({bound.stiffness, bound.damping, scene.system.viscous_damping});
-  }
+  scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
   return scene;
+}
+
+ModeBound mode_bound(const System& system) {
+  const StiffnessBound bound = stiffness_bound(system);
+  return {bound.stiffness, bound.damping, system.viscous_damping};
 }
 
 void warn_of_note(const PreparedScene& scene) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "integrators/stability.h"
 #include "model/system.h"
 #include "scene/scene_spec.h"
 
@@ -20,6 +21,9 @@ struct PreparedScene {
 
 /// Reads, checks and builds the scene of that name or file. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(std::string_view name_or_file);
+
+/// The modes of the scene, for the stability limits of its integrators.
+ModeBound mode_bound(const System& system);
 
 /// Says the note, if there is one, on stderr.
 void warn_of_note(const PreparedScene& scene);

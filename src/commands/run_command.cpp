@@ -24,11 +24,10 @@
 #include "commands/simulation.h"
 #include "commands/stop_request.h"
 #include "output/listing.h"
+#include "output/trace_name.h"
 
 namespace mssim {
 namespace {
-
-constexpr double default_duration_s = 1;
 
 struct RunOptions {
   std::string scene;
@@ -58,6 +57,13 @@ std::unique_ptr<Backend> make_backend(const RunOptions& options, const PreparedS
     throw UsageError("--precision double needs --backend serial, not \"" + options.backend +
                      "\": the other backends compute in single precision only");
   return make_reference(scene.system, integrator, scene.dt_s);
+}
+
+/// A garment is dressed until it has settled; --duration says how long that may take.
+SettlingRule settling_rule(const RunOptions& options, const SimulationPlan& plan) {
+  SettlingRule rule;
+  if (options.duration_s) rule.longest_s = static_cast<double>(count_steps(plan)) * plan.dt_s;
+  return rule;
 }
 
 /// Tells who waits long why.
@@ -91,6 +97,9 @@ nlohmann::ordered_json or_null(const std::optional<double>& number) {
 }
 
 int run(const RunOptions& options) {
+  if (!options.files.trace.empty())
+    if (const auto problem = trace_name_problem(options.files.trace))
+      throw UsageError("--trace: " + *problem);
   const Integrator& integrator = require_integrator(options.integrator);
   require_backend(options.backend);
   PreparedScene scene = prepare_scene(options.scene);
@@ -99,9 +108,6 @@ int run(const RunOptions& options) {
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const auto backend = make_backend(options, scene, integrator);
   auto* const dressing = dynamic_cast<DressingBackend*>(backend.get());
-  if (dressing && options.duration_s)
-    throw UsageError(
-        "--duration does not go with a garment, which is dressed until it has settled; leave it out");
   if (dressing && options.losses)
     throw UsageError(
         "--losses does not go with a garment, on which seams and contacts do work that is not accounted for; "
@@ -117,8 +123,9 @@ int run(const RunOptions& options) {
   StopRequest stop;
   if (dressing) {
     const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
+    const SettlingRule rule = settling_rule(options, plan);
     RunRecorder recorder(options.files, scene, header);
-    return run_dressing(scene, *dressing, options.backend, frames, recorder, stop);
+    return run_dressing(scene, *dressing, options.backend, rule, frames, recorder, stop);
   }
 
   RunRecorder recorder(options.files, scene, header);
@@ -177,24 +184,34 @@ int run(const RunOptions& options) {
 
 std::function<int()> declare_run(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
-  app.add_option("--scene", options->scene, "Scene: a name (see mssim list scenes) or a file")->required();
-  app.add_option("--backend", options->backend, "Backend (default: openmp)");
-  app.add_option("--integrator", options->integrator, "Integrator (default: semi-euler)");
-  app.add_option(
-         "--duration", options->duration_s,
-         "Simulated seconds (default: 1; not for garments, which are dressed until they have settled)")
-      ->check(positive_number());
+  app.add_option("--scene", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
+      ->required()
+      ->type_name("NAME|FILE");
+  app.add_option("--backend", options->backend, "Backend that simulates it (default: openmp)")
+      ->type_name("NAME");
+  app.add_option("--integrator", options->integrator, "Integrator (default: semi-euler)")->type_name("NAME");
+  app.add_option("--duration", options->duration_s,
+                 "Simulated time (default: 1); a garment is dressed until it has settled, at most so long "
+                 "(default: 4)")
+      ->check(positive_number())
+      ->type_name("SECONDS");
   app.add_option("--fps", options->fps,
                  "Frames per simulated second of the trace and the energy curve (default: 60)")
-      ->check(positive_number());
-  app.add_option("--dt", options->dt_s, "Step in seconds (default: the scene's)")->check(positive_number());
+      ->check(positive_number())
+      ->type_name("N");
+  app.add_option("--dt", options->dt_s, "Time of a step (default: the scene's)")
+      ->check(positive_number())
+      ->type_name("SECONDS");
   app.add_option("--precision", options->precision,
                  "single, or double with --backend serial (default: single)")
-      ->check(CLI::IsMember({"single", "double"}));
+      ->transform(one_of("precision", {"single", "double"}))
+      ->type_name("WORD");
   app.add_option("--trace", options->files.trace,
-                 "Write an H5MD trace to this .h5 file, and an .xdmf beside it");
+                 "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView beside it")
+      ->type_name("FILE");
   app.add_option("--energy-curve", options->files.energy_curve,
-                 "Write the energies of all frames to this CSV file");
+                 "Write the energies of all frames to this CSV file")
+      ->type_name("FILE");
   app.add_flag("--losses", options->losses,
                "Account for what damping, friction, bounces and the integrator take from the energy; takes a "
                "double-precision step for every step (not for garments)");

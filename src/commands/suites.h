@@ -21,7 +21,7 @@ struct Comparison {
 struct Suite {
   std::string_view name;
   std::string_view description;  ///< one line for `mssim list suites`
-  bool in_all;                   ///< whether "all" stands for it too: the tables of the paper
+  bool in_tables;                ///< whether "tables" stands for it too: those of Hong et al.
   bool timed;                    ///< else the table says what the scenes are, and nothing is measured
   std::span<const std::string_view> scenes;
   Comparison comparison;
@@ -29,14 +29,14 @@ struct Suite {
 
 std::span<const Suite> suites();
 
-/// The names of the suites, and "all".
+/// The names of the suites, and "tables".
 std::vector<std::string> suite_names();
 
-/// The scenes of the suites of that name whose tables are timed or not, each once. "all" stands for the
-/// suites that are in it.
+/// The scenes of the suites of that name whose tables are timed or not, each once. "tables" stands
+/// for the suites that are in it.
 std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
 
-/// What the suite of that name compares. "all", and no suite (an empty name), compare the five backends.
+/// What the suite of that name compares. "tables", and no suite (an empty name), compare the five backends.
 const Comparison& comparison_of_suite(std::string_view name);
 
 }  // namespace mssim

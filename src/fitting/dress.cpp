@@ -63,12 +63,15 @@ DressingResult dress(DressingBackend& backend, const System& system, double dt_s
   bool goes_on = longest > 0;
   while (goes_on) {
     const bool was_draping = backend.progress().draping;
-    step_through(backend, result.iterations, result.iterations + window, delivery);
-    result.iterations += window;
+    const std::int64_t end = std::min(result.iterations + window, longest);
+    const bool whole_window = end - result.iterations == window;
+    step_through(backend, result.iterations, end, delivery);
+    result.iterations = end;
     State state = backend.state();
     if (backend.progress().draping) result.seamed_at = backend.progress().seamed_at;
-    // A window that began with open seams says nothing about how a sewn garment rests.
-    result.settled = was_draping && moved(result.state, state, rule.share) < rule.distance;
+    // A window that began with open seams, or that was cut short, says nothing about how a sewn garment
+    // rests.
+    result.settled = was_draping && whole_window && moved(result.state, state, rule.share) < rule.distance;
     result.state = std::move(state);
     goes_on = on_window(result.state, result.iterations) && !result.settled && result.iterations < longest;
     if (!goes_on || delivery.due() == result.iterations) delivery.deliver(result.state, result.iterations);

@@ -37,8 +37,8 @@ struct DressingFrames {
   std::function<void(const State& state, std::int64_t iterations)> on_frame;
 };
 
-/// Dresses: from the system's start until the seams are closed and the garment has settled. A frame at the
-/// end of a window comes after on_window.
+/// Dresses: from the system's start until the seams are closed and the garment has settled, or the longest
+/// time is over. A frame at the end of a window comes after on_window.
 DressingResult dress(DressingBackend& backend, const System& system, double dt_s, const SettlingRule& rule,
                      const OnWindow& on_window, const DressingFrames& frames = {});
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "model/printable.h"
+
 namespace mssim {
 namespace {
 
@@ -52,6 +54,15 @@ std::string listed(std::span<const std::string_view> names, std::string_view las
     list += names[i];
   }
   return list;
+}
+
+std::string unknown_name(std::string_view what, std::string_view name,
+                         std::span<const std::string_view> known) {
+  std::string sentence = "unknown ";
+  sentence.append(what).append(" \"").append(printable(name)).append("\"");
+  if (const std::string_view nearest = nearest_name(name, known); !nearest.empty())
+    sentence.append(" (did you mean ").append(nearest).append("?)");
+  return sentence + ": known are " + listed(known);
 }
 
 }  // namespace mssim

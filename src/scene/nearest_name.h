@@ -14,4 +14,9 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
 /// "a, b and c", or with another last word "a, b or c".
 std::string listed(std::span<const std::string_view> names, std::string_view last_word = "and");
 
+/// The complaint about a name that is none of the known: "unknown WHAT "NAME" (did you mean NEAREST?): known
+/// are A, B and C".
+std::string unknown_name(std::string_view what, std::string_view name,
+                         std::span<const std::string_view> known);
+
 }  // namespace mssim
