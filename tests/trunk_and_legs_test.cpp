@@ -116,6 +116,21 @@ TEST(TrunkAndLegs, AreWithoutAnArmWhoseHandRestsOnTheHip) {
   EXPECT_NEAR(touched->high, 0.93, 0.01);
 }
 
+TEST(TrunkAndLegs, AreWithoutHandsThatRestAgainstTheHip) {
+  const BodyProfile expected(without_arms());
+  const BodyProfile profile(body_with_arms({.triangles = 6'000, .arm_angle_degrees = 4}));
+  const auto touched = profile.trunk_and_legs().touched;
+  ASSERT_TRUE(touched);
+  EXPECT_GT(touched->low, 0.6);
+  EXPECT_LT(touched->high, 1.1);
+  EXPECT_NO_THROW(validate_surface(profile.trunk_and_legs().surface, "trunk and legs"));
+  // With the hands it would be 1.12 m.
+  for (const double y : {0.82, 0.86, 0.95, 1.04})
+    EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), 0.04 * expected.hull_girth(y)) << y;
+  for (const int side : {-1, 1})
+    EXPECT_NEAR(profile.leg_girth(0.7, side), expected.leg_girth(0.7, side), 0.03) << side;
+}
+
 TEST(TrunkAndLegs, KeepShouldersAndFeet) {
   const Surface person = without_arms();
   // Pads that rise beside the neck, and a foot whose sole is hollow.

@@ -60,15 +60,6 @@ double twice_area(const std::vector<PlanPoint>& points) {
   return sum;
 }
 
-void finish(SectionLoop& loop) {
-  loop.area = 0.5 * std::abs(twice_area(loop.points));
-  loop.low = loop.high = loop.points.front();
-  for (const PlanPoint& point : loop.points) {
-    loop.low = {std::min(loop.low.x, point.x), std::min(loop.low.z, point.z)};
-    loop.high = {std::max(loop.high.x, point.x), std::max(loop.high.z, point.z)};
-  }
-}
-
 bool contains(const SectionLoop& loop, const PlanPoint& point) {
   bool inside = false;
   for (std::size_t i = 0; i < loop.points.size(); ++i) {
@@ -114,15 +105,29 @@ std::vector<SectionLoop> section_loops(const Surface& surface, std::span<const s
   std::vector<SectionLoop> loops;
   for (std::size_t first = 0; first < cuts.size(); ++first) {
     if (cuts[first].done) continue;
-    SectionLoop& loop = loops.emplace_back();
+    std::vector<PlanPoint> points;
+    std::vector<std::uint32_t> through;
     for (std::size_t i = first; !cuts[i].done; i = entered_by.at(cuts[i].out)) {
       cuts[i].done = true;
-      loop.points.push_back(cuts[i].at);
-      loop.triangles.push_back(cuts[i].triangle);
+      points.push_back(cuts[i].at);
+      through.push_back(cuts[i].triangle);
     }
-    finish(loop);
+    loops.push_back(loop_of(std::move(points), std::move(through)));
   }
   return loops;
+}
+
+SectionLoop loop_of(std::vector<PlanPoint> points, std::vector<std::uint32_t> triangles) {
+  SectionLoop loop;
+  loop.area = 0.5 * std::abs(twice_area(points));
+  loop.low = loop.high = points.front();
+  for (const PlanPoint& point : points) {
+    loop.low = {std::min(loop.low.x, point.x), std::min(loop.low.z, point.z)};
+    loop.high = {std::max(loop.high.x, point.x), std::max(loop.high.z, point.z)};
+  }
+  loop.points = std::move(points);
+  loop.triangles = std::move(triangles);
+  return loop;
 }
 
 bool overlap(const SectionLoop& a, const SectionLoop& b) {

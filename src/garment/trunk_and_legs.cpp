@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "garment/section_loops.h"
+#include "garment/section_necks.h"
 #include "mesh/openings.h"
 #include "model/decimal.h"
 
@@ -21,7 +22,8 @@ namespace {
 /// Loops of one section that overlap.
 struct Group {
   std::vector<SectionLoop> loops;
-  double area = 0;  ///< m^2, of the largest loop
+  double area = 0;       ///< m^2, of the largest loop
+  bool by_neck = false;  ///< cut off from another one
   bool kept = false;
 
   bool reaches_middle() const {
@@ -58,6 +60,32 @@ std::vector<Group> grouped(std::vector<SectionLoop> loops) {
   return groups;
 }
 
+/// A thigh has eight times the section of a hand, a trunk six times that of an arm; halves of a foot are of a
+/// size.
+constexpr double much_smaller = 0.25;
+
+/// Large groups of a single loop without what hangs on it by narrow necks, which are groups of their own.
+std::vector<Group> parted(std::vector<Group> groups) {
+  double largest = 0;
+  for (const Group& group : groups) largest = std::max(largest, group.area);
+  std::vector<Group> all;
+  for (Group& group : groups) {
+    if (group.loops.size() > 1 || group.area < much_smaller * largest) {
+      all.push_back(std::move(group));
+      continue;
+    }
+    bool is_first = true;
+    for (SectionLoop& loop : cut_at_necks(std::move(group.loops.front()))) {
+      Group& part = all.emplace_back();
+      part.area = loop.area;
+      part.by_neck = !is_first;
+      part.loops.push_back(std::move(loop));
+      is_first = false;
+    }
+  }
+  return all;
+}
+
 /// Sections through the middles of slices of equal height.
 std::vector<Level> levels_of(const Surface& surface) {
   constexpr std::size_t count = 256;
@@ -75,7 +103,7 @@ std::vector<Level> levels_of(const Surface& surface) {
   std::vector<Level> levels(count);
   for (std::size_t i = 0; i < count; ++i) {
     levels[i].y = lowest + (static_cast<double>(i) + 0.5) * step;
-    levels[i].groups = grouped(section_loops(surface, crossing[i], levels[i].y));
+    levels[i].groups = parted(grouped(section_loops(surface, crossing[i], levels[i].y)));
   }
   return levels;
 }
@@ -89,9 +117,10 @@ Group* largest(Level& level, const May& may) {
   return found;
 }
 
-bool any_kept_overlaps(const Level& level, const Group& group) {
+/// Does a group of the level that is kept, or one that is not, overlap this one of another level?
+bool any_overlaps(const Level& level, bool kept, const Group& group) {
   return std::ranges::any_of(level.groups,
-                             [&](const Group& other) { return other.kept && overlap(other, group); });
+                             [&](const Group& other) { return other.kept == kept && overlap(other, group); });
 }
 
 /// The level in the middle of the longest run of levels that reach x = 0.
@@ -108,9 +137,6 @@ std::optional<std::size_t> middle_of_trunk(const std::vector<Level>& levels) {
 
 /// Keeps what hangs from the groups kept in the level above.
 void keep_below(const Level& above, Level& level) {
-  // A thigh has eight times the section of a hand, a trunk six times that of an arm; halves of a foot are of
-  // a size.
-  constexpr double much_smaller = 0.25;
   for (const Group& from : above.groups) {
     if (!from.kept) continue;
     const auto hangs = [&](const Group& group) { return overlap(from, group); };
@@ -129,7 +155,7 @@ void keep_above(std::vector<Level>& levels, std::size_t from) {
   std::size_t last = from;
   while (last + 1 < levels.size() && trunk[last] != nullptr) {
     Level& level = levels[last + 1];
-    for (Group& group : level.groups) group.kept = any_kept_overlaps(levels[last], group);
+    for (Group& group : level.groups) group.kept = any_overlaps(levels[last], true, group);
     trunk[last + 1] = largest(level, [&](const Group& group) { return overlap(*trunk[last], group); });
     ++last;
   }
@@ -146,6 +172,15 @@ void keep_above(std::vector<Level>& levels, std::size_t from) {
     }
     leading_back = std::move(leading);
   }
+}
+
+/// Keeps what has been cut off at a neck but hangs from no part that is apart further up: it is no limb, or
+/// one that only begins there, as arms do at the shoulders.
+void keep_bulges(std::vector<Level>& levels) {
+  for (std::size_t i = levels.size(); i-- > 0;)
+    for (Group& group : levels[i].groups)
+      if (group.by_neck && !group.kept)
+        group.kept = i + 1 == levels.size() || !any_overlaps(levels[i + 1], false, group);
 }
 
 /// Says for each triangle whether it stays: as its loop does at the level next to its middle that cuts it; as
@@ -227,12 +262,15 @@ TrunkAndLegs trunk_and_legs(const Surface& surface) {
   keep_above(levels, *middle);
   for (std::size_t i = *middle; i-- > 0;) keep_below(levels[i + 1], levels[i]);
 
+  keep_bulges(levels);
   TrunkAndLegs found;
   for (std::size_t i = 0; i < levels.size(); ++i)
     for (const Group& group : levels[i].groups) {
       if (group.kept) continue;
       include(found.left_out, levels[i].y);
-      if (i > 0 && any_kept_overlaps(levels[i - 1], group)) include(found.touched, levels[i - 1].y);
+      if (group.by_neck) include(found.touched, levels[i].y);
+      if (i > 0 && !any_overlaps(levels[i - 1], false, group) && any_overlaps(levels[i - 1], true, group))
+        include(found.touched, levels[i - 1].y);
     }
   if (!found.left_out) {
     found.surface = surface;
@@ -247,8 +285,9 @@ std::string ignored_parts(const TrunkAndLegs& body) {
   if (!body.left_out) return "";
   return "garments ignore what the body has beside trunk and legs (arms, hands, hair), " +
          shown(*body.left_out) +
-         (body.touched ? "; " + shown(*body.touched) + " that touches the body and counts as a part of it"
-                       : "");
+         (body.touched
+              ? "; " + shown(*body.touched) + " they touch the body, whose measures are less certain there"
+              : "");
 }
 
 }  // namespace mssim
