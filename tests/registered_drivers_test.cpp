@@ -16,6 +16,10 @@ namespace {
 
 /// Two files that register drivers in a folder, and one that does not.
 class RegisteredDrivers : public TemporaryFolderTest {
+ public:
+  RegisteredDrivers(const RegisteredDrivers&) = delete;
+  RegisteredDrivers& operator=(const RegisteredDrivers&) = delete;
+
  protected:
   RegisteredDrivers() {
     for (const char* variable : {"OCL_ICD_VENDORS", "OPENCL_VENDOR_PATH"}) {
@@ -31,8 +35,6 @@ class RegisteredDrivers : public TemporaryFolderTest {
     for (const auto& [variable, value] : before_)
       value ? setenv(variable, value->c_str(), 1) : unsetenv(variable);
   }
-  RegisteredDrivers(const RegisteredDrivers&) = delete;
-  RegisteredDrivers& operator=(const RegisteredDrivers&) = delete;
 
   std::vector<std::string> libraries() const {
     std::vector<std::string> found;
