@@ -178,7 +178,7 @@ warns 'cannot run .*missing: give the path'
 expect 2 'needs a --scene' compare --ab "$work/steady" "$work/slow"
 expect 2 'scene goes with --ab alone' compare "$work" "$work" --scene cloth2500
 expect 2 'time-budget' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --time-budget 0
-expect 2 'force does not go with --ab' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
+expect 2 'ab does not go with --force' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
 
 # Interrupted: ends the program under way, leaves nothing.
 set -m

@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "/garment/pieces/panels/0/top/curve", "is the text \"spline\"",
                   "give the text polyline or bezier"},
         BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05]]})",
-                  "/garment/pieces/panels/0/top/points_m", "has 1 elements",
+                  "/garment/pieces/panels/0/top/points_m", "has 1 element:",
                   "give a list, [ ... ], of 2 to 100 points [x, y]"},
         BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": {"x": 1}})",
                   "/garment/pieces/panels/0/top/points_m", "is an object", "give a list"},

@@ -84,7 +84,7 @@ std::string flag_in(const std::string& message) {
 }
 
 std::string problem(const CLI::ParseError& error, const CLI::App& command) {
-  const std::string message = error.what();
+  std::string message = error.what();
   const std::string subject = subject_of(message);
   const std::string other = message.substr(message.rfind(' ') + 1);
   if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing(subject, command);
