@@ -38,7 +38,7 @@ class RegisteredDrivers : public TemporaryFolderTest {
 
   std::vector<std::string> libraries() const {
     std::vector<std::string> found;
-    for (const RegisteredDriver& driver : registered_drivers()) found.push_back(driver.library);
+    for (const RegisteredDriver& driver : registered_drivers()) found.push_back(driver.shared_library);
     return found;
   }
   using Names = std::vector<std::string>;

@@ -12,6 +12,7 @@
 #include "bench/sample_length.h"
 #include "bench/statistics.h"
 #include "integrators/integrators.h"
+#include "model/counted.h"
 
 namespace mssim {
 namespace {
@@ -37,7 +38,7 @@ double time_sample(Combination& combination, int steps) {
 std::string subject_of(const ResultRow& row) {
   std::ostringstream text;
   text << row.nodes << " nodes and " << row.springs_unique << " springs in steps of " << row.dt_s << " s on "
-       << row.device << " with " << row.threads << (row.threads == 1 ? " thread" : " threads");
+       << row.device << " with " << counted(static_cast<std::uint64_t>(row.threads), "thread");
   return text.str();
 }
 
@@ -99,7 +100,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   row.energy_drift = found->energy_drift;
   row.dressing = found->dressing;
   row.verified = true;
-  row.note += (row.note.empty() ? "" : "; ") + std::string("verified by an earlier process");
+  add_to(row.note, "verified by an earlier process");
 }
 
 void calibrate(Combination& combination, const SceneJob& job) {

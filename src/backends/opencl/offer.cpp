@@ -58,7 +58,8 @@ std::optional<std::string> end_of_asking(const std::vector<std::string>& environ
 }
 
 std::string name_of(const RegisteredDriver& driver) {
-  return "the OpenCL driver " + (driver.library.empty() ? driver.file.string() : driver.library);
+  return "the OpenCL driver " +
+         (driver.shared_library.empty() ? driver.file.string() : driver.shared_library);
 }
 
 /// Asks each driver alone; registers those that survive it in `folder`, and says of the others how it ended.

@@ -46,6 +46,8 @@ std::vector<RegisteredDriver> registered_drivers() {
   return {registered_by(chosen->has_parent_path() ? *chosen : usual_folder / *chosen)};
 }
 
-bool is_pocl(const RegisteredDriver& driver) { return driver.library.find("pocl") != std::string::npos; }
+bool is_pocl(const RegisteredDriver& driver) {
+  return driver.shared_library.find("pocl") != std::string::npos;
+}
 
 }  // namespace mssim

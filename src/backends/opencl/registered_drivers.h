@@ -9,7 +9,7 @@ namespace mssim {
 /// A driver that OpenCL's loader is told to load.
 struct RegisteredDriver {
   std::filesystem::path file;  ///< the .icd file that registers it, or its library where it was named itself
-  std::string library;         ///< as that file names it
+  std::string shared_library;  ///< as that file names it
 };
 
 /// The drivers that the loader would load, by their files' names: what OCL_ICD_VENDORS names, a folder of
