@@ -1,5 +1,5 @@
 /* Where the pixels of a body's maps lie and what one holds, in the common subset of C++ and OpenCL C: the
- * host fills this struct and the device reads it (src/contact/body_maps.h).
+ * host fills this struct and the device reads it (src/garment/contact/body_maps.h).
  *
  * Pixel (column, row) covers x from left + column / pixels_per_metre on and y from bottom + row /
  * pixels_per_metre on; row 0 is the lowest. Its record of BODY_FLOATS floats begins at

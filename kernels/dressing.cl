@@ -1,5 +1,5 @@
 /* What the kernels that dress a garment (dressing_step.cl, dressing_joints.cl) do with its nodes, which lie
- * in rows (PanelSheet in src/backends/dressing/panel_sheet.h). An array of vectors is three planes, x, y and
+ * in rows (PanelSheet in src/garment/stepping/panel_sheet.h). An array of vectors is three planes, x, y and
  * z.
  *
  * A work-group takes a block of rows. On a GPU its work-items share the nodes, one a Real, and meet at

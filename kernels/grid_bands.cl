@@ -2,7 +2,7 @@
  * CPU. The kernels themselves are generated from the table of integrators
  * (src/backends/opencl/grid_program.cpp) and follow this text.
  *
- * The layout is that of BandLayout (src/backends/grid_bands/band_sheet.h): the rows are cut into MSSIM_LANES
+ * The layout is that of BandLayout (src/backends/layouts/band_sheet.h): the rows are cut into MSSIM_LANES
  * bands of `height` rows, lane b holds band b, and a pair is
  *
  *     [column][row -2 .. height + 1][x y z u v w][lane],

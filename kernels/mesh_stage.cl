@@ -3,7 +3,7 @@
  * of MSSIM_LANES nodes, one after the other, and every node gathers the forces of all its springs.
  *
  * A pair is an array of records (records.h). The springs are those of a sliced graph (SlicedGraph in
- * src/backends/sliced_graph/sliced_graph.h), in slices of MSSIM_SLICE nodes: of MSSIM_LANES where a site has
+ * src/backends/layouts/sliced_graph.h), in slices of MSSIM_SLICE nodes: of MSSIM_LANES where a site has
  * several nodes, of some multiple where it has one. Their constants are per unit of node mass.
  */
 typedef struct {

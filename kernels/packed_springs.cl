@@ -3,7 +3,7 @@
  *
  * A unit is what Hong et al., Figure 6, pack for each spring: its two nodes and its rest length (m). Sixteen
  * units of one kind are an entry; their first nodes follow each other and are those of a slice, so that the
- * number of the slice stands for them (PackedSprings in src/backends/packed_springs.h).
+ * number of the slice stands for them (PackedSprings in src/backends/layouts/packed_springs.h).
  */
 #define slice_nodes 16
 

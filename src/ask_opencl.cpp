@@ -1,5 +1,5 @@
 // Asks all OpenCL drivers for their devices, and says nothing. A driver that ends the process that asks it
-// ends this one, and not mssim, which runs it before it asks itself (backends/opencl/offer.h).
+// ends this one, and not mssim, which runs it before it asks itself (backends/devices/offer.h).
 
 #include <CL/cl.h>
 #include <unistd.h>

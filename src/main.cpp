@@ -1,6 +1,6 @@
 #include <hdf5.h>
 
-#include "commands/command.h"
+#include "commands/shared/command.h"
 
 int main(int argc, char** argv) {
   // First of all: after a failed flush HDF5's own exit handler would crash.

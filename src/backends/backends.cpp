@@ -1,14 +1,17 @@
 #include "backends/backends.h"
 
-#include <algorithm>
 #include <array>
 
-#include "backends/hybrid.h"
-#include "backends/opencl.h"
-#include "backends/opencl/offer.h"
-#include "backends/openmp.h"
-#include "backends/serial.h"
-#include "backends/threads_mutex.h"
+#include "backends/devices/offer.h"
+#include "backends/devices/sub_device.h"
+#include "backends/hybrid/hybrid.h"
+#include "backends/opencl/opencl.h"
+#include "backends/openmp/openmp.h"
+#include "backends/spring_list/serial.h"
+#include "backends/spring_list/threads_mutex.h"
+#include "garment/stepping/opencl_dressing.h"
+#include "garment/stepping/openmp_dressing.h"
+#include "garment/stepping/serial_dressing.h"
 
 namespace mssim {
 namespace {
@@ -23,15 +26,33 @@ constexpr MemoryUse planes{.node = 56, .pair_node = 24, .storage = Storage::sepa
 constexpr MemoryUse device_slices{.node = 130, .pair_node = 32, .storage = Storage::separate, .spring = 38};
 constexpr MemoryUse packed{.node = 64, .pair_node = 32, .spring = 50};
 
+std::unique_ptr<DressingBackend> dress_serially(const System& system, const Integrator& integrator,
+                                                double dt_s, const ExecutionOptions& /*options*/) {
+  return make_serial_dressing(system, integrator, dt_s);
+}
+
+std::unique_ptr<DressingBackend> dress_by_openmp(const System& system, const Integrator& integrator,
+                                                 double dt_s, const ExecutionOptions& options) {
+  return make_openmp_dressing(system, integrator, dt_s, options.threads);
+}
+
+std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Integrator& integrator,
+                                                 double dt_s, const ExecutionOptions& options) {
+  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
+  return make_opencl_dressing(system, integrator, dt_s, device, options.memory,
+                              DressingShape::of(device, lanes_for(device)));
+}
+
 constexpr std::array<BackendInfo, 5> table{{
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
-     false, make_serial, spring_list_memory, spring_list_memory},
+     false, make_serial, spring_list_memory, spring_list_memory, dress_serially},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, make_threads_mutex,
      spring_list_memory, spring_list_memory},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     make_openmp, bands, slices},
-    {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, make_opencl, planes, device_slices},
+     make_openmp, bands, slices, dress_by_openmp},
+    {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, make_opencl, planes, device_slices,
+     dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
      "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true, make_hybrid,
      packed, packed},
@@ -47,9 +68,18 @@ const BackendInfo* find_backend(std::string_view name) {
   return nullptr;
 }
 
-bool dresses(const BackendInfo& backend) {
-  constexpr std::array<std::string_view, 3> those{"serial", "openmp", "opencl"};
-  return std::ranges::find(those, backend.name) != those.end();
+std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
+                                      const Integrator& integrator, double dt_s,
+                                      const ExecutionOptions& options) {
+  if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, options);
+  return backend.make(system, integrator, dt_s, options);
+}
+
+std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,
+                                                       const Integrator& integrator, double dt_s,
+                                                       const ExecutionOptions& options) {
+  if (!dresses(backend)) throw Unsupported("garments are dressed by serial, openmp and opencl");
+  return backend.make_dressing(system, integrator, dt_s, options);
 }
 
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options) {

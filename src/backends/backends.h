@@ -1,12 +1,32 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "backends/backend.h"
+#include "backends/backends.h"
+#include "garment/stepping/dressing_backend.h"
 
 namespace mssim {
+
+/// A row of the TABLE of backends.
+struct BackendInfo {
+  std::string_view name;
+  std::string_view
+      paper_configuration;       ///< column of Hong et al.'s tables (`configuration` in the published CSV)
+  std::string_view description;  ///< one line for `mssim list backends`
+  bool uses_device;              ///< needs an OpenCL device
+  /// Makes a backend for a cloth or bodies, at the system's start state. `system` must outlive it. Throws
+  /// Unavailable or Unsupported.
+  std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
+                                   const ExecutionOptions& options);
+  MemoryUse grid_memory;  ///< for a cloth
+  MemoryUse mesh_memory;  ///< for bodies
+  /// Makes one that dresses a garment; null where it has not Algorithm 1.
+  std::unique_ptr<DressingBackend> (*make_dressing)(const System& system, const Integrator& integrator,
+                                                    double dt_s, const ExecutionOptions& options) = nullptr;
+};
 
 /// The TABLE of backends, in the order of every listing and result. A new backend is one row in backends.cpp.
 std::span<const BackendInfo> backends();
@@ -17,8 +37,18 @@ const BackendInfo* find_backend(std::string_view name);
 /// Empty when the backend can run here, else the reason why not.
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options);
 
-/// Whether the backend has Algorithm 1 (dressing/); one that has not refuses garments.
-bool dresses(const BackendInfo& backend);
+/// Makes the backend for any system. Throws Unavailable or Unsupported.
+std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
+                                      const Integrator& integrator, double dt_s,
+                                      const ExecutionOptions& options);
+
+/// Makes it for a garment. Throws Unavailable or Unsupported, the latter also where it cannot dress.
+std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,
+                                                       const Integrator& integrator, double dt_s,
+                                                       const ExecutionOptions& options);
+
+/// Whether the backend has Algorithm 1 (garment/stepping/); one that has not refuses garments.
+inline bool dresses(const BackendInfo& backend) { return backend.make_dressing != nullptr; }
 
 /// What a reader of its times must know of a backend that takes more processors than `threads`, which it was
 /// made for; empty for all others.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/garment_verification.h"
+#include "garment/bench/garment_verification.h"
 
 namespace mssim {
 namespace {

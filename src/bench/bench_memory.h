@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "bench/scene_job.h"
+#include "bench/job/scene_job.h"
 
 namespace mssim {
 

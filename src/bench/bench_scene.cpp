@@ -9,13 +9,13 @@
 #include <random>
 #include <utility>
 
-#include "backends/dressing/dressing_backend.h"
-#include "bench/combination.h"
-#include "bench/dressing_record.h"
-#include "bench/garment_verification.h"
-#include "bench/machine_peak.h"
-#include "bench/step_cost.h"
-#include "model/counted.h"
+#include "bench/job/combination.h"
+#include "bench/roofline/machine_peak.h"
+#include "bench/roofline/step_cost.h"
+#include "garment/bench/dressing_record.h"
+#include "garment/bench/garment_verification.h"
+#include "garment/stepping/dressing_backend.h"
+#include "text/counted.h"
 
 namespace mssim {
 namespace {
@@ -150,7 +150,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     draped = draped_state(job, watch.stop);
     if (!draped) return {};
   }
-  const StepStart start = draped ? StepStart(*draped, true) : StepStart(job.system->start);
+  const State& start = draped ? *draped : job.system->start;
   for (const Integrator* integrator : job.integrators) {
     Verifier verifier;
     if (!job.verified) {

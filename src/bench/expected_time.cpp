@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/dressing/dressing_backend.h"
-#include "bench/verification.h"
+#include "bench/verification/verification.h"
+#include "garment/stepping/dressing_backend.h"
 
 namespace mssim {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "bench/bench_memory.h"
-#include "bench/scene_job.h"
+#include "bench/job/scene_job.h"
 
 namespace mssim {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "mesh/surface.h"
+#include "geometry/surface.h"
 
 namespace mssim {
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <string>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
 
 namespace mssim {
 namespace {

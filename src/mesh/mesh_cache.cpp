@@ -6,10 +6,10 @@
 #include <fstream>
 #include <string>
 
-#include "mesh/mesh_error.h"
+#include "geometry/mesh_error.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
-#include "model/fnv1a.h"
+#include "text/fnv1a.h"
 
 namespace mssim {
 namespace {

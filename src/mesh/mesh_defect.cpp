@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "mesh/geometry.h"
+#include "geometry/geometry.h"
 
 namespace mssim {
 namespace {

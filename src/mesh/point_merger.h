@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <map>
 
-#include "mesh/surface.h"
+#include "geometry/surface.h"
 
 namespace mssim {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
 
 namespace mssim {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "mesh/geometry.h"
+#include "geometry/geometry.h"
 #include "mesh/shape_checks.h"
 
 namespace mssim {

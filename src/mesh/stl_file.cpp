@@ -2,12 +2,12 @@
 #include <bit>
 #include <cmath>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
 #include "mesh/text_lines.h"
-#include "model/counted.h"
+#include "text/counted.h"
 
 namespace mssim {
 namespace {

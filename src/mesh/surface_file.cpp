@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/mesh_error.h"
+#include "geometry/mesh_error.h"
 #include "mesh/text_lines.h"
 
 namespace mssim {

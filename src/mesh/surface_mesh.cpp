@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
 #include "mesh/surface_file.h"
 #include "mesh/tetgen.h"
 #include "mesh/tetrahedralise.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/geometry.h"
+#include "geometry/geometry.h"
 
 namespace mssim {
 

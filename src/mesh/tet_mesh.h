@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/vec3.h"
 #include "model/tetrahedral_mesh.h"
-#include "model/vec3.h"
 
 namespace mssim {
 

@@ -8,13 +8,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
-#include "model/available_memory.h"
-#include "process/child_process.h"
-#include "process/temporary_folder.h"
+#include "platform/available_memory.h"
+#include "platform/child_process.h"
+#include "platform/temporary_folder.h"
 
 namespace mssim {
 namespace {

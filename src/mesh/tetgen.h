@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/surface.h"
+#include "geometry/surface.h"
 #include "mesh/tet_mesh.h"
 #include "mesh/tetgen_program.h"
 

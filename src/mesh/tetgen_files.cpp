@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "mesh/geometry.h"
+#include "geometry/geometry.h"
 #include "mesh/mesh_defect.h"
 #include "mesh/text_lines.h"
 

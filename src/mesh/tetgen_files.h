@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh/surface.h"
+#include "geometry/surface.h"
 #include "mesh/tet_mesh.h"
 
 namespace mssim {

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "mesh/text_lines.h"
-#include "model/fnv1a.h"
-#include "process/child_process.h"
+#include "platform/child_process.h"
+#include "text/fnv1a.h"
 
 namespace mssim {
 namespace {

@@ -1,11 +1,11 @@
 #include "mesh/tetrahedralise.h"
 
+#include "geometry/mesh_error.h"
 #include "mesh/mesh_cache.h"
-#include "mesh/mesh_error.h"
 #include "mesh/tetgen.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/tetgen_program.h"
-#include "model/fnv1a.h"
+#include "text/fnv1a.h"
 
 namespace mssim {
 

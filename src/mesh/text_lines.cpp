@@ -5,9 +5,9 @@
 #include <fstream>
 #include <system_error>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
-#include "model/printable.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
+#include "text/printable.h"
 
 namespace mssim {
 namespace {

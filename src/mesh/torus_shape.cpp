@@ -4,8 +4,8 @@
 #include <numbers>
 #include <string>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
 #include "mesh/shape_checks.h"
 
 namespace mssim {

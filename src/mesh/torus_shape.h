@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "mesh/surface.h"
+#include "geometry/surface.h"
 
 namespace mssim {
 

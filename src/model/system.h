@@ -6,11 +6,11 @@
 #include <variant>
 #include <vector>
 
-#include "model/garment.h"
+#include "garment/garment.h"
+#include "geometry/vec3.h"
 #include "model/grid_patch.h"
 #include "model/spring.h"
 #include "model/tetrahedral_mesh.h"
-#include "model/vec3.h"
 
 namespace mssim {
 
@@ -19,6 +19,7 @@ namespace mssim {
 struct State {
   std::vector<Vec3d> position;  ///< [nodes] m
   std::vector<Vec3d> velocity;  ///< [nodes] m/s
+  bool draped = false;          ///< of a garment: all its seams are closed, and gravity and friction act
 };
 
 /// The plane y = height that nothing may fall through (kernels/floor_law.h).

@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/geometry.h"
-#include "mesh/mesh_error.h"
-#include "model/available_memory.h"
-#include "model/printable.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
+#include "platform/available_memory.h"
 #include "scene/body_shapes.h"
-#include "scene/json_document.h"
-#include "scene/material_fields.h"
-#include "scene/memory.h"
-#include "scene/scene_error.h"
+#include "scene/fields/json_document.h"
+#include "scene/fields/material_fields.h"
+#include "scene/fields/scene_error.h"
+#include "scene/spec/memory.h"
+#include "text/printable.h"
 
 namespace mssim {
 namespace {

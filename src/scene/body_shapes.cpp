@@ -6,10 +6,10 @@
 #include "mesh/shape_mesh.h"
 #include "mesh/surface_mesh.h"
 #include "mesh/tetgen_files.h"
-#include "model/printable.h"
-#include "scene/scene_error.h"
+#include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
-#include "scene/scene_spec.h"
+#include "scene/spec/scene_spec.h"
+#include "text/printable.h"
 
 namespace mssim {
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "mesh/tet_mesh.h"
-#include "scene/bodies_spec.h"
-#include "scene/field_visitor.h"
-#include "scene/scene_spec.h"
+#include "scene/fields/field_visitor.h"
+#include "scene/spec/bodies_spec.h"
+#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/json_document.h"
-#include "scene/material_fields.h"
-#include "scene/scene_error.h"
+#include "scene/fields/json_document.h"
+#include "scene/fields/material_fields.h"
+#include "scene/fields/scene_error.h"
 
 namespace mssim {
 namespace {

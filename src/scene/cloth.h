@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "model/system.h"
-#include "scene/field_visitor.h"
-#include "scene/scene_spec.h"
+#include "scene/fields/field_visitor.h"
+#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 

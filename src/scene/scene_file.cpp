@@ -4,13 +4,13 @@
 #include <tuple>
 #include <utility>
 
-#include "model/data_folder.h"
-#include "model/printable.h"
-#include "scene/json_document.h"
-#include "scene/json_reader.h"
-#include "scene/nearest_name.h"
-#include "scene/scene_error.h"
+#include "platform/data_folder.h"
+#include "scene/fields/json_document.h"
+#include "scene/fields/json_reader.h"
+#include "scene/fields/scene_error.h"
 #include "scene/scene_kinds.h"
+#include "text/nearest_name.h"
+#include "text/printable.h"
 
 namespace mssim {
 namespace {

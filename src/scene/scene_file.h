@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/field_visitor.h"
-#include "scene/scene_spec.h"
+#include "scene/fields/field_visitor.h"
+#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <variant>
 
+#include "garment/scene/garment_scene.h"
 #include "scene/bodies.h"
 #include "scene/cloth.h"
-#include "scene/garment.h"
-#include "scene/memory.h"
+#include "scene/spec/memory.h"
 
 namespace mssim {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "model/system.h"
-#include "scene/field_visitor.h"
-#include "scene/scene_spec.h"
+#include "scene/fields/field_visitor.h"
+#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 

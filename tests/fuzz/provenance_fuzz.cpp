@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fuzz_checks.h"
-#include "output/provenance_file.h"
+#include "output/folders/provenance_file.h"
 
 namespace mssim {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "fuzz_checks.h"
-#include "output/csv.h"
-#include "output/garment_csv.h"
-#include "output/published.h"
-#include "output/published_bodies.h"
-#include "output/timings_csv.h"
+#include "garment/output/garment_csv.h"
+#include "output/tables/csv.h"
+#include "output/tables/published.h"
+#include "output/tables/published_bodies.h"
+#include "output/tables/timings_csv.h"
 
 namespace mssim {
 namespace {

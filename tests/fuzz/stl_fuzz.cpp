@@ -1,7 +1,7 @@
 // Surfaces in STL files.
 
 #include "fuzz_checks.h"
-#include "mesh/mesh_error.h"
+#include "geometry/mesh_error.h"
 #include "mesh/surface_file.h"
 #include "surface_checks.h"
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "fuzz_checks.h"
-#include "garment/stance_guess.h"
-#include "mesh/mesh_error.h"
-#include "mesh/openings.h"
+#include "garment/body/stance_guess.h"
+#include "geometry/mesh_error.h"
+#include "geometry/openings.h"
 #include "mesh/surface_file.h"
-#include "model/decimal.h"
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {

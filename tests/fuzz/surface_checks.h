@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/surface.h"
+#include "geometry/surface.h"
 
 namespace mssim {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "fuzz_checks.h"
-#include "mesh/mesh_error.h"
+#include "geometry/mesh_error.h"
 #include "mesh/tetgen_files.h"
 
 namespace mssim {

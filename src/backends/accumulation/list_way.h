@@ -8,9 +8,9 @@
 #include <span>
 #include <string>
 
-#include "backends/backend.h"
-#include "backends/spin_barrier.h"
-#include "backends/spring_list.h"
+#include "backends/interface/backend.h"
+#include "backends/spring_list/spring_list.h"
+#include "backends/threads/spin_barrier.h"
 
 namespace mssim {
 

@@ -4,7 +4,7 @@
 
 #include "backends/accumulation/ways.h"
 #include "backends/backends.h"
-#include "backends/threads_mutex.h"
+#include "backends/spring_list/threads_mutex.h"
 
 namespace mssim {
 namespace {

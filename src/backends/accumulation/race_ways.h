@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "backends/backend.h"
+#include "backends/backends.h"
 
 namespace mssim {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "backends/aligned_array.h"
-#include "backends/packed_springs.h"
-#include "backends/surroundings.h"
+#include "backends/interface/surroundings.h"
+#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/packed_springs.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 

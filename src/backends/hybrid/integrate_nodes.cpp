@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "backends/sliced_graph/update_nodes-inl.h"
+#include "backends/layouts/update_nodes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "backends/hybrid/host_nodes.h"
-#include "backends/instruction_sets.h"
+#include "backends/vectors/instruction_sets.h"
 
 namespace mssim {
 

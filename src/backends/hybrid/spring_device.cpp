@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "backends/opencl/program.h"
+#include "backends/devices/program.h"
 
 namespace mssim {
 namespace {

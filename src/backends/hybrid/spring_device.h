@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "backends/node_records.h"
-#include "backends/opencl/buffer.h"
-#include "backends/opencl/device.h"
+#include "backends/devices/buffer.h"
+#include "backends/devices/device.h"
+#include "backends/layouts/node_records.h"
+#include "backends/layouts/packed_springs.h"
 #include "backends/opencl/lots.h"
-#include "backends/packed_springs.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "backends/grid_bands/band_sheet.h"
+#include "backends/layouts/band_sheet.h"
 #include "backends/opencl/grid_program.h"
 #include "backends/opencl/stages.h"
 #include "kernels/grid_parameters.h"

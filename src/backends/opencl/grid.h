@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "backends/backend.h"
-#include "backends/opencl/device.h"
+#include "backends/devices/device.h"
+#include "backends/interface/backend.h"
 
 namespace mssim {
 

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "backends/opencl/program.h"
+#include "backends/devices/program.h"
 #include "model/spring.h"
 
 namespace mssim {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "backends/opencl/device.h"
+#include "backends/devices/device.h"
 
 namespace mssim {
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "backends/node_records.h"
+#include "backends/layouts/node_records.h"
+#include "backends/layouts/sliced_graph.h"
 #include "backends/opencl/lots.h"
 #include "backends/opencl/mesh_program.h"
 #include "backends/opencl/stages.h"
-#include "backends/sliced_graph/sliced_graph.h"
 #include "kernels/mesh_parameters.h"
 
 namespace mssim {

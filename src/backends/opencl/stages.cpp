@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "backends/opencl/call.h"
-#include "backends/opencl/program.h"
+#include "backends/devices/call.h"
+#include "backends/devices/program.h"
 #include "integrators/coefficients.h"
 
 namespace mssim {

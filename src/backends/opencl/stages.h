@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "backends/backend.h"
-#include "backends/opencl/buffer.h"
-#include "backends/opencl/device.h"
-#include "backends/opencl/sub_device.h"
-#include "backends/surroundings.h"
+#include "backends/devices/buffer.h"
+#include "backends/devices/device.h"
+#include "backends/devices/sub_device.h"
+#include "backends/interface/backend.h"
+#include "backends/interface/surroundings.h"
 #include "kernels/step_parameters.h"
 
 namespace mssim {

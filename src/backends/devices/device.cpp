@@ -1,0 +1,195 @@
+#include "backends/devices/device.h"
+
+#include <CL/cl_ext.h>
+
+#include <CL/opencl.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace mssim {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+OpenclDeviceType type_of(cl_device_type type) {
+  if ((type & CL_DEVICE_TYPE_GPU) != 0) return OpenclDeviceType::gpu;
+  if ((type & CL_DEVICE_TYPE_CPU) != 0) return OpenclDeviceType::cpu;
+  return OpenclDeviceType::other;
+}
+
+HostMemory host_memory_of(const cl::Device& device) {
+  if (device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_TRUE) return HostMemory::none;
+  // Before OpenCL 2.0 the question is an error.
+  cl_device_svm_capabilities can = 0;
+  const cl_int error = clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof can, &can, nullptr);
+  return error == CL_SUCCESS && (can & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0 ? HostMemory::fine_grained
+                                                                             : HostMemory::mapped;
+}
+
+std::string listing(std::span<const OpenclDevice> devices) {
+  std::string text;
+  for (const OpenclDevice& device : devices)
+    text += (text.empty() ? "" : ", ") + std::to_string(device.number) + " (" + device.name + ")";
+  return text;
+}
+
+struct ErrorName {
+  int code;
+  std::string_view name;
+};
+#define MSSIM_NAME(code) \
+  ErrorName { code, #code }
+constexpr std::array error_names{
+    MSSIM_NAME(CL_DEVICE_NOT_FOUND),
+    MSSIM_NAME(CL_DEVICE_NOT_AVAILABLE),
+    MSSIM_NAME(CL_COMPILER_NOT_AVAILABLE),
+    MSSIM_NAME(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+    MSSIM_NAME(CL_OUT_OF_RESOURCES),
+    MSSIM_NAME(CL_OUT_OF_HOST_MEMORY),
+    MSSIM_NAME(CL_PROFILING_INFO_NOT_AVAILABLE),
+    MSSIM_NAME(CL_MEM_COPY_OVERLAP),
+    MSSIM_NAME(CL_BUILD_PROGRAM_FAILURE),
+    MSSIM_NAME(CL_MAP_FAILURE),
+    MSSIM_NAME(CL_MISALIGNED_SUB_BUFFER_OFFSET),
+    MSSIM_NAME(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
+    MSSIM_NAME(CL_COMPILE_PROGRAM_FAILURE),
+    MSSIM_NAME(CL_LINKER_NOT_AVAILABLE),
+    MSSIM_NAME(CL_LINK_PROGRAM_FAILURE),
+    MSSIM_NAME(CL_INVALID_VALUE),
+    MSSIM_NAME(CL_INVALID_DEVICE_TYPE),
+    MSSIM_NAME(CL_INVALID_PLATFORM),
+    MSSIM_NAME(CL_INVALID_DEVICE),
+    MSSIM_NAME(CL_INVALID_CONTEXT),
+    MSSIM_NAME(CL_INVALID_QUEUE_PROPERTIES),
+    MSSIM_NAME(CL_INVALID_COMMAND_QUEUE),
+    MSSIM_NAME(CL_INVALID_HOST_PTR),
+    MSSIM_NAME(CL_INVALID_MEM_OBJECT),
+    MSSIM_NAME(CL_INVALID_BINARY),
+    MSSIM_NAME(CL_INVALID_BUILD_OPTIONS),
+    MSSIM_NAME(CL_INVALID_PROGRAM),
+    MSSIM_NAME(CL_INVALID_PROGRAM_EXECUTABLE),
+    MSSIM_NAME(CL_INVALID_KERNEL_NAME),
+    MSSIM_NAME(CL_INVALID_KERNEL_DEFINITION),
+    MSSIM_NAME(CL_INVALID_KERNEL),
+    MSSIM_NAME(CL_INVALID_ARG_INDEX),
+    MSSIM_NAME(CL_INVALID_ARG_VALUE),
+    MSSIM_NAME(CL_INVALID_ARG_SIZE),
+    MSSIM_NAME(CL_INVALID_KERNEL_ARGS),
+    MSSIM_NAME(CL_INVALID_WORK_DIMENSION),
+    MSSIM_NAME(CL_INVALID_WORK_GROUP_SIZE),
+    MSSIM_NAME(CL_INVALID_WORK_ITEM_SIZE),
+    MSSIM_NAME(CL_INVALID_GLOBAL_OFFSET),
+    MSSIM_NAME(CL_INVALID_EVENT_WAIT_LIST),
+    MSSIM_NAME(CL_INVALID_EVENT),
+    MSSIM_NAME(CL_INVALID_OPERATION),
+    MSSIM_NAME(CL_INVALID_BUFFER_SIZE),
+    MSSIM_NAME(CL_INVALID_GLOBAL_WORK_SIZE),
+    MSSIM_NAME(CL_INVALID_PROPERTY),
+    MSSIM_NAME(CL_INVALID_COMPILER_OPTIONS),
+    MSSIM_NAME(CL_INVALID_LINKER_OPTIONS),
+    MSSIM_NAME(CL_PLATFORM_NOT_FOUND_KHR),
+};
+#undef MSSIM_NAME
+
+}  // namespace
+
+std::string_view name_of(OpenclDeviceType type) {
+  switch (type) {
+    case OpenclDeviceType::cpu:
+      return "cpu";
+    case OpenclDeviceType::gpu:
+      return "gpu";
+    case OpenclDeviceType::other:
+      break;
+  }
+  return "other";
+}
+
+std::string trimmed(std::string text) {
+  const auto blank = [](char c) { return c == '\0' || std::isspace(static_cast<unsigned char>(c)) != 0; };
+  while (!text.empty() && blank(text.back())) text.pop_back();
+  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
+  return text;
+}
+
+OpenclDevice described(cl_device_id id, const std::string& platform, int number) {
+  const cl::Device device(id, true);
+  return {.number = number,
+          .name = trimmed(device.getInfo<CL_DEVICE_NAME>()),
+          .platform = platform,
+          .driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>()),
+          .type = type_of(device.getInfo<CL_DEVICE_TYPE>()),
+          .compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(),
+          .global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
+          .max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
+          .preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
+          .host_memory = host_memory_of(device),
+          .id = id};
+}
+
+OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted) {
+  if (devices.empty())
+    throw Unavailable(
+        "no OpenCL device on this machine: install a driver, for example Debian's pocl-opencl-icd for the "
+        "CPU");
+  if (wanted.empty()) return devices.front();
+
+  if (std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
+    for (const OpenclDevice& device : devices)
+      if (std::to_string(device.number) == wanted) return device;
+    throw Unavailable("no OpenCL device has the number " + std::string(wanted) +
+                      "; there are: " + listing(devices));
+  }
+
+  std::vector<OpenclDevice> fitting;
+  for (const OpenclDevice& device : devices)
+    if (lower(device.name).find(lower(wanted)) != std::string::npos) fitting.push_back(device);
+  if (fitting.empty())
+    throw Unavailable("no OpenCL device has \"" + std::string(wanted) +
+                      "\" in its name; there are: " + listing(devices));
+  if (fitting.size() > 1)
+    throw Unavailable("several OpenCL devices have \"" + std::string(wanted) +
+                      "\" in their names, choose one by its number: " + listing(fitting));
+  return fitting.front();
+}
+
+int lanes_for(const OpenclDevice& device) {
+  if (device.type != OpenclDeviceType::cpu) return 1;
+  int lanes = 4;
+  while (lanes < 16 && static_cast<std::uint32_t>(lanes) < device.preferred_float_width) lanes *= 2;
+  return lanes;
+}
+
+std::string label_of(const OpenclDevice& device, DeviceMemory memory) {
+  return memory == DeviceMemory::copy ? device.name + " (copied memory)" : device.name;
+}
+
+void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes) {
+  const auto megabytes = [](std::uint64_t bytes) { return std::to_string((bytes >> 20) + 1) + " MiB"; };
+  std::uint64_t largest = 0, all = 0;
+  for (const std::uint64_t bytes : buffer_bytes) {
+    largest = std::max(largest, bytes);
+    all += bytes;
+  }
+  if (largest > device.max_allocation_bytes)
+    throw Unsupported("the scene needs an OpenCL buffer of " + megabytes(largest) + ", " + device.name +
+                      " allocates at most " + megabytes(device.max_allocation_bytes) + " in one piece");
+  if (all > device.global_memory_bytes)
+    throw Unsupported("the scene needs " + megabytes(all) + " of OpenCL buffers, " + device.name + " has " +
+                      megabytes(device.global_memory_bytes) + " in all");
+}
+
+std::string opencl_failure(std::string_view call, int error) {
+  const auto known = std::find_if(error_names.begin(), error_names.end(),
+                                  [&](const ErrorName& entry) { return entry.code == error; });
+  return "the OpenCL call " + std::string(call) + " failed with " +
+         (known == error_names.end() ? "an unknown error" : std::string(known->name)) + " (" +
+         std::to_string(error) + ")";
+}
+
+}  // namespace mssim

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <CL/cl.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+enum class OpenclDeviceType : std::uint8_t { cpu, gpu, other };
+
+/// What host memory can be to a device's kernels.
+enum class HostMemory : std::uint8_t {
+  none,         ///< nothing: the device has memory of its own
+  mapped,       ///< buffers lie there without being copied; the host maps them to read or write
+  fine_grained  ///< the same, and each sees what the other wrote without mapping
+};
+
+/// One OpenCL device of this machine.
+struct OpenclDevice {
+  int number = 0;  ///< in this list, from 0; what `--device` takes
+  std::string name;
+  std::string platform;
+  std::string driver_version;
+  OpenclDeviceType type = OpenclDeviceType::other;
+  std::uint32_t compute_units = 0;
+  std::uint64_t global_memory_bytes = 0;
+  std::uint64_t max_allocation_bytes = 0;   ///< largest single buffer
+  std::uint32_t preferred_float_width = 0;  ///< floats in the vector that suits the device best
+  HostMemory host_memory = HostMemory::none;
+  cl_device_id id = nullptr;
+};
+
+/// "cpu", "gpu" or "other".
+std::string_view name_of(OpenclDeviceType type);
+
+/// A text from a driver without its closing zero and the spaces that some pad names with.
+std::string trimmed(std::string text);
+
+/// What the device says of itself. Lets cl::Error through.
+OpenclDevice described(cl_device_id id, const std::string& platform, int number);
+
+/// The device that `wanted` names: empty for the first, its number, or a part of its name in any case.
+/// Throws Unavailable when there is none or when the part fits several; the sentence lists what there is.
+OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
+
+/// Nodes or springs per work-item that suit the device: wide vectors for a CPU, whose driver packs nothing by
+/// itself, one for everything else.
+int lanes_for(const OpenclDevice& device);
+
+/// For the `device` column: the device's name, and that memory is copied where it is.
+std::string label_of(const OpenclDevice& device, DeviceMemory memory);
+
+/// Throws Unsupported unless the device can hold buffers of these many bytes all at once.
+void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes);
+
+/// One sentence about a failed OpenCL call: the call, the error's name and its number.
+std::string opencl_failure(std::string_view call, int error);
+
+}  // namespace mssim

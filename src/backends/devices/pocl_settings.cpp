@@ -1,0 +1,93 @@
+#include "backends/devices/pocl_settings.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+
+#include "platform/process_cpus.h"
+#include "platform/temporary_folder.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* cache_variable = "POCL_CACHE_DIR";
+
+std::string value_of(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value == nullptr ? "" : value;
+}
+
+/// Empty where the folder is there, or can be made, and files can be made in it; else what the system says.
+std::string obstacle_to_writing(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return error.message();
+  std::string name = (folder / "mssim-XXXXXX").string();
+  const int file = ::mkstemp(name.data());
+  if (file < 0) return std::strerror(errno);
+  ::close(file);
+  ::unlink(name.c_str());
+  return "";
+}
+
+/// Where PoCL keeps its cache unless it is told otherwise (lib/CL/pocl_cache.c).
+fs::path default_cache() {
+  if (const std::string caches = value_of("XDG_CACHE_HOME"); !caches.empty())
+    return fs::path(caches) / "pocl" / "kcache";
+  if (const char* home = std::getenv("HOME"); home != nullptr)
+    return fs::path(home) / ".cache" / "pocl" / "kcache";
+  return "/tmp/pocl/kcache";
+}
+
+/// The same for a folder of mssim's, or nothing where the user has none for caches.
+fs::path own_cache() {
+  if (const fs::path caches = value_of("XDG_CACHE_HOME"); caches.is_absolute())
+    return caches / "mssim" / "pocl";
+  if (const fs::path home = value_of("HOME"); home.is_absolute()) return home / ".cache" / "mssim" / "pocl";
+  return {};
+}
+
+}  // namespace
+
+void bind_pocl_threads() {
+  if (std::ssize(process_cpus()) == sysconf(_SC_NPROCESSORS_CONF)) setenv("POCL_AFFINITY", "1", 0);
+}
+
+PoclCache provide_pocl_cache() {
+  PoclCache cache;
+  if (const std::string chosen = value_of(cache_variable); !chosen.empty()) {
+    if (const std::string obstacle = obstacle_to_writing(chosen); !obstacle.empty())
+      cache.failure = "its cache " + chosen + " cannot be written (" + obstacle +
+                      "); set POCL_CACHE_DIR to a folder that can be, or unset it";
+    return cache;
+  }
+  const fs::path usual = default_cache();
+  const std::string obstacle = obstacle_to_writing(usual);
+  if (obstacle.empty()) {
+    // Set and empty, it ends PoCL and whoever loads it.
+    if (std::getenv(cache_variable) != nullptr) setenv(cache_variable, usual.c_str(), 1);
+    return cache;
+  }
+  if (const fs::path own = own_cache(); !own.empty() && obstacle_to_writing(own).empty()) {
+    setenv(cache_variable, own.c_str(), 1);
+    return cache;
+  }
+  const std::string cannot = "PoCL's cache " + usual.string() + " cannot be written (" + obstacle + ")";
+  try {
+    setenv(cache_variable, temporary_folder_of_process().c_str(), 1);
+    cache.note =
+        cannot + ", so that every run compiles its kernels anew; set POCL_CACHE_DIR to a folder that can be";
+  } catch (const std::runtime_error& error) {
+    cache.failure =
+        "its cache " + usual.string() + " cannot be written (" + obstacle + "), and mssim " + error.what();
+  }
+  return cache;
+}
+
+}  // namespace mssim

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "backends/devices/device.h"
+#include "integrators/integrator.h"
+
+namespace mssim {
+
+/// The text of OpenCL programs, which consists of files in kernels/ and of what is generated from the table
+/// of integrators. It depends on the integrator and on `lanes` alone (nodes or springs side by side in one
+/// number: 1, 4, 8 or 16), so that a driver's cache of built programs serves every scene.
+
+/// Text of the files in kernels/, in this order, for that many lanes. Throws std::runtime_error when one is
+/// missing.
+std::string program_text(int lanes, std::initializer_list<const char*> files);
+
+/// Name of the stage's kernel.
+std::string stage_kernel_name(std::size_t stage);
+
+/// A stage, and which pairs share memory. Pairs that share it have one name and are one argument.
+struct StoredStage {
+  const Integrator& integrator;
+  std::size_t number;
+  Storage storage;
+
+  const Stage& stage() const { return integrator.stages[number]; }
+  /// The arrays that hold `pair`.
+  Pair stored(Pair pair) const { return storage_of(integrator, pair, storage); }
+};
+
+/// The stored pairs whose buffers are the first arguments of the stage's kernel, in their order. The step
+/// parameters follow (kernels/step_parameters.h), then what the topology needs.
+std::vector<Pair> stage_arguments(const StoredStage& stage);
+
+/// These pairs as parameters, and as arguments of a call, each with a comma behind it.
+std::string pair_parameters(const StoredStage& stage);
+std::string pair_names_of(const StoredStage& stage);
+
+/// The name by which the stage's kernel knows `pair`.
+std::string name_of(const StoredStage& stage, Pair pair);
+
+/// `update_N`: the lines of stage N for the nodes of a site, once their springs are summed. It takes the
+/// pairs, the site, its nodes, the spring forces per mass, the shape of the topology and the step parameters,
+/// and asks the topology for Site, Shape, load_position, load_velocity, store_position and store_velocity.
+std::string update_text(const StoredStage& stage);
+
+/// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).
+std::string packed_springs_program_text(int lanes);
+
+/// The built program. Square roots and divisions are correctly rounded where the device can do that.
+/// Throws Unavailable with the compiler's first complaint.
+cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text);
+
+}  // namespace mssim

@@ -1,0 +1,154 @@
+#include "backends/hybrid/hybrid.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+#include "backends/devices/call.h"
+#include "backends/devices/offer.h"
+#include "backends/devices/sub_device.h"
+#include "backends/hybrid/host_nodes.h"
+#include "backends/hybrid/integrate_nodes.h"
+#include "backends/hybrid/spring_device.h"
+#include "backends/layouts/node_records.h"
+#include "backends/threads/chunk_tickets.h"
+
+namespace mssim {
+namespace {
+
+/// Takes turns: the device computes the forces of all springs (hybrid/spring_device.h), then the host's
+/// threads sum them at the nodes and integrate (hybrid/host_nodes.h).
+class Hybrid final : public Backend {
+ public:
+  Hybrid(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
+         int threads, int lanes, DeviceMemory memory)
+      : integrator_(integrator),
+        device_label_(label_of(device, memory)),
+        runs_on_host_(device.type == OpenclDeviceType::cpu),
+        threads_(threads),
+        processors_(std::max(threads, threads_of(device))),
+        kernel_(node_kernels().front()),
+        nodes_(system, integrator, dt_s),
+        // All forces are there before a node is written, so that pairs may share memory.
+        device_(system, nodes_.packed, stored_pairs(integrator, Storage::in_place), device, lanes, memory) {
+    nodes_.packed.units = {};
+    nodes_.packed.entries = {};
+    // Drivers finish compiling at a kernel's first launch with a range.
+    set_state(system.start);
+    step(1);
+    set_state(system.start);
+  }
+
+  void set_state(const State& state) override {
+    write_records(state, nodes_.packed.place, device_.pair(present_).data());
+  }
+
+  void step(int count) override {
+    constexpr int most = 1 << 20;  // a ticket numbers a call's phases
+    static_assert(most * max_stages <= ChunkTickets::most_phases);
+    for (; count > most; count -= most) take_steps(most);
+    take_steps(count);
+  }
+
+  State state() const override { return read_records(device_.pair(present_).data(), nodes_.packed.place); }
+
+  std::string device() const override { return device_label_; }
+  int threads() const override { return processors_; }  // host and device take turns
+  bool runs_on_host() const override { return runs_on_host_; }
+
+ private:
+  /// Slices that a thread integrates between two looks at what is left: 16, unless those were too many
+  /// chunks.
+  std::size_t chunk_slices() const {
+    return std::max<std::size_t>(16, nodes_.packed.slices() / ChunkTickets::most_chunks + 1);
+  }
+
+  /// Which stored pair has a role when the state lies in `present`.
+  Pair stored_pair(Pair role, Pair present) const {
+    const Pair stored = storage_of(integrator_, role, Storage::in_place);
+    if (stored == Pair::state) return present;
+    if (stored == Pair::next) return present == Pair::state ? Pair::next : Pair::state;
+    return stored;
+  }
+
+  /// Where the state lies before the call's step number `step`.
+  Pair present_at(std::size_t step) const {
+    return step % 2 == 0 ? present_ : stored_pair(Pair::next, present_);
+  }
+
+  /// Integrates the nodes of one chunk of slices in the stage that the ticket's phase stands for.
+  void work_on(const ChunkTickets::Ticket& ticket) const {
+    const Pair present = present_at(ticket.phase / integrator_.stage_count);
+    MappedNodes mapped{.pairs = {}, .forces = device_.forces()};
+    for (std::size_t i = 0; i < pair_kinds; ++i)
+      mapped.pairs[i] = device_.pair(stored_pair(static_cast<Pair>(i), present)).data();
+    const std::size_t begin = ticket.chunk * chunk_slices();
+    kernel_.integrate(nodes_, mapped, ticket.phase % integrator_.stage_count, begin,
+                      std::min(begin + chunk_slices(), nodes_.packed.slices()));
+  }
+
+  /// One parallel region for all steps. Thread 0 drives the device; a phase is what the host does in a stage.
+  void take_steps(int count) {
+    const std::size_t stages = integrator_.stage_count;
+    ChunkTickets tickets(
+        static_cast<std::uint32_t>((nodes_.packed.slices() + chunk_slices() - 1) / chunk_slices()));
+    const auto act = [&](const ChunkTickets::Ticket& ticket) { work_on(ticket); };
+    std::exception_ptr failure;  // of thread 0; none may leave the region
+#pragma omp parallel num_threads(threads_)
+    {
+      if (omp_get_thread_num() == 0) {
+        try {
+          for (std::size_t phase = 0; phase < static_cast<std::size_t>(count) * stages; ++phase) {
+            device_.compute_forces(
+                stored_pair(integrator_.stages[phase % stages].gather, present_at(phase / stages)));
+            tickets.open();
+            tickets.work(0, act);
+            tickets.wait_until_finished();
+          }
+        } catch (...) {
+          failure = std::current_exception();
+        }
+        tickets.close();
+      } else {
+        tickets.work_until_closed(0, 0, act, [] {});  // a device on the same cores: no spinning
+      }
+    }
+    present_ = present_at(static_cast<std::size_t>(count));
+    if (failure) opencl_call<std::runtime_error>([&] { std::rethrow_exception(failure); });
+  }
+
+  const Integrator& integrator_;
+  std::string device_label_;
+  bool runs_on_host_;
+  int threads_;     // of the host
+  int processors_;  // of the host or the device, whichever takes more
+  NodeKernel kernel_;
+  HostNodes nodes_;
+  SpringDevice device_;
+  Pair present_ = Pair::state;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int threads, int lanes,
+                                     DeviceMemory memory) {
+  refuse_garment(system);
+  if (threads < 1)
+    throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
+  return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
+    return std::make_unique<Hybrid>(system, integrator, dt_s, device, threads, lanes, memory);
+  });
+}
+
+std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options) {
+  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
+  return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory);
+}
+
+}  // namespace mssim

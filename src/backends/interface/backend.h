@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "integrators/integrator.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// How host and OpenCL device exchange data.
+enum class DeviceMemory : std::uint8_t {
+  /// Both work on the same arrays in turn. Where the device shares the host's memory nothing is copied;
+  /// elsewhere the driver copies an array each time it changes hands.
+  shared,
+  /// Each has arrays of its own, and what changed is copied from one to the other.
+  copy
+};
+
+/// What the user chose about where a backend runs.
+struct ExecutionOptions {
+  int threads = 0;  ///< host threads, and compute units of a device that is a processor; at least 1
+  std::string device =
+      {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
+  DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
+};
+
+/// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.
+struct Unavailable : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Thrown when a backend runs here but not this scene or integrator; what() is the reason.
+struct Unsupported : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The mass of every node, kg. Throws Unsupported when they differ.
+inline double require_uniform_mass(const System& system) {
+  const std::optional<double> mass = uniform_node_mass(system);
+  if (!mass) throw Unsupported("the nodes of a cloth must weigh the same, and this one's do not");
+  return *mass;
+}
+
+/// Whether the system's steps are those of Algorithm 1 (garment/stepping/).
+inline bool is_garment(const System& system) { return std::holds_alternative<Garment>(system.topology); }
+
+/// Throws Unsupported for a garment.
+inline void refuse_garment(const System& system) {
+  if (is_garment(system)) throw Unsupported("garments are dressed by serial, openmp and opencl");
+}
+
+/// One simulation under way. All calls block until their work is done: a caller may read the clock around
+/// them.
+class Backend {
+ public:
+  Backend() = default;
+  Backend(const Backend&) = delete;
+  Backend& operator=(const Backend&) = delete;
+  virtual ~Backend() = default;
+
+  /// Takes a state of the system's size; pinned nodes must stand at their start, at rest.
+  virtual void set_state(const State& state) = 0;
+  /// Takes `count` steps of the dt given at construction. Never checks its numbers: callers do, outside timed
+  /// regions.
+  virtual void step(int count) = 0;
+  /// The present state, in the scene's node order.
+  virtual State state() const = 0;
+  /// What the steps run on, for the `device` column, for example "cpu" or an OpenCL device's name.
+  virtual std::string device() const = 0;
+  /// Processors of this machine that compute a step; of a device with processors of its own, the thread that
+  /// waits for it. More than ExecutionOptions::threads only where a driver cannot keep to it.
+  virtual int threads() const = 0;
+  /// Whole steps that one pass over the state in memory takes, where stages overlap; 0 where every stage
+  /// makes a pass of its own. What a step moves through memory is counted by it.
+  virtual int steps_per_pass() const { return 0; }
+  /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
+  virtual bool runs_on_host() const { return true; }
+};
+
+/// Memory that a backend takes at its peak, which is mostly while it is made: bytes a node, a node and pair
+/// that the integrator needs, a node and thread, and a spring. What does not grow with the scene is left out.
+struct MemoryUse {
+  double node = 0;
+  double pair_node = 0;
+  Storage storage = Storage::in_place;  ///< which pairs it needs
+  double thread_node = 0;
+  double spring = 0;
+
+  double bytes(const Integrator& integrator, std::uint64_t nodes, std::uint64_t springs, int threads) const {
+    const auto pairs = static_cast<double>(stored_pairs(integrator, storage).size());
+    return (node + pair_node * pairs + thread_node * threads) * static_cast<double>(nodes) +
+           spring * static_cast<double>(springs);
+  }
+};
+
+/// Of a SpringList<float>.
+inline constexpr MemoryUse spring_list_memory{.node = 17, .pair_node = 24};
+
+}  // namespace mssim

@@ -1,0 +1,78 @@
+#include "backends/layouts/cuthill_mckee.h"
+
+#include <algorithm>
+
+namespace mssim {
+namespace {
+
+/// A node at the rim of the component of `node`: the farthest one, of least degree among those, seen from the
+/// farthest one, and so on until the distance no longer grows (A. George and J. Liu, 1979). `distance` must
+/// be unreached for the component's nodes, and is again afterwards.
+std::uint32_t rim_node(const Adjacency& graph, std::uint32_t node, std::vector<std::uint32_t>& distance,
+                       std::uint32_t unreached) {
+  std::vector<std::uint32_t> queue;
+  for (std::uint32_t eccentricity = 0;;) {
+    queue.assign(1, node);
+    distance[node] = 0;
+    for (std::size_t i = 0; i < queue.size(); ++i)
+      for (const std::uint32_t other : graph.of(queue[i]))
+        if (distance[other] == unreached) {
+          distance[other] = distance[queue[i]] + 1;
+          queue.push_back(other);
+        }
+    const std::uint32_t farthest = distance[queue.back()];
+    std::uint32_t candidate = queue.back();
+    for (const std::uint32_t other : queue)
+      if (distance[other] == farthest && graph.degree(other) < graph.degree(candidate)) candidate = other;
+    for (const std::uint32_t other : queue) distance[other] = unreached;
+    if (farthest <= eccentricity) return node;
+    eccentricity = farthest;
+    node = candidate;
+  }
+}
+
+}  // namespace
+
+Adjacency::Adjacency(std::size_t nodes, std::span<const Spring> springs)
+    : first(nodes + 1, 0), neighbours(2 * springs.size()) {
+  for (const Spring& spring : springs) {
+    ++first[spring.first + 1];
+    ++first[spring.second + 1];
+  }
+  for (std::size_t node = 0; node < nodes; ++node) first[node + 1] += first[node];
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (const Spring& spring : springs) {
+    neighbours[next[spring.first]++] = spring.second;
+    neighbours[next[spring.second]++] = spring.first;
+  }
+  for (std::size_t node = 0; node < nodes; ++node)
+    std::sort(neighbours.begin() + first[node], neighbours.begin() + first[node + 1]);
+}
+
+std::vector<std::uint32_t> reverse_cuthill_mckee(std::size_t nodes, std::span<const Spring> springs) {
+  const Adjacency graph(nodes, springs);
+  const auto none = static_cast<std::uint32_t>(nodes);
+  std::vector<std::uint32_t> order, distance(nodes, none);
+  std::vector<bool> placed(nodes, false);
+  order.reserve(nodes);
+  for (std::uint32_t lowest = 0; lowest < none; ++lowest) {
+    if (placed[lowest]) continue;
+    const std::size_t component = order.size();
+    order.push_back(rim_node(graph, lowest, distance, none));
+    placed[order.back()] = true;
+    for (std::size_t i = component; i < order.size(); ++i) {
+      const std::size_t children = order.size();
+      for (const std::uint32_t other : graph.of(order[i]))
+        if (!placed[other]) {
+          placed[other] = true;
+          order.push_back(other);
+        }
+      std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(children), order.end(),
+                       [&](std::uint32_t a, std::uint32_t b) { return graph.degree(a) < graph.degree(b); });
+    }
+    std::reverse(order.begin() + static_cast<std::ptrdiff_t>(component), order.end());
+  }
+  return order;
+}
+
+}  // namespace mssim

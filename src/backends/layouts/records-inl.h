@@ -1,0 +1,156 @@
+// Node records (sliced_bodies.h) to and from vectors of components, transposed in registers. Compiled once
+// per instruction set, so the guard toggles.
+#if defined(MSSIM_RECORDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MSSIM_RECORDS_INL_H_
+#undef MSSIM_RECORDS_INL_H_
+#else
+#define MSSIM_RECORDS_INL_H_
+#endif
+
+#include "backends/vectors/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+struct NodeLanes {
+  Lanes3 x, v;
+};
+
+#if HWY_TARGET == HWY_SCALAR
+
+/// The nodes whose records lie at record(0), record(1) ..., one a lane.
+template <std::size_t lanes, class Record>
+HWY_INLINE NodeLanes load_records(Record record) {
+  static_assert(lanes == 1);
+  const float* r = record(0);
+  return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}};
+}
+
+/// Writes `lanes` records that follow each other at `to`.
+template <std::size_t lanes>
+HWY_INLINE void store_records(float* to, const NodeLanes& node) {
+  static_assert(lanes == 1);
+  const FloatTag d;
+  hn::Store(node.x.x.v, d, to);
+  hn::Store(node.x.y.v, d, to + 1);
+  hn::Store(node.x.z.v, d, to + 2);
+  hn::Store(node.v.x.v, d, to + 4);
+  hn::Store(node.v.y.v, d, to + 5);
+  hn::Store(node.v.z.v, d, to + 6);
+}
+
+#else
+
+/// Transposes in each block of four floats: from four vectors of records to their first three components, or
+/// back (the fourth component is then zero).
+template <class V>
+HWY_INLINE void transpose_blocks(V r0, V r1, V r2, V r3, V* out) {
+  const FloatTag d;
+  const hn::RepartitionToWide<FloatTag> wide;
+  const auto low_01 = hn::BitCast(wide, hn::InterleaveLower(d, r0, r1));
+  const auto low_23 = hn::BitCast(wide, hn::InterleaveLower(d, r2, r3));
+  const auto high_01 = hn::BitCast(wide, hn::InterleaveUpper(d, r0, r1));
+  const auto high_23 = hn::BitCast(wide, hn::InterleaveUpper(d, r2, r3));
+  out[0] = hn::BitCast(d, hn::InterleaveLower(wide, low_01, low_23));
+  out[1] = hn::BitCast(d, hn::InterleaveUpper(wide, low_01, low_23));
+  out[2] = hn::BitCast(d, hn::InterleaveLower(wide, high_01, high_23));
+  out[3] = hn::BitCast(d, hn::InterleaveUpper(wide, high_01, high_23));
+}
+
+/// The even blocks of four floats of `low`, then those of `high`.
+template <class V>
+HWY_INLINE V even_blocks(V low, V high) {
+#if HWY_CAP_GE512
+  // vshuff32x4, which has no name in Highway; its intrinsic makes g++ 12 warn of what it left uninitialised.
+  return V{
+      __builtin_shufflevector(low.raw, high.raw, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)};
+#else
+  return hn::ConcatLowerLower(FloatTag(), high, low);
+#endif
+}
+
+/// The odd blocks of four floats of `low`, then those of `high`.
+template <class V>
+HWY_INLINE V odd_blocks(V low, V high) {
+#if HWY_CAP_GE512
+  return V{
+      __builtin_shufflevector(low.raw, high.raw, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31)};
+#else
+  return hn::ConcatUpperUpper(FloatTag(), high, low);
+#endif
+}
+
+/// The same for vectors.
+template <std::size_t lanes, class Record>
+HWY_INLINE NodeLanes load_records(Record record) {
+  static_assert(lanes == 4 || lanes == 8 || lanes == 16);
+  const FloatTag d;
+  using Vector = hn::Vec<FloatTag>;
+  if constexpr (lanes == 4) {
+    Vector x[4], v[4];
+    transpose_blocks<Vector>(hn::Load(d, record(0)), hn::Load(d, record(1)), hn::Load(d, record(2)),
+                             hn::Load(d, record(3)), x);
+    transpose_blocks<Vector>(hn::Load(d, record(0) + 4), hn::Load(d, record(1) + 4),
+                             hn::Load(d, record(2) + 4), hn::Load(d, record(3) + 4), v);
+    return {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}};
+  } else {
+    // Record i, with 16 lanes followed by record i + 4.
+    const auto load = [&](std::size_t i) MSSIM_INLINE_LAMBDA -> Vector {
+      if constexpr (lanes == 16) {
+        const hn::Half<FloatTag> half;
+        return hn::Combine(d, hn::Load(half, record(i + 4)), hn::Load(half, record(i)));
+      } else {
+        return hn::Load(d, record(i));
+      }
+    };
+    constexpr std::size_t middle = lanes / 2;
+    Vector low[4], high[4];  // even blocks: a component of positions, odd ones: of velocities
+    transpose_blocks<Vector>(load(0), load(1), load(2), load(3), low);
+    transpose_blocks<Vector>(load(middle), load(middle + 1), load(middle + 2), load(middle + 3), high);
+    return {{even_blocks(low[0], high[0]), even_blocks(low[1], high[1]), even_blocks(low[2], high[2])},
+            {odd_blocks(low[0], high[0]), odd_blocks(low[1], high[1]), odd_blocks(low[2], high[2])}};
+  }
+}
+
+/// The same for vectors.
+template <std::size_t lanes>
+HWY_INLINE void store_records(float* to, const NodeLanes& node) {
+  const FloatTag d;
+  using Vector = hn::Vec<FloatTag>;
+  const Vector zero = hn::Zero(d);
+  if constexpr (lanes == 4) {
+    Vector x[4], v[4];
+    transpose_blocks<Vector>(node.x.x.v, node.x.y.v, node.x.z.v, zero, x);
+    transpose_blocks<Vector>(node.v.x.v, node.v.y.v, node.v.z.v, zero, v);
+    for (std::size_t i = 0; i < lanes; ++i) {
+      hn::Store(x[i], d, to + 8 * i);
+      hn::Store(v[i], d, to + 8 * i + 4);
+    }
+  } else {
+    const auto low = [&](Lanes x, Lanes v)
+                         MSSIM_INLINE_LAMBDA { return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(v.v), x.v); };
+    const auto high = [&](Lanes x, Lanes v)
+                          MSSIM_INLINE_LAMBDA { return hn::OddEvenBlocks(v.v, hn::SwapAdjacentBlocks(x.v)); };
+    Vector records[8];  // record i, with 16 lanes followed by record i + 8
+    transpose_blocks<Vector>(low(node.x.x, node.v.x), low(node.x.y, node.v.y), low(node.x.z, node.v.z), zero,
+                             records);
+    transpose_blocks<Vector>(high(node.x.x, node.v.x), high(node.x.y, node.v.y), high(node.x.z, node.v.z),
+                             zero, records + 4);
+    for (std::size_t i = 0; i < 8; ++i) {
+      if constexpr (lanes == 16) {
+        const hn::Half<FloatTag> half;
+        hn::Store(hn::LowerHalf(half, records[i]), half, to + 8 * i);
+        hn::Store(hn::UpperHalf(half, records[i]), half, to + 8 * (i + 8));
+      } else {
+        hn::Store(records[i], d, to + 8 * i);
+      }
+    }
+  }
+}
+
+#endif
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

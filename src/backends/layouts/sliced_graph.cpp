@@ -1,0 +1,96 @@
+#include "backends/layouts/sliced_graph.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "backends/interface/backend.h"
+#include "backends/layouts/cuthill_mckee.h"
+
+namespace mssim {
+namespace {
+
+/// The kind of each node's springs; no_node where it has none. Throws Unsupported where a node has several.
+std::vector<std::uint32_t> kind_of_nodes(const System& system) {
+  std::vector<std::uint32_t> kinds(system.nodes(), SlicedGraph::no_node);
+  for (const Spring& spring : system.springs)
+    for (const std::uint32_t node : {spring.first, spring.second}) {
+      if (kinds[node] == SlicedGraph::no_node) kinds[node] = spring.kind;
+      if (kinds[node] != spring.kind)
+        throw Unsupported("springs of different materials meet in node " + std::to_string(node) +
+                          "; this backend needs bodies of one material each");
+    }
+  return kinds;
+}
+
+struct Neighbour {
+  std::uint32_t place;
+  float rest_length;
+};
+
+}  // namespace
+
+SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
+    : lanes(slice_lanes), place(system.nodes()) {
+  if (system.springs.size() > no_node / 2)
+    throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
+                      " springs, a sliced graph numbers at most 2147483647");
+  const std::vector<std::uint32_t> kinds = kind_of_nodes(system);
+  std::vector<std::uint32_t> degree(system.nodes(), 0);
+  for (const Spring& spring : system.springs) {
+    ++degree[spring.first];
+    ++degree[spring.second];
+  }
+
+  scene_node = reverse_cuthill_mckee(system.nodes(), system.springs);
+  for (std::size_t begin = 0; begin < nodes(); begin += window)
+    std::stable_sort(scene_node.begin() + static_cast<std::ptrdiff_t>(begin),
+                     scene_node.begin() + static_cast<std::ptrdiff_t>(std::min(begin + window, nodes())),
+                     [&](std::uint32_t a, std::uint32_t b) { return degree[a] > degree[b]; });
+  for (std::uint32_t i = 0; i < nodes(); ++i) place[scene_node[i]] = i;
+  scene_node.resize((nodes() + lanes - 1) / lanes * lanes, no_node);
+
+  std::vector<std::vector<Neighbour>> springs(places());
+  for (std::uint32_t node = 0; node < nodes(); ++node) springs[place[node]].reserve(degree[node]);
+  for (const Spring& spring : system.springs) {
+    springs[place[spring.first]].push_back({place[spring.second], spring.rest_length});
+    springs[place[spring.second]].push_back({place[spring.first], spring.rest_length});
+  }
+  first_entry.assign(1, 0);
+  for (std::size_t begin = 0; begin < places(); begin += lanes) {
+    std::size_t largest = 0;
+    for (std::size_t i = begin; i < begin + lanes; ++i) {
+      std::sort(springs[i].begin(), springs[i].end(),
+                [](const Neighbour& a, const Neighbour& b) { return a.place < b.place; });
+      largest = std::max(largest, springs[i].size());
+    }
+    first_entry.push_back(first_entry.back() + static_cast<std::uint32_t>(largest));
+  }
+
+  neighbour.resize(entries() * lanes);
+  stiffness_rest.assign(entries() * lanes, empty_entry);
+  stiffness.assign(places(), 0);
+  damping.assign(places(), 0);
+  held.assign(places(), 0);
+  for (std::size_t i = 0; i < places(); ++i) {
+    const std::size_t slice = i / lanes;
+    for (std::size_t e = first_entry[slice]; e < first_entry[slice + 1]; ++e)
+      neighbour[e * lanes + i % lanes] = static_cast<std::uint32_t>(i);
+    if (scene_node[i] == no_node) held[i] = 1;
+    if (springs[i].empty()) continue;
+    const SpringMaterial& material = system.materials[kinds[scene_node[i]]];
+    const double mass = system.node_mass[scene_node[i]];
+    stiffness[i] = static_cast<float>(material.stiffness / mass);
+    damping[i] = static_cast<float>(material.damping / mass);
+    std::size_t element = first_entry[slice] * lanes + i % lanes;
+    for (const Neighbour& other : springs[i]) {
+      neighbour[element] = other.place;
+      stiffness_rest[element] =
+          static_cast<float>(material.stiffness * static_cast<double>(other.rest_length) / mass);
+      element += lanes;
+    }
+  }
+  for (const std::uint32_t pin : system.pins) held[place[pin]] = 1;
+}
+
+}  // namespace mssim

@@ -1,0 +1,27 @@
+#include "backends/opencl/opencl.h"
+
+#include "backends/devices/call.h"
+#include "backends/devices/offer.h"
+#include "backends/devices/sub_device.h"
+#include "backends/opencl/grid.h"
+#include "backends/opencl/mesh.h"
+
+namespace mssim {
+
+std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int lanes, DeviceMemory memory) {
+  refuse_garment(system);
+  return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
+    if (const auto* grid = std::get_if<GridPatch>(&system.topology))
+      return make_opencl_grid(system, *grid, integrator, dt_s, device, memory, lanes);
+    return make_opencl_mesh(system, integrator, dt_s, device, memory, lanes);
+  });
+}
+
+std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options) {
+  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
+  return make_opencl(system, integrator, dt_s, device, lanes_for(device), options.memory);
+}
+
+}  // namespace mssim

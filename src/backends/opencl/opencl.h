@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/devices/device.h"
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+/// Steps a system on an OpenCL device, `lanes` nodes side by side (1, 4, 8 or 16): one fused kernel per
+/// stage, all steps queued one behind the other. Host and device exchange data when a state is set or read
+/// and never within a step, whose time `memory` therefore does not change. See the other make_opencl for
+/// errors.
+std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int lanes,
+                                     DeviceMemory memory = DeviceMemory::shared);
+
+/// The same on the device that options.device names, and where that is a processor on options.threads of its
+/// compute units. Throws Unavailable where there is no such device or its driver fails, Unsupported where the
+/// scene does not fit into its memory.
+std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options);
+
+}  // namespace mssim

@@ -1,0 +1,88 @@
+#include "backends/openmp/openmp.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "backends/layouts/band_sheet.h"
+#include "backends/openmp/sliced_bodies.h"
+#include "backends/openmp/step_bands.h"
+#include "backends/openmp/step_slices.h"
+
+namespace mssim {
+namespace {
+
+/// A cloth in bands.
+class OpenMpGrid final : public Backend {
+ public:
+  OpenMpGrid(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
+             std::size_t threads, const BandKernel& kernel)
+      : kernel_(kernel), sheet_(system, grid, integrator, dt_s, kernel_.lanes, threads) {
+    sheet_.set_state(system.start);
+  }
+
+  void set_state(const State& state) override { sheet_.set_state(state); }
+  State state() const override { return sheet_.state(); }
+  void step(int count) override { kernel_.step(sheet_, count); }
+  std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
+  int threads() const override { return static_cast<int>(sheet_.parts.size()); }
+  int steps_per_pass() const override { return static_cast<int>(sheet_.steps_per_pass); }
+
+ private:
+  BandKernel kernel_;
+  BandSheet sheet_;
+};
+
+/// Bodies in slices.
+class OpenMpBodies final : public Backend {
+ public:
+  OpenMpBodies(const System& system, const Integrator& integrator, double dt_s, std::size_t threads,
+               const SliceKernel& kernel)
+      : kernel_(kernel), bodies_(system, integrator, dt_s, kernel_.lanes, threads) {
+    bodies_.set_state(system.start);
+  }
+
+  void set_state(const State& state) override { bodies_.set_state(state); }
+  State state() const override { return bodies_.state(); }
+  void step(int count) override { kernel_.step(bodies_, count); }
+  std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
+  int threads() const override { return static_cast<int>(bodies_.threads); }
+
+ private:
+  SliceKernel kernel_;
+  SlicedBodies bodies_;
+};
+
+/// The kernel for an instruction set.
+template <class Kernel>
+Kernel kernel_for(const std::vector<Kernel>& kernels, std::string_view instruction_set) {
+  for (const Kernel& kernel : kernels)
+    if (kernel.instruction_set == instruction_set) return kernel;
+  throw std::invalid_argument("openmp has no vector code for " + std::string(instruction_set) +
+                              " that this processor can run");
+}
+
+}  // namespace
+
+std::vector<std::string_view> openmp_instruction_sets() {
+  std::vector<std::string_view> names;
+  for (const BandKernel& kernel : band_kernels()) names.emplace_back(kernel.instruction_set);
+  return names;
+}
+
+std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options) {
+  return make_openmp(system, integrator, dt_s, options, openmp_instruction_sets().front());
+}
+
+std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options, std::string_view instruction_set) {
+  refuse_garment(system);
+  const auto threads = static_cast<std::size_t>(options.threads);
+  if (const auto* grid = std::get_if<GridPatch>(&system.topology))
+    return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads,
+                                        kernel_for(band_kernels(), instruction_set));
+  return std::make_unique<OpenMpBodies>(system, integrator, dt_s, threads,
+                                        kernel_for(slice_kernels(), instruction_set));
+}
+
+}  // namespace mssim

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "backends/interface/surroundings.h"
+#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/node_records.h"
+#include "backends/layouts/sliced_graph.h"
+#include "integrators/coefficients.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// Bodies laid out for vectors of `lanes` floats: what the vector code needs to take steps, with one
+/// integrator and one dt.
+struct SlicedBodies {
+  /// Slices [begin, end), what a thread takes at a time.
+  struct Lot {
+    std::size_t begin, end;
+  };
+
+  std::size_t lanes = 0;
+  std::vector<std::uint32_t> place;        ///< SlicedGraph::place
+  std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
+  /// [entries][2][lanes] in one stream: where the neighbours' records start, in units of offset_floats and as
+  /// std::uint32_t, then SlicedGraph::stiffness_rest.
+  AlignedArray entries;
+  /// [slices][3][lanes] SlicedGraph's stiffness, damping and `held`, the last as 0 or 1.
+  AlignedArray constants;
+  static constexpr std::size_t offset_floats = 2;
+
+  const Integrator* integrator = nullptr;
+  Coefficients<float> coefficients{};
+  Surroundings surroundings{};
+  std::size_t threads = 1;
+  std::vector<Lot> lots;                       ///< of about the same work
+  std::array<AlignedArray, pair_kinds> pairs;  ///< [slices][lanes][record_floats]; empty where not stored
+  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
+
+  /// Cuts the bodies into slices of `slice_lanes` nodes, for at most `thread_count` threads.
+  /// Throws Unsupported like SlicedGraph, and for more nodes than offsets can name.
+  SlicedBodies(const System& system, const Integrator& method, double dt_s, std::size_t slice_lanes,
+               std::size_t thread_count);
+  void set_state(const State& state);
+  State state() const;
+
+  std::size_t slices() const { return first_entry.size() - 1; }
+};
+
+}  // namespace mssim

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "backends/openmp/sliced_bodies.h"
+#include "backends/vectors/instruction_sets.h"
+
+namespace mssim {
+
+/// The vector code for one instruction set.
+struct SliceKernel {
+  std::size_t lanes;                              ///< floats in a vector: SlicedGraph::lanes must equal it
+  const char* instruction_set;                    ///< Highway's name for it
+  void (*step)(SlicedBodies& bodies, int count);  ///< takes `count` steps
+};
+
+/// The kernels for the instruction sets of this processor, at least one, the best first.
+std::vector<SliceKernel> slice_kernels();
+
+}  // namespace mssim

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+/// The paper's "CPU only": one thread, an array of nodes, a loop over the spring list that adds to both ends.
+/// The honest baseline: compiled with the project's ordinary flags, neither tuned nor slowed down.
+std::unique_ptr<Backend> make_serial(const System& system, const Integrator& integrator, double dt_s,
+                                     const ExecutionOptions& options);
+
+/// The same code in double precision: the reference that every timed row is verified against.
+std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s);
+
+}  // namespace mssim

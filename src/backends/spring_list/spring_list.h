@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "integrators/coefficients.h"
+#include "integrators/host_lines.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// A mass-spring system as a straightforward program holds it: an array of nodes and a list of springs, each
+/// spring adding its force to both ends. The parts of a step are member functions over ranges, so that one
+/// thread or many can run them; nothing here knows about threads.
+template <class Real>
+class SpringList {
+ public:
+  struct Node {
+    Vec3<Real> x;  ///< m
+    Vec3<Real> v;  ///< m/s
+  };
+
+  SpringList(const System& system, const Integrator& integrator, double dt_s);
+
+  void set_state(const State& state);
+  State state() const;
+
+  std::size_t nodes() const { return force_.size(); }
+  std::span<const Spring> springs() const { return system_.springs; }
+
+  void clear_forces(std::size_t first, std::size_t last);
+  /// Force of a spring on its first end, N; the second end gets the opposite.
+  Vec3<Real> force_of(const Spring& spring, Pair gather) const {
+    const Node& first = array(gather)[spring.first];
+    const Node& second = array(gather)[spring.second];
+    const Vec3<Real> d = second.x - first.x;
+    const Material& material = materials_[spring.kind];
+    return spring_pull(dot(d, d), dot(second.v - first.v, d), material.stiffness,
+                       material.stiffness * static_cast<Real>(spring.rest_length), material.damping) *
+           d;
+  }
+  void add_force(const Spring& spring, const Vec3<Real>& force) {
+    force_[spring.first] += force;
+    force_[spring.second] -= force;
+  }
+  /// What has been added up for a node, N, for those who add in another way.
+  Vec3<Real>& force(std::size_t node) { return force_[node]; }
+  /// The table's lines for nodes first .. last - 1, once all forces are complete.
+  template <std::size_t method, std::size_t stage>
+  void update_nodes(std::size_t first, std::size_t last);
+  /// Ends a step: what the last stage wrote becomes the state.
+  void end_step();
+
+ private:
+  struct Material {
+    Real stiffness, damping;
+  };
+  /// All forces of a stage are known before a node is updated, so pairs may share arrays.
+  static constexpr Storage storage = Storage::in_place;
+  const std::vector<Node>& array(Pair pair) const { return pairs_[place_[index(pair)]]; }
+  std::vector<Node>& array(Pair pair) { return pairs_[place_[index(pair)]]; }
+
+  const System& system_;
+  const Integrator& integrator_;
+  Coefficients<Real> coefficients_;
+  std::vector<Material> materials_;
+  std::vector<std::uint8_t> pinned_;                 ///< [nodes]
+  std::vector<Real> inverse_mass_;                   ///< [nodes] 1/kg
+  std::vector<Vec3<Real>> force_;                    ///< [nodes] N
+  std::array<std::vector<Node>, pair_kinds> pairs_;  ///< [nodes] each; empty where not stored
+  std::array<std::size_t, pair_kinds> place_{};      ///< role -> element of pairs_
+};
+
+template <class Real>
+template <std::size_t method, std::size_t stage>
+void SpringList<Real>::update_nodes(std::size_t first, std::size_t last) {
+  const std::vector<Node>& gathered = array(integrators[method].stages[stage].gather);
+  std::array<Node*, pair_kinds> nodes;
+  for (std::size_t pair = 0; pair < pair_kinds; ++pair) nodes[pair] = array(static_cast<Pair>(pair)).data();
+  const Real viscous_damping = static_cast<Real>(system_.viscous_damping);
+  const Real gravity = static_cast<Real>(system_.gravity);
+  const Floor& floor = system_.floor;
+  for (std::size_t i = first; i < last; ++i) {
+    if (pinned_[i] != 0) continue;
+    const Node node = gathered[i];
+    Vec3<Real> a = inverse_mass_[i] * force_[i] - viscous_damping * node.v;
+    a.y -= gravity;
+    const auto slot_of = [&](auto slot) -> Vec3<Real>& {
+      constexpr std::size_t s = index(decltype(slot)::value);
+      return s % 2 == 0 ? nodes[s / 2][i].x : nodes[s / 2][i].v;
+    };
+    update_stage<method, stage>(
+        coefficients_, node.x, node.v, a, slot_of,
+        [&](auto slot, const Vec3<Real>& value) { slot_of(slot) = value; },
+        [&](Vec3<Real>& x, Vec3<Real>& v) {
+          touch_floor(x, v, static_cast<Real>(floor.height), static_cast<Real>(floor.restitution),
+                      static_cast<Real>(floor.friction));
+        });
+  }
+}
+
+extern template class SpringList<float>;
+extern template class SpringList<double>;
+
+}  // namespace mssim

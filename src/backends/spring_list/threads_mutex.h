@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+/// The paper's "Multi-thread CPU" as published (Hong et al., Figure 5): springs and nodes are split into one
+/// group a thread; each thread computes its springs' forces and adds them to the nodes inside a critical
+/// section.
+std::unique_ptr<Backend> make_threads_mutex(const System& system, const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& options);
+
+}  // namespace mssim

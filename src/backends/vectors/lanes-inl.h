@@ -1,0 +1,106 @@
+// One vector of floats as a number type, on Highway: the widest that the instruction set under compilation
+// has, up to 16 lanes. Compiled once per instruction set (hwy/foreach_target.h), so the guard toggles.
+#if defined(MSSIM_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MSSIM_LANES_INL_H_
+#undef MSSIM_LANES_INL_H_
+#else
+#define MSSIM_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "integrators/coefficients.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using FloatTag = hn::CappedTag<float, 16>;
+using IndexTag = hn::RebindToUnsigned<FloatTag>;
+using Index = hn::Vec<IndexTag>;
+
+#define MSSIM_INLINE HWY_INLINE
+#define MSSIM_INLINE_LAMBDA HWY_ATTR __attribute__((always_inline))
+
+/// Floats side by side, one of each node of a vector.
+struct Lanes {
+  hn::Vec<FloatTag> v;
+  Lanes() = default;
+  HWY_INLINE Lanes(hn::Vec<FloatTag> value) : v(value) {}
+  HWY_INLINE Lanes(float value) : v(hn::Set(FloatTag(), value)) {}
+};
+
+HWY_INLINE std::size_t lane_count() { return hn::Lanes(FloatTag()); }
+
+HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v, b.v); }
+HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
+HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
+HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
+HWY_INLINE Lanes operator-(Lanes a) { return hn::Neg(a.v); }
+HWY_INLINE Lanes mul_add(Lanes a, Lanes b, Lanes c) { return hn::MulAdd(a.v, b.v, c.v); }
+// Exact square root and division: their latency hides behind the other springs' arithmetic, and an estimate
+// with a Newton step gained at most 5 %.
+HWY_INLINE Lanes square_root(Lanes a) { return hn::Sqrt(a.v); }
+HWY_INLINE Lanes inverse_sqrt(Lanes a) { return hn::Div(hn::Set(FloatTag(), 1.0F), hn::Sqrt(a.v)); }
+HWY_INLINE Lanes where_less(Lanes a, Lanes b, Lanes yes, Lanes no) {
+  return hn::IfThenElse(hn::Lt(a.v, b.v), yes.v, no.v);
+}
+
+using Mask = hn::Mask<FloatTag>;
+HWY_INLINE Lanes keep(Mask mask, Lanes a) { return hn::IfThenElseZero(mask, a.v); }
+HWY_INLINE Lanes select(Mask mask, Lanes yes, Lanes no) { return hn::IfThenElse(mask, yes.v, no.v); }
+/// Lanes whose index is below `limit`; an index that has wrapped below zero is not.
+HWY_INLINE Mask below(Index index, std::uint32_t limit) {
+  return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
+}
+
+/// Three components of a vector in space, of one node a lane.
+struct Lanes3 {
+  Lanes x, y, z;
+};
+HWY_INLINE Lanes3 load3(const float* from) {
+  const std::size_t n = lane_count();
+  return {hn::Load(FloatTag(), from), hn::Load(FloatTag(), from + n), hn::Load(FloatTag(), from + 2 * n)};
+}
+HWY_INLINE void store3(float* to, const Lanes3& a) {
+  const std::size_t n = lane_count();
+  hn::Store(a.x.v, FloatTag(), to);
+  hn::Store(a.y.v, FloatTag(), to + n);
+  hn::Store(a.z.v, FloatTag(), to + 2 * n);
+}
+HWY_INLINE Lanes3 zero3() { return {Lanes(0.0F), Lanes(0.0F), Lanes(0.0F)}; }
+HWY_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Lanes3 operator*(Lanes s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
+HWY_INLINE Lanes3 mul_add(Lanes s, const Lanes3& a, const Lanes3& b) {
+  return {mul_add(s, a.x, b.x), mul_add(s, a.y, b.y), mul_add(s, a.z, b.z)};
+}
+HWY_INLINE Lanes3 keep(Mask mask, const Lanes3& a) {
+  return {keep(mask, a.x), keep(mask, a.y), keep(mask, a.z)};
+}
+HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
+  return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
+}
+
+#define MSSIM_LAW_INLINE HWY_INLINE
+#include "laws/laws-inl.h"
+
+/// What the floor does to the new state of the lanes `under` it (the other lanes keep theirs).
+HWY_INLINE void touch_floor(Mask under, Lanes height, Lanes restitution, Lanes friction, Lanes3& x,
+                            Lanes3& v) {
+  if (HWY_LIKELY(hn::AllFalse(FloatTag(), under))) return;
+  const Lanes rebound = floor_rebound(v.y, restitution);
+  const Lanes grip = floor_grip(rebound - v.y, mul_add(v.z, v.z, v.x * v.x), friction);
+  x.y = select(under, height, x.y);
+  v = {select(under, grip * v.x, v.x), select(under, rebound, v.y), select(under, grip * v.z, v.z)};
+}
+
+#include "integrators/stage_update-inl.h"
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,164 @@
+#include "bench/job/combination.h"
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/job/sample_length.h"
+#include "bench/verification/blow_up.h"
+#include "integrators/integrators.h"
+#include "statistics/outliers.h"
+#include "statistics/statistics.h"
+#include "text/counted.h"
+
+namespace mssim {
+namespace {
+
+void add_to(std::string& note, const std::string& sentence) {
+  if (!note.empty() && !sentence.empty()) note += "; ";
+  note += sentence;
+}
+
+/// Runs the steps of one sample and returns its wall-clock seconds.
+double time_sample(Combination& combination, int steps) {
+  using Clock = std::chrono::steady_clock;
+  Backend& backend = *combination.backend;
+  backend.set_state(*combination.start);
+  backend.step(1);  // wakes threads and caches up
+  backend.set_state(*combination.start);
+  const auto before = Clock::now();
+  backend.step(steps);
+  return std::chrono::duration<double>(Clock::now() - before).count();
+}
+
+/// What a row is about, beyond its names.
+std::string subject_of(const ResultRow& row) {
+  std::ostringstream text;
+  text << row.nodes << " nodes and " << row.springs_unique << " springs in steps of " << row.dt_s << " s on "
+       << row.device << " with " << counted(static_cast<std::uint64_t>(row.threads), "thread");
+  return text.str();
+}
+
+}  // namespace
+
+void fail(Combination& combination, const std::string& status) {
+  combination.row.status = status;
+  combination.row.verified = false;
+  combination.backend.reset();
+  combination.dressing = nullptr;
+}
+
+Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
+                             const State& start) {
+  Combination combination;
+  combination.integrator = &integrator;
+  combination.start = &start;
+  ResultRow& row = combination.row;
+  row.scene = job.name;
+  row.nodes = job.system->nodes();
+  row.springs_unique = job.system->springs.size();
+  row.springs_published = job.springs_published;
+  row.note = job.note;
+  row.backend = info.name;
+  row.integrator = integrator.name;
+  row.dt_s = job.dt_s;
+  try {
+    if (job.garment) {
+      auto dressing = make_dressing_backend(info, *job.system, integrator, job.dt_s, job.execution);
+      combination.dressing = dressing.get();
+      combination.backend = std::move(dressing);
+    } else {
+      combination.backend = info.make(*job.system, integrator, job.dt_s, job.execution);
+    }
+    row.device = combination.backend->device();
+    row.threads = combination.backend->threads();
+    add_to(row.note, excess_of(*combination.backend, job.execution.threads));
+    combination.on_host = combination.backend->runs_on_host();
+    combination.steps_per_pass = combination.backend->steps_per_pass();
+  } catch (const Unavailable& reason) {
+    fail(combination, std::string("unavailable: ") + reason.what());
+  } catch (const Unsupported& reason) {
+    fail(combination, std::string("unsupported: ") + reason.what());
+  }
+  return combination;
+}
+
+void take_verification(Combination& combination, const Verification& verification) {
+  combination.row.position_error = verification.position_error;
+  combination.row.energy_drift = verification.energy_drift;
+  combination.row.verified = !verification.failure;
+  if (verification.failure) fail(combination, "failed: " + *verification.failure);
+}
+
+void take_verification(Combination& combination, const std::vector<ResultRow>& verified) {
+  ResultRow& row = combination.row;
+  const auto found =
+      std::ranges::find_if(verified, [&](const ResultRow& other) { return same_combination(other, row); });
+  if (found == verified.end()) return fail(combination, "failed: no earlier process has verified it");
+  if (!counts(*found)) return fail(combination, status_of(*found));
+  if (found->device != row.device || found->threads != row.threads || found->nodes != row.nodes ||
+      found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
+    return fail(combination,
+                "failed: verified was " + subject_of(*found) + ", and this is " + subject_of(row));
+  row.position_error = found->position_error;
+  row.energy_drift = found->energy_drift;
+  row.dressing = found->dressing;
+  row.verified = true;
+  add_to(row.note, "verified by an earlier process");
+}
+
+void calibrate(Combination& combination, const SceneJob& job) {
+  static const double resolution_s = clock_resolution_s();
+  const auto time_steps = [&](int steps) { return time_sample(combination, steps); };
+  int steps = 1;
+  for (;;) {
+    const int fit = sample_steps(time_steps(steps) / steps, job.sample_seconds, resolution_s);
+    if (fit <= (job.verified ? 10 : 2) * steps) {
+      steps = fit;
+      break;
+    }
+    steps = std::min(fit, 10 * steps);
+  }
+  if (job.verified) {
+    combination.steps = steps;
+    return;
+  }
+  // Part of a sample each, because a warm backend needs three of them to show it.
+  const int trial_steps = std::max(1, steps / 4);
+  std::vector<double> trials;
+  while (trials.size() < most_warm_up_trials && !is_warm(trials)) trials.push_back(time_steps(trial_steps));
+  combination.row.warm_up_trials = static_cast<int>(trials.size());
+  combination.steps = sample_steps(median(trials) / trial_steps, job.sample_seconds, resolution_s);
+}
+
+double sample_ms(Combination& combination, const SceneJob& job) {
+  const double seconds = time_sample(combination, combination.steps);
+  if (first_bad_node(combination.backend->state())) {
+    const auto blow_up = find_blow_up(*combination.backend, *combination.start, combination.steps);
+    fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s)
+                                            : "not finite in one run, finite in the next: a data race"));
+  }
+  return 1000 * seconds / combination.steps;
+}
+
+void summarise(ResultRow& row, const ResultRow* serial) {
+  row.rounds = static_cast<int>(row.samples_ms.size());
+  if (row.status != "ok" || row.samples_ms.empty()) return;
+  const MedianInterval time = median_interval(row.samples_ms);
+  row.ms_per_step = time.median;
+  row.ms_per_step_low = time.low;
+  row.ms_per_step_high = time.high;
+  row.ms_per_step_min = *std::min_element(row.samples_ms.begin(), row.samples_ms.end());
+  row.springs_per_second = 1000 / time.median * static_cast<double>(row.springs_unique) *
+                           static_cast<double>(find_integrator(row.integrator)->stage_count);
+  if (serial != nullptr && serial->samples_ms.size() == row.samples_ms.size())
+    row.speedup_vs_serial = median_ratio(serial->samples_ms, row.samples_ms).median;
+  const std::vector<Outlier> labels = outliers(row.samples_ms);
+  row.outliers =
+      static_cast<int>(labels.size() - static_cast<std::size_t>(std::ranges::count(labels, Outlier::no)));
+}
+
+}  // namespace mssim

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/backends.h"
+#include "bench/job/scene_job.h"
+#include "bench/results/result.h"
+#include "bench/verification/verification.h"
+
+namespace mssim {
+
+/// A row under way: a backend with an integrator on the job's scene.
+struct Combination {
+  ResultRow row;
+  const Integrator* integrator = nullptr;
+  bool on_host = true;
+  int steps_per_pass = 0;
+  const State* start = nullptr;         ///< of every sample
+  std::unique_ptr<Backend> backend;     ///< null where the row has no times: it cannot run, or has failed
+  DressingBackend* dressing = nullptr;  ///< the same, of a garment
+  int steps = 1;                        ///< in a sample
+};
+
+/// Makes the backend; a reason not to becomes the row's status. `start`: of its samples; must
+/// outlive it.
+Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
+                             const State& start);
+
+/// Ends the combination with a reason.
+void fail(Combination& combination, const std::string& status);
+
+/// Takes what a comparison with the reference has found. The row has failed where it is not near enough.
+void take_verification(Combination& combination, const Verification& verification);
+
+/// Takes over what an earlier process has found, and notes it in the row. The row has failed where it had
+/// failed there, or where what was verified there is not what runs here.
+void take_verification(Combination& combination, const std::vector<ResultRow>& verified);
+
+/// Finds how many steps fill a sample, from ever longer trials, and goes on until the backend is warm. With
+/// job.verified the first trial of a tenth of a sample decides, and the first samples warm the backend up:
+/// the processes that are only sampled are many and short, and each counts with its least sample.
+void calibrate(Combination& combination, const SceneJob& job);
+
+/// Milliseconds a step, in a sample of combination.steps from their start. Sets and warms up what is
+/// needed outside the timed region. The row has failed where the result is not finite.
+double sample_ms(Combination& combination, const SceneJob& job);
+
+/// Computes all that follows from the row's samples. `serial`: the baseline's row of the same integrator, or
+/// null.
+void summarise(ResultRow& row, const ResultRow* serial);
+
+}  // namespace mssim

@@ -1,0 +1,152 @@
+#include "bench/machine/machine.h"
+
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <tuple>
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// First line of a file, empty when it cannot be read.
+std::string first_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\"";
+  const std::size_t first = text.find_first_not_of(blank);
+  return first == std::string_view::npos ? std::string_view{}
+                                         : text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// The value behind the first "key<separator>value" line of a file, without blanks and quotes.
+std::string value_of(const fs::path& file, std::string_view key, char separator) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const std::string_view view = line;
+    const std::size_t at = view.find(separator);
+    if (at != std::string_view::npos && trimmed(view.substr(0, at)) == key)
+      return std::string(trimmed(view.substr(at + 1)));
+  }
+  return {};
+}
+
+/// The number that the text starts with, 0 when there is none.
+template <class Number>
+Number leading_number(std::string_view text) {
+  Number number{};
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+/// Logical CPUs in a list of the kernel such as "0-3,8".
+int count_cpus(const std::string& list) {
+  int count = 0;
+  std::istringstream ranges(list);
+  for (std::string range; std::getline(ranges, range, ',');) {
+    const std::size_t dash = range.find('-');
+    const int first = leading_number<int>(range);
+    count += dash == std::string::npos ? 1 : leading_number<int>(range.substr(dash + 1)) - first + 1;
+  }
+  return count;
+}
+
+/// "48K", "1024K", "32M" as the kernel writes the size of a cache.
+std::uint64_t bytes_of(const std::string& size) {
+  const auto number = leading_number<std::uint64_t>(size);
+  switch (size.empty() ? ' ' : size.back()) {
+    case 'K':
+      return number << 10;
+    case 'M':
+      return number << 20;
+    case 'G':
+      return number << 30;
+    default:
+      return number;
+  }
+}
+
+std::vector<Cache> read_caches(const fs::path& cpus) {
+  std::vector<Cache> caches;
+  std::set<std::tuple<std::string, std::string, std::string>> seen;  // level, type, the CPUs that share it
+  std::error_code ignored;
+  for (const auto& cpu : fs::directory_iterator(cpus, ignored)) {
+    for (const auto& entry : fs::directory_iterator(cpu.path() / "cache", ignored)) {
+      const std::string level = first_line(entry.path() / "level"), type = first_line(entry.path() / "type");
+      const std::string shared = first_line(entry.path() / "shared_cpu_list");
+      if (level.empty() || !seen.emplace(level, type, shared).second) continue;
+      const Cache cache{leading_number<int>(level), type, bytes_of(first_line(entry.path() / "size")), 1,
+                        count_cpus(shared)};
+      const auto same = std::find_if(caches.begin(), caches.end(), [&](const Cache& other) {
+        return std::tie(other.level, other.type, other.bytes, other.sharing) ==
+               std::tie(cache.level, cache.type, cache.bytes, cache.sharing);
+      });
+      if (same == caches.end())
+        caches.push_back(cache);
+      else
+        ++same->count;
+    }
+  }
+  std::sort(caches.begin(), caches.end(), [](const Cache& a, const Cache& b) {
+    return std::tie(a.level, a.type, a.bytes) < std::tie(b.level, b.type, b.bytes);
+  });
+  return caches;
+}
+
+/// Drivers say it in one of two ways: whether boost is on, or whether turbo is off.
+std::optional<bool> read_turbo(const fs::path& cpus) {
+  if (const std::string boost = first_line(cpus / "cpufreq/boost"); !boost.empty()) return boost == "1";
+  if (const std::string off = first_line(cpus / "intel_pstate/no_turbo"); !off.empty()) return off == "0";
+  return std::nullopt;
+}
+
+std::vector<double> read_load(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<double> averages;
+  for (double average = 0; averages.size() < 3 && in >> average;) averages.push_back(average);
+  return averages;
+}
+
+std::string kernel_name() {
+  utsname name{};
+  return uname(&name) == 0 ? std::string(name.sysname) + ' ' + name.release + ' ' + name.machine
+                           : std::string();
+}
+
+}  // namespace
+
+Machine read_machine(const fs::path& root) {
+  const fs::path cpus = root / "sys/devices/system/cpu";
+  Machine machine;
+  machine.cpu_model = value_of(root / "proc/cpuinfo", "model name", ':');
+  // On Arm the kernel gives numbers instead of a name.
+  if (machine.cpu_model.empty())
+    if (const std::string part = value_of(root / "proc/cpuinfo", "CPU part", ':'); !part.empty())
+      machine.cpu_model =
+          "implementer " + value_of(root / "proc/cpuinfo", "CPU implementer", ':') + " part " + part;
+  machine.logical_cpus = count_cpus(first_line(cpus / "online"));
+  machine.cpu_mhz = leading_number<double>(value_of(root / "proc/cpuinfo", "cpu MHz", ':'));
+  machine.caches = read_caches(cpus);
+  if (std::string governor = first_line(cpus / "cpu0/cpufreq/scaling_governor"); !governor.empty())
+    machine.governor = std::move(governor);
+  machine.turbo = read_turbo(cpus);
+  machine.load_average = read_load(root / "proc/loadavg");
+  machine.memory_bytes = leading_number<std::uint64_t>(value_of(root / "proc/meminfo", "MemTotal", ':'))
+                         << 10;
+  machine.operating_system = value_of(root / "etc/os-release", "PRETTY_NAME", '=');
+  machine.kernel = kernel_name();
+  return machine;
+}
+
+}  // namespace mssim

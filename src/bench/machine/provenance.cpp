@@ -1,0 +1,91 @@
+#include "bench/machine/provenance.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "bench/machine/noise.h"
+#include "platform/process_cpus.h"
+#include "text/fnv1a.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+std::vector<std::pair<std::string, std::string>> thread_environment() {
+  std::vector<std::pair<std::string, std::string>> variables;
+  for (char** entry = environ; entry && *entry; ++entry) {
+    const std::string_view text = *entry;
+    const std::size_t equals = text.find('=');
+    if (equals != std::string_view::npos && (text.starts_with("OMP_") || text.starts_with("GOMP_")))
+      variables.emplace_back(escaped(text.substr(0, equals)), escaped(text.substr(equals + 1)));
+  }
+  std::sort(variables.begin(), variables.end());
+  return variables;
+}
+
+/// The home folder's name is the user's name more often than not.
+std::string without_home(std::string_view argument) {
+  const char* home = std::getenv("HOME");
+  const std::string_view folder = home ? home : "";
+  if (folder.size() < 2) return std::string(argument);
+  std::string result;
+  for (std::size_t at = 0; at < argument.size();) {
+    const std::string_view rest = argument.substr(at);
+    if (rest.starts_with(folder) && (rest.size() == folder.size() || rest[folder.size()] == '/')) {
+      result += '~';
+      at += folder.size();
+    } else {
+      result += argument[at++];
+    }
+  }
+  return result;
+}
+
+/// Of the running program's file; none where it cannot be read.
+std::optional<std::uint64_t> program_hash() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  std::ostringstream bytes;
+  if (!(bytes << file.rdbuf())) return std::nullopt;
+  return fnv1a_64(bytes.view());
+}
+
+std::string now_utc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, sizeof "2026-01-31T12:00:00Z"> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+}  // namespace
+
+Provenance gather_provenance(const std::vector<std::string>& arguments, int threads) {
+  Provenance provenance;
+  provenance.build = build_info();
+  provenance.program_fnv1a_64 = program_hash();
+  provenance.machine = read_machine();
+  provenance.threads = threads;
+  provenance.allowed_cpus = process_cpus();
+  provenance.thread_environment = thread_environment();
+  for (const std::string& argument : arguments)
+    provenance.command_line.push_back(provenance.command_line.empty()
+                                          ? escaped(std::filesystem::path(argument).filename().string())
+                                          : escaped(without_home(argument)));
+  provenance.noise = noise_of(provenance);
+  provenance.started_utc = now_utc();
+  return provenance;
+}
+
+void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text) {
+  provenance.scenes.push_back({std::string(name), fnv1a_64(file_text)});
+}
+
+}  // namespace mssim

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/machine/build_info.h"
+#include "bench/machine/machine.h"
+
+namespace mssim {
+
+/// A scene and a hash of its file's text, by which two runs can tell whether they simulated the same.
+struct SceneHash {
+  std::string name;
+  std::uint64_t fnv1a_64 = 0;
+};
+
+/// Where numbers come from: enough to judge them and to measure them again. Names neither the user nor the
+/// host, and of the environment only what steers threads.
+struct Provenance {
+  BuildInfo build;
+  std::optional<std::uint64_t> program_fnv1a_64;  ///< hash of the program's file; an older mssim did not tell
+  Machine machine;                                ///< when the run started
+  int threads = 0;                                ///< asked for
+  std::vector<int> allowed_cpus;                  ///< process_cpus()
+  /// OMP_ and GOMP_ variables, by name.
+  std::vector<std::pair<std::string, std::string>> thread_environment;
+  std::string device_memory;  ///< how backends with a device exchange data, where that was asked of them
+  std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
+  std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
+  std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/machine/noise.h)
+  std::vector<SceneHash> scenes;
+  std::vector<std::string>
+      command_line;  ///< the program without its folder; the home folder reads ~; escaped()
+  std::vector<std::string> earlier_starts_utc;  ///< of runs that this one goes on with, as below
+  std::string started_utc;                      ///< ISO 8601, for example "2026-01-31T12:00:00Z"
+};
+
+/// Gathers all that can be known at the start; scenes, OpenCL devices and TetGen are the caller's to add.
+/// `arguments` are main's.
+Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
+
+/// Adds the hash of a scene file's text.
+void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);
+
+}  // namespace mssim

@@ -1,0 +1,42 @@
+#include "bench/roofline/step_cost.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t bytes_per_slot = 3 * sizeof(float);
+
+}  // namespace
+
+std::size_t bytes_per_spring(const Topology& topology) {
+  return std::holds_alternative<GridPatch>(topology) ? 0 : 2 * sizeof(std::uint32_t) + sizeof(float);
+}
+
+StepSize step_size(const System& system) {
+  return {system.nodes(), system.springs.size(), bytes_per_spring(system.topology)};
+}
+
+StepCost step_cost(const Integrator& integrator, const StepSize& size, int steps_per_pass) {
+  constexpr std::size_t slots_of_state = 4;  // position and velocity, in and out
+  std::size_t slots = 0, node_flops = 0;
+  for (std::size_t s = 0; s < integrator.stage_count; ++s) {
+    slots += slots_moved(integrator.stages[s]);
+    node_flops += flops_per_acceleration + line_flops(integrator.stages[s]);
+  }
+  const auto nodes = static_cast<double>(size.nodes), springs = static_cast<double>(size.springs);
+  const auto stages = static_cast<double>(integrator.stage_count);
+  const double slot_bytes = static_cast<double>(bytes_per_slot) * nodes;
+  const double spring_bytes = static_cast<double>(size.bytes_per_spring) * springs;
+  const double bytes = steps_per_pass > 0 ? (slots_of_state * slot_bytes + spring_bytes) / steps_per_pass
+                                          : static_cast<double>(slots) * slot_bytes + stages * spring_bytes;
+  return {bytes, static_cast<double>(node_flops) * nodes + stages * flops_per_spring * springs};
+}
+
+double working_set_bytes(const Integrator& integrator, const StepSize& size) {
+  std::size_t pairs = 0;
+  for (std::size_t pair = 0; pair < pair_kinds; ++pair)
+    pairs += std::size_t{stores(integrator, static_cast<Pair>(pair), Storage::in_place)};
+  return static_cast<double>(2 * pairs * bytes_per_slot) * static_cast<double>(size.nodes) +
+         static_cast<double>(size.bytes_per_spring) * static_cast<double>(size.springs);
+}
+
+}  // namespace mssim

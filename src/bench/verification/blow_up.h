@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+/// Where a simulation left the numbers: the first step whose result is not finite, and the first such node.
+struct BlowUp {
+  int step = 0;  ///< counted from 1
+  std::size_t node = 0;
+};
+
+/// The first node whose position or velocity is not finite.
+std::optional<std::size_t> first_bad_node(const State& state);
+
+/// Finds the first bad step of a simulation that was found bad `steps` steps after `from`, by bisection: a
+/// number that is not finite stays so. Leaves the backend in any state. Empty if the simulation is good after
+/// all.
+std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps);
+
+/// "blew up at step 12 (t = 0.0012 s): node 34 is not finite; ..." with the remedy. `steps_before` were taken
+/// before.
+std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before = 0);
+
+}  // namespace mssim

@@ -1,0 +1,105 @@
+#include "bench/verification/verification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "backends/spring_list/serial.h"
+#include "bench/verification/blow_up.h"
+#include "text/counted.h"
+
+namespace mssim {
+namespace {
+
+bool touches_floor(const System& system, const State& state) {
+  return std::any_of(state.position.begin(), state.position.end(),
+                     [&](const Vec3d& x) { return x.y <= system.floor.height; });
+}
+
+double largest_coordinate(const State& state) {
+  double largest = 0;
+  for (const Vec3d& x : state.position)
+    largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+  return largest;
+}
+
+}  // namespace
+
+double position_tolerance(const System& system, const Integrator& integrator, int steps) {
+  constexpr double unit_roundoff = 0x1p-24;
+  int roundings = 0;
+  for (const Stage& stage : integrator.stages) roundings += writes(stage, Slot::x_next) ? steps : 0;
+  return 4 * std::sqrt(roundings) * unit_roundoff * largest_coordinate(system.start) /
+         mean_rest_length(system);
+}
+
+Reference run_reference(const System& system, const Integrator& integrator, double dt_s) {
+  constexpr int stride = 10;
+  const auto backend = make_reference(system, integrator, dt_s);
+  Reference reference;
+  reference.state = system.start;
+  State before = system.start;
+  bool in_the_air = true;
+  // To the end even after contact: a blow-up may only show then.
+  for (int steps = stride; steps <= verification_steps; steps += stride) {
+    backend->step(stride);
+    State state = backend->state();
+    if (const auto node = first_bad_node(state)) {
+      const BlowUp blow_up = find_blow_up(*backend, before, stride).value_or(BlowUp{stride, *node});
+      reference.failure = "the double-precision reference " + describe(blow_up, dt_s, steps - stride);
+      return reference;
+    }
+    in_the_air = in_the_air && !touches_floor(system, state);
+    if (in_the_air) {
+      reference.state = state;
+      reference.steps = steps;
+    }
+    before = std::move(state);
+  }
+  if (reference.steps == 0) {
+    reference.failure = "a node touches the floor within the first " + std::to_string(stride) +
+                        " steps, so nothing can be verified before contact; start the scene higher";
+    return reference;
+  }
+  reference.energy = energy_of(system, reference.state);
+  reference.tolerance = position_tolerance(system, integrator, reference.steps);
+  return reference;
+}
+
+Verification verify(Backend& backend, const System& system, const Reference& reference, double dt_s) {
+  Verification result;
+  if (reference.failure) {
+    result.failure = reference.failure;
+    return result;
+  }
+  backend.set_state(system.start);
+  backend.step(reference.steps);
+  const State state = backend.state();
+  if (first_bad_node(state)) {
+    const auto blow_up = find_blow_up(backend, system.start, reference.steps);
+    result.failure =
+        blow_up ? describe(*blow_up, dt_s) : "not finite in one run, finite in the next: a data race";
+    return result;
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    const Vec3d d = state.position[i] - reference.state.position[i];
+    largest = std::max(largest, dot(d, d));
+  }
+  result.position_error = std::sqrt(largest) / mean_rest_length(system);
+  const double moving = reference.energy.kinetic + reference.energy.elastic;
+  result.energy_drift = (energy_of(system, state).total() - reference.energy.total()) / moving;
+
+  std::ostringstream why;
+  if (!(result.position_error <= reference.tolerance)) {
+    why << "position error " << result.position_error << " of a rest length exceeds " << reference.tolerance
+        << " after " << counted(static_cast<std::uint64_t>(reference.steps), "step");
+  } else if (!(std::abs(result.energy_drift) <= energy_tolerance)) {
+    why << "energy is off by " << result.energy_drift << " of kinetic plus elastic energy, more than "
+        << energy_tolerance << ", after " << counted(static_cast<std::uint64_t>(reference.steps), "step");
+  }
+  if (!why.str().empty()) result.failure = why.str();
+  return result;
+}
+
+}  // namespace mssim

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "bench/results/result.h"
+#include "output/tables/structure_table.h"
+
+namespace mssim {
+
+/// How a bench prints its rows; `github` is github_json().
+enum class SummaryFormat : std::uint8_t { table, csv, json, github };
+
+/// The rows for a reader: the columns that answer "how fast, how right"; below a table, what is to know of
+/// its numbers. `threads`: asked for. Ends with a newline; empty for a table without rows.
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads);
+
+/// The rows of scenes of which only the structure is told; none in the format `github`, which is for times.
+std::string summary(std::span<const StructureRow> rows, SummaryFormat format);
+
+}  // namespace mssim

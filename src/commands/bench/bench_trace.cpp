@@ -1,0 +1,47 @@
+#include "commands/bench/bench_trace.h"
+
+#include <algorithm>
+
+#include "bench/verification/verification.h"
+#include "commands/shared/run_provenance.h"
+#include "commands/shared/simulation.h"
+#include "integrators/integrators.h"
+#include "output/traces/h5md_trace.h"
+#include "platform/write_error.h"
+
+namespace mssim {
+namespace {
+
+/// Frames after the first.
+constexpr int frames = 10;
+
+}  // namespace
+
+void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
+                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw WriteError(folder.string() + " cannot be made a folder (" + error.message() +
+                     "); choose another --out");
+  const double duration_s = verification_steps * scene.dt_s;
+  for (const ResultRow& row : rows) {
+    const std::filesystem::path file =
+        folder / (row.scene + "-" + row.backend + "-" + row.integrator + ".h5");
+    if (row.status != "ok" || (keep_existing && std::filesystem::exists(file))) continue;
+    if (watch.stop()) return;
+    watch.progress("trace " + row.backend + " " + row.integrator, 1);
+    const Integrator& integrator = *find_integrator(row.integrator);
+    const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
+    const auto backend = make_backend(info, scene.system, integrator, scene.dt_s, job.execution);
+    TraceHeader header = trace_header(scene, *backend, row.backend, integrator);
+    H5mdTrace trace(file, scene.system, header);
+    simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s},
+             {[&](const Frame& frame) {
+               trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+             }});
+    trace.close();
+  }
+}
+
+}  // namespace mssim

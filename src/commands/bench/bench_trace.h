@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "bench/bench_scene.h"
+#include "bench/results/result.h"
+#include "commands/shared/prepared_scene.h"
+
+namespace mssim {
+
+/// Traces every combination whose row is ok, from the start over as many steps as it was verified with, into
+/// FOLDER/SCENE-BACKEND-INTEGRATOR.h5: what `mssim bench --trace` does after the timing. Files that are there
+/// already stay when `keep_existing`. Ends between two traces when it is asked to. Throws WriteError.
+void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
+                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch);
+
+}  // namespace mssim

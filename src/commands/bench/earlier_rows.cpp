@@ -1,0 +1,61 @@
+#include "commands/bench/earlier_rows.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "bench/results/comparability.h"
+#include "commands/bench/measured_run.h"
+#include "commands/shared/exit_code.h"
+#include "output/folders/provenance_file.h"
+#include "text/joined.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+std::string revision(const BuildInfo& build) {
+  return std::string(build.commit) + (build.dirty ? ", changed" : "");
+}
+
+/// One table shall not mix what different programs or machines measured, nor hold rows of which the
+/// provenance says nothing.
+void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
+  std::vector<std::string> all = differences(earlier, now);
+  if (revision(earlier.build) != revision(now.build))
+    all.push_back("the program was of commit " + revision(earlier.build) + " and is of " +
+                  revision(now.build));
+  std::vector<std::string> left_out;
+  for (const SceneHash& scene : earlier.scenes)
+    if (std::ranges::find(now.scenes, scene.name, &SceneHash::name) == now.scenes.end())
+      left_out.push_back(printable(scene.name));
+  if (!left_out.empty())
+    all.push_back("it has results of " + joined(left_out, ", ") + ", which this command leaves out");
+  require_resumable(all, folder);
+}
+
+}  // namespace
+
+void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
+  if (!differences.empty())
+    throw UsageError("--resume cannot go on in " + folder + ": " + joined(differences, "; ") +
+                     "; choose another --out, or --overwrite to measure anew");
+}
+
+std::vector<ResultRow> earlier_rows(ResultFolder& folder, const Provenance& now,
+                                    const BenchOptions& options) {
+  if (!folder.has_results()) return {};
+  if (options.resume) {
+    const Provenance earlier = read_provenance(std::filesystem::path(options.out) / "provenance.json");
+    require_same_origin(earlier, now, options.out);
+    folder.go_on_with(earlier);
+    return folder.has_rows() ? read_run(options.out).rows : std::vector<ResultRow>();
+  }
+  if (!options.overwrite)
+    throw UsageError(options.out +
+                     " holds results already: give another --out, --resume to go on with them, "
+                     "or --overwrite to replace them");
+  folder.clear();
+  return {};
+}
+
+}  // namespace mssim

@@ -1,0 +1,48 @@
+#include "commands/bench/measured_run.h"
+
+#include <system_error>
+
+#include "commands/shared/exit_code.h"
+#include "output/folders/provenance_file.h"
+#include "output/folders/result_folder.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    throw UsageError("there is no " + path.string() + ": give a folder that mssim bench --out wrote");
+  fs::path folder = fs::is_directory(status) ? path
+                    : path.has_parent_path() ? path.parent_path()
+                                             : fs::path(".");
+  if (!fs::exists(folder / "timings.csv", error))
+    throw UsageError(folder.string() + " holds no timings.csv: give a folder that mssim bench --out wrote");
+  return folder;
+}
+
+/// What is measured has a time above zero in every round.
+void require_samples(const ResultRow& row, const fs::path& folder) {
+  if (row.status != "ok") return;
+  const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
+  if (row.samples_ms.empty())
+    throw UsageError(where + "no samples, though timings.csv says ok; measure the folder anew");
+  for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
+    if (!(row.samples_ms[round] > 0))
+      throw UsageError(where + "no time above zero in round " + std::to_string(round + 1) +
+                       "; measure the folder anew");
+}
+
+}  // namespace
+
+MeasuredRun read_run(const fs::path& path) {
+  const fs::path folder = folder_of(path);
+  MeasuredRun run{read_provenance(folder / "provenance.json"), read_results(folder)};
+  for (const ResultRow& row : run.rows) require_samples(row, folder);
+  return run;
+}
+
+}  // namespace mssim

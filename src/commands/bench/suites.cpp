@@ -1,0 +1,134 @@
+#include "commands/bench/suites.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "backends/accumulation/race_ways.h"
+#include "backends/backends.h"
+#include "garment/output/garment_table.h"
+#include "integrators/integrators.h"
+#include "output/tables/paper_table.h"
+#include "output/tables/race_table.h"
+#include "output/tables/scaling_table.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::string_view suites_of_tables = "tables";
+
+constexpr std::array<std::string_view, 6> cloths{"cloth2500", "cloth4900", "cloth10k",
+                                                 "cloth40k",  "cloth200k", "cloth350k"};
+constexpr std::array<std::string_view, 9> single_bodies{"box-small",    "box-medium",    "box-large",
+                                                        "sphere-small", "sphere-medium", "sphere-large",
+                                                        "torus-small",  "torus-medium",  "torus-large"};
+constexpr std::array<std::string_view, 6> body_scenes{"bodies3858",  "bodies4737",  "bodies7282",
+                                                      "bodies10223", "bodies20587", "bodies38233"};
+constexpr std::array<std::string_view, 2> race_scenes{"cloth40k", "bodies20587"};
+constexpr std::array<std::string_view, 6> ever_larger_cloths{"cloth40k", "cloth200k", "cloth350k",
+                                                             "cloth1m",  "cloth4m",   "cloth16m"};
+constexpr std::array<std::string_view, 6> jeans{"jeans1k", "jeans2k",  "jeans4k",
+                                                "jeans8k", "jeans16k", "jeans64k"};
+
+/// The real methods, those that are a paper's integrator under its own name.
+constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
+constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
+
+std::vector<const BackendInfo*> all_backends() {
+  std::vector<const BackendInfo*> rows;
+  for (const BackendInfo& backend : backends()) rows.push_back(&backend);
+  return rows;
+}
+
+std::vector<const BackendInfo*> all_race_ways() {
+  std::vector<const BackendInfo*> rows;
+  for (const RaceWay& way : race_ways()) rows.push_back(&way.backend);
+  return rows;
+}
+
+TableMaker tables_of_hong() {
+  PaperLegend legend;
+  for (const BackendInfo& backend : backends())
+    legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
+  for (const Integrator& integrator : integrators)
+    legend.integrators.push_back({std::string(integrator.name), std::string(integrator.paper_name),
+                                  static_cast<int>(integrator.stage_count)});
+  return paper_tables(std::move(legend), published_tables());
+}
+
+/// Scenes of both papers are compared in the same way, and each in its own tables.
+TableMaker tables_of_the_papers() {
+  return [hong = tables_of_hong(), vassilev = garment_tables()](std::span<const ResultRow> rows,
+                                                                const Provenance& provenance) {
+    std::vector<ResultTable> tables = hong(rows, provenance);
+    std::ranges::move(vassilev(rows, provenance), std::back_inserter(tables));
+    return tables;
+  };
+}
+
+TableMaker table_of_races() {
+  std::vector<RaceLegend> legend;
+  for (const RaceWay& way : race_ways())
+    legend.push_back({std::string(way.backend.name), std::string(way.backend.description),
+                      std::string(way.extra_memory), std::string(way.springs_computed),
+                      std::string(name_of(way.repeatable))});
+  return race_tables(std::move(legend));
+}
+
+TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
+
+constexpr Comparison of_backends{all_backends, real_methods, tables_of_the_papers};
+
+constexpr std::array<Suite, 6> table{{
+    {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
+    {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
+    {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
+    {"races",
+     "what it costs to avoid the data race of the springs, way by way (mssim list ways)",
+     false,
+     true,
+     race_scenes,
+     {all_race_ways, cheapest_method, table_of_races}},
+    {"scaling",
+     "the cost of a node in cloths of up to 16 million nodes",
+     false,
+     true,
+     ever_larger_cloths,
+     {all_backends, cheapest_method, table_of_scaling}},
+    {"garment",
+     "jeans on a body, draped and dressed: Figure 6 of Vassilev",
+     false,
+     true,
+     jeans,
+     {all_backends, cheapest_method, garment_tables}},
+}};
+
+bool belongs(const Suite& suite, std::string_view name) {
+  return name == suite.name || (name == suites_of_tables && suite.in_tables);
+}
+
+}  // namespace
+
+std::span<const Suite> suites() { return table; }
+
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names;
+  for (const Suite& suite : table) names.emplace_back(suite.name);
+  names.emplace_back(suites_of_tables);
+  return names;
+}
+
+std::vector<std::string> scenes_of_suite(std::string_view name, bool timed) {
+  std::vector<std::string> scenes;
+  for (const Suite& suite : table)
+    if (suite.timed == timed && belongs(suite, name))
+      scenes.insert(scenes.end(), suite.scenes.begin(), suite.scenes.end());
+  return scenes;
+}
+
+const Comparison& comparison_of_suite(std::string_view name) {
+  const auto suite = std::ranges::find(table, name, &Suite::name);
+  return suite == table.end() ? of_backends : suite->comparison;
+}
+
+}  // namespace mssim

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "backends/backends.h"
+#include "output/tables/result_table.h"
+
+namespace mssim {
+
+/// What is compared on a scene, and which tables are made of the times.
+struct Comparison {
+  std::vector<const BackendInfo*> (*backends)();  ///< the rows of a table, in its order
+  std::span<const std::string_view> integrators;  ///< by default
+  TableMaker (*tables)();                         ///< reads what it needs at once, so before any measurement
+};
+
+/// A row of the TABLE of suites: scenes, and what is compared on them.
+struct Suite {
+  std::string_view name;
+  std::string_view description;  ///< one line for `mssim list suites`
+  bool in_tables;                ///< whether "tables" stands for it too: those of Hong et al.
+  bool timed;                    ///< else the table says what the scenes are, and nothing is measured
+  std::span<const std::string_view> scenes;
+  Comparison comparison;
+};
+
+std::span<const Suite> suites();
+
+/// The names of the suites, and "tables".
+std::vector<std::string> suite_names();
+
+/// The scenes of the suites of that name whose tables are timed or not, each once. "tables" stands
+/// for the suites that are in it.
+std::vector<std::string> scenes_of_suite(std::string_view name, bool timed);
+
+/// What the suite of that name compares. "tables", and no suite (an empty name), compare the five backends.
+const Comparison& comparison_of_suite(std::string_view name);
+
+}  // namespace mssim

@@ -1,0 +1,126 @@
+#include "commands/check/scene_report.h"
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+#include <variant>
+
+#include "backends/backends.h"
+#include "bench/bench_memory.h"
+#include "bench/expected_time.h"
+#include "commands/bench/bench_plan.h"
+#include "commands/bench/planned_scenes.h"
+#include "commands/bench/suites.h"
+#include "commands/run/run_command.h"
+#include "commands/shared/choices.h"
+#include "garment/fitting/dress.h"
+#include "garment/stepping/dressing_backend.h"
+#include "integrators/integrators.h"
+#include "integrators/stability.h"
+#include "platform/available_memory.h"
+#include "scene/scene_kinds.h"
+#include "text/nearest_name.h"
+
+namespace mssim {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A bench of these backends and integrators, as it is where nothing else is asked for.
+SceneJob usual_job(std::vector<const BackendInfo*> backends, std::vector<const Integrator*> integrators) {
+  SceneJob job;
+  job.backends = std::move(backends);
+  job.integrators = std::move(integrators);
+  job.execution = complete({});
+  job.rounds = usual_rounds;
+  return job;
+}
+
+double seconds_of(const SceneJob& job, const SceneSize& size) {
+  const ExpectedTime time = expected_time(job, size);
+  return time.preparation + job.rounds * time.round;
+}
+
+Json scene_row(const PreparedScene& scene) {
+  const auto* mesh = std::get_if<TetrahedralMesh>(&scene.system.topology);
+  return {{"scene", scene.spec.name},
+          {"kind", kind_of(scene.spec).name},
+          {"nodes", scene.counts.nodes},
+          {"springs_unique", scene.counts.springs_unique},
+          {"tetrahedra", mesh ? Json(mesh->tetrahedra.size()) : Json()},
+          {"dt_s", scene.dt_s}};
+}
+
+bool can_step(const SceneSize& size, const Integrator& integrator, const BackendInfo& backend) {
+  return !size.garment || (dresses(integrator) && dresses(backend));
+}
+
+Json combination_row(const PreparedScene& scene, const SceneSize& size, const Integrator& integrator,
+                     const BackendInfo& backend, double largest_dt_s) {
+  const SceneJob job = usual_job({&backend}, {&integrator});
+  const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
+  return {{"integrator", integrator.name},
+          {"largest_stable_dt_s", largest_dt_s},
+          {"stable", scene.dt_s <= largest_dt_s},
+          {"backend", backend.name},
+          {"memory_bytes", bench_memory_needed(job, size)},
+          {"bench_s", seconds_of(job, size)},
+          {"run_s", expected_run_time(backend, integrator, size, steps)}};
+}
+
+/// The integrators that a bench takes unasked.
+std::vector<const Integrator*> usual_integrators() {
+  std::vector<const Integrator*> usual;
+  for (const std::string_view name : comparison_of_suite("").integrators)
+    usual.push_back(find_integrator(name));
+  return usual;
+}
+
+/// Of the integrators that a bench takes unasked, those with which the scene may blow up: the limit is on the
+/// safe side.
+std::optional<std::string> warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
+  std::vector<std::string_view> unstable;
+  double smallest = scene.dt_s;
+  for (const Integrator* integrator : usual_integrators()) {
+    if (is_garment(scene.system) && !dresses(*integrator)) continue;
+    const double limit = largest_stable_dt(*integrator, modes);
+    if (scene.dt_s <= limit) continue;
+    unstable.push_back(integrator->name);
+    smallest = std::min(smallest, limit);
+  }
+  if (unstable.empty()) return std::nullopt;
+  std::ostringstream text;
+  text.precision(3);
+  text << "dt_s " << scene.dt_s << " is above the stability limit of " << listed(unstable)
+       << ", with which the scene may blow up: give at most " << smallest << ", or \"auto\"";
+  return text.str();
+}
+
+/// A bench that says nothing of backends and integrators takes them all at once.
+std::optional<std::string> warning_of_memory(const SceneSize& size) {
+  const SceneJob job = usual_job(comparison_of_suite("").backends(), usual_integrators());
+  const auto shortage = memory_shortage(bench_memory_needed(job, size));
+  if (!shortage) return std::nullopt;
+  return "a bench of all backends " + *shortage + ": name fewer with --backend or --integrator";
+}
+
+}  // namespace
+
+SceneReport report_on(const PreparedScene& scene) {
+  const SceneSize size = size_of(scene.spec, scene.counts);
+  const ModeBound modes = mode_bound(scene.system);
+  SceneReport report;
+  report.scene = scene_row(scene);
+  for (const Integrator& integrator : integrators) {
+    const double largest_dt_s = largest_stable_dt(integrator, modes);
+    for (const BackendInfo& backend : backends())
+      if (can_step(size, integrator, backend))
+        report.combinations.push_back(combination_row(scene, size, integrator, backend, largest_dt_s));
+  }
+  if (!scene.note.empty()) report.warnings.push_back(scene.note);
+  for (auto&& warning : {warning_of_dt(scene, modes), warning_of_memory(size)})
+    if (warning) report.warnings.push_back(*warning);
+  return report;
+}
+
+}  // namespace mssim

@@ -1,0 +1,147 @@
+#include "commands/compare/compare_command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "bench/results/comparability.h"
+#include "bench/results/comparison.h"
+#include "commands/bench/measured_run.h"
+#include "commands/compare/ab_rounds.h"
+#include "commands/shared/choices.h"
+#include "commands/shared/exit_code.h"
+#include "commands/shared/tell_first.h"
+#include "output/tables/comparison_table.h"
+#include "text/counted.h"
+#include "text/joined.h"
+
+namespace mssim {
+namespace {
+
+struct CompareOptions {
+  AbOptions ab;  ///< of which two folders have base, next and threshold
+  bool programs = false;
+  double threshold_percent = 5;
+  ComparisonFormat format = ComparisonFormat::table;
+  bool force = false;
+};
+
+/// Times from unlike machines or builds are no regression and no progress: says how they differ, and refuses
+/// them unless that is what is wanted.
+void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool force) {
+  std::vector<std::string> all = differences(base.provenance, next.provenance);
+  const std::vector<std::string> of_rows = differences(base.rows, next.rows);
+  all.insert(all.end(), of_rows.begin(), of_rows.end());
+  if (all.empty()) return;
+  const std::string sentence = joined(all, "; ");
+  if (!force)
+    throw UsageError("the two runs are not comparable: " + sentence +
+                     "; measure both alike, or compare them all the same with --force");
+  std::cerr << "mssim: compared all the same: " << sentence << '\n';
+}
+
+/// One line for combinations that are not in the table, however many.
+void tell(const std::string& what, const std::vector<std::string>& combinations) {
+  if (combinations.empty()) return;
+  std::cerr << "mssim: " << what << ": " << combinations.front();
+  if (combinations.size() > 1) std::cerr << " and " << combinations.size() - 1 << " more";
+  std::cerr << '\n';
+}
+
+/// Why the comparison ends with 1: each combination that is slower or lost.
+std::vector<std::string> regressions(const RunComparison& comparison) {
+  std::vector<std::string> sentences;
+  for (const ComparedRow& row : comparison.rows) {
+    std::ostringstream text;
+    text.precision(3);
+    text << combination_name(row) << ": " << name_of(row.verdict);
+    if (row.verdict == Verdict::slower)
+      text << ", " << row.ratio->ratio << " times the time (" << row.ratio->low << " to " << row.ratio->high
+           << ")";
+    else if (row.verdict == Verdict::lost)
+      text << ", " << row.reason;
+    else
+      continue;
+    sentences.push_back(text.str());
+  }
+  return sentences;
+}
+
+int report(const RunComparison& comparison, ComparisonFormat format) {
+  std::cout << to_text(comparison, format);
+  tell_first(regressions(comparison));
+  const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
+  if (undecided > 0)
+    std::cerr << "mssim: " << undecided << " of " << counted(comparison.rows.size(), "combination")
+              << (undecided == 1 ? " is undecided\n" : " are undecided\n");
+  return has_regression(comparison) ? exit_regression : exit_ok;
+}
+
+int compare_runs(const CompareOptions& options) {
+  const MeasuredRun base = read_run(options.ab.base), next = read_run(options.ab.next);
+  require_comparable(base, next, options.force);
+  const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
+  if (comparison.rows.empty())
+    throw UsageError(
+        "there is nothing to compare: " + options.ab.base + " and " + options.ab.next +
+        " have no measured combination in common; measure the same scenes, backends and integrators");
+  tell("only BASE has", comparison.only_base);
+  tell("only NEW has", comparison.only_new);
+  tell("without a verified time in BASE", comparison.untimed);
+  return report(comparison, options.format);
+}
+
+int run(CompareOptions options) {
+  options.ab.threshold = options.threshold_percent / 100;
+  if (!options.programs) return compare_runs(options);
+  if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
+  return report(compare_programs(options.ab), options.format);
+}
+
+}  // namespace
+
+std::function<int()> declare_compare(CLI::App& app) {
+  const auto options = std::make_shared<CompareOptions>();
+  app.add_option("BASE", options->ab.base,
+                 "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
+      ->required();
+  app.add_option("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
+      ->required();
+  app.add_option("--threshold", options->threshold_percent, "A change that matters, in percent (default: 5)")
+      ->check(positive_number())
+      ->type_name("PERCENT");
+  add_choice<ComparisonFormat>(app, "--format", options->format,
+                               {{"table", ComparisonFormat::table},
+                                {"markdown", ComparisonFormat::markdown},
+                                {"json", ComparisonFormat::json}},
+                               "What to print: table, markdown or json (default: table)");
+  CLI::Option* ab =
+      app.add_flag("--ab", options->programs,
+                   "BASE and NEW are mssim programs: run them by turns, as a new process each time");
+  app.add_flag("--force", options->force, "Compare runs of unlike machines, builds, threads or scenes too")
+      ->excludes(ab);
+  add_scenes(app, "--scene", options->ab.scenes, "With --ab: scenes to measure")->needs(ab);
+  app.add_option("--backend", options->ab.backends, "With --ab: backends (default: openmp)")
+      ->delimiter(',')
+      ->needs(ab)
+      ->type_name("NAME,...");
+  app.add_option("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
+      ->delimiter(',')
+      ->needs(ab)
+      ->type_name("NAME,...");
+  app.add_option("--threads", options->ab.threads, "With --ab: threads (default: all processors)")
+      ->check(whole_number(1, most_threads))
+      ->needs(ab)
+      ->type_name("N");
+  app.add_option("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)")
+      ->check(number_between(1, 86400))
+      ->needs(ab)
+      ->type_name("SECONDS");
+  return [options] { return run(*options); };
+}
+
+}  // namespace mssim

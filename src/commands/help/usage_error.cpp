@@ -1,0 +1,110 @@
+#include "commands/help/usage_error.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "text/nearest_name.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+/// The command that was being parsed: the subcommand if there is one.
+const CLI::App& command_of(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  return parsed.empty() ? app : *parsed.back();
+}
+
+/// As a user types it.
+std::string typed_name(const CLI::App& command) {
+  return command.get_parent() ? "mssim " + command.get_name() : "mssim";
+}
+
+/// --NAME of what a user typed as an option: without a value behind '=', and with two dashes.
+std::string long_form(std::string_view typed) {
+  typed = typed.substr(0, typed.find('='));
+  typed.remove_prefix(std::min(typed.find_first_not_of('-'), typed.size()));
+  return "--" + std::string(typed);
+}
+
+std::string unknown_option(const std::string& typed, const CLI::App& command) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  const std::string_view nearest = nearest_name(long_form(typed), names);
+  return typed_name(command) + " has no option \"" + printable(typed.substr(0, typed.find('='))) + '"' +
+         (nearest.empty() ? "" : " (did you mean " + std::string(nearest) + "?)");
+}
+
+/// What is left over: an option that there is not, or a word too many.
+std::optional<std::string> leftover(const CLI::App& command) {
+  const std::vector<std::string> rest = command.remaining();
+  const auto option =
+      std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+  if (option != rest.end()) return unknown_option(*option, command);
+  if (rest.empty()) return std::nullopt;
+  return '"' + printable(rest.front()) + "\" is one word too many for " + typed_name(command) +
+         ": an option begins with --";
+}
+
+/// What a parser's sentence begins with: the name of the option that it is about.
+std::string subject_of(std::string_view message) {
+  return std::string(message.substr(0, message.find_first_of(": ")));
+}
+
+std::string small_first(std::string text) {
+  if (!text.empty()) text.front() = CLI::detail::to_lower(text.substr(0, 1)).front();
+  return text;
+}
+
+/// The option of that name and what it wants.
+std::string missing(const std::string& name, const CLI::App& command) {
+  const CLI::Option* option = command.get_option_no_throw(name);
+  if (option == nullptr) return name + " is missing";
+  if (option->get_positional()) return name + " is missing: give " + small_first(option->get_description());
+  return name + ' ' + option->get_type_name() + " is missing";
+}
+
+std::string wrong_count(const std::string& name, const CLI::App& command) {
+  const CLI::Option* option = command.get_option_no_throw(name);
+  if (option == nullptr || option->get_expected_max() == 0) return name + " takes no value: leave that out";
+  if (option->count() > 1)
+    return name + " is given " + std::to_string(option->count()) + " times: give it once";
+  return name + " needs a value: give " + name + ' ' + option->get_type_name();
+}
+
+/// The first word of the message that looks like an option.
+std::string flag_in(const std::string& message) {
+  const std::size_t start = std::min(message.find("--"), message.size());
+  return message.substr(start, message.find_first_of(": ", start) - start);
+}
+
+std::string problem(const CLI::ParseError& error, const CLI::App& command) {
+  std::string message = error.what();
+  const std::string subject = subject_of(message);
+  const std::string other = message.substr(message.rfind(' ') + 1);
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing(subject, command);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return wrong_count(subject, command);
+  // What takes a value has a check of its own (choices.h), so this is a flag.
+  if (dynamic_cast<const CLI::ConversionError*>(&error)) return wrong_count(flag_in(message), command);
+  if (dynamic_cast<const CLI::RequiresError*>(&error))
+    return subject + " goes with " + other + " alone: add it, or leave out " + subject;
+  if (dynamic_cast<const CLI::ExcludesError*>(&error))
+    return subject + " does not go with " + other + ": leave out one of them";
+  return message;  // of the checks in choices.h
+}
+
+}  // namespace
+
+std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app) {
+  const CLI::App& command = command_of(app);
+  // A misspelt option also leaves the right one missing; it is the one to be told.
+  const std::optional<std::string> surplus = leftover(command);
+  return surplus.value_or(problem(error, command)) + "; see " + typed_name(command) + " --help";
+}
+
+}  // namespace mssim

@@ -1,0 +1,193 @@
+#include "commands/list/list_command.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "backends/accumulation/race_ways.h"
+#include "backends/backends.h"
+#include "backends/devices/offer.h"
+#include "commands/bench/suites.h"
+#include "commands/shared/choices.h"
+#include "commands/shared/exit_code.h"
+#include "commands/shared/opencl_notes.h"
+#include "geometry/mesh_error.h"
+#include "integrators/integrators.h"
+#include "output/tables/listing.h"
+#include "scene/fields/scene_error.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "text/nearest_name.h"
+
+namespace mssim {
+namespace {
+
+nlohmann::ordered_json or_null(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+}
+
+/// Counts what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why:
+/// once, since one cause (TetGen is missing) is behind all of them.
+class SceneCounter {
+ public:
+  std::optional<SceneCounts> count(const SceneSpec& spec) {
+    try {
+      return counts_of(spec);
+    } catch (const MissingProgram& reason) {
+      note(spec.name, reason.what());
+    } catch (const SceneError& reason) {
+      note(spec.name, reason.what());
+    }
+    return std::nullopt;
+  }
+
+  void report() const {
+    if (uncounted_.empty()) return;
+    const std::vector<std::string_view> names(uncounted_.begin(), uncounted_.end());
+    std::cerr << "mssim: nodes and springs of " << listed(names) << " are left out: " << first_reason_
+              << '\n';
+  }
+
+ private:
+  void note(std::string_view scene, std::string_view reason) {
+    if (uncounted_.empty()) first_reason_ = reason;
+    uncounted_.emplace_back(scene);
+  }
+
+  std::vector<std::string> uncounted_;
+  std::string first_reason_;
+};
+
+Listing list_scenes(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  SceneCounter counter;
+  for (const std::string& name : scene_names()) {
+    const SceneSpec spec = find_scene(name);
+    const std::optional<SceneCounts> counts = counter.count(spec);
+    const auto number = [](const std::optional<std::uint64_t>& count) {
+      return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
+    };
+    listing.push_back(
+        {{"scene", spec.name},
+         {"kind", kind_of(spec).name},
+         {"nodes", number(counts ? std::optional(counts->nodes) : std::nullopt)},
+         {"springs_unique", number(counts ? std::optional(counts->springs_unique) : std::nullopt)},
+         {"springs_published", number(counts ? counts->springs_published : std::nullopt)},
+         {"dt_s", spec.dt_s ? nlohmann::ordered_json(*spec.dt_s) : nlohmann::ordered_json("auto")},
+         {"description", spec.description}});
+  }
+  counter.report();
+  return listing;
+}
+
+Listing list_backends(const ExecutionOptions& options) {
+  Listing listing;
+  for (const BackendInfo& backend : backends()) {
+    const std::string reason = unavailable_reason(backend, options);
+    listing.push_back({{"backend", backend.name},
+                       {"paper_configuration", backend.paper_configuration},
+                       {"available", reason.empty()},
+                       {"reason", or_null(reason)},
+                       {"description", backend.description}});
+  }
+  return listing;
+}
+
+Listing list_ways(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const RaceWay& way : race_ways())
+    listing.push_back({{"way", way.backend.name},
+                       {"extra_memory", way.extra_memory},
+                       {"springs_computed", way.springs_computed},
+                       {"same_bits", name_of(way.repeatable)},
+                       {"description", way.backend.description}});
+  return listing;
+}
+
+Listing list_suites(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const Suite& suite : suites())
+    listing.push_back({{"suite", suite.name},
+                       {"timed", suite.timed},
+                       {"in_tables", suite.in_tables},
+                       {"scenes", listed(suite.scenes)},
+                       {"description", suite.description}});
+  return listing;
+}
+
+Listing list_integrators(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const Integrator& integrator : integrators)
+    listing.push_back({{"integrator", integrator.name},
+                       {"order", integrator.order},
+                       {"force_evaluations", integrator.stage_count},
+                       {"description", integrator.description}});
+  return listing;
+}
+
+Listing list_devices(const ExecutionOptions& /*options*/) {
+  Listing listing;
+  for (const OpenclDevice& device : opencl_offer().devices)
+    listing.push_back({{"number", device.number},
+                       {"name", device.name},
+                       {"type", name_of(device.type)},
+                       {"platform", device.platform},
+                       {"driver", device.driver_version},
+                       {"compute_units", device.compute_units},
+                       {"memory_bytes", device.global_memory_bytes},
+                       {"float_width", device.preferred_float_width}});
+  tell_of_opencl();
+  if (opencl_offer().devices.empty() && opencl_offer().troubles.empty())
+    std::cerr << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
+  return listing;
+}
+
+/// The TABLE of what can be listed.
+struct Subject {
+  std::string_view name;
+  Listing (*list)(const ExecutionOptions& options);
+};
+constexpr std::array<Subject, 6> subjects{{{"scenes", list_scenes},
+                                           {"suites", list_suites},
+                                           {"backends", list_backends},
+                                           {"ways", list_ways},
+                                           {"integrators", list_integrators},
+                                           {"devices", list_devices}}};
+
+struct ListOptions {
+  std::string subject;
+  ListingFormat format = ListingFormat::table;
+  ExecutionOptions execution;
+};
+
+int run_list(const ListOptions& options) {
+  for (const Subject& subject : subjects) {
+    if (subject.name != options.subject) continue;
+    const Listing listing = subject.list(options.execution);
+    std::cout << to_text(listing, options.format);
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+std::function<int()> declare_list(CLI::App& app) {
+  const auto options = std::make_shared<ListOptions>();
+  std::vector<std::string_view> known;
+  for (const Subject& subject : subjects) known.push_back(subject.name);
+  app.add_option("WHAT", options->subject, "What to list: " + listed(known, "or"))
+      ->required()
+      ->transform(one_of("word", {known.begin(), known.end()}));
+  declare_listing_format(app, options->format);
+  app.add_option("--device", options->execution.device,
+                 "OpenCL device that backends are checked with: its number or a part of its name")
+      ->type_name("N|NAME");
+  return [options] { return run_list(*options); };
+}
+
+}  // namespace mssim

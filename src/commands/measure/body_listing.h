@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "garment/body/body_stance.h"
+#include "garment/body/landmarks.h"
+#include "geometry/openings.h"
+#include "output/tables/listing.h"
+
+namespace mssim {
+
+/// What `mssim measure` has found of a body: rows of measure, value, unit and note.
+class BodyListing {
+ public:
+  /// `how` it is known, the same for all three.
+  void add_stance(const BodyStance& stance, const std::string& how);
+  /// `what` has been done about them.
+  void add_openings(std::span<const Opening> openings, const std::string& what);
+  void add_measures(const BodyProfile& profile, const BodyLandmarks& landmarks);
+
+  const Listing& rows() const { return rows_; }
+
+ private:
+  void add(const std::string& measure, nlohmann::ordered_json value, const std::string& unit,
+           const std::string& note = {});
+  void add_landmark(const std::string& name, const Landmark& landmark);
+
+  Listing rows_;
+};
+
+}  // namespace mssim

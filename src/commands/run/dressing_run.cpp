@@ -1,0 +1,82 @@
+#include "commands/run/dressing_run.h"
+
+#include <chrono>
+#include <iomanip>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include "bench/verification/blow_up.h"
+#include "commands/shared/exit_code.h"
+#include "commands/shared/fit_body.h"
+#include "commands/shared/progress_line.h"
+#include "garment/fitting/fit_bounds.h"
+#include "output/tables/listing.h"
+
+namespace mssim {
+
+int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
+                 const SettlingRule& rule, const FrameGrid& frames, RunRecorder& recorder,
+                 StopRequest& stop) {
+  const auto require_finite = [](const State& state, std::int64_t iterations) {
+    if (const auto node = first_bad_node(state))
+      throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
+                        std::to_string(*node) + " is not finite");
+  };
+  const auto record = [&](const State& state, std::int64_t iterations) {
+    require_finite(state, iterations);
+    recorder.record({iterations, static_cast<double>(iterations) * scene.dt_s, state,
+                     energy_of(scene.system, state), std::nullopt});
+    stop.throw_if_requested();
+  };
+  DressingResult result;
+  double seconds = 0;
+  recorder.finish_after([&] {
+    const auto before = std::chrono::steady_clock::now();
+    ProgressLine progress(1, ProgressLine::Log::nothing);
+    progress.begin_scene(scene.spec.name);
+    progress.update("closing seams", 0);
+    result = dress(
+        backend, scene.system, scene.dt_s, rule,
+        [&](const State& state, std::int64_t iterations) {
+          require_finite(state, iterations);
+          stop.throw_if_requested();
+          std::ostringstream activity;
+          activity << (backend.progress().draping ? "draping" : "closing seams") << ", " << std::fixed
+                   << std::setprecision(2) << static_cast<double>(iterations) * scene.dt_s
+                   << " s simulated of at most " << rule.longest_s;
+          progress.update(activity.str(), 0);  // when it will have settled, nobody knows
+          return true;
+        },
+        recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  });
+  const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.spec));
+  using Json = nlohmann::ordered_json;
+  const Json dressing{{"scene", scene.spec.name},
+                      {"backend", backend_name},
+                      {"threads", backend.threads()},
+                      {"nodes", scene.system.nodes()},
+                      {"dt_s", scene.dt_s},
+                      {"seamed_at", result.seamed_at ? Json(*result.seamed_at) : Json()},
+                      {"iterations", result.iterations},
+                      {"simulated_s", result.simulated_s},
+                      {"wall_s", seconds},
+                      {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}};
+  Listing fitting;
+  for (const FitCheck& check : fit_checks(fit, {}))
+    fitting.push_back({{"fit", check.name},
+                       {"value", check.value},
+                       {"bound", check.bound ? Json(check.shown_bound) : Json()},
+                       {"within", check.within ? Json(*check.within) : Json()}});
+  std::cout << to_text({dressing}, ListingFormat::table) << '\n' << to_text(fitting, ListingFormat::table);
+  if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
+    std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
+              << " s the garment is still moving; a longer --duration gives it more time\n";
+  const std::vector<std::string> found = misfits(result, fit, {});
+  for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
+  return found.empty() ? exit_ok : exit_not_verified;
+}
+
+}  // namespace mssim

@@ -1,0 +1,78 @@
+#include "commands/run/run_recorder.h"
+
+#include "commands/shared/exit_code.h"
+#include "commands/shared/output_names.h"
+#include "commands/shared/run_provenance.h"
+#include "garment/scene/garment_body.h"
+#include "platform/interruption.h"
+#include "platform/write_error.h"
+#include "scene/scene_file.h"
+
+namespace mssim {
+
+void require_distinct(const RunFiles& files, const SceneSpec& scene) {
+  std::vector<NamedFile> written, read;
+  if (!files.trace.empty()) {
+    written.push_back({"--trace", files.trace});
+    written.push_back({"the XDMF beside --trace", xdmf_of(files.trace)});
+  }
+  if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
+  for (const std::filesystem::path& file : files_of(scene)) read.push_back({"a file of the scene", file});
+  require_distinct(written, read);
+}
+
+RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const TraceHeader& header) {
+  if (!files.energy_curve.empty()) {
+    std::string comment = command_line();
+    if (const std::string_view work = energies_leave_out(scene.system); !work.empty())
+      comment.append("\nleft out: ").append(work);
+    curve_.emplace(files.energy_curve, comment);
+  }
+  if (!files.trace.empty())
+    trace_.emplace(files.trace, scene.system, header,
+                   is_garment(scene.system) ? body_of_garment(scene.spec) : Surface{});
+}
+
+void RunRecorder::record(const Frame& frame) {
+  const EnergySample sample{frame.time_s, frame.energy};
+  // First the curve, so that it has the energies of every frame of the trace, whichever of the two fails.
+  if (curve_) curve_->append(sample);
+  if (trace_) trace_->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+  energies_.push_back(sample);
+}
+
+void RunRecorder::finish_after(const std::function<void()>& simulation) {
+  try {
+    try {
+      simulation();
+    } catch (const NotVerified&) {
+      finish();
+      throw;
+    } catch (const Interrupted&) {
+      finish();
+      throw;
+    }
+    finish();
+  } catch (const WriteError& error) {
+    throw WriteError(error.what() + kept());
+  }
+}
+
+void RunRecorder::finish() {
+  if (curve_) curve_->close();
+  if (trace_) trace_->close();
+}
+
+std::string RunRecorder::kept() {
+  std::string text;
+  const auto add = [&](const std::filesystem::path& name, std::size_t frames, const char* what) {
+    if (frames > 0)
+      text += "; " + temporary_of(name).string() + " keeps the " + what +
+              " written before: " + std::to_string(frames);
+  };
+  if (trace_) add(trace_->name(), trace_->give_up(), "frames");
+  if (curve_) add(curve_->name(), curve_->give_up(), "energies");
+  return text;
+}
+
+}  // namespace mssim

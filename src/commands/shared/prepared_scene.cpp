@@ -1,0 +1,51 @@
+#include "commands/shared/prepared_scene.h"
+
+#include <iostream>
+#include <variant>
+
+#include "garment/scene/garment_body.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+
+namespace mssim {
+namespace {
+
+/// Meshes, and bodies to dress, are what does not follow from a scene's file alone.
+std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
+  const auto stated = stated_counts(spec);
+  if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
+    return "";
+  return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
+         std::to_string(counts.springs_unique) + " springs where the scene states " +
+         std::to_string(stated->nodes) + " and " + std::to_string(stated->springs_unique) +
+         (std::holds_alternative<GarmentSpec>(spec.body)
+              ? ": another body, or another pattern, makes other panels; state what they have"
+              : ": another TetGen, or another file, makes another mesh");
+}
+
+}  // namespace
+
+PreparedScene prepare_scene(std::string_view name_or_file) {
+  PreparedScene scene;
+  scene.spec = find_scene(name_or_file);
+  scene.system = build_system(scene.spec);
+  scene.counts = counts_of(scene.spec, scene.system);
+  scene.note = difference(scene.spec, scene.counts);
+  if (std::holds_alternative<GarmentSpec>(scene.spec.body))
+    if (const std::string ignored = ignored_parts(measured_body(scene.spec).trunk_and_legs());
+        !ignored.empty())
+      scene.note += (scene.note.empty() ? "" : "; ") + ignored;
+  scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
+  return scene;
+}
+
+ModeBound mode_bound(const System& system) {
+  const StiffnessBound bound = stiffness_bound(system);
+  return {bound.stiffness, bound.damping, system.viscous_damping};
+}
+
+void warn_of_note(const PreparedScene& scene) {
+  if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
+}
+
+}  // namespace mssim

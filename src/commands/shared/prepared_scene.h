@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "integrators/stability.h"
+#include "model/system.h"
+#include "scene/spec/scene_spec.h"
+
+namespace mssim {
+
+/// A scene ready to be stepped.
+struct PreparedScene {
+  SceneSpec spec;
+  System system;
+  SceneCounts counts;
+  double dt_s = 0;  ///< the scene's, or the largest safe one for `auto`
+  /// How the scene differs from what its file states, and what of a body a garment ignores; or empty.
+  std::string note;
+};
+
+/// Reads, checks and builds the scene of that name or file. Throws SceneError and MissingProgram.
+PreparedScene prepare_scene(std::string_view name_or_file);
+
+/// The modes of the scene, for the stability limits of its integrators.
+ModeBound mode_bound(const System& system);
+
+/// Says the note, if there is one, on stderr.
+void warn_of_note(const PreparedScene& scene);
+
+}  // namespace mssim

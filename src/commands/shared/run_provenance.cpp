@@ -1,0 +1,77 @@
+#include "commands/shared/run_provenance.h"
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "backends/backends.h"
+#include "backends/devices/offer.h"
+#include "mesh/tetgen_program.h"
+#include "output/folders/provenance_file.h"
+#include "text/fnv1a.h"
+
+namespace mssim {
+namespace {
+
+std::vector<std::string>& arguments() {
+  static std::vector<std::string> remembered;
+  return remembered;
+}
+
+/// As a shell reads it back: in single quotes unless all its characters are plain.
+std::string quoted(const std::string& argument) {
+  const bool plain = !argument.empty() && argument.find_first_not_of(
+                                              "abcdefghijklmnopqrstuvwxyz"
+                                              "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                              "0123456789_-+=:,./~%@") == std::string::npos;
+  if (plain) return argument;
+  std::string text = "'";
+  for (const char c : argument) {
+    if (c == '\'')
+      text += "'\\'";  // closes the quotes, a quoted quote, and the next character opens them again
+    text += c;
+  }
+  text += '\'';
+  return text;
+}
+
+}  // namespace
+
+void remember_arguments(int argc, char** argv) { arguments().assign(argv, argv + argc); }
+
+std::string command_line() {
+  std::string text;
+  for (const std::string& argument : gather_provenance(arguments(), 0).command_line)
+    text.append(text.empty() ? "" : " ").append(quoted(argument));
+  return text;
+}
+
+Provenance run_provenance(int threads, bool uses_device) {
+  Provenance provenance = gather_provenance(arguments(), threads);
+  if (uses_device) {
+    const OpenclOffer& offer = opencl_offer();
+    for (const OpenclDevice& device : offer.devices)
+      provenance.opencl_devices.push_back(device.platform + ": " + device.name + ", driver " +
+                                          device.driver_version);
+    std::ranges::copy(offer.troubles, std::back_inserter(provenance.opencl_devices));
+  }
+  if (const auto tetgen = find_tetgen())
+    provenance.tetgen = tetgen->version + ", fnv1a_64 " + hexadecimal(tetgen->fnv1a_64);
+  return provenance;
+}
+
+TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
+                         const Integrator& integrator) {
+  Provenance provenance = run_provenance(backend.threads(), find_backend(backend_name)->uses_device);
+  add_scene(provenance, scene.spec.name, scene.spec.source);
+  TraceHeader header;
+  header.creator_version = build_info().version;
+  header.scene_json = scene.spec.source;
+  header.provenance_json = to_json(provenance).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  header.backend = backend_name + " on " + backend.device();
+  header.integrator = integrator.name;
+  header.dt_s = scene.dt_s;
+  return header;
+}
+
+}  // namespace mssim

@@ -1,0 +1,149 @@
+#include "garment/bench/garment_verification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <utility>
+
+#include "bench/verification/blow_up.h"
+#include "garment/stepping/serial_dressing.h"
+#include "statistics/quantile.h"
+#include "statistics/statistics.h"
+
+namespace mssim {
+namespace {
+
+static_assert(stretches * stretch_steps == verification_steps);
+
+/// Adds a wave to the velocities of all nodes but the pinned ones.
+void excite(const System& system, State& state) {
+  constexpr double speed = 0.2;       // m/s
+  constexpr double wavelength = 0.3;  // m
+  constexpr double k = 2 * std::numbers::pi / wavelength;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    const Vec3d& x = state.position[i];
+    state.velocity[i] += speed * Vec3d{std::sin(k * x.y), std::sin(k * x.z), std::sin(k * x.x)};
+  }
+  for (const std::uint32_t pin : system.pins) state.velocity[pin] = {};
+}
+
+/// The reference's way from a start, cut into stretches; why there is none, where it blows up.
+std::optional<std::string> follow(Backend& reference, const System& system, const State& start, double dt_s,
+                                  std::vector<GarmentStretch>& way) {
+  reference.set_state(start);
+  for (int i = 0; i < stretches; ++i) {
+    way.push_back({reference.state(), {}});
+    GarmentStretch& stretch = way.back();
+    stretch.start.draped = start.draped;
+    if (start.draped) excite(system, stretch.start);
+    round_to_single(stretch.start);
+    reference.step(stretch_steps);
+  }
+  for (GarmentStretch& stretch : way) {
+    reference.set_state(stretch.start);
+    reference.step(stretch_steps);
+    stretch.end = reference.state();
+    if (!first_bad_node(stretch.end)) continue;
+    const auto blow_up = find_blow_up(reference, stretch.start, stretch_steps);
+    const auto before = static_cast<int>(&stretch - way.data()) * stretch_steps;
+    return "the double-precision reference " + describe(blow_up.value_or(BlowUp{}), dt_s, before);
+  }
+  return std::nullopt;
+}
+
+/// What the stretches of one kind say about a backend.
+class StretchErrors {
+ public:
+  explicit StretchErrors(const System& system)
+      : system_(system), unit_(mean_rest_length(system)), errors_(system.nodes()) {}
+
+  /// Steps the backend over all stretches; why it cannot be compared, where it blows up.
+  std::optional<std::string> run(Backend& backend, const std::vector<GarmentStretch>& way, double dt_s) {
+    for (const GarmentStretch& stretch : way) {
+      backend.set_state(stretch.start);
+      backend.step(stretch_steps);
+      const State state = backend.state();
+      if (first_bad_node(state)) {
+        const auto blow_up = find_blow_up(backend, stretch.start, stretch_steps);
+        return blow_up ? describe(*blow_up, dt_s) : "not finite in one run, finite in the next: a data race";
+      }
+      for (std::size_t i = 0; i < errors_.size(); ++i)
+        errors_[i].push_back(length(state.position[i] - stretch.end.position[i]) / unit_);
+      const Energy expected = energy_of(system_, stretch.end);
+      energy_error_ += energy_of(system_, state).total() - expected.total();
+      energy_in_motion_ += expected.kinetic + expected.elastic;
+    }
+    return std::nullopt;
+  }
+
+  /// The largest over the nodes of a node's median over the stretches.
+  double largest_median() const {
+    double largest = 0;
+    for (const std::vector<double>& of_node : errors_) largest = std::max(largest, median(of_node));
+    return largest;
+  }
+
+  /// What a share of all errors, of all nodes in all stretches, stays below.
+  double quantile(double share) const {
+    std::vector<double> all;
+    for (const std::vector<double>& of_node : errors_) all.insert(all.end(), of_node.begin(), of_node.end());
+    return mssim::quantile(std::move(all), share);
+  }
+
+  double energy_error() const { return energy_error_; }
+  double energy_in_motion() const { return energy_in_motion_; }
+
+ private:
+  const System& system_;
+  double unit_;                              ///< m
+  std::vector<std::vector<double>> errors_;  ///< [nodes][stretches] in mean rest lengths
+  double energy_error_ = 0, energy_in_motion_ = 0;
+};
+
+}  // namespace
+
+GarmentReference run_garment_reference(const System& system, const Integrator& integrator, double dt_s,
+                                       const State& draped) {
+  const auto backend = make_reference_dressing(system, integrator, dt_s);
+  GarmentReference reference;
+  reference.tolerance = position_tolerance(system, integrator, stretch_steps);
+  reference.farthest = std::get<Garment>(system.topology).dressing.push_speed * stretch_steps * dt_s /
+                       mean_rest_length(system);
+  reference.failure = follow(*backend, system, system.start, dt_s, reference.seaming);
+  if (!reference.failure) reference.failure = follow(*backend, system, draped, dt_s, reference.draped);
+  return reference;
+}
+
+Verification verify_garment(Backend& backend, const System& system, const GarmentReference& reference,
+                            double dt_s) {
+  Verification result;
+  StretchErrors seaming(system), draped(system);
+  result.failure = reference.failure;
+  if (!result.failure) result.failure = seaming.run(backend, reference.seaming, dt_s);
+  if (!result.failure) result.failure = draped.run(backend, reference.draped, dt_s);
+  if (result.failure) return result;
+
+  const double of_node = seaming.largest_median();
+  const double of_half = draped.quantile(0.5), of_most = draped.quantile(0.9), any = draped.quantile(1);
+  result.position_error = std::max(of_node, of_most);
+  result.energy_drift = (seaming.energy_error() + draped.energy_error()) /
+                        (seaming.energy_in_motion() + draped.energy_in_motion());
+  std::ostringstream why;
+  const auto hold = [&](double error, double bound, const char* whose) {
+    if (!why.str().empty() || error <= bound) return;
+    why << "position error " << error << " of a rest length" << whose << " exceeds " << bound << " after "
+        << stretch_steps << " steps";
+  };
+  hold(of_node, reference.tolerance, ", of one node while the seams close,");
+  hold(of_half, reference.tolerance / 4, ", of half of the nodes when draped,");
+  hold(of_most, reference.tolerance, ", of a tenth of the nodes when draped,");
+  hold(any, reference.farthest, ", of one node when draped,");
+  if (why.str().empty() && !(std::abs(result.energy_drift) <= energy_tolerance))
+    why << "energy is off by " << result.energy_drift << " of kinetic plus elastic energy, more than "
+        << energy_tolerance << ", after " << stretch_steps << " steps";
+  if (!why.str().empty()) result.failure = why.str();
+  return result;
+}
+
+}  // namespace mssim

@@ -1,0 +1,179 @@
+#include "garment/body/body_profile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
+
+namespace mssim {
+namespace {
+
+using Corners = std::array<Vec3d, 3>;
+
+/// Calls `visit` with each corner of a triangle in the plane where `coordinate` is `value`, and with each
+/// point in which one of its edges passes through that plane.
+template <class Visit>
+void cut(const Corners& corners, double Vec3d::*coordinate, double value, const Visit& visit) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d& from = corners[i];
+    const Vec3d& to = corners[(i + 1) % 3];
+    const double before = from.*coordinate - value;
+    const double behind = to.*coordinate - value;
+    if (before == 0) visit(from);
+    if ((before < 0 && behind > 0) || (before > 0 && behind < 0))
+      visit(from + before / (before - behind) * (to - from));
+  }
+}
+
+Corners corners_of(const Surface& surface, std::size_t triangle) {
+  const auto& [a, b, c] = surface.triangles[triangle];
+  return {surface.points[a], surface.points[b], surface.points[c]};
+}
+
+TrunkAndLegs checked_body(const Surface& surface, const std::string& name) {
+  validate_surface(surface, name);
+  return trunk_and_legs(surface);
+}
+
+bool nearer_the_back(const PlanPoint& a, const PlanPoint& b) { return a.z < b.z; }
+
+}  // namespace
+
+BodyProfile::BodyProfile(const Surface& surface, std::string name)
+    : name_(std::move(name)), body_(checked_body(surface, name_)) {
+  const auto [low, high] = std::minmax_element(body_.surface.points.begin(), body_.surface.points.end(),
+                                               [](const Vec3d& a, const Vec3d& b) { return a.y < b.y; });
+  lowest_ = low->y;
+  highest_ = high->y;
+  fill_slices();
+  middle_ = heights_in_the_middle();
+  crotch_ = find_crotch();
+}
+
+std::size_t BodyProfile::slice_of(double y) const {
+  const double share = (y - lowest_) / (highest_ - lowest_);
+  const auto slice = static_cast<std::size_t>(share * static_cast<double>(slices_.size()));
+  return std::min(slice, slices_.size() - 1);
+}
+
+void BodyProfile::fill_slices() {
+  slices_.resize(256);
+  for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
+    const auto [a, b, c] = corners_of(body_.surface, t);
+    const std::size_t last = slice_of(std::max({a.y, b.y, c.y}));
+    for (std::size_t slice = slice_of(std::min({a.y, b.y, c.y})); slice <= last; ++slice)
+      slices_[slice].push_back(static_cast<std::uint32_t>(t));
+  }
+}
+
+std::vector<BodyProfile::Interval> BodyProfile::merged(std::vector<Interval> intervals) {
+  constexpr double joins = 1e-6;  // m, more than rounding opens between triangles that share a point
+  std::sort(intervals.begin(), intervals.end(),
+            [](const Interval& a, const Interval& b) { return a.low < b.low; });
+  std::vector<Interval> pieces;
+  for (const Interval& interval : intervals)
+    if (pieces.empty() || interval.low > pieces.back().high + joins)
+      pieces.push_back(interval);
+    else
+      pieces.back().high = std::max(pieces.back().high, interval.high);
+  return pieces;
+}
+
+std::vector<BodyProfile::Interval> BodyProfile::heights_in_the_middle() const {
+  std::vector<Interval> intervals;
+  for (std::size_t t = 0; t < body_.surface.triangles.size(); ++t) {
+    Interval interval{highest_, lowest_};
+    cut(corners_of(body_.surface, t), &Vec3d::x, 0, [&](const Vec3d& point) {
+      interval = {std::min(interval.low, point.y), std::max(interval.high, point.y)};
+    });
+    if (interval.low <= interval.high) intervals.push_back(interval);
+  }
+  return merged(std::move(intervals));
+}
+
+std::optional<double> BodyProfile::find_crotch() const {
+  // The trunk is the longest piece: feet may touch each other, or stand on something.
+  const auto trunk =
+      std::max_element(middle_.begin(), middle_.end(),
+                       [](const Interval& a, const Interval& b) { return a.high - a.low < b.high - b.low; });
+  if (trunk == middle_.end()) return std::nullopt;
+  constexpr double shortest_leg = 0.01;  // m: a round underside's lowest point need not be at x = 0
+  const auto has_leg = [&](double sign) {
+    return std::any_of(body_.surface.points.begin(), body_.surface.points.end(), [&](const Vec3d& point) {
+      return sign * point.x > 0 && point.y < trunk->low - shortest_leg;
+    });
+  };
+  if (!has_leg(-1) || !has_leg(1)) return std::nullopt;
+  return trunk->low;
+}
+
+double BodyProfile::crotch_height() const {
+  if (!crotch_)
+    throw MeshError(name_ +
+                    ": its section never falls apart into a left and a right leg at x = 0; give a body that "
+                    "stands upright in y, looks to +z and has a leg on either side of x = 0");
+  return *crotch_;
+}
+
+std::vector<PlanPoint> BodyProfile::section(double y) const {
+  if (!(y >= lowest_ && y <= highest_))
+    throw MeshError(name_ + ": there is no section at the height " + shown(y) + " m; give a height from " +
+                    shown(lowest_) + " to " + shown(highest_) + " m");
+  std::vector<PlanPoint> points;
+  for (const std::uint32_t t : slices_[slice_of(y)])
+    cut(corners_of(body_.surface, t), &Vec3d::y, y, [&](const Vec3d& point) {
+      points.push_back({point.x, point.z});
+    });
+  if (points.empty())
+    throw MeshError(name_ + ": there is a gap between its parts at the height " + shown(y) +
+                    " m; give a height at which there is a part");
+  return points;
+}
+
+double BodyProfile::hull_girth(double y) const { return hull_perimeter(section(y)); }
+
+std::vector<PlanPoint> BodyProfile::leg_section(double y, int side) const {
+  for (const Interval& joined : middle_)
+    if (y >= joined.low && y <= joined.high)
+      throw MeshError(name_ + ": its legs are not apart at x = 0 at the height " + shown(y) +
+                      " m; give a height outside " + shown(joined.low) + " to " + shown(joined.high) + " m");
+  std::vector<PlanPoint> points = section(y);
+  const double sign = side < 0 ? -1 : 1;
+  std::erase_if(points, [&](const PlanPoint& point) { return sign * point.x <= 0; });
+  if (points.empty())
+    throw MeshError(name_ + ": there is no leg at x " + (side < 0 ? "< 0" : "> 0") + " at the height " +
+                    shown(y) + " m; give a height that this leg reaches");
+  return points;
+}
+
+double BodyProfile::leg_girth(double y, int side) const { return hull_perimeter(leg_section(y, side)); }
+
+PlanPoint BodyProfile::leg_middle(double y) const {
+  constexpr double below_the_crotch = 0.005;
+  const std::vector<PlanPoint> points = leg_section(std::min(y, crotch_height() - below_the_crotch), 1);
+  const auto [inner, outer] = std::minmax_element(
+      points.begin(), points.end(), [](const PlanPoint& a, const PlanPoint& b) { return a.x < b.x; });
+  const auto [behind, before] = std::minmax_element(points.begin(), points.end(), nearer_the_back);
+  return {(inner->x + outer->x) / 2, (behind->z + before->z) / 2};
+}
+
+double BodyProfile::front(double y) const {
+  const std::vector<PlanPoint> points = section(y);
+  return std::max_element(points.begin(), points.end(), nearer_the_back)->z;
+}
+
+double BodyProfile::back(double y) const {
+  const std::vector<PlanPoint> points = section(y);
+  return std::min_element(points.begin(), points.end(), nearer_the_back)->z;
+}
+
+double BodyProfile::half_width(double y) const {
+  double widest = 0;
+  for (const PlanPoint& point : section(y)) widest = std::max(widest, std::abs(point.x));
+  return widest;
+}
+
+}  // namespace mssim

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "garment/body/trunk_and_legs.h"
+#include "geometry/convex_hull.h"
+#include "geometry/surface.h"
+
+namespace mssim {
+
+/// The measures that a pattern needs of a body, mannequin or scan: any closed surface, m, that stands upright
+/// in y, looks to +z and has a leg on either side of the plane x = 0. It may be of several closed parts that
+/// overlap. Only its trunk and legs count (trunk_and_legs): an arm beside the hip does not make it wider.
+/// Measures are of the exact section of the triangles with a horizontal plane; a triangle that lies in the
+/// plane belongs to it.
+class BodyProfile {
+ public:
+  /// `name` begins what errors say. Throws MeshError for a surface that is not closed (validate_surface).
+  explicit BodyProfile(const Surface& surface, std::string name = "body");
+
+  /// What is measured, and what garments meet.
+  const TrunkAndLegs& trunk_and_legs() const { return body_; }
+  double lowest() const { return lowest_; }    ///< y, m
+  double highest() const { return highest_; }  ///< y, m
+
+  /// Does the section fall apart into two legs below?
+  bool has_legs() const { return crotch_.has_value(); }
+  /// The height, m, below which the section falls apart into two legs: where the surface's cut with the plane
+  /// x = 0 ends below. Throws MeshError for a surface that does not part there into a left and a right leg.
+  double crotch_height() const;
+
+  // All of these throw MeshError for a height y, m, at which there is no body.
+
+  /// The perimeter of the section's convex hull, m: what a tape says.
+  double hull_girth(double y) const;
+  /// The same of one leg: of the section's part at x < 0 for a negative `side`, else at x > 0. Throws
+  /// MeshError where the section reaches x = 0, as it does above the crotch, and where there is no such leg.
+  double leg_girth(double y, int side) const;
+  /// The middle of the leg at x > 0, half way between the outermost points of its section; above the crotch
+  /// that of the leg just below it.
+  PlanPoint leg_middle(double y) const;
+  /// The largest z of the section, m.
+  double front(double y) const;
+  /// The smallest z of the section, m.
+  double back(double y) const;
+  /// The largest |x| of the section, m.
+  double half_width(double y) const;
+
+ private:
+  struct Interval {
+    double low = 0, high = 0;
+  };
+
+  /// The corners of the section's outline, in no order.
+  std::vector<PlanPoint> section(double y) const;
+  /// Its part on one side of x = 0.
+  std::vector<PlanPoint> leg_section(double y, int side) const;
+  std::size_t slice_of(double y) const;
+  void fill_slices();
+  /// What `intervals` cover together, in pieces from below upwards.
+  static std::vector<Interval> merged(std::vector<Interval> intervals);
+  std::vector<Interval> heights_in_the_middle() const;
+  std::optional<double> find_crotch() const;
+
+  std::string name_;
+  TrunkAndLegs body_;
+  double lowest_ = 0, highest_ = 0;
+  std::vector<Interval> middle_;  ///< heights at which the section reaches x = 0
+  std::optional<double> crotch_;
+  /// For horizontal slices of equal height, the triangles that reach into each.
+  std::vector<std::vector<std::uint32_t>> slices_;
+};
+
+}  // namespace mssim

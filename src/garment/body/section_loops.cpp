@@ -1,0 +1,144 @@
+#include "garment/body/section_loops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <unordered_map>
+#include <utility>
+
+namespace mssim {
+namespace {
+
+/// A triangle that the plane cuts, and the two edges in which it does.
+struct CutTriangle {
+  std::uint32_t triangle = 0;
+  std::uint64_t in = 0, out = 0;  ///< names of the edges
+  PlanPoint at;                   ///< where the plane cuts the first
+  bool done = false;
+};
+
+std::uint64_t edge_name(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+/// Where the plane cuts an edge of which one end is below it.
+PlanPoint crossing(const Vec3d& below, const Vec3d& above, double y) {
+  const double share = (y - below.y) / (above.y - below.y);
+  return {below.x + share * (above.x - below.x), below.z + share * (above.z - below.z)};
+}
+
+std::vector<CutTriangle> cut_triangles(const Surface& surface, std::span<const std::uint32_t> triangles,
+                                       double y) {
+  std::vector<CutTriangle> cuts;
+  for (const std::uint32_t t : triangles) {
+    const auto& corners = surface.triangles[t];
+    CutTriangle cut{t, 0, 0, {}};
+    bool is_cut = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = corners[i], b = corners[(i + 1) % 3];
+      const Vec3d &from = surface.points[a], &to = surface.points[b];
+      if ((from.y < y) == (to.y < y)) continue;
+      is_cut = true;
+      if (from.y < y) {
+        cut.in = edge_name(a, b);
+        cut.at = crossing(from, to, y);
+      } else {
+        cut.out = edge_name(a, b);
+      }
+    }
+    if (is_cut) cuts.push_back(cut);
+  }
+  return cuts;
+}
+
+double twice_area(const std::vector<PlanPoint>& points) {
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PlanPoint &a = points[i], &b = points[(i + 1) % points.size()];
+    sum += a.x * b.z - a.z * b.x;
+  }
+  return sum;
+}
+
+bool contains(const SectionLoop& loop, const PlanPoint& point) {
+  bool inside = false;
+  for (std::size_t i = 0; i < loop.points.size(); ++i) {
+    const PlanPoint &a = loop.points[i], &b = loop.points[(i + 1) % loop.points.size()];
+    if ((a.z > point.z) != (b.z > point.z) && point.x < a.x + (point.z - a.z) / (b.z - a.z) * (b.x - a.x))
+      inside = !inside;
+  }
+  return inside;
+}
+
+using Side = std::pair<PlanPoint, PlanPoint>;
+
+/// On which side of the line from `a` to `b` a point lies.
+double side_of(const PlanPoint& a, const PlanPoint& b, const PlanPoint& point) {
+  return (b.x - a.x) * (point.z - a.z) - (b.z - a.z) * (point.x - a.x);
+}
+
+bool cross_each_other(const Side& a, const Side& b) {
+  return (side_of(a.first, a.second, b.first) > 0) != (side_of(a.first, a.second, b.second) > 0) &&
+         (side_of(b.first, b.second, a.first) > 0) != (side_of(b.first, b.second, a.second) > 0);
+}
+
+/// The sides of a loop that reach into a box.
+std::vector<Side> sides_within(const SectionLoop& loop, const PlanPoint& low, const PlanPoint& high) {
+  std::vector<Side> sides;
+  for (std::size_t i = 0; i < loop.points.size(); ++i) {
+    const PlanPoint &a = loop.points[i], &b = loop.points[(i + 1) % loop.points.size()];
+    if (std::max(a.x, b.x) >= low.x && std::min(a.x, b.x) <= high.x && std::max(a.z, b.z) >= low.z &&
+        std::min(a.z, b.z) <= high.z)
+      sides.emplace_back(a, b);
+  }
+  return sides;
+}
+
+}  // namespace
+
+std::vector<SectionLoop> section_loops(const Surface& surface, std::span<const std::uint32_t> triangles,
+                                       double y) {
+  std::vector<CutTriangle> cuts = cut_triangles(surface, triangles, y);
+  std::unordered_map<std::uint64_t, std::size_t> entered_by;
+  entered_by.reserve(cuts.size());
+  for (std::size_t i = 0; i < cuts.size(); ++i) entered_by.emplace(cuts[i].in, i);
+  std::vector<SectionLoop> loops;
+  for (std::size_t first = 0; first < cuts.size(); ++first) {
+    if (cuts[first].done) continue;
+    std::vector<PlanPoint> points;
+    std::vector<std::uint32_t> through;
+    for (std::size_t i = first; !cuts[i].done; i = entered_by.at(cuts[i].out)) {
+      cuts[i].done = true;
+      points.push_back(cuts[i].at);
+      through.push_back(cuts[i].triangle);
+    }
+    loops.push_back(loop_of(std::move(points), std::move(through)));
+  }
+  return loops;
+}
+
+SectionLoop loop_of(std::vector<PlanPoint> points, std::vector<std::uint32_t> triangles) {
+  SectionLoop loop;
+  loop.area = 0.5 * std::abs(twice_area(points));
+  loop.low = loop.high = points.front();
+  for (const PlanPoint& point : points) {
+    loop.low = {std::min(loop.low.x, point.x), std::min(loop.low.z, point.z)};
+    loop.high = {std::max(loop.high.x, point.x), std::max(loop.high.z, point.z)};
+  }
+  loop.points = std::move(points);
+  loop.triangles = std::move(triangles);
+  return loop;
+}
+
+bool overlap(const SectionLoop& a, const SectionLoop& b) {
+  const PlanPoint low{std::max(a.low.x, b.low.x), std::max(a.low.z, b.low.z)};
+  const PlanPoint high{std::min(a.high.x, b.high.x), std::min(a.high.z, b.high.z)};
+  if (low.x > high.x || low.z > high.z) return false;
+  if (contains(a, b.points.front()) || contains(b, a.points.front())) return true;
+  const std::vector<Side> of_a = sides_within(a, low, high), of_b = sides_within(b, low, high);
+  return std::ranges::any_of(of_a, [&](const Side& side) {
+    return std::ranges::any_of(of_b, [&](const Side& other) { return cross_each_other(side, other); });
+  });
+}
+
+}  // namespace mssim

@@ -1,0 +1,193 @@
+#include "garment/body/stance_guess.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "garment/body/leg_gap.h"
+#include "garment/body/length_unit.h"
+#include "geometry/box.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
+
+namespace mssim {
+namespace {
+
+/// The smallest box that holds the surface.
+Box<double> box_of(const Surface& surface) {
+  Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  for (const Vec3d& point : surface.points) extend(box, point);
+  return box;
+}
+
+/// The body stood up in one way.
+struct Candidate {
+  BodyStance stance;
+  Surface body;
+  std::vector<LegGap> gaps;
+
+  Candidate(const Surface& surface, UpAxis up, Facing facing) : stance{1, up, facing, 0, {}} {
+    stand(surface);
+  }
+
+  /// After a change of stance.
+  void stand(const Surface& surface) {
+    body = stood_up(surface, stance);
+    gaps = leg_gaps(body);
+  }
+
+  /// How wide the legs are apart, over all heights: the larger, the more is it legs seen from ahead.
+  double apartness() const {
+    double sum = 0;
+    for (const LegGap& gap : gaps) sum += gap.high - gap.low;
+    return sum;
+  }
+};
+
+std::vector<UpAxis> possible_axes(const Surface& body, const GivenStance& given) {
+  if (given.up) return {*given.up};
+  if (given.facing && !is_level(*given.facing, UpAxis::y)) return {UpAxis::z};
+  if (given.facing && !is_level(*given.facing, UpAxis::z)) return {UpAxis::y};
+  // Arms that are held sideways reach about as far as a person is high.
+  constexpr double least_share = 0.75;
+  const Vec3d size = box_of(body).size();
+  const double least = least_share * std::max({size.x, size.y, size.z});
+  std::vector<UpAxis> axes;
+  for (const UpAxis up : {UpAxis::y, UpAxis::z})
+    if (dot(size, direction_of(up)) >= least) axes.push_back(up);
+  if (axes.empty())
+    throw MeshError("it is " + shown(size.x) + " long in x, " + shown(size.y) + " in y and " + shown(size.z) +
+                    " in z, so that it stands upright neither in y nor in z; turn it in the file");
+  return axes;
+}
+
+std::vector<Candidate> candidates(const Surface& body, const GivenStance& given) {
+  std::vector<Candidate> all;
+  for (const UpAxis up : possible_axes(body, given)) {
+    if (given.facing) {
+      if (!is_level(*given.facing, up))
+        throw MeshError("it cannot look along " +
+                        std::string(up_axis_names.at(static_cast<std::size_t>(up))) +
+                        ", which is its upright axis; give another facing");
+      all.emplace_back(body, up, *given.facing);
+      continue;
+    }
+    for (const Facing facing : {Facing::plus_x, Facing::plus_y, Facing::plus_z})
+      if (is_level(facing, up)) all.emplace_back(body, up, facing);
+  }
+  return all;
+}
+
+/// How much farther the feet reach ahead than behind, seen from the shins, over their length; positive where
+/// the body looks to +z.
+double toes_ahead(const Surface& body) {
+  const Box<double> box = box_of(body);
+  const double height = box.size().y;
+  constexpr double foot = 0.05, shin_low = 0.08, shin_high = 0.2;  // of the height, above the floor
+  double foot_low = HUGE_VAL, foot_high = -HUGE_VAL, shin_back = HUGE_VAL, shin_front = -HUGE_VAL;
+  for (const Vec3d& point : body.points) {
+    const double share = (point.y - box.low.y) / height;
+    if (share <= foot) {
+      foot_low = std::min(foot_low, point.z);
+      foot_high = std::max(foot_high, point.z);
+    } else if (share >= shin_low && share <= shin_high) {
+      shin_back = std::min(shin_back, point.z);
+      shin_front = std::max(shin_front, point.z);
+    }
+  }
+  const double ahead = foot_high - shin_front, behind = shin_back - foot_low;
+  const double share = (ahead - behind) / (foot_high - foot_low);
+  return std::isfinite(share) ? share : 0;
+}
+
+/// The angle, in degrees, between the legs' middles and the sideways axis; the median over the gaps.
+double turned_degrees(const std::vector<LegGap>& gaps) {
+  std::vector<double> angles;
+  for (const LegGap& gap : gaps)
+    angles.push_back(std::atan2(gap.right.z - gap.left.z, gap.left.x - gap.right.x));
+  if (angles.empty()) return 0;
+  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+  std::nth_element(angles.begin(), middle, angles.end());
+  return *middle * 180 / std::numbers::pi;
+}
+
+Facing opposite(Facing facing) { return static_cast<Facing>(static_cast<std::uint32_t>(facing) ^ 1U); }
+
+/// Turns the candidate until its legs stand side by side, in whole degrees.
+void turn_ahead(Candidate& best, const Surface& surface) {
+  constexpr int turns = 2;  // seen askew, legs are not quite where they are
+  for (int i = 0; i < turns; ++i) {
+    best.stance.turn_deg -= std::round(turned_degrees(best.gaps));
+    best.stand(surface);
+  }
+}
+
+void find_facing(Candidate& best, const Surface& surface, const GivenStance& given,
+                 std::vector<std::string>& doubts) {
+  constexpr double clear = 0.15;  // toes of a foot of 25 cm reach 4 cm farther ahead than its heel behind
+  constexpr double askew = 12;    // degrees: less may be one foot before the other
+  const double turned = std::round(turned_degrees(best.gaps));
+  if (std::abs(turned) > askew && given.facing)
+    doubts.push_back("facing: its legs stand " + shown(turned) +
+                     " degrees beside the axis; turn_deg in the scene's surface_file turns it");
+  if (given.facing) return;
+  if (std::abs(turned) > askew) {
+    turn_ahead(best, surface);
+    doubts.push_back("facing: its legs stand beside the axes, and it is turned by " +
+                     shown(best.stance.turn_deg) + " degrees; give --facing to leave it as it is");
+  }
+  const double toes = toes_ahead(best.body);
+  if (toes < 0) {
+    best.stance.facing = opposite(best.stance.facing);
+    best.stand(surface);
+  }
+  if (std::abs(toes) < clear)
+    doubts.emplace_back("facing: its feet reach about as far ahead as behind; give it with --facing");
+}
+
+double unit_of(double height, const GivenStance& given, std::vector<std::string>& doubts) {
+  const auto metres = [&](double unit_m) { return shown(std::round(1e4 * height * unit_m) / 1e4) + " m"; };
+  if (given.unit_m) {
+    const double person = height * *given.unit_m;
+    if (person < shortest_person || person > tallest_person)
+      doubts.push_back("unit: the body is " + metres(*given.unit_m) +
+                       " high in the unit given, and people are " + shown(shortest_person) + " to " +
+                       shown(tallest_person) + " m");
+    return *given.unit_m;
+  }
+  const auto guess = guess_unit(height);
+  if (!guess)
+    throw MeshError("it is " + shown(height) + " high, which is a person of " + shown(shortest_person) +
+                    " to " + shown(tallest_person) + " m in no unit; give the unit with --unit");
+  if (!guess->certain)
+    doubts.push_back("unit: in " + std::string(guess->unit.name) + " the body is " +
+                     metres(guess->unit.metres) + " high, which is nearest to a person of " +
+                     shown(shortest_person) + " to " + shown(tallest_person) + " m; give it with --unit");
+  return guess->unit.metres;
+}
+
+/// To a tenth of a millimetre; without the sign of zero.
+double to_tenths(double metres) { return std::round(1e4 * metres) / 1e4 + 0.0; }
+
+}  // namespace
+
+StanceGuess guess_stance(const Surface& body, const GivenStance& given) {
+  std::vector<Candidate> all = candidates(body, given);
+  const auto best = std::ranges::max_element(all, {}, &Candidate::apartness);
+  std::vector<std::string> doubts;
+  if (best->gaps.empty() && !(given.up && given.facing))
+    doubts.emplace_back(
+        "up and facing: it has no two legs side by side that would show them; give them with --up and "
+        "--facing");
+  find_facing(*best, body, given, doubts);
+  const Box<double> box = box_of(best->body);
+  BodyStance stance = best->stance;
+  stance.unit_m = unit_of(box.size().y, given, doubts);
+  const double middle = best->gaps.empty() ? box.middle().x : between_legs(best->gaps);
+  stance.move = {to_tenths(-stance.unit_m * middle), to_tenths(-stance.unit_m * box.low.y),
+                 to_tenths(-stance.unit_m * box.middle().z)};
+  return {stance, doubts};
+}
+
+}  // namespace mssim

@@ -1,0 +1,293 @@
+#include "garment/body/trunk_and_legs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "garment/body/section_loops.h"
+#include "garment/body/section_necks.h"
+#include "geometry/openings.h"
+#include "text/decimal.h"
+
+namespace mssim {
+namespace {
+
+/// Loops of one section that overlap.
+struct Group {
+  std::vector<SectionLoop> loops;
+  double area = 0;       ///< m^2, of the largest loop
+  bool by_neck = false;  ///< cut off from another one
+  bool kept = false;
+
+  bool reaches_middle() const {
+    return std::ranges::any_of(loops,
+                               [](const SectionLoop& loop) { return loop.low.x <= 0 && loop.high.x >= 0; });
+  }
+};
+
+bool overlap(const Group& a, const Group& b) {
+  return std::ranges::any_of(a.loops, [&](const SectionLoop& loop) {
+    return std::ranges::any_of(b.loops, [&](const SectionLoop& other) { return overlap(loop, other); });
+  });
+}
+
+struct Level {
+  double y = 0;  ///< m
+  std::vector<Group> groups;
+};
+
+std::vector<Group> grouped(std::vector<SectionLoop> loops) {
+  std::vector<Group> groups;
+  for (SectionLoop& loop : loops) {
+    Group joined;
+    joined.area = loop.area;
+    joined.loops.push_back(std::move(loop));
+    std::erase_if(groups, [&](Group& group) {
+      if (!overlap(group, joined)) return false;
+      joined.area = std::max(joined.area, group.area);
+      std::ranges::move(group.loops, std::back_inserter(joined.loops));
+      return true;
+    });
+    groups.push_back(std::move(joined));
+  }
+  return groups;
+}
+
+/// A thigh has eight times the section of a hand, a trunk six times that of an arm; halves of a foot are of a
+/// size.
+constexpr double much_smaller = 0.25;
+
+/// Large groups of a single loop without what hangs on it by narrow necks, which are groups of their own.
+std::vector<Group> parted(std::vector<Group> groups) {
+  double largest = 0;
+  for (const Group& group : groups) largest = std::max(largest, group.area);
+  std::vector<Group> all;
+  for (Group& group : groups) {
+    if (group.loops.size() > 1 || group.area < much_smaller * largest) {
+      all.push_back(std::move(group));
+      continue;
+    }
+    bool is_first = true;
+    for (SectionLoop& loop : cut_at_necks(std::move(group.loops.front()))) {
+      Group& part = all.emplace_back();
+      part.area = loop.area;
+      part.by_neck = !is_first;
+      part.loops.push_back(std::move(loop));
+      is_first = false;
+    }
+  }
+  return all;
+}
+
+/// Sections through the middles of slices of equal height.
+std::vector<Level> levels_of(const Surface& surface) {
+  constexpr std::size_t count = 256;
+  const auto [low, high] = std::ranges::minmax(surface.points, {}, &Vec3d::y);
+  const double lowest = low.y, step = (high.y - lowest) / count;
+  std::vector<std::vector<std::uint32_t>> crossing(count);
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const auto [least, most] = std::minmax({surface.points[a].y, surface.points[b].y, surface.points[c].y});
+    const auto slice = [&](double y) {
+      return std::min(static_cast<std::size_t>((y - lowest) / step), count - 1);
+    };
+    for (std::size_t i = slice(least); i <= slice(most); ++i) crossing[i].push_back(t);
+  }
+  std::vector<Level> levels(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    levels[i].y = lowest + (static_cast<double>(i) + 0.5) * step;
+    levels[i].groups = parted(grouped(section_loops(surface, crossing[i], levels[i].y)));
+  }
+  return levels;
+}
+
+/// The largest group of a level of which `may` is true; null where there is none.
+template <class May>
+Group* largest(Level& level, const May& may) {
+  Group* found = nullptr;
+  for (Group& group : level.groups)
+    if ((found == nullptr || group.area > found->area) && std::invoke(may, group)) found = &group;
+  return found;
+}
+
+/// Does a group of the level that is kept, or one that is not, overlap this one of another level?
+bool any_overlaps(const Level& level, bool kept, const Group& group) {
+  return std::ranges::any_of(level.groups,
+                             [&](const Group& other) { return other.kept == kept && overlap(other, group); });
+}
+
+/// The level in the middle of the longest run of levels that reach x = 0.
+std::optional<std::size_t> middle_of_trunk(const std::vector<Level>& levels) {
+  std::size_t length = 0, longest = 0, middle = 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    length = std::ranges::any_of(levels[i].groups, &Group::reaches_middle) ? length + 1 : 0;
+    if (length <= longest) continue;
+    longest = length;
+    middle = i - length / 2;
+  }
+  return longest > 0 ? std::optional(middle) : std::nullopt;
+}
+
+/// Keeps what hangs from the groups kept in the level above.
+void keep_below(const Level& above, Level& level) {
+  for (const Group& from : above.groups) {
+    if (!from.kept) continue;
+    const auto hangs = [&](const Group& group) { return overlap(from, group); };
+    const Group* main = largest(level, hangs);
+    if (main == nullptr) continue;
+    const double least = much_smaller * main->area;
+    for (Group& group : level.groups)
+      if (!group.kept && group.area >= least && hangs(group)) group.kept = true;
+  }
+}
+
+/// Keeps what stands on the groups kept in the levels below, unless it leads back to the trunk.
+void keep_above(std::vector<Level>& levels, std::size_t from) {
+  std::vector<const Group*> trunk(levels.size());
+  trunk[from] = largest(levels[from], [](const Group& group) { return group.kept; });
+  std::size_t last = from;
+  while (last + 1 < levels.size() && trunk[last] != nullptr) {
+    Level& level = levels[last + 1];
+    for (Group& group : level.groups) group.kept = any_overlaps(levels[last], true, group);
+    trunk[last + 1] = largest(level, [&](const Group& group) { return overlap(*trunk[last], group); });
+    ++last;
+  }
+  std::vector<const Group*> leading_back;
+  for (std::size_t i = last; i-- > from + 1;) {
+    std::vector<const Group*> leading;
+    for (Group& group : levels[i].groups) {
+      if (!group.kept || &group == trunk[i]) continue;
+      const auto leads_to = [&](const Group* other) { return other != nullptr && overlap(group, *other); };
+      if (leads_to(trunk[i + 1]) || std::ranges::any_of(leading_back, leads_to)) {
+        group.kept = false;
+        leading.push_back(&group);
+      }
+    }
+    leading_back = std::move(leading);
+  }
+}
+
+/// Keeps what has been cut off at a neck but hangs from no part that is apart further up: it is no limb, or
+/// one that only begins there, as arms do at the shoulders.
+void keep_bulges(std::vector<Level>& levels) {
+  for (std::size_t i = levels.size(); i-- > 0;)
+    for (Group& group : levels[i].groups)
+      if (group.by_neck && !group.kept)
+        group.kept = i + 1 == levels.size() || !any_overlaps(levels[i + 1], false, group);
+}
+
+/// Says for each triangle whether it stays: as its loop does at the level next to its middle that cuts it; as
+/// its neighbours do where no level cuts it.
+std::vector<bool> staying(const Surface& surface, const std::vector<Level>& levels) {
+  enum class Part : std::uint8_t { unknown, other, kept };
+  std::vector<Part> of_triangle(surface.triangles.size(), Part::unknown);
+  std::vector<double> nearest(surface.triangles.size(), std::numeric_limits<double>::infinity());
+  for (const Level& level : levels)
+    for (const Group& group : level.groups)
+      for (const SectionLoop& loop : group.loops)
+        for (const std::uint32_t t : loop.triangles) {
+          const auto& [a, b, c] = surface.triangles[t];
+          const auto [low, high] =
+              std::minmax({surface.points[a].y, surface.points[b].y, surface.points[c].y});
+          const double distance = std::abs(level.y - 0.5 * (low + high));
+          if (distance >= nearest[t]) continue;
+          nearest[t] = distance;
+          of_triangle[t] = group.kept ? Part::kept : Part::other;
+        }
+  std::vector<Part> of_point(surface.points.size(), Part::unknown);
+  for (bool goes_on = true; goes_on;) {
+    goes_on = false;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      for (const std::uint32_t corner : surface.triangles[t])
+        of_point[corner] = std::max(of_point[corner], of_triangle[t]);
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      if (of_triangle[t] != Part::unknown) continue;
+      for (const std::uint32_t corner : surface.triangles[t])
+        of_triangle[t] = std::max(of_triangle[t], of_point[corner]);
+      goes_on = goes_on || of_triangle[t] != Part::unknown;
+    }
+  }
+  std::vector<bool> stays(surface.triangles.size());
+  for (std::size_t t = 0; t < stays.size(); ++t) stays[t] = of_triangle[t] != Part::other;
+  return stays;
+}
+
+void include(std::optional<HeightRange>& range, double y) {
+  if (!range) range = {y, y};
+  range->low = std::min(range->low, y);
+  range->high = std::max(range->high, y);
+}
+
+/// "at 0.86 m", or "from 0.84 to 0.86 m", to a millimetre.
+std::string shown(const HeightRange& range) {
+  const auto millimetres = [](double y) { return decimal(std::round(y * 1e3) / 1e3); };
+  const std::string low = millimetres(range.low), high = millimetres(range.high);
+  return low == high ? "at " + low + " m" : "from " + low + " to " + high + " m";
+}
+
+/// The triangles that stay, with their points.
+Surface part_of(const Surface& surface, const std::vector<bool>& stays) {
+  constexpr std::uint32_t unknown = UINT32_MAX;
+  std::vector<std::uint32_t> number(surface.points.size(), unknown);
+  Surface part;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!stays[t]) continue;
+    auto& triangle = part.triangles.emplace_back(surface.triangles[t]);
+    for (std::uint32_t& corner : triangle) {
+      std::uint32_t& to = number[corner];
+      if (to == unknown) {
+        to = static_cast<std::uint32_t>(part.points.size());
+        part.points.push_back(surface.points[corner]);
+      }
+      corner = to;
+    }
+  }
+  return part;
+}
+
+}  // namespace
+
+TrunkAndLegs trunk_and_legs(const Surface& surface) {
+  std::vector<Level> levels = levels_of(surface);
+  const std::optional<std::size_t> middle = middle_of_trunk(levels);
+  if (!middle) return {surface, std::nullopt, std::nullopt};
+  largest(levels[*middle], &Group::reaches_middle)->kept = true;
+  keep_above(levels, *middle);
+  for (std::size_t i = *middle; i-- > 0;) keep_below(levels[i + 1], levels[i]);
+
+  keep_bulges(levels);
+  TrunkAndLegs found;
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    for (const Group& group : levels[i].groups) {
+      if (group.kept) continue;
+      include(found.left_out, levels[i].y);
+      if (group.by_neck) include(found.touched, levels[i].y);
+      if (i > 0 && !any_overlaps(levels[i - 1], false, group) && any_overlaps(levels[i - 1], true, group))
+        include(found.touched, levels[i - 1].y);
+    }
+  if (!found.left_out) {
+    found.surface = surface;
+    return found;
+  }
+  found.surface = part_of(surface, staying(surface, levels));
+  close_openings(found.surface, std::numeric_limits<double>::infinity());
+  return found;
+}
+
+std::string ignored_parts(const TrunkAndLegs& body) {
+  if (!body.left_out) return "";
+  return "garments ignore what the body has beside trunk and legs (arms, hands, hair), " +
+         shown(*body.left_out) +
+         (body.touched
+              ? "; " + shown(*body.touched) + " they touch the body, whose measures are less certain there"
+              : "");
+}
+
+}  // namespace mssim

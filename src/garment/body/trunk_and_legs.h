@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "geometry/surface.h"
+
+namespace mssim {
+
+/// Heights from one to another, m.
+struct HeightRange {
+  double low = 0, high = 0;
+};
+
+/// What of a body garments are measured for and meet.
+struct TrunkAndLegs {
+  Surface surface;                      ///< closed
+  std::optional<HeightRange> left_out;  ///< where the body has other parts
+  /// Where such a part touches trunk or leg (a hand the hip, say): it is cut off there at its narrowest, or
+  /// counts as trunk or leg from there down.
+  std::optional<HeightRange> touched;
+};
+
+/// A standing body (BodyProfile) without arms, hands, hair and what stands beside it: its trunk, its legs,
+/// and what grows upwards out of them. The closed loops of many horizontal sections tell them apart. Loops
+/// that overlap, or lie within each other, are one. From the largest that reaches x = 0 half way up the
+/// body's trunk on, what overlaps it at the next height belongs to it, too: downwards but for what is much
+/// smaller than the rest (an arm beside the trunk, fingers beside a thigh), upwards but for what is joined
+/// with the trunk again further up. A hand that rests against the hip is cut off at its neck
+/// (section_necks.h) where it hangs from an arm. Left out are whole triangles, and where that opens the
+/// surface it is closed. A surface without other parts, and one that reaches x = 0 nowhere, is given back as
+/// it is.
+///
+/// `surface` is closed (validate_surface).
+TrunkAndLegs trunk_and_legs(const Surface& surface);
+
+/// What a reader should know of it: which parts of the body garments ignore, and where that is not certain.
+/// Empty where there are none.
+std::string ignored_parts(const TrunkAndLegs& body);
+
+}  // namespace mssim

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/surface.h"
+#include "geometry/vec3.h"
+#include "kernels/body_frame.h"
+#include "laws/host_laws.h"
+
+namespace mssim {
+
+/// How finely the maps of a body are made.
+struct BodyMapSettings {
+  double pixel = 0.0025;  ///< m, width and height of a pixel
+  double offset = 0;      ///< m, how far the surface is moved outwards, along the normals of its points
+  int dilation = 2;       ///< pixels by which the maps reach beyond the silhouette, at least 0
+  int threads = 0;        ///< that make the maps; 0: as many as OpenMP takes
+};
+
+/// A pixel's record, on as many bytes as it is long: two lie in a cache line.
+struct alignas(BODY_FLOATS * sizeof(float)) BodyPixel : BodyPlanes<float> {};
+static_assert(sizeof(BodyPixel) == BODY_FLOATS * sizeof(float));
+
+/// Memory that the maps of `surface` take, bytes. Throws std::invalid_argument for settings out of range and
+/// for more than most_pixels_a_side pixels.
+std::uint64_t body_maps_bytes(const Surface& surface, const BodyMapSettings& settings = {});
+
+/// A body as cloth meets it: images from the front (from z = +infinity) and the back, orthographic, whose
+/// pixels hold the plane tangent to the nearest face (Vassilev, Spanlang and Chrysanthou, "Fast cloth
+/// animation on walking avatars", 2001, who compare with the depth instead). A point is tested against the
+/// two planes of the one pixel that it lies in, so that a test costs the same whatever the number of
+/// triangles.
+///
+/// Beyond the silhouette `dilation` pixels repeat the planes of their neighbours: a point that slides there
+/// from one pixel to the next would otherwise be in contact in every other step, and chatter. Where a face is
+/// seen edge-on its plane leans 6 degrees towards the camera, lest what is far before the body counts as
+/// behind the plane.
+///
+/// What images cannot do:
+/// - Each pixel knows one interval of depth. What lies between the nearest and the farthest face is solid:
+///   the space between an arm and the hip behind it, between crossed legs, under an overhang that the
+///   cameras do not see.
+/// - The distance is that from the plane of one pixel, not from the body. It is good near the surface, and a
+///   rough one at silhouettes (to about a pixel) and where the body bends within a pixel. A point deep inside
+///   may be nearer to the plane of the wrong side and leave there: cloth must begin outside.
+/// - Only points are tested. A vertex or a ridge of the body may come through a face or an edge of the cloth
+///   between them: the offset must be as large as the sagitta of the cloth's edges.
+/// - Thighs that touch over a length are one solid, and cloth is not drawn between them. Of two bodies less
+///   than twice `dilation` pixels apart side by side, the pixels between hold the planes of one.
+///
+/// Immutable: threads may ask it at the same time.
+class BodyMaps {
+ public:
+  /// Throws MeshError unless validate_surface accepts the surface, and like body_maps_bytes.
+  explicit BodyMaps(const Surface& surface, const BodyMapSettings& settings = {});
+
+  const BodyFrame& frame() const { return frame_; }
+  /// frame().rows x frame().columns, row-major (kernels/body_frame.h).
+  std::span<const BodyPixel> pixels() const { return pixels_; }
+
+  /// How the point (m) stands to the body. Beside the maps the distance is 1e30 m, and for coordinates that
+  /// are not finite it is not less than zero: no contact.
+  template <class Real>
+  BodyContact<Real> contact(Real x, Real y, Real z) const {
+    const auto column = static_cast<std::size_t>(body_column(
+        x, Real{frame_.left}, Real{frame_.pixels_per_metre}, static_cast<Real>(frame_.columns - 1)));
+    const auto row = static_cast<std::size_t>(body_column(
+        y, Real{frame_.bottom}, Real{frame_.pixels_per_metre}, static_cast<Real>(frame_.rows - 1)));
+    const BodyPixel& p = pixels_[row * static_cast<std::size_t>(frame_.columns) + column];
+    return body_contact(BodyPlanes<Real>{p.front_x, p.front_y, p.front_z, p.front_at, p.back_x, p.back_y,
+                                         p.back_z, p.back_at},
+                        x, y, z);
+  }
+
+  /// Tests where the step would carry the point, x + dt v, and changes position (m) and velocity (m/s) as
+  /// kernels/body_contact.h says. push_speed in m/s, dt in s. Returns whether friction holds the point fast.
+  template <class Real>
+  bool respond(Vec3<Real>& x, Vec3<Real>& v, Real friction, Real push_speed, Real dt) const {
+    const auto met = contact(x.x + dt * v.x, x.y + dt * v.y, x.z + dt * v.z);
+    const auto after =
+        body_response(ClothPoint<Real>{x.x, x.y, x.z, v.x, v.y, v.z}, met, friction, push_speed, dt);
+    x = {after.x, after.y, after.z};
+    v = {after.u, after.v, after.w};
+    return after.stuck > 0;
+  }
+
+ private:
+  BodyFrame frame_{};
+  std::vector<BodyPixel> pixels_;
+};
+
+}  // namespace mssim

@@ -1,0 +1,115 @@
+#include "garment/layers/cloth_cloth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "text/decimal.h"
+
+namespace mssim {
+namespace {
+
+void require(bool good, const char* what, double value, const char* wanted) {
+  if (!good)
+    throw std::invalid_argument(std::string("cloth-cloth collision: ") + what + " is " + decimal(value) +
+                                ", give " + wanted);
+}
+
+void validate(const ClothClothSettings& settings) {
+  const auto not_negative = [](double value) { return value >= 0 && std::isfinite(value); };
+  require(settings.thickness > 0 && std::isfinite(settings.thickness), "the thickness in metres",
+          settings.thickness, "a positive one");
+  require(not_negative(settings.friction), "the friction", settings.friction, "a coefficient from 0 on");
+  require(not_negative(settings.push_speed), "the push speed in m/s", settings.push_speed, "one from 0 on");
+  require(settings.sweeps >= 1, "the number of sweeps", settings.sweeps, "at least 1");
+}
+
+/// The node's value less that of its nearest point.
+Vec3<float> difference(const ClothContact& contact, const std::array<std::span<float>, 3>& of) {
+  const auto at = [&](std::uint32_t node) { return Vec3<float>{of[0][node], of[1][node], of[2][node]}; };
+  const Vec3<float> own = at(contact.node);
+  Vec3<float> sum;
+  // Differences first: their rounding is that of small numbers.
+  for (std::size_t i = 0; i < 3; ++i) sum += contact.weight[i] * (own - at(contact.triangle[i]));
+  return sum;
+}
+
+}  // namespace
+
+ClothClothCollision::ClothClothCollision(const Garment& garment, const ClothLayers& layers,
+                                         std::span<const float> node_mass, const ClothClothSettings& settings,
+                                         int threads)
+    : settings_((validate(settings), settings)),
+      search_(garment, layers, node_mass.size(), settings.thickness, threads) {
+  inverse_mass_.reserve(node_mass.size());
+  for (const float mass : node_mass) {
+    if (!(mass > 0))
+      throw std::invalid_argument("cloth-cloth collision: node " + std::to_string(inverse_mass_.size()) +
+                                  " weighs " + decimal(mass) +
+                                  " kg, give it a positive mass, or an infinite one to hold it");
+    inverse_mass_.push_back(1 / mass);
+  }
+}
+
+void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
+  for (const auto& arrays : {nodes.position, nodes.velocity}) {
+    for (const std::span<float> array : arrays) {
+      if (array.size() != inverse_mass_.size())
+        throw std::invalid_argument("cloth-cloth collision: an array has " + std::to_string(array.size()) +
+                                    " numbers for " + std::to_string(inverse_mass_.size()) +
+                                    " nodes, give one for each");
+    }
+  }
+  contacts_ = search_.find({nodes.position[0], nodes.position[1], nodes.position[2]});
+  for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep) {
+    for (const ClothContact& contact : contacts_) stop_approach(contact, nodes);
+  }
+  const auto farthest = static_cast<float>(settings_.push_speed * dt);
+  for (const ClothContact& contact : contacts_) push_apart(contact, nodes, farthest);
+}
+
+void ClothClothCollision::stop_approach(const ClothContact& contact, const NodeArrays& nodes) const {
+  const float inverse_mass = inverse_mass_of(contact);
+  if (inverse_mass == 0) return;
+  const Vec3<float> relative = difference(contact, nodes.velocity);
+  const float along = dot(relative, contact.normal);
+  if (along >= 0) return;
+  const Vec3<float> across = relative - along * contact.normal;
+  const float sliding = std::sqrt(dot(across, across));
+  const float slowed = -static_cast<float>(settings_.friction) * along;  // m/s
+  const float kept = sliding > slowed ? slowed / sliding : 1;            // share of `across` that is lost
+  move(contact, nodes.velocity, (-1 / inverse_mass) * (along * contact.normal + kept * across));
+}
+
+void ClothClothCollision::push_apart(const ClothContact& contact, const NodeArrays& nodes,
+                                     float farthest) const {
+  const float inverse_mass = inverse_mass_of(contact);
+  if (inverse_mass == 0) return;
+  // What other contacts of the same nodes have moved already counts.
+  const float gap = dot(difference(contact, nodes.position), contact.normal);
+  const float wanted = std::min(static_cast<float>(settings_.thickness), contact.gap + farthest);
+  if (gap >= wanted) return;
+  move(contact, nodes.position, ((wanted - gap) / inverse_mass) * contact.normal);
+}
+
+float ClothClothCollision::inverse_mass_of(const ClothContact& contact) const {
+  float sum = inverse_mass_[contact.node];
+  for (std::size_t i = 0; i < 3; ++i)
+    sum += contact.weight[i] * contact.weight[i] * inverse_mass_[contact.triangle[i]];
+  return sum;
+}
+
+void ClothClothCollision::move(const ClothContact& contact, const std::array<std::span<float>, 3>& of,
+                               const Vec3<float>& impulse) const {
+  const auto add = [&](std::uint32_t node, float weight) {
+    const Vec3<float> change = weight * inverse_mass_[node] * impulse;
+    of[0][node] += change.x;
+    of[1][node] += change.y;
+    of[2][node] += change.z;
+  };
+  add(contact.node, 1);
+  for (std::size_t i = 0; i < 3; ++i) add(contact.triangle[i], -contact.weight[i]);
+}
+
+}  // namespace mssim

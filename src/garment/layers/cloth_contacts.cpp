@@ -1,0 +1,249 @@
+#include "garment/layers/cloth_contacts.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "geometry/nearest_point.h"
+#include "text/decimal.h"
+
+namespace mssim {
+namespace {
+
+/// Two sub-patches with fewer cells than this together are searched by the task that met them: searching them
+/// takes microseconds, as making a task does.
+constexpr std::uint32_t least_cells_of_task = 1024;
+
+/// Boxes are searched a little farther than distances are compared, whatever rounding says about either.
+constexpr float box_reach = 1.01F;
+
+constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
+
+/// The nodes of a cell's half, 0 or 1.
+std::array<std::uint32_t, 3> nodes_of(const GarmentPanel& panel, std::uint32_t row, std::uint32_t column,
+                                      std::uint32_t half) {
+  const std::uint32_t low_left = panel.node(row, column);
+  const std::uint32_t high_right = low_left + panel.columns + 1;
+  if (half == 0) return {low_left, low_left + 1, high_right};
+  return {low_left, high_right, high_right - 1};
+}
+
+NearestPoint nearest_on(const std::array<std::uint32_t, 3>& triangle, const Vec3<float>& point,
+                        const Coordinates& position) {
+  return nearest_point(point, point_of(position, triangle[0]), point_of(position, triangle[1]),
+                       point_of(position, triangle[2]));
+}
+
+/// The panel's normal at a node, as long as the area of the cells around it is large.
+Vec3<float> normal_at(const GarmentPanel& panel, std::uint32_t node, const Coordinates& position) {
+  const std::uint32_t row = (node - panel.first_node) / panel.columns;
+  const std::uint32_t column = (node - panel.first_node) % panel.columns;
+  const auto at = [&](std::uint32_t r, std::uint32_t c) { return point_of(position, panel.node(r, c)); };
+  const Vec3<float> along_row =
+      at(row, std::min(column + 1, panel.columns - 1)) - at(row, column > 0 ? column - 1 : 0);
+  const Vec3<float> along_column =
+      at(std::min(row + 1, panel.rows - 1), column) - at(row > 0 ? row - 1 : 0, column);
+  return cross(along_row, along_column);
+}
+
+/// Does a point of a triangle lie on the border of its panel?
+bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& triangle,
+               const std::array<float, 3>& weight) {
+  bool lowest = true, highest = true, leftmost = true, rightmost = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (weight[i] <= 0) continue;
+    const std::uint32_t row = (triangle[i] - panel.first_node) / panel.columns;
+    const std::uint32_t column = (triangle[i] - panel.first_node) % panel.columns;
+    lowest = lowest && row == 0;
+    highest = highest && row == panel.rows - 1;
+    leftmost = leftmost && column == 0;
+    rightmost = rightmost && column == panel.columns - 1;
+  }
+  return lowest || highest || leftmost || rightmost;
+}
+
+/// The contact of a node with its nearest triangle, if it is one. outward: 1 where the node belongs to the
+/// side of the panel's normal, else -1.
+std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t node, std::uint32_t nearest,
+                                       float outward, const Coordinates& position) {
+  const std::uint32_t cell = nearest / 2, row_length = panel.columns - 1;
+  ClothContact contact{.node = node,
+                       .triangle = nodes_of(panel, cell / row_length, cell % row_length, nearest % 2)};
+  const NearestPoint point = nearest_on(contact.triangle, point_of(position, node), position);
+  contact.weight = point.weight;
+  const Vec3<float> first = point_of(position, contact.triangle[0]);
+  Vec3<float> face =
+      cross(point_of(position, contact.triangle[1]) - first, point_of(position, contact.triangle[2]) - first);
+  if (std::ranges::any_of(point.weight, [](float weight) { return weight <= 0; })) {
+    face = {};
+    for (std::size_t i = 0; i < 3; ++i)
+      face += point.weight[i] * normal_at(panel, contact.triangle[i], position);
+  }
+  face = outward * face;
+  const bool right_side = dot(point.offset, face) >= 0;
+  if (!right_side && on_border(panel, contact.triangle, point.weight)) return std::nullopt;
+  const float distance = std::sqrt(point.distance_squared());
+  contact.gap = right_side ? distance : -distance;
+  // Nearer than that, rounding decides where the offset points.
+  constexpr float least_distance = 1e-6F;
+  contact.normal =
+      distance > least_distance ? (1 / contact.gap) * point.offset : (1 / std::sqrt(dot(face, face))) * face;
+  // NaN or infinite where the cloth has no normal there, because it has no area.
+  if (!std::isfinite(dot(contact.normal, contact.normal))) return std::nullopt;
+  return contact;
+}
+
+}  // namespace
+
+ClothContactSearch::ClothContactSearch(const Garment& garment, const ClothLayers& layers, std::size_t nodes,
+                                       double reach, int threads)
+    : reach_(static_cast<float>(reach)), threads_(threads) {
+  if (!(reach_ > 0) || !std::isfinite(reach_))
+    throw std::invalid_argument("cloth contacts: the distance within which layers touch is " +
+                                decimal(reach) + " m, give a positive one");
+  if (threads < 1)
+    throw std::invalid_argument("cloth contacts: " + std::to_string(threads) +
+                                " threads cannot search, give at least 1");
+  validate_layers(layers, garment, nodes);
+  found_.resize(static_cast<std::size_t>(threads));
+  std::uint32_t slots = 0;
+  for (const auto& [inner, outer] : layers.pairs) {
+    const GarmentPanel &inside = garment.panels[inner], &outside = garment.panels[outer];
+    pairs_.push_back({boxes_of(inside), boxes_of(outside), slots});
+    slots += outside.nodes() + inside.nodes();
+  }
+  slots_.resize(slots, Nearest{std::numeric_limits<float>::infinity(), no_triangle});
+  outward_.resize(boxes_.size(), 1);
+  for (const std::uint32_t panel : layers.mirrored) {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (boxes_[i].panel().first_node == garment.panels[panel].first_node) outward_[i] = -1;
+    }
+  }
+  for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+    for (const std::uint32_t block : boxes_[i].leaves()) leaves_.push_back({i, block});
+  }
+}
+
+std::uint32_t ClothContactSearch::boxes_of(const GarmentPanel& panel) {
+  const auto known = std::ranges::find(boxes_, panel.first_node,
+                                       [](const PanelBoxes& boxes) { return boxes.panel().first_node; });
+  const auto index = static_cast<std::uint32_t>(known - boxes_.begin());
+  if (known == boxes_.end()) boxes_.emplace_back(panel);
+  return index;
+}
+
+std::span<const ClothContact> ClothContactSearch::find(const Coordinates& position) {
+  contacts_.clear();
+  if (pairs_.empty()) return contacts_;
+#pragma omp parallel num_threads(threads_)
+  {
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < leaves_.size(); ++i)
+      boxes_[leaves_[i].boxes].refit_leaf(leaves_[i].block, position);
+#pragma omp for schedule(static)
+    for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i].refit_rest();
+#pragma omp single
+    for (const Pair& pair : pairs_) search(pair, 0, 0, position);
+  }
+  keep_nearest();
+  make_contacts(position);
+  return contacts_;
+}
+
+void ClothContactSearch::search(const Pair& pair, std::uint32_t inner_block, std::uint32_t outer_block,
+                                const Coordinates& position) {
+  const PanelBoxes &inner = boxes_[pair.inner], &outer = boxes_[pair.outer];
+  const PanelBoxes::Block &inside = inner.blocks()[inner_block], &outside = outer.blocks()[outer_block];
+  if (inside.children == 0 && outside.children == 0) {
+    Candidates& found = found_[static_cast<std::size_t>(omp_get_thread_num())];
+    test_nodes(outer, outer_block, inner, inner_block, pair.first_slot, position, found);
+    test_nodes(inner, inner_block, outer, outer_block, pair.first_slot + outer.panel().nodes(), position,
+               found);
+    return;
+  }
+  const bool large = inside.cells() + outside.cells() >= least_cells_of_task;
+  for (std::uint32_t i = 0; i < std::max(inside.children, 1U); ++i) {
+    const std::uint32_t inner_part = inside.children > 0 ? inside.first_child + i : inner_block;
+    for (std::uint32_t j = 0; j < std::max(outside.children, 1U); ++j) {
+      const std::uint32_t outer_part = outside.children > 0 ? outside.first_child + j : outer_block;
+      if (!near(inner.box(inner_part), outer.box(outer_part), box_reach * reach_)) continue;
+      if (large) {
+        // `pair` and `position` outlive the tasks, which end before find() goes on.
+#pragma omp task firstprivate(inner_part, outer_part) shared(pair, position)
+        search(pair, inner_part, outer_part, position);
+      } else {
+        search(pair, inner_part, outer_part, position);
+      }
+    }
+  }
+}
+
+void ClothContactSearch::test_nodes(const PanelBoxes& of_nodes, std::uint32_t node_block,
+                                    const PanelBoxes& of_triangles, std::uint32_t triangle_block,
+                                    std::uint32_t first_slot, const Coordinates& position,
+                                    Candidates& found) const {
+  const GarmentPanel &panel = of_nodes.panel(), &other = of_triangles.panel();
+  const PanelBoxes::Block& nodes = of_nodes.blocks()[node_block];
+  const PanelBoxes::Block& cells = of_triangles.blocks()[triangle_block];
+  const Box<float>& around = of_triangles.box(triangle_block);
+  // A node belongs to the cell of which it is the lower left one, on the upper and right border to the last.
+  const std::uint32_t row_end = nodes.row_end + (nodes.row_end + 1 == panel.rows ? 1 : 0);
+  const std::uint32_t column_end = nodes.column_end + (nodes.column_end + 1 == panel.columns ? 1 : 0);
+  for (std::uint32_t row = nodes.row_begin; row < row_end; ++row) {
+    for (std::uint32_t column = nodes.column_begin; column < column_end; ++column) {
+      const std::uint32_t node = panel.node(row, column);
+      const Vec3<float> point = point_of(position, node);
+      Nearest best{reach_ * reach_, no_triangle};
+      const auto too_far = [&](const Box<float>& box) {
+        return !(distance_squared(box, point) < box_reach * best.distance_squared);
+      };
+      if (too_far(around)) continue;
+      for (std::uint32_t r = cells.row_begin; r < cells.row_end; ++r) {
+        for (std::uint32_t c = cells.column_begin; c < cells.column_end; ++c) {
+          if (too_far(of_triangles.cell_box(r, c))) continue;
+          for (const std::uint32_t half : {0U, 1U}) {
+            const NearestPoint on_half = nearest_on(nodes_of(other, r, c, half), point, position);
+            if (on_half.distance_squared() < best.distance_squared)
+              best = {on_half.distance_squared(), 2 * (r * (other.columns - 1) + c) + half};
+          }
+        }
+      }
+      if (best.triangle != no_triangle) found.push_back({first_slot + node - panel.first_node, best});
+    }
+  }
+}
+
+void ClothContactSearch::keep_nearest() {
+  // The least of all is the same in whatever order the tasks have found them.
+  for (Candidates& found : found_) {
+    for (const Candidate& candidate : found)
+      slots_[candidate.slot] = std::min(slots_[candidate.slot], candidate.nearest);
+    found.clear();
+  }
+}
+
+void ClothContactSearch::make_contacts(const Coordinates& position) {
+  for (const Pair& pair : pairs_) {
+    const GarmentPanel &inner = boxes_[pair.inner].panel(), &outer = boxes_[pair.outer].panel();
+    const auto take = [&](std::uint32_t first_slot, const GarmentPanel& of_nodes, const GarmentPanel& other,
+                          float outward) {
+      for (std::uint32_t i = 0; i < of_nodes.nodes(); ++i) {
+        Nearest& nearest = slots_[first_slot + i];
+        if (nearest.triangle == no_triangle) continue;
+        if (const auto contact =
+                contact_of(other, of_nodes.first_node + i, nearest.triangle, outward, position))
+          contacts_.push_back(*contact);
+        nearest = {std::numeric_limits<float>::infinity(), no_triangle};
+      }
+    };
+    take(pair.first_slot, outer, inner, outward_[pair.inner]);
+    take(pair.first_slot + outer.nodes(), inner, outer, -outward_[pair.outer]);
+  }
+}
+
+}  // namespace mssim

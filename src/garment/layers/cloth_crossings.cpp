@@ -1,0 +1,144 @@
+#include "garment/layers/cloth_crossings.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "garment/layers/cloth_contacts.h"
+
+namespace mssim {
+namespace {
+
+using Edge = std::array<std::uint32_t, 2>;
+using Triangle = std::array<std::uint32_t, 3>;
+
+std::vector<Edge> edges_of(const GarmentPanel& panel) {
+  std::vector<Edge> edges;
+  for (std::uint32_t row = 0; row < panel.rows; ++row) {
+    for (std::uint32_t column = 0; column < panel.columns; ++column) {
+      const std::uint32_t node = panel.node(row, column);
+      const bool right = column + 1 < panel.columns, above = row + 1 < panel.rows;
+      if (right) edges.push_back({node, node + 1});
+      if (above) edges.push_back({node, node + panel.columns});
+      if (right && above) edges.push_back({node, node + panel.columns + 1});
+    }
+  }
+  return edges;
+}
+
+std::vector<Triangle> triangles_of(const GarmentPanel& panel) {
+  std::vector<Triangle> triangles;
+  for (std::uint32_t row = 0; row + 1 < panel.rows; ++row) {
+    for (std::uint32_t column = 0; column + 1 < panel.columns; ++column) {
+      const std::uint32_t low = panel.node(row, column), high = low + panel.columns;
+      triangles.push_back({low, low + 1, high + 1});
+      triangles.push_back({low, high + 1, high});
+    }
+  }
+  return triangles;
+}
+
+double volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
+  return dot(a - d, cross(b - d, c - d));
+}
+
+/// Edges through the triangles of one panel.
+class PiercedPanel {
+ public:
+  PiercedPanel(const GarmentPanel& panel, std::span<const Vec3d> position)
+      : position_(position), triangles_(triangles_of(panel)) {
+    std::ranges::sort(triangles_, {}, [&](const Triangle& triangle) { return leftmost(triangle); });
+    for (const Triangle& triangle : triangles_)
+      widest_ = std::max(widest_, range(triangle, &Vec3d::x)[1] - leftmost(triangle));
+  }
+
+  std::size_t crossings(const std::vector<Edge>& edges) const {
+    std::size_t count = 0;
+    for (const Edge& edge : edges) {
+      // Only triangles that begin here can meet the edge in x.
+      const auto [from, to] = range(edge, &Vec3d::x);
+      const auto by_left = [&](const Triangle& triangle) { return leftmost(triangle); };
+      const auto begin = std::ranges::lower_bound(triangles_, from - widest_, {}, by_left);
+      const auto end = std::ranges::upper_bound(begin, triangles_.end(), to, {}, by_left);
+      count += static_cast<std::size_t>(std::count_if(begin, end, [&](const Triangle& triangle) {
+        return boxes_meet(edge, triangle) && runs_through(edge, triangle);
+      }));
+    }
+    return count;
+  }
+
+ private:
+  /// Least and greatest coordinate of some nodes.
+  template <class Nodes>
+  std::array<double, 2> range(const Nodes& nodes, double Vec3d::*axis) const {
+    std::array<double, 2> ends{position_[nodes[0]].*axis, position_[nodes[0]].*axis};
+    for (const std::uint32_t node : nodes)
+      ends = {std::min(ends[0], position_[node].*axis), std::max(ends[1], position_[node].*axis)};
+    return ends;
+  }
+  double leftmost(const Triangle& triangle) const { return range(triangle, &Vec3d::x)[0]; }
+
+  bool boxes_meet(const Edge& edge, const Triangle& triangle) const {
+    return std::ranges::all_of(std::array{&Vec3d::x, &Vec3d::y, &Vec3d::z}, [&](double Vec3d::*axis) {
+      const auto along = range(edge, axis), across = range(triangle, axis);
+      return along[0] <= across[1] && across[0] <= along[1];
+    });
+  }
+
+  bool runs_through(const Edge& edge, const Triangle& triangle) const {
+    const auto& [a, b, c] = triangle;
+    if (above(triangle, edge[0]) == above(triangle, edge[1])) return false;
+    const bool side = passes_left(edge, a, b);
+    return passes_left(edge, b, c) == side && passes_left(edge, c, a) == side;
+  }
+  /// A node in the triangle's plane counts as above.
+  bool above(const Triangle& triangle, std::uint32_t node) const {
+    return volume(position_[triangle[0]], position_[triangle[1]], position_[triangle[2]], position_[node]) <=
+           0;
+  }
+  /// Does the edge pass the line from a to b on its left? The answer for b to a is always the opposite one,
+  /// even where they meet.
+  bool passes_left(const Edge& edge, std::uint32_t a, std::uint32_t b) const {
+    const double turn =
+        volume(position_[std::min(a, b)], position_[std::max(a, b)], position_[edge[0]], position_[edge[1]]);
+    return (turn > 0) == (a < b);
+  }
+
+  std::span<const Vec3d> position_;
+  std::vector<Triangle> triangles_;  // by their least x
+  double widest_ = 0;                // m, along x
+};
+
+}  // namespace
+
+std::size_t count_crossings(const GarmentPanel& first, const GarmentPanel& second,
+                            std::span<const Vec3d> position) {
+  return PiercedPanel(second, position).crossings(edges_of(first)) +
+         PiercedPanel(first, position).crossings(edges_of(second));
+}
+
+std::size_t count_crossings(const Garment& garment, const ClothLayers& layers,
+                            std::span<const Vec3d> position) {
+  validate_layers(layers, garment, position.size());
+  std::size_t count = 0;
+  for (const auto& [inner, outer] : layers.pairs)
+    count += count_crossings(garment.panels[inner], garment.panels[outer], position);
+  return count;
+}
+
+std::size_t count_wrong_side(const Garment& garment, const ClothLayers& layers,
+                             std::span<const Vec3d> position, double reach) {
+  std::array<std::vector<float>, 3> rounded;
+  for (const Vec3d& point : position) {
+    rounded[0].push_back(static_cast<float>(point.x));
+    rounded[1].push_back(static_cast<float>(point.y));
+    rounded[2].push_back(static_cast<float>(point.z));
+  }
+  ClothContactSearch search(garment, layers, position.size(), reach, 1);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(search.find({rounded[0], rounded[1], rounded[2]}),
+                            [](const ClothContact& contact) { return contact.gap < 0; }));
+}
+
+}  // namespace mssim

@@ -1,0 +1,177 @@
+#include "garment/output/garment_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "garment/output/dressed_rows.h"
+
+namespace mssim {
+namespace {
+
+/// A column of garment.csv that every row has.
+struct Column {
+  std::string_view name;
+  std::string (*write)(const ResultRow& row);
+  /// Reads what only this file has; null for what timings.csv has, too.
+  void (*read)(DressingRecord& record, const CsvTable& table, std::size_t line, std::size_t column) = nullptr;
+};
+
+std::string truth(bool value) { return value ? "true" : "false"; }
+
+bool read_truth(const CsvTable& table, std::size_t line, std::size_t column) {
+  const std::string& text = table.text(line, column);
+  if (text != "true" && text != "false") throw table.complaint(line, column, "is neither true nor false");
+  return text == "true";
+}
+
+/// What `write` makes of the row's dressing; empty where it has none.
+template <class Write>
+std::string of_dressing(const ResultRow& row, Write&& write) {
+  return row.dressing ? write(*row.dressing) : std::string();
+}
+
+/// The TABLE of columns, in their order; the numbers of the fit follow.
+constexpr std::size_t iterations_column = 12;
+constexpr std::array<Column, 20> columns{{
+    {"scene", [](const ResultRow& row) { return row.scene; }},
+    {"nodes", [](const ResultRow& row) { return std::to_string(row.nodes); }},
+    {"backend", [](const ResultRow& row) { return row.backend; }},
+    {"device", [](const ResultRow& row) { return row.device; }},
+    {"threads", [](const ResultRow& row) { return std::to_string(row.threads); }},
+    {"integrator", [](const ResultRow& row) { return row.integrator; }},
+    {"dt_s", [](const ResultRow& row) { return csv_number(row.dt_s); }},
+    {"ms_per_iteration", [](const ResultRow& row) { return csv_number(row.ms_per_step); }},
+    {"ms_per_iteration_low", [](const ResultRow& row) { return csv_number(row.ms_per_step_low); }},
+    {"ms_per_iteration_high", [](const ResultRow& row) { return csv_number(row.ms_per_step_high); }},
+    {"ns_per_iteration_and_vertex", [](const ResultRow& row) { return csv_number(ns_per_vertex(row)); }},
+    {"speedup_vs_serial", [](const ResultRow& row) { return csv_number(row.speedup_vs_serial); }},
+    {"dressing_iterations",
+     [](const ResultRow& row) {
+       return of_dressing(row, [](const DressingRecord& d) { return std::to_string(d.iterations); });
+     },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.iterations = table.count(l, c);
+     }},
+    {"seamed_at",
+     [](const ResultRow& row) {
+       return of_dressing(row, [](const DressingRecord& d) {
+         return d.seamed_at ? std::to_string(*d.seamed_at) : std::string();
+       });
+     },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       if (!table.text(l, c).empty()) d.seamed_at = table.count(l, c);
+     }},
+    {"settled",
+     [](const ResultRow& row) {
+       return of_dressing(row, [](const DressingRecord& d) { return truth(d.settled); });
+     },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.settled = read_truth(table, l, c);
+     }},
+    {"simulated_s",
+     [](const ResultRow& row) {
+       return of_dressing(row, [](const DressingRecord& d) { return csv_number(d.simulated_s); });
+     },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.simulated_s = table.number(l, c);
+     }},
+    {"dressing_s",
+     [](const ResultRow& row) {
+       return of_dressing(row, [](const DressingRecord& d) { return csv_number(d.wall_s); });
+     },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.wall_s = table.number(l, c);
+     }},
+    {"dressing_ms_per_iteration",
+     [](const ResultRow& row) {
+       return of_dressing(row, [](const DressingRecord& d) { return csv_number(ms_per_iteration(d)); });
+     }},
+    {"verified", [](const ResultRow& row) { return truth(row.verified); }},
+    {"status", [](const ResultRow& row) { return row.status; }},
+}};
+static_assert(columns[iterations_column].name == "dressing_iterations");
+
+constexpr std::string_view within_suffix = "_within";
+
+/// The numbers that a fit has, as those of the first row that has any.
+std::vector<FitNumberRecord> fit_of_any(std::span<const ResultRow* const> rows) {
+  for (const ResultRow* row : rows)
+    if (row->dressing && !row->dressing->fit.empty()) return row->dressing->fit;
+  return {};
+}
+
+void add_fit(const std::vector<FitNumberRecord>& known, const ResultRow& row,
+             std::vector<std::string>& fields) {
+  for (const FitNumberRecord& number : known) {
+    const FitNumberRecord* found = nullptr;
+    if (row.dressing)
+      for (const FitNumberRecord& candidate : row.dressing->fit)
+        if (candidate.name == number.name) found = &candidate;
+    fields.push_back(found ? csv_number(found->value) : "");
+    if (number.within) fields.push_back(found && found->within ? truth(*found->within) : "");
+  }
+}
+
+std::vector<FitNumberRecord> read_fit(const CsvTable& table, std::size_t line) {
+  std::vector<FitNumberRecord> fit;
+  for (std::size_t column = columns.size(); column < table.header().size(); ++column) {
+    const std::string& name = table.header()[column];
+    if (!fit.empty() && name == fit.back().name + std::string(within_suffix)) {
+      if (!table.text(line, column).empty()) fit.back().within = read_truth(table, line, column);
+    } else {
+      fit.push_back({name, table.optional_number(line, column), std::nullopt});
+    }
+  }
+  std::erase_if(fit, [](const FitNumberRecord& number) { return !number.value && !number.within; });
+  return fit;
+}
+
+}  // namespace
+
+std::string garment_csv(std::span<const ResultRow> rows) {
+  const std::vector<const ResultRow*> dressed = rows_of_dressed_scenes(rows);
+  if (dressed.empty()) return "";
+  const std::vector<FitNumberRecord> fit = fit_of_any(dressed);
+  std::vector<std::string> fields;
+  for (const Column& column : columns) fields.emplace_back(column.name);
+  for (const FitNumberRecord& number : fit) {
+    fields.push_back(number.name);
+    if (number.within) fields.push_back(number.name + std::string(within_suffix));
+  }
+  std::string csv = csv_line(fields);
+  for (const ResultRow* row : dressed) {
+    fields.clear();
+    for (const Column& column : columns) fields.push_back(column.write(*row));
+    add_fit(fit, *row, fields);
+    csv += csv_line(fields);
+  }
+  return csv;
+}
+
+void read_dressings(const std::filesystem::path& file, std::span<ResultRow> rows) {
+  read_dressings(CsvTable(file), rows);
+}
+
+void read_dressings(const CsvTable& table, std::span<ResultRow> rows) {
+  std::vector<std::string_view> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  table.require_columns(names);
+  for (std::size_t line = 0; line < table.size(); ++line) {
+    if (table.text(line, iterations_column).empty()) continue;
+    for (ResultRow& row : rows) {
+      if (row.scene != table.text(line, 0) || row.backend != table.text(line, 2) ||
+          row.integrator != table.text(line, 5))
+        continue;
+      DressingRecord& record = row.dressing.emplace();
+      for (std::size_t column = 0; column < columns.size(); ++column)
+        if (columns.at(column).read != nullptr) columns.at(column).read(record, table, line, column);
+      record.fit = read_fit(table, line);
+    }
+  }
+}
+
+}  // namespace mssim

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "bench/results/result.h"
+#include "output/tables/csv.h"
+
+namespace mssim {
+
+/// garment.csv: a line for every row of the scenes that any backend has dressed: milliseconds an iteration of
+/// the draped garment, nanoseconds an iteration and vertex, how the dressing went and what it took, and the
+/// numbers of the fit, each that has bounds followed by NAME_within. Empty text where nothing was dressed.
+/// Throws std::invalid_argument for a number that is not finite.
+std::string garment_csv(std::span<const ResultRow> rows);
+
+/// Reads the dressings of a garment.csv into those of `rows` that it has; others stay as they are. Throws
+/// CsvError.
+void read_dressings(const CsvTable& table, std::span<ResultRow> rows);
+void read_dressings(const std::filesystem::path& file, std::span<ResultRow> rows);
+
+}  // namespace mssim

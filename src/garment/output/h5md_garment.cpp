@@ -1,0 +1,75 @@
+#include "garment/output/h5md_garment.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "output/hdf5/h5md_tuples.h"
+#include "output/hdf5/hdf5_write.h"
+
+namespace mssim {
+namespace {
+
+/// A list of numbers, one for each of `items`.
+template <class Item, class Number>
+void write_numbers(hid_t file, const std::string& path, const std::vector<Item>& items, Number Item::*member,
+                   hid_t file_type, hid_t memory_type) {
+  std::vector<Number> numbers;
+  numbers.reserve(items.size());
+  for (const Item& item : items) numbers.push_back(item.*member);
+  write_array(file, path, file_type, memory_type, std::array<hsize_t, 1>{numbers.size()}, numbers.data());
+}
+
+}  // namespace
+
+void require_fitting_garment(const Garment& garment, std::size_t nodes) {
+  std::size_t next = 0;
+  for (const GarmentPanel& panel : garment.panels) {
+    if (panel.rows < 2 || panel.columns < 2 || panel.first_node != next)
+      throw std::invalid_argument("a trace needs panels of rows and columns, one behind the other");
+    next += panel.nodes();
+  }
+  if (next != nodes || garment.flat.size() != nodes)
+    throw std::invalid_argument("a trace needs panels of all nodes, and where these lie in the pattern");
+  const bool joined = std::ranges::all_of(garment.joints, [&](const Joint& joint) {
+    return std::max({joint.node, joint.edge_first, joint.edge_second}) < nodes &&
+           joint.seam < garment.seams.size();
+  });
+  if (!joined) throw std::invalid_argument("a trace needs joints between nodes, of seams that there are");
+}
+
+void write_garment(hid_t file, const Garment& garment) {
+  const std::string panels = "/parameters/panels", joints = "/parameters/joints";
+  create_group(file, panels);
+  std::vector<std::string_view> names;
+  for (const GarmentPanel& panel : garment.panels) names.emplace_back(panel.name);
+  write_texts(file, panels + "/name", names);
+  for (const auto& [name, member] :
+       {std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
+        std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}})
+    write_numbers(file, panels + name, garment.panels, member, H5T_STD_U32LE, H5T_NATIVE_UINT32);
+  std::vector<std::array<double, 2>> flat;
+  for (const Vec3d& node : garment.flat) flat.push_back({node.x, node.y});
+  write_array(file, panels + "/flat", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+              std::array<hsize_t, 2>{flat.size(), 2}, flat.data());
+  if (garment.joints.empty()) return;
+  write_texts(file, "/parameters/seams",
+              std::vector<std::string_view>(garment.seams.begin(), garment.seams.end()));
+  create_group(file, joints);
+  write_numbers(file, joints + "/edge_share", garment.joints, &Joint::edge_share, H5T_IEEE_F64LE,
+                H5T_NATIVE_DOUBLE);
+  write_numbers(file, joints + "/seam", garment.joints, &Joint::seam, H5T_STD_U32LE, H5T_NATIVE_UINT32);
+}
+
+void write_joints(hid_t file, const std::string& particles, const Garment& garment) {
+  std::vector<std::array<std::uint32_t, 3>> tuples;
+  tuples.reserve(garment.joints.size());
+  for (const Joint& joint : garment.joints)
+    tuples.push_back({joint.node, joint.edge_first, joint.edge_second});
+  write_tuples<3>(file, "/connectivity/joints", particles, tuples);
+}
+
+}  // namespace mssim

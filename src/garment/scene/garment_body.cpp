@@ -1,0 +1,145 @@
+#include "garment/scene/garment_body.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "garment/body/length_unit.h"
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
+#include "geometry/openings.h"
+#include "mesh/surface_file.h"
+#include "scene/fields/json_document.h"
+#include "scene/fields/length_field.h"
+#include "scene/fields/scene_error.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
+
+void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
+  fields.object(key, Presence::required, [&](FieldVisitor& at) {
+    visit_length(at, "girth_m", girth.girth);
+    visit_length(at, "height_m", girth.height);
+  });
+}
+
+void visit_mannequin(FieldVisitor& fields, GarmentSpec& garment) {
+  auto& [measures, resolution] = garment.body.emplace<MannequinBody>();
+  visit_girth(fields, "bust", measures.bust);
+  visit_girth(fields, "waist", measures.waist);
+  visit_girth(fields, "hip", measures.hip);
+  visit_girth(fields, "thigh", measures.thigh);
+  visit_girth(fields, "knee", measures.knee);
+  visit_girth(fields, "ankle", measures.ankle);
+  visit_length(fields, "crotch_height_m", measures.crotch_height);
+  fields.number("hip_depth_over_width", measures.hip_aspect, above(0, 10));
+  fields.number("thigh_gap_m", measures.thigh_gap, from(0, largest_length_m));
+  visit_length(fields, "stance_m", measures.stance);
+  fields.integer("cells_around", resolution.cells_around, 16, 512);
+}
+
+void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
+  auto& [file, stance, close_holes_m] = garment.body.emplace<BodyFile>();
+  fields.text("file", Presence::required, file);
+  fields.number("unit_m", stance.unit_m, above(0, 1e6));
+  auto up = static_cast<std::uint32_t>(stance.up), facing = static_cast<std::uint32_t>(stance.facing);
+  fields.choice("up", Presence::optional, up_axis_names, up);
+  fields.choice("facing", Presence::optional, facing_names, facing);
+  stance.up = static_cast<UpAxis>(up);
+  stance.facing = static_cast<Facing>(facing);
+  std::optional<double> turn_deg;
+  fields.optional_number("turn_deg", turn_deg, from(-360, 360));
+  stance.turn_deg = turn_deg.value_or(0);
+  fields.vector("move_m", Presence::optional, stance.move, from(-1e9, 1e9));
+  fields.optional_number("close_holes_m", close_holes_m, above(0, largest_length_m));
+}
+
+Surface body_from_file(const SceneSpec& spec, const BodyFile& body) {
+  const std::string section = "/garment/surface_file";
+  Surface surface;
+  try {
+    surface = stood_up(read_surface(spec.file.parent_path() / body.file), body.stance);
+  } catch (const MeshError& error) {
+    refuse(spec.file, section + "/file", "is no body: " + printable(error.what(), 1500));
+  }
+  if (body.close_holes_m) {
+    try {
+      close_openings(surface, *body.close_holes_m);
+    } catch (const MeshError& error) {
+      refuse(spec.file, section + "/close_holes_m", "closes too little: " + printable(error.what(), 1500));
+    }
+  } else if (const std::vector<Opening> openings = openings_of(surface); !openings.empty()) {
+    const Opening& largest = openings.front();
+    refuse(spec.file, section + "/file",
+           "is no closed body: it has " + std::to_string(openings.size()) +
+               (openings.size() == 1 ? " opening" : " openings, the largest") + " of " +
+               std::to_string(largest.edges()) + " edges around " + place(largest.centre) + ", " +
+               shown(largest.size) +
+               " m across; close what is open, or give \"close_holes_m\", the size up to which it is closed");
+  }
+  return surface;
+}
+
+/// A wrong unit shows here rather than in what a pattern makes of it.
+void require_person(const SceneSpec& spec, const BodyFile& body, const BodyProfile& profile) {
+  const double height = profile.highest() - profile.lowest();
+  if (height >= shortest_person / 2 && height <= 1.5 * tallest_person) return;
+  const auto guess = guess_unit(height / body.stance.unit_m);
+  refuse(spec.file, "/garment/surface_file/unit_m",
+         "is " + shown_number(body.stance.unit_m) + ", which makes the body " + shown(height) +
+             " m high: give the metres in one unit of the file" +
+             (guess ? ", " + shown_number(guess->unit.metres) + " where that is a person in " +
+                          std::string(guess->unit.name)
+                    : ""));
+}
+
+}  // namespace
+
+void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment) {
+  const std::array bodies{
+      Section{"mannequin", [&](FieldVisitor& body) { visit_mannequin(body, garment); }},
+      Section{"surface_file", [&](FieldVisitor& body) { visit_body_file(body, garment); }}};
+  fields.one_of("body", bodies);
+}
+
+void check_body(const SceneSpec& spec) {
+  const auto* body = std::get_if<BodyFile>(&garment_of(spec).body);
+  if (body == nullptr || is_level(body->stance.facing, body->stance.up)) return;
+  refuse(
+      spec.file, "/garment/surface_file/facing",
+      "is \"" + std::string(facing_names.at(static_cast<std::size_t>(body->stance.facing))) +
+          "\", the axis along which the body stands upright: give \"+x\", \"-x\" or the other axis that is "
+          "level");
+}
+
+Surface body_of_garment(const SceneSpec& spec) {
+  const GarmentSpec& garment = garment_of(spec);
+  if (const auto* file = std::get_if<BodyFile>(&garment.body)) return body_from_file(spec, *file);
+  const auto& form = std::get<MannequinBody>(garment.body);
+  try {
+    return mannequin(form.measures, form.resolution);
+  } catch (const MeshError& error) {
+    refuse(spec.file, "/garment/body", "is no body: " + printable(error.what(), 1500));
+  }
+}
+
+BodyProfile measured_body(const SceneSpec& spec) {
+  const Surface surface = body_of_garment(spec);
+  try {
+    BodyProfile profile(surface);
+    const GarmentSpec& garment = garment_of(spec);
+    if (const auto* file = std::get_if<BodyFile>(&garment.body); file && garment.jeans)
+      require_person(spec, *file, profile);
+    return profile;
+  } catch (const MeshError& error) {
+    refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
+  }
+}
+
+}  // namespace mssim

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "garment/body/body_profile.h"
+#include "geometry/surface.h"
+#include "scene/fields/field_visitor.h"
+#include "scene/spec/scene_spec.h"
+
+namespace mssim {
+
+// The body of a garment scene. All of these but visit_body_fields need a spec whose body is a GarmentSpec.
+
+/// Names the fields of the body, with their targets in garment.body.
+void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment);
+
+/// That a body from a file looks along a level axis. Throws SceneError.
+void check_body(const SceneSpec& spec);
+
+/// The body that the garment is for, upright in y and looking to +z, its openings closed as far as the scene
+/// says so. Throws SceneError.
+Surface body_of_garment(const SceneSpec& spec);
+
+/// The body as a pattern needs it. Throws SceneError for one that cannot be measured, and for jeans when it
+/// is not a person's height.
+BodyProfile measured_body(const SceneSpec& spec);
+
+}  // namespace mssim

@@ -1,0 +1,167 @@
+#include "garment/scene/garment_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "garment/contact/body_maps.h"
+#include "garment/layers/panel_layers.h"
+#include "garment/scene/garment_body.h"
+#include "garment/scene/garment_cut.h"
+#include "scene/fields/json_document.h"
+#include "scene/fields/length_field.h"
+#include "scene/fields/scene_error.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
+
+const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
+
+void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
+  fields.integer("nodes", jeans.nodes, fewest_nodes, most_nodes);
+  visit_length(fields, "waist_height_m", jeans.measures.waist_height);
+  visit_length(fields, "hip_height_m", jeans.measures.hip_height);
+  visit_length(fields, "knee_height_m", jeans.measures.knee_height);
+  visit_length(fields, "hem_height_m", jeans.measures.hem_height);
+  visit_length(fields, "knee_m", jeans.measures.knee);
+  visit_length(fields, "hem_m", jeans.measures.hem);
+  fields.number("hip_ease_m", jeans.measures.hip_ease, from(0, largest_length_m));
+  fields.number("waist_ease_m", jeans.measures.waist_ease, from(0, largest_length_m));
+  fields.number("crotch_ease_m", jeans.measures.crotch_ease, from(0, largest_length_m));
+}
+
+void visit_correction(FieldVisitor& fields, Dressing& dressing, VelocityCorrection correction) {
+  dressing.correction = correction;
+  if (correction == VelocityCorrection::none) return;
+  fields.number("threshold", dressing.correction_threshold, from(0, 10));
+  fields.integer("sweeps", dressing.correction_sweeps, 1, 1000);
+  if (correction == VelocityCorrection::bounded) fields.number("rate", dressing.correction_rate, from(0, 1));
+}
+
+void visit_dressing(FieldVisitor& fields, Dressing& dressing) {
+  fields.number("seam_force_n_per_m", dressing.seam_force, from(0, 1e6));
+  fields.number("seam_force_doubling_s", dressing.seam_force_doubling_s, above(0, 1e6));
+  fields.number("seaming_damping_per_s", dressing.seaming_damping, from(0, 1e6));
+  fields.number("seaming_gravity", dressing.seaming_gravity, from(0, 1));
+  fields.number("longest_seaming_s", dressing.longest_seaming_s, from(0, 1e6));
+  visit_length(fields, "sewn_gap_m", dressing.sewn_gap);
+  fields.number("closing_share", dressing.closing_share, from(0, 1));
+  fields.number("closing_speed_m_per_s", dressing.closing_speed, above(0, 1000));
+  fields.number("friction", dressing.friction, from(0, 100));
+  fields.number("push_speed_m_per_s", dressing.push_speed, from(0, 1000));
+  const auto section = [&](std::string_view name, VelocityCorrection correction) {
+    return Section{
+        name, [&dressing, correction](FieldVisitor& rule) { visit_correction(rule, dressing, correction); }};
+  };
+  const std::array sections{section("none", VelocityCorrection::none),
+                            section("published", VelocityCorrection::published),
+                            section("bounded", VelocityCorrection::bounded)};
+  fields.one_of("correction", sections);
+}
+
+void visit_layers(FieldVisitor& fields, ClothClothSettings& layers) {
+  visit_length(fields, "thickness_m", layers.thickness);
+  fields.number("friction", layers.friction, from(0, 100));
+  fields.number("push_speed_m_per_s", layers.push_speed, from(0, 1000));
+  fields.integer("sweeps", layers.sweeps, 1, 1000);
+}
+
+/// The body as each layer meets it: where layers touch, an outer one has no room but for what lies under it.
+std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
+                                                             const Surface& body, double offset) {
+  std::uint32_t outermost = 0;
+  if (garment.touching)
+    for (const GarmentPanel& panel : garment.panels) outermost = std::max(outermost, panel.layer);
+  std::vector<std::shared_ptr<const BodyMaps>> maps;
+  try {
+    for (std::uint32_t layer = 0; layer <= outermost; ++layer) {
+      const double beneath = layer > 0 ? layer * garment.touching->settings.thickness : 0;
+      maps.push_back(std::make_shared<BodyMaps>(
+          body, BodyMapSettings{.pixel = garment_of(spec).pixel_m, .offset = offset + beneath}));
+    }
+  } catch (const std::exception& error) {
+    refuse(spec.file, "/garment/pixel_m", "gives no maps of the body: " + printable(error.what(), 1500));
+  }
+  return maps;
+}
+
+}  // namespace
+
+void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
+  GarmentSpec& garment = spec.body.emplace<GarmentSpec>();
+  visit_body_fields(fields, garment);
+  visit_length(fields, "pixel_m", garment.pixel_m);
+  fields.number("skin_m", garment.skin_m, from(0, largest_length_m));
+  const auto jeans_of = [&](FieldVisitor& jeans) { visit_jeans(jeans, garment.jeans.emplace()); };
+  const auto pieces_of = [&](FieldVisitor& pieces) { visit_pieces(pieces, garment.pieces.emplace()); };
+  const std::array patterns{Section{"jeans", jeans_of}, Section{"pieces", pieces_of},
+                            Section{"outfit", [&](FieldVisitor& outfit) {
+                                      outfit.object("jeans", Presence::required, jeans_of);
+                                      pieces_of(outfit);
+                                    }}};
+  fields.one_of("pattern", patterns);
+  fields.object("cloth", Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
+  fields.object("dressing", Presence::required,
+                [&](FieldVisitor& dressing) { visit_dressing(dressing, garment.dressing); });
+  fields.object("layers", Presence::optional,
+                [&](FieldVisitor& layers) { visit_layers(layers, garment.layers.emplace()); });
+  fields.object("expected", Presence::optional, [&](FieldVisitor& expected) {
+    MeshSize& size = garment.expected.emplace();
+    expected.integer("nodes", size.nodes, 4, most_nodes);
+    expected.integer("springs", size.springs, 6, 6 * most_nodes);
+  });
+}
+
+void check_garment(const SceneSpec& spec) {
+  check_body(spec);
+  const GarmentSpec& garment = garment_of(spec);
+  if (garment.pieces) check_pieces(spec.file, pieces_pointer(garment), *garment.pieces, most_nodes);
+}
+
+std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
+  const std::optional<MeshSize>& expected = garment_of(spec).expected;
+  return expected ? std::optional(SceneCounts{expected->nodes, expected->springs}) : std::nullopt;
+}
+
+SceneCounts garment_counts(const SceneSpec& spec) {
+  const GarmentBuild build = cut_and_placed(spec, measured_body(spec)).build;
+  return {build.placed.size(), build.springs.size()};
+}
+
+System build_garment_scene(const SceneSpec& spec) {
+  const GarmentSpec& garment = garment_of(spec);
+  const BodyProfile body = measured_body(spec);
+  auto [build, body_offset] = cut_and_placed(spec, body);
+  const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
+  if (lowest_start < spec.floor.height)
+    refuse(spec.file, "/floor/height_m",
+           "is " + shown_number(spec.floor.height) + ", but the garment would start down to " +
+               shown_number(lowest_start) + ": lower the floor or wear the garment higher");
+  System system;
+  system.springs = std::move(build.springs);
+  system.materials = std::move(build.materials);
+  system.node_mass = std::move(build.node_mass);
+  system.gravity = spec.gravity_m_per_s2;
+  system.viscous_damping = spec.viscous_damping_per_s;
+  system.floor = spec.floor;
+  system.start.position = std::move(build.placed);
+  system.start.velocity.resize(system.start.position.size());
+
+  build.garment.dressing = garment.dressing;
+  build.garment.flat = std::move(build.flat);
+  if (garment.layers) build.garment.touching = {{layer_pairs(build.garment), {}}, *garment.layers};
+  build.garment.body_maps = maps_for_layers(spec, build.garment, body.trunk_and_legs().surface, body_offset);
+  system.topology = std::move(build.garment);
+  return system;
+}
+
+}  // namespace mssim

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "garment/pattern/garment_build.h"
+#include "garment/pattern/panel_springs.h"
+#include "garment/pattern/seams.h"
+#include "geometry/vec3.h"
+#include "scene/fields/field_visitor.h"
+
+namespace mssim {
+
+/// A boundary of a pattern piece as a scene file draws it.
+struct BoundarySpec {
+  bool is_bezier = false;     ///< a chain of cubics (Curve::bezier), or else a polyline
+  std::vector<Vec3d> points;  ///< m, z = 0
+};
+
+/// A panel as a scene file describes it.
+struct PieceSpec {
+  std::string name;
+  std::uint32_t rows = 0, columns = 0;  ///< of nodes
+  std::uint32_t layer = 0;
+  std::array<BoundarySpec, panel_edge_names.size()> boundaries;  ///< by PanelEdge
+  bool behind = false;                                           ///< the body, or else before it
+  double axis_m = 0;                                             ///< x at which the piece's x = 0 stands
+  double distance_m = 0;                                         ///< PanelPlacement::distance
+  double bend_radius_m = 0;                                      ///< PanelPlacement::radius
+  std::optional<PanelCloth> cloth;                               ///< none: the garment's
+};
+
+/// Panels and seams of one's own pattern.
+struct PiecesSpec {
+  std::vector<PieceSpec> panels;
+  std::vector<Seam> seams;  ///< also to the panels of the jeans, where there are any
+};
+
+/// Names the fields of pieces.
+void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces);
+
+/// Names the fields of what panels are cut from.
+void visit_cloth(FieldVisitor& fields, PanelCloth& cloth);
+
+/// Throws SceneError, which names the place under `pointer`, for a panel without a name, for boundaries that
+/// are no curves, and for more than `most_nodes` nodes. What only cutting and sewing shows, build_garment
+/// refuses.
+void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,
+                  std::uint64_t most_nodes);
+
+/// Appends pieces that check_pieces accepts to a pattern. Those without a cloth of their own are of `cloth`.
+void append_pieces(const PiecesSpec& pieces, const PanelCloth& cloth, GarmentPattern& pattern);
+
+}  // namespace mssim

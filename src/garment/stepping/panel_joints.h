@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "garment/stepping/dressing_backend.h"
+#include "garment/stepping/layer_collision.h"
+#include "garment/stepping/panel_sheet.h"
+
+namespace mssim {
+
+/// A dressing under way.
+struct PanelDressing {
+  const System& system;
+  const Garment& garment;
+  PanelSheet sheet;
+  std::size_t threads;
+  double dt_s;
+  std::optional<LayerCollision> layers;  ///< that touch
+  std::int64_t steps = 0;
+  DressingProgress progress = {};
+};
+
+/// Loop 3: sews the joints that are near enough, and sets what the others do to the nodes at their ends.
+/// There are as many as a panel has rows, so that one thread does it.
+void pull_joints(PanelDressing& dressing);
+
+/// After loop 5, which would open them again: the ends of a sewn joint move as one but for what closes its
+/// gap.
+void close_sewn_joints(PanelDressing& dressing);
+
+}  // namespace mssim

@@ -1,0 +1,102 @@
+#include "garment/stepping/panel_sheet.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "backends/interface/backend.h"
+#include "garment/stepping/correction_order.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t widest_vector = 16, empty_rows = 2;
+
+std::size_t round_up(std::size_t number, std::size_t multiple) {
+  return (number + multiple - 1) / multiple * multiple;
+}
+
+/// The direction of a spring between two nodes of a panel, from the one that owns it; throws where there is
+/// none.
+std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::uint32_t& other) {
+  if (other < owner) std::swap(owner, other);
+  const auto row = [&](std::uint32_t node) {
+    return std::ptrdiff_t{(node - panel.first_node) / panel.columns};
+  };
+  const auto column = [&](std::uint32_t node) {
+    return std::ptrdiff_t{(node - panel.first_node) % panel.columns};
+  };
+  for (std::size_t d = 0; d < panel_stencil.size(); ++d)
+    if (other < panel.first_node + panel.nodes() && row(other) - row(owner) == panel_stencil[d].rows &&
+        column(other) - column(owner) == panel_stencil[d].columns)
+      return d;
+  throw std::invalid_argument("panel " + panel.name + " has a spring that is not of its stencil");
+}
+
+}  // namespace
+
+PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
+  const auto& garment = std::get<Garment>(system.topology);
+  std::size_t floats = 0;
+  for (const GarmentPanel& panel : garment.panels) {
+    const std::size_t stride = round_up(panel.columns, widest_vector) + widest_vector;
+    panels.push_back(
+        {panel.rows, panel.columns, stride, floats + empty_rows * stride, {}, garment.body_met_by(panel)});
+    for (std::vector<float>& stiffness : panels.back().stiffness) stiffness.assign(panel.rows, 0);
+    floats += (panel.rows + 2 * empty_rows) * stride;
+    for (std::uint32_t row = 0; row < panel.rows; ++row)
+      for (std::uint32_t column = 0; column < panel.columns; ++column)
+        place[panel.node(row, column)] = panels.back().first + row * stride + column;
+    const std::vector<std::uint32_t> begins = correction_blocks(panel);
+    for (std::size_t block = 0; block + 1 < begins.size(); ++block)
+      blocks.push_back({panels.size() - 1, begins[block], begins[block + 1]});
+  }
+  position = Float3Arrays(floats);
+  moved = Float3Arrays(floats);
+  velocity = Float3Arrays(floats);
+  pull = Float3Arrays(floats);
+  inverse_mass = AlignedArray(floats);
+  free = AlignedArray(floats);
+  for (AlignedArray& lengths : rest) lengths = AlignedArray(floats);
+
+  for (std::size_t i = 0; i < system.nodes(); ++i)
+    inverse_mass.data()[place[i]] = static_cast<float>(1 / system.node_mass[i]);
+  for (const std::uint32_t pin : system.pins) inverse_mass.data()[place[pin]] = 0;
+  for (const Spring& spring : system.springs) {
+    std::uint32_t owner = spring.first, other = spring.second;
+    const GarmentPanel& panel = garment.panel_of(std::min(owner, other));
+    const std::size_t direction = direction_of(panel, owner, other);
+    rest[direction].data()[place[owner]] = spring.rest_length;
+    const std::size_t row = (owner - panel.first_node) / panel.columns;
+    const auto number = static_cast<std::size_t>(&panel - garment.panels.data());
+    float& stiffness = panels[number].stiffness[direction][row];
+    const auto own = static_cast<float>(system.materials[spring.kind].stiffness);
+    if (stiffness != 0 && stiffness != own)
+      throw Unsupported("the springs of a row of panel " + panel.name +
+                        " that have one direction must have one stiffness");
+    stiffness = own;
+  }
+  for (const mssim::Joint& joint : garment.joints)
+    joints.push_back({place[joint.node], place[joint.edge_first], place[joint.edge_second],
+                      static_cast<float>(joint.edge_share)});
+  set_state(system.start);
+}
+
+void PanelSheet::set_state(const State& state) {
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    position.put(place[i], vec3_cast<float>(state.position[i]));
+    velocity.put(place[i], vec3_cast<float>(state.velocity[i]));
+  }
+  sewn.assign(joints.size(), state.draped ? 1 : 0);
+}
+
+State PanelSheet::state() const {
+  State state;
+  for (const std::size_t at : place) {
+    state.position.push_back(vec3_cast<double>(position.at(at)));
+    state.velocity.push_back(vec3_cast<double>(velocity.at(at)));
+  }
+  return state;
+}
+
+}  // namespace mssim

@@ -1,0 +1,260 @@
+#include "garment/stepping/serial_dressing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "garment/contact/body_maps.h"
+#include "garment/stepping/at_joint.h"
+#include "garment/stepping/correction_order.h"
+#include "garment/stepping/dressing_rules.h"
+#include "garment/stepping/layer_collision.h"
+#include "integrators/host_lines.h"
+
+namespace mssim {
+namespace {
+
+template <class Real>
+class SerialDressing final : public DressingBackend {
+ public:
+  SerialDressing(const System& system, double dt_s)
+      : system_(system),
+        garment_(std::get<Garment>(system.topology)),
+        rules_(garment_.dressing),
+        dt_(static_cast<Real>(dt_s)),
+        dt_s_(dt_s),
+        nodes_(system.nodes()),
+        force_(system.nodes()),
+        correction_rule_(correction_rule<Real>(rules_, dt_s)),
+        closing_rule_(closing_rule<Real>(rules_, dt_s)),
+        correction_order_(correction_order(garment_, system.springs)),
+        layers_(layer_collision(system, garment_, 1)) {
+    for (const SpringMaterial& material : system.materials)
+      stiffness_.push_back(static_cast<Real>(material.stiffness));
+    for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
+    for (const std::uint32_t pin : system.pins) inverse_mass_[pin] = 0;
+    SerialDressing::set_state(system.start);
+  }
+
+  void set_state(const State& state) override {
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      nodes_[i] = {vec3_cast<Real>(state.position[i]), vec3_cast<Real>(state.velocity[i])};
+    sewn_.assign(garment_.joints.size(), state.draped ? 1 : 0);
+    progress_ = first_progress(garment_, state);
+    steps_ = 0;
+  }
+
+  State state() const override {
+    State state;
+    for (const Node& node : nodes_) {
+      state.position.push_back(vec3_cast<double>(node.x));
+      state.velocity.push_back(vec3_cast<double>(node.v));
+    }
+    state.draped = progress_.draping;
+    return state;
+  }
+
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return 1; }
+  DressingProgress progress() const override { return progress_; }
+
+  void step(int count) override {
+    for (int step = 0; step < count; ++step) {
+      phase_ = phase_rule<Real>(system_, rules_, progress_.draping);
+      add_spring_forces();
+      add_external_forces();
+      add_joint_forces();
+      update_velocities();
+      collide_layers();
+      meet_body();
+      correct_velocities();
+      close_sewn_joints();
+      move();
+      end_step();
+    }
+  }
+
+ private:
+  using Vector = Vec3<Real>;
+  struct Node {
+    Vector x;  ///< m
+    Vector v;  ///< m/s
+  };
+
+  void add_spring_forces() {  // loop 1
+    std::fill(force_.begin(), force_.end(), Vector{});
+    for (const Spring& spring : system_.springs) {
+      const Vector d = nodes_[spring.second].x - nodes_[spring.first].x;
+      const Real stiffness = stiffness_[spring.kind];
+      const Vector force = spring_pull(dot(d, d), Real{0}, stiffness,
+                                       stiffness * static_cast<Real>(spring.rest_length), Real{0}) *
+                           d;
+      force_[spring.first] += force;
+      force_[spring.second] -= force;
+    }
+  }
+
+  void add_external_forces() {  // loop 2, per mass: what is added up is an acceleration from here on
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (inverse_mass_[i] == 0) continue;
+      force_[i] = inverse_mass_[i] * force_[i] - phase_.damping * nodes_[i].v;
+      force_[i].y -= phase_.gravity;
+    }
+  }
+
+  /// What the nodes of a joint have, as `of` gives it for a node's number.
+  template <class Of>
+  static auto at_joint(const Joint& joint, const Of& of) {
+    return AtJoint<std::decay_t<decltype(of(0))>>{of(joint.node), of(joint.edge_first),
+                                                  of(joint.edge_second)};
+  }
+  AtJoint<Vector> positions_at(const Joint& joint) const {
+    return at_joint(joint, [&](std::uint32_t i) { return nodes_[i].x; });
+  }
+  AtJoint<Real> inverse_masses_at(const Joint& joint) const {
+    return at_joint(joint, [&](std::uint32_t i) { return inverse_mass_[i]; });
+  }
+
+  void add_joint_forces() {  // loop 3
+    const double time_s = static_cast<double>(steps_) * dt_s_;
+    for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
+      if (sewn_[j] != 0) continue;
+      const Joint& joint = garment_.joints[j];
+      const auto pull = pull_of_joint(rules_, joint, time_s, positions_at(joint), inverse_masses_at(joint));
+      if (!pull) {
+        sewn_[j] = 1;
+        --progress_.open_joints;
+        continue;
+      }
+      force_[joint.node] += pull->node;
+      force_[joint.edge_first] += pull->first;
+      force_[joint.edge_second] += pull->second;
+    }
+  }
+
+  void update_velocities() {  // loop 4
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (inverse_mass_[i] != 0) nodes_[i].v += dt_ * force_[i];
+  }
+
+  void collide_layers() {
+    if (!layers_) return;
+    layers_->collide(
+        dt_s_,
+        [&](std::size_t i) {
+          return NodeState{vec3_cast<float>(nodes_[i].x), vec3_cast<float>(nodes_[i].v)};
+        },
+        [&](std::size_t i, const NodeState& state) {
+          nodes_[i] = {vec3_cast<Real>(state.position), vec3_cast<Real>(state.velocity)};
+        });
+  }
+
+  void meet_body() {  // loop 4, too
+    const Real push = static_cast<Real>(rules_.push_speed);
+    free_ = inverse_mass_;
+    for (const GarmentPanel& panel : garment_.panels) {
+      const BodyMaps* const body = garment_.body_met_by(panel);
+      if (body == nullptr) continue;
+      for (std::size_t i = panel.first_node; i < panel.first_node + panel.nodes(); ++i) {
+        if (inverse_mass_[i] == 0) continue;
+        if (body->respond(nodes_[i].x, nodes_[i].v, phase_.friction, push, dt_)) free_[i] = 0;
+      }
+    }
+  }
+
+  void correct_velocities() {  // loop 5
+    for (std::uint32_t sweep = 0; sweep < correction_sweeps(rules_); ++sweep) {
+      if (sweep % 2 == 0)
+        for (auto spring = correction_order_.begin(); spring != correction_order_.end(); ++spring)
+          correct(system_.springs[*spring]);
+      else
+        for (auto spring = correction_order_.rbegin(); spring != correction_order_.rend(); ++spring)
+          correct(system_.springs[*spring]);
+    }
+  }
+
+  /// Lets the ends of an over-elongated spring part no faster than the rule allows; a node that friction
+  /// holds stays.
+  void correct(const Spring& spring) {
+    Node &first = nodes_[spring.first], &second = nodes_[spring.second];
+    const Vector d = second.x - first.x;
+    const Real squared = dot(d, d);
+    const Real limit = static_cast<Real>(spring.rest_length) * correction_rule_.limit;
+    if (!(elongation_excess(squared, limit) > 0)) return;
+    const Real first_free = free_[spring.first], second_free = free_[spring.second];
+    const Real impulse = elongation_impulse(squared, dot(second.v - first.v, d), limit,
+                                            correction_rule_.rate_per_s, first_free + second_free);
+    first.v += first_free * impulse * d;
+    second.v -= second_free * impulse * d;
+  }
+
+  /// After the correction, which would open them again: the ends of a sewn joint move as one but for what
+  /// closes its gap.
+  void close_sewn_joints() {
+    for (std::size_t j = 0; j < garment_.joints.size(); ++j) {
+      if (sewn_[j] == 0) continue;
+      const Joint& joint = garment_.joints[j];
+      const AtJoint<Vector> v = at_joint(joint, [&](std::uint32_t i) { return nodes_[i].v; });
+      const AtJoint<Vector> change = closing_of_joint(closing_rule_, static_cast<Real>(joint.edge_share),
+                                                      positions_at(joint), v, inverse_masses_at(joint));
+      nodes_[joint.node].v += change.node;
+      nodes_[joint.edge_first].v += change.first;
+      nodes_[joint.edge_second].v += change.second;
+    }
+  }
+
+  void move() {  // loop 6
+    const Floor& floor = system_.floor;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (inverse_mass_[i] == 0) continue;
+      nodes_[i].x += dt_ * nodes_[i].v;
+      touch_floor(nodes_[i].x, nodes_[i].v, static_cast<Real>(floor.height),
+                  static_cast<Real>(floor.restitution), static_cast<Real>(floor.friction));
+    }
+  }
+
+  void end_step() {
+    ++steps_;
+    if (!ends_seaming(rules_, progress_, steps_, dt_s_)) return;
+    std::fill(sewn_.begin(), sewn_.end(), std::uint8_t{1});
+    progress_ = {0, true, steps_};
+  }
+
+  const System& system_;
+  const Garment& garment_;
+  const Dressing& rules_;
+  Real dt_;
+  double dt_s_;
+  std::vector<Node> nodes_;
+  std::vector<Vector> force_;       ///< [nodes] N, from loop 2 on m/s^2
+  std::vector<Real> stiffness_;     ///< [kinds] N/m
+  std::vector<Real> inverse_mass_;  ///< [nodes] 1/kg, 0 for a pin
+  std::vector<Real> free_;          ///< [nodes] the same, 0 for what friction holds, too
+  PhaseRule<Real> phase_{};
+  CorrectionRule<Real> correction_rule_;
+  ClosingRule<Real> closing_rule_;
+  std::vector<std::uint32_t> correction_order_;
+  std::optional<LayerCollision> layers_;
+  std::vector<std::uint8_t> sewn_;  ///< [joints]
+  DressingProgress progress_;
+  std::int64_t steps_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
+                                                      double dt_s) {
+  require_semi_euler(integrator);
+  return std::make_unique<SerialDressing<float>>(system, dt_s);
+}
+
+std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, const Integrator& integrator,
+                                                         double dt_s) {
+  require_semi_euler(integrator);
+  return std::make_unique<SerialDressing<double>>(system, dt_s);
+}
+
+}  // namespace mssim

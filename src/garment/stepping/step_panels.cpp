@@ -1,0 +1,206 @@
+// Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "garment/stepping/step_panels.cpp"
+#include "garment/stepping/step_panels.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "backends/threads/spin_barrier.h"
+#include "garment/stepping/panel_correction-inl.h"
+#include "garment/stepping/panel_forces-inl.h"
+#include "garment/stepping/panel_joints.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+/// Blocks of one thread.
+struct Share {
+  std::size_t begin, end;
+};
+
+/// Loop 6 for a block.
+HWY_INLINE void move_block(PanelSheet& sheet, const PanelSheet::Block& block, Lanes dt, const Floor& floor) {
+  const PanelSheet::Panel& panel = sheet.panels[block.panel];
+  const std::size_t first = panel.first + block.begin * panel.stride;
+  const std::size_t last = panel.first + block.end * panel.stride;
+  const Lanes height(static_cast<float>(floor.height));
+  for (std::size_t at = first; at < last; at += lane_count()) {
+    Lanes3 v = load(sheet.velocity, at), x = mul_add(dt, v, load(sheet.moved, at));
+    const Mask real = hn::Gt(hn::Load(FloatTag(), sheet.inverse_mass.data() + at), hn::Zero(FloatTag()));
+    const Mask under = hn::And(real, hn::Lt(x.y.v, height.v));
+    touch_floor(under, height, Lanes(static_cast<float>(floor.restitution)),
+                Lanes(static_cast<float>(floor.friction)), x, v);
+    store(sheet.position, at, x);
+    store(sheet.velocity, at, v);
+  }
+}
+
+/// Limits what over-elongated springs do, in the order of correction_order.h: a thread's own blocks, and the
+/// springs between each of them and the block before it, which is done when all have passed the barrier.
+HWY_INLINE void correct(PanelSheet& sheet, const CorrectionRule<float>& rule, std::uint32_t sweeps,
+                        Share share, SpinBarrier& barrier) {
+  for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
+    const bool forwards = sweep % 2 == 0;
+    if (forwards) {
+      for (std::size_t b = share.begin; b < share.end; ++b) correct_block(sheet, sheet.blocks[b], rule, true);
+      barrier.wait();
+    }
+    for (std::size_t b = share.begin; b < share.end; ++b)
+      if (sheet.blocks[b].begin != 0) correct_seam_of_blocks(sheet, sheet.blocks[b], rule, forwards);
+    if (!forwards) {
+      barrier.wait();
+      for (std::size_t b = share.begin; b < share.end; ++b)
+        correct_block(sheet, sheet.blocks[b], rule, false);
+    }
+  }
+}
+
+/// What the first thread does between two steps.
+void end_step(PanelDressing& dressing) {
+  PanelSheet& sheet = dressing.sheet;
+  const Dressing& rules = dressing.garment.dressing;
+  ++dressing.steps;
+  if (!ends_seaming(rules, dressing.progress, dressing.steps, dressing.dt_s)) return;
+  std::fill(sheet.sewn.begin(), sheet.sewn.end(), std::uint8_t{1});
+  dressing.progress = {0, true, dressing.steps};
+}
+
+/// A thread, its blocks, what it computes forces in, and where it meets the others.
+struct Worker {
+  Worker(const PanelDressing& dressing, std::size_t number, std::size_t threads, SpinBarrier& of_all)
+      : thread(number),
+        share{number * dressing.sheet.blocks.size() / threads,
+              (number + 1) * dressing.sheet.blocks.size() / threads},
+        scratch(dressing.sheet),
+        barrier(of_all) {}
+
+  std::size_t thread;
+  Share share;
+  ForceScratch scratch;
+  SpinBarrier& barrier;
+};
+
+/// The threads that the runtime gives to a parallel region: OMP_THREAD_LIMIT may make them fewer than were
+/// asked for.
+class Team {
+ public:
+  /// This thread's part. All threads of a region call it first; it makes parts for as many as there are.
+  Worker& join(const PanelDressing& dressing) {
+#pragma omp single
+    if (const auto threads = static_cast<std::size_t>(omp_get_num_threads()); threads != workers_.size()) {
+      workers_.clear();
+      barrier_.emplace(threads);
+      for (std::size_t thread = 0; thread < threads; ++thread)
+        workers_.emplace_back(dressing, thread, threads, *barrier_);
+    }
+    return workers_[static_cast<std::size_t>(omp_get_thread_num())];
+  }
+
+ private:
+  std::optional<SpinBarrier> barrier_;
+  std::vector<Worker> workers_;
+};
+
+StepRule step_rule(const PanelDressing& dressing) {
+  const Dressing& rules = dressing.garment.dressing;
+  const bool draping = dressing.progress.draping;
+  return {static_cast<float>(dressing.dt_s), static_cast<float>(rules.push_speed),
+          phase_rule<float>(dressing.system, rules, draping), !draping, dressing.layers.has_value()};
+}
+
+/// Loops 1 to 4, up to where layers meet each other.
+void accelerate(PanelDressing& dressing, Worker& worker) {
+  const StepRule rule = step_rule(dressing);
+  if (rule.has_joints) {
+    if (worker.thread == 0) pull_joints(dressing);
+    worker.barrier.wait();
+  }
+  for (std::size_t b = worker.share.begin; b < worker.share.end; ++b)
+    update_velocities(dressing.sheet, dressing.sheet.blocks[b], rule, worker.scratch);
+}
+
+/// What is left of a step.
+void move(PanelDressing& dressing, const Worker& worker) {
+  PanelSheet& sheet = dressing.sheet;
+  const Dressing& rules = dressing.garment.dressing;
+  const Share share = worker.share;
+  const StepRule rule = step_rule(dressing);
+  if (rule.layers_touch)
+    for (std::size_t b = share.begin; b < share.end; ++b) meet_body(sheet, sheet.blocks[b], rule);
+  const std::uint32_t sweeps = correction_sweeps(rules);
+  if (sweeps == 0) worker.barrier.wait();
+  correct(sheet, correction_rule<float>(rules, dressing.dt_s), sweeps, share, worker.barrier);
+  worker.barrier.wait();
+  if (worker.thread == 0) {
+    close_sewn_joints(dressing);
+    end_step(dressing);
+  }
+  worker.barrier.wait();
+  for (std::size_t b = share.begin; b < share.end; ++b)
+    move_block(sheet, sheet.blocks[b], Lanes(rule.dt), dressing.system.floor);
+  worker.barrier.wait();
+}
+
+/// Layers of the garment collide.
+void collide_layers(PanelDressing& dressing) {
+  PanelSheet& sheet = dressing.sheet;
+  dressing.layers->collide(
+      dressing.dt_s,
+      [&](std::size_t node) {
+        const std::size_t at = sheet.place[node];
+        return NodeState{sheet.moved.at(at), sheet.velocity.at(at)};
+      },
+      [&](std::size_t node, const NodeState& state) {
+        sheet.moved.put(sheet.place[node], state.position);
+        sheet.velocity.put(sheet.place[node], state.velocity);
+      });
+}
+
+void step_panels(PanelDressing& dressing, int count) {
+  Team team;
+  if (!dressing.layers || dressing.layers->threads() == 1) {
+#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
+    {
+      Worker& worker = team.join(dressing);
+      for (int step = 0; step < count; ++step) {
+        accelerate(dressing, worker);
+        if (dressing.layers) {
+          worker.barrier.wait();
+          if (worker.thread == 0) collide_layers(dressing);
+          worker.barrier.wait();
+        }
+        move(dressing, worker);
+      }
+    }
+    return;
+  }
+  // The threads of the collision are a team of their own.
+  for (int step = 0; step < count; ++step) {
+#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
+    accelerate(dressing, team.join(dressing));
+    collide_layers(dressing);
+#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
+    move(dressing, team.join(dressing));
+  }
+}
+
+PanelKernel panel_kernel() { return {hwy::TargetName(HWY_TARGET), &step_panels}; }
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace mssim {
+HWY_EXPORT(panel_kernel);
+std::vector<PanelKernel> panel_kernels() {
+  return kernels_of_this_processor(HWY_DISPATCH_TABLE(panel_kernel));
+}
+}  // namespace mssim
+#endif

@@ -1,0 +1,145 @@
+#include "geometry/depth_raster.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "text/decimal.h"
+
+namespace mssim {
+namespace {
+
+/// Rows that one thread draws at a time.
+constexpr std::int64_t band_rows = 16;
+
+/// Fixed-point coordinates stay below 2^29, so that the difference of two products of differences stays below
+/// 2^61.
+constexpr std::int64_t subpixels = 16384;
+constexpr double farthest = 4.0 * most_pixels_a_side;
+
+struct FixedPoint {
+  std::int64_t x = 0, y = 0;
+};
+
+/// The pixels whose centres may lie in a triangle.
+struct PixelRange {
+  std::int64_t first_column = 0, end_column = 0;
+  std::int64_t first_row = 0, end_row = 0;
+};
+
+/// Twice the area of the triangle, positive where its corners go round counter-clockwise.
+std::int64_t area(const FixedPoint& a, const FixedPoint& b, const FixedPoint& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// The pixels from `low` to `high` whose centres, at half pixels, lie between them.
+std::int64_t first_centre(std::int64_t low) { return (low + subpixels / 2 - 1) / subpixels; }
+std::int64_t end_centre(std::int64_t high) { return (high + subpixels / 2) / subpixels; }
+
+void check(const PixelGrid& grid) {
+  if (!(grid.pixel > 0 && std::isfinite(grid.pixel)))
+    throw std::invalid_argument("a picture has pixels of " + decimal(grid.pixel) +
+                                " m; give a positive size");
+  if (!std::isfinite(grid.left) || !std::isfinite(grid.bottom))
+    throw std::invalid_argument("a picture begins at x = " + decimal(grid.left) +
+                                " m, y = " + decimal(grid.bottom) + " m; give finite numbers");
+  if (grid.columns == 0 || grid.rows == 0 || grid.columns > most_pixels_a_side ||
+      grid.rows > most_pixels_a_side)
+    throw std::invalid_argument("a picture has " + std::to_string(grid.columns) + " x " +
+                                std::to_string(grid.rows) + " pixels; give 1 to " +
+                                std::to_string(most_pixels_a_side) + " each way");
+}
+
+class Raster {
+ public:
+  Raster(const Surface& surface, const PixelGrid& grid, ViewFrom view)
+      : surface_(surface), grid_(grid), sign_(view == ViewFrom::front ? 1 : -1) {
+    points_.reserve(surface.points.size());
+    for (const Vec3d& point : surface.points)
+      points_.push_back({fixed(point.x - grid.left), fixed(point.y - grid.bottom)});
+    bands_.resize(static_cast<std::size_t>((grid.rows + band_rows - 1) / band_rows));
+    ranges_.reserve(surface.triangles.size());
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+      const PixelRange& range = ranges_.emplace_back(range_of(surface.triangles[t]));
+      if (range.first_column >= range.end_column || range.first_row >= range.end_row) continue;
+      for (std::int64_t band = range.first_row / band_rows; band <= (range.end_row - 1) / band_rows; ++band)
+        bands_[static_cast<std::size_t>(band)].push_back(t);
+    }
+    fragments_.resize(grid.pixels());
+  }
+
+  std::vector<Fragment> drawn(int threads) && {
+#pragma omp parallel for num_threads(threads > 0 ? threads : omp_get_max_threads()) schedule(dynamic)
+    for (std::size_t band = 0; band < bands_.size(); ++band) draw_band(band);
+    return std::move(fragments_);
+  }
+
+ private:
+  std::int64_t fixed(double metres) const {
+    const double pixels = std::clamp(metres / grid_.pixel, -farthest, farthest);
+    return static_cast<std::int64_t>(std::lround(pixels * static_cast<double>(subpixels)));
+  }
+
+  PixelRange range_of(const std::array<std::uint32_t, 3>& triangle) const {
+    const FixedPoint &a = points_[triangle[0]], &b = points_[triangle[1]], &c = points_[triangle[2]];
+    return {std::max<std::int64_t>(first_centre(std::min({a.x, b.x, c.x})), 0),
+            std::min<std::int64_t>(end_centre(std::max({a.x, b.x, c.x})), grid_.columns),
+            std::max<std::int64_t>(first_centre(std::min({a.y, b.y, c.y})), 0),
+            std::min<std::int64_t>(end_centre(std::max({a.y, b.y, c.y})), grid_.rows)};
+  }
+
+  void draw_band(std::size_t band) {
+    const std::int64_t first_row = static_cast<std::int64_t>(band) * band_rows;
+    for (const std::uint32_t t : bands_[band]) {
+      PixelRange range = ranges_[t];
+      range.first_row = std::max(range.first_row, first_row);
+      range.end_row = std::min(range.end_row, first_row + band_rows);
+      draw(t, range);
+    }
+  }
+
+  void draw(std::uint32_t number, const PixelRange& range) {
+    const auto& [ia, ib, ic] = surface_.triangles[number];
+    const FixedPoint &a = points_[ia], &b = points_[ib], &c = points_[ic];
+    const std::int64_t whole = area(a, b, c);
+    if (whole == 0) return;  // edge-on: its neighbours cover what it covers
+    const std::int64_t turn = whole > 0 ? 1 : -1;
+    const double per_area = 1 / static_cast<double>(turn * whole);
+    for (std::int64_t row = range.first_row; row < range.end_row; ++row)
+      for (std::int64_t column = range.first_column; column < range.end_column; ++column) {
+        const FixedPoint centre{column * subpixels + subpixels / 2, row * subpixels + subpixels / 2};
+        const std::int64_t at_a = turn * area(b, c, centre), at_b = turn * area(c, a, centre),
+                           at_c = turn * area(a, b, centre);
+        if (at_a < 0 || at_b < 0 || at_c < 0) continue;
+        const double wa = static_cast<double>(at_a) * per_area, wb = static_cast<double>(at_b) * per_area,
+                     wc = static_cast<double>(at_c) * per_area;
+        const double z = wa * surface_.points[ia].z + wb * surface_.points[ib].z + wc * surface_.points[ic].z;
+        Fragment& shown =
+            fragments_[static_cast<std::size_t>(row) * grid_.columns + static_cast<std::size_t>(column)];
+        if (shown.triangle == Fragment::nothing || sign_ * z > sign_ * shown.z)
+          shown = {z, {static_cast<float>(wa), static_cast<float>(wb), static_cast<float>(wc)}, number};
+      }
+  }
+
+  const Surface& surface_;
+  const PixelGrid& grid_;
+  double sign_;
+  std::vector<FixedPoint> points_;
+  std::vector<PixelRange> ranges_;                 // by triangle
+  std::vector<std::vector<std::uint32_t>> bands_;  // the triangles that reach into each, in their order
+  std::vector<Fragment> fragments_;
+};
+
+}  // namespace
+
+std::vector<Fragment> rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view, int threads) {
+  check(grid);
+  return Raster(surface, grid, view).drawn(threads);
+}
+
+}  // namespace mssim

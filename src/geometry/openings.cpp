@@ -1,0 +1,120 @@
+#include "geometry/openings.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "geometry/geometry.h"
+#include "geometry/mesh_error.h"
+#include "geometry/surface_sides.h"
+
+namespace mssim {
+namespace {
+
+/// The edges that belong to one triangle only, as that triangle runs, by the point where they begin.
+class FreeEdges {
+ public:
+  explicit FreeEdges(const Surface& surface) : ends_(surface.points.size()) {
+    const std::vector<SurfaceSide> sides = sides_by_edge(surface);
+    for (std::size_t first = 0; first < sides.size();) {
+      const auto of_edge = sides_of_edge(sides, first);
+      const bool has_length = of_edge.front().low != of_edge.front().high;
+      if (of_edge.size() == 1 && has_length) ends_[of_edge.front().from()].push_back(of_edge.front().to());
+      first += of_edge.size();
+    }
+  }
+
+  bool any_from(std::uint32_t point) const { return !ends_[point].empty(); }
+  /// The end of one of them, which is taken away.
+  std::uint32_t take_from(std::uint32_t point) {
+    const std::uint32_t end = ends_[point].back();
+    ends_[point].pop_back();
+    return end;
+  }
+
+ private:
+  std::vector<std::vector<std::uint32_t>> ends_;
+};
+
+void measure(const Surface& surface, Opening& opening) {
+  Vec3d sum;
+  double total = 0;
+  for (std::size_t i = 0; i < opening.edges(); ++i) {
+    const Vec3d& from = surface.points[opening.points[i]];
+    const Vec3d& to = surface.points[opening.points[(i + 1) % opening.points.size()]];
+    const double weight = length(to - from);
+    sum += 0.5 * weight * (from + to);
+    total += weight;
+  }
+  // Points of two numbers at one place make edges without length.
+  opening.centre = total > 0 ? 1 / total * sum : surface.points[opening.points.front()];
+  for (const std::uint32_t point : opening.points)
+    opening.size = std::max(opening.size, 2 * length(surface.points[point] - opening.centre));
+}
+
+void fill(Surface& surface, const Opening& opening) {
+  const std::vector<std::uint32_t>& ring = opening.points;
+  if (ring.size() == 3) {
+    surface.triangles.push_back({ring[2], ring[1], ring[0]});
+    return;
+  }
+  const auto middle = static_cast<std::uint32_t>(surface.points.size());
+  surface.points.push_back(opening.centre);
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    surface.triangles.push_back({ring[(i + 1) % ring.size()], ring[i], middle});
+}
+
+[[noreturn]] void refuse(const Opening& opening, const std::string& problem) {
+  throw MeshError("the opening of " + std::to_string(opening.edges()) + " edges around " +
+                  place(opening.centre) + problem);
+}
+
+}  // namespace
+
+std::vector<Opening> openings_of(const Surface& surface) {
+  FreeEdges edges(surface);
+  std::vector<Opening> openings;
+  constexpr std::size_t nowhere = SIZE_MAX;
+  std::vector<std::size_t> place_on_way(surface.points.size(), nowhere);
+  for (std::uint32_t start = 0; start < surface.points.size(); ++start)
+    while (edges.any_from(start)) {
+      std::vector<std::uint32_t> way{start};
+      place_on_way[start] = 0;
+      do {
+        const std::uint32_t next = edges.take_from(way.back());
+        const std::size_t begin = place_on_way[next];
+        if (begin == nowhere) {
+          place_on_way[next] = way.size();
+          way.push_back(next);
+          continue;
+        }
+        Opening& ring = openings.emplace_back();
+        ring.points.assign(way.begin() + static_cast<std::ptrdiff_t>(begin), way.end());
+        for (std::size_t i = begin + 1; i < way.size(); ++i) place_on_way[way[i]] = nowhere;
+        way.resize(begin + 1);
+      } while (edges.any_from(way.back()));
+      for (const std::uint32_t point : way) place_on_way[point] = nowhere;
+      if (way.size() > 1) openings.push_back({std::move(way), false, {}, 0});
+    }
+  for (Opening& opening : openings) measure(surface, opening);
+  std::stable_sort(openings.begin(), openings.end(),
+                   [](const Opening& a, const Opening& b) { return a.size > b.size; });
+  return openings;
+}
+
+std::vector<Opening> close_openings(Surface& surface, double largest) {
+  std::vector<Opening> openings = openings_of(surface);
+  for (const Opening& opening : openings) {
+    if (!(opening.size <= largest))
+      refuse(opening, " is " + shown(opening.size) + " m across, and at most " + shown(largest) +
+                          " m are closed; close it where the surface was made");
+    if (!opening.is_ring)
+      refuse(opening,
+             " goes round no hole, since triangles beside it run in different directions; turn them "
+             "the same way round where the surface was made");
+  }
+  for (const Opening& opening : openings) fill(surface, opening);
+  return openings;
+}
+
+}  // namespace mssim

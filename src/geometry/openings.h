@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/surface.h"
+
+namespace mssim {
+
+/// A hole in a surface: edges of one triangle each, one after the other.
+struct Opening {
+  std::vector<std::uint32_t> points;  ///< in the order in which the triangles beside them run
+  bool is_ring = true;  ///< the last point is joined to the first; else triangles disagree there
+  Vec3d centre;         ///< of the edges
+  double size = 0;      ///< m, twice the largest distance of a point from the centre
+
+  std::size_t edges() const { return is_ring ? points.size() : points.size() - 1; }
+};
+
+/// All of them, the largest first. Openings that touch in a point are told apart; none has a point twice.
+std::vector<Opening> openings_of(const Surface& surface);
+
+/// Fills the openings that are not larger than `largest`, m, with a fan of triangles
+/// each, and returns them. Throws MeshError, which says where and how large it is, for a larger one and for
+/// one whose edges make no ring.
+std::vector<Opening> close_openings(Surface& surface, double largest);
+
+}  // namespace mssim

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+
+#include "geometry/vec3.h"
+
+namespace mssim {
+
+/// The laws of kernels/ for one node at a time on the host: Real is float or double. Code that handles
+/// several nodes in one vector register instantiates the same texts on its own.
+
+/// a * b + c, in two roundings: a fused one would be a library call on processors without the instruction.
+template <class Real>
+inline Real mul_add(Real a, Real b, Real c) {
+  return a * b + c;
+}
+template <class Real>
+inline Vec3<Real> mul_add(Real a, const Vec3<Real>& b, const Vec3<Real>& c) {
+  return a * b + c;
+}
+
+template <class Real>
+inline Real square_root(Real a) {
+  return std::sqrt(a);
+}
+
+template <class Real>
+inline Real inverse_sqrt(Real a) {
+  return Real{1} / std::sqrt(a);
+}
+
+template <class Real>
+inline Real where_less(Real a, Real b, Real yes, Real no) {
+  return a < b ? yes : no;
+}
+
+#define MSSIM_LAW_INLINE inline
+#include "laws/laws-inl.h"
+
+/// The way from a joint's node to the point that it is sewn to: kernels/joint_law.h for vectors.
+template <class Real>
+inline Vec3<Real> joint_gap(const Vec3<Real>& node, const Vec3<Real>& first, const Vec3<Real>& second,
+                            Real share) {
+  return {joint_gap(node.x, first.x, second.x, share), joint_gap(node.y, first.y, second.y, share),
+          joint_gap(node.z, first.z, second.z, share)};
+}
+
+}  // namespace mssim

@@ -1,0 +1,258 @@
+#include "output/folders/provenance_file.h"
+
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "text/fnv1a.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+using nlohmann::json;
+
+/// A provenance has four; printing a value recurses.
+constexpr int deepest_level = 32;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
+  throw ProvenanceError(file.string() + ": " + problem);
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code error;
+  // A pipe would block and a folder reads as nothing.
+  if (!std::filesystem::is_regular_file(file, error))
+    fail(file, error ? "cannot be read (" + error.message() + "): give a folder that mssim bench wrote"
+                     : "is no file: give a folder that mssim bench wrote");
+  std::ifstream in(file, std::ios::binary);
+  std::string text(largest_provenance_bytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!in && !in.eof()) fail(file, "cannot be read: check its permissions");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > largest_provenance_bytes)
+    fail(file, "is longer than " + std::to_string(largest_provenance_bytes >> 10) +
+                   " KiB: give a provenance.json that mssim wrote");
+  return text;
+}
+
+json caches_json(const std::vector<Cache>& caches) {
+  json list = json::array();
+  for (const Cache& cache : caches)
+    list.push_back({{"level", cache.level},
+                    {"type", cache.type},
+                    {"bytes", cache.bytes},
+                    {"count", cache.count},
+                    {"logical_cpus_sharing", cache.sharing}});
+  return list;
+}
+
+/// A value of the document and where it stands: the root is the file, a member is reached by its key.
+class Place {
+ public:
+  Place(const std::filesystem::path& file, const json& root) : file_(file), value_(root) {}
+
+  Place operator[](const std::string& key) const {
+    const std::optional<Place> member = find(key);
+    if (!member) fail(file_, pointer_ + '/' + key + " is missing: give a provenance.json that mssim wrote");
+    return *member;
+  }
+  /// None where there is no such member: an older mssim did not write it.
+  std::optional<Place> find(const std::string& key) const {
+    require(value_.is_object(), "an object");
+    const auto member = value_.find(key);
+    if (member == value_.end()) return std::nullopt;
+    return Place(file_, *member, pointer_ + '/' + key);
+  }
+
+  std::string text() const {
+    require(value_.is_string(), "a text");
+    return value_.get<std::string>();
+  }
+  bool is_null() const { return value_.is_null(); }
+  bool truth() const {
+    require(value_.is_boolean(), "true or false");
+    return value_.get<bool>();
+  }
+  double number() const {
+    require(value_.is_number(), "a number");
+    return value_.get<double>();
+  }
+  template <std::integral Number>
+  Number count() const {
+    // The library takes a whole number without a sign as unsigned.
+    require(value_.is_number_unsigned() && std::in_range<Number>(value_.get<std::uint64_t>()),
+            "a whole number from 0 to " + std::to_string(std::numeric_limits<Number>::max()));
+    return value_.get<Number>();
+  }
+  /// 16 hexadecimal digits.
+  std::uint64_t hash() const {
+    const std::string digits = value_.is_string() ? value_.get<std::string>() : std::string();
+    std::uint64_t number = 0;
+    const char* end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, number, 16);
+    require(digits.size() == 16 && error == std::errc() && stop == end, "16 hexadecimal digits");
+    return number;
+  }
+  /// What `read` makes of each element of a list.
+  template <class Read>
+  auto list(Read read) const {
+    require(value_.is_array(), "a list");
+    std::vector<decltype(read(*this))> elements;
+    for (std::size_t i = 0; i < value_.size(); ++i)
+      elements.push_back(read(Place(file_, value_[i], pointer_ + '/' + std::to_string(i))));
+    return elements;
+  }
+  /// What `read` makes of each name and value of an object.
+  template <class Read>
+  auto members(Read read) const {
+    require(value_.is_object(), "an object");
+    std::vector<decltype(read(std::string(), *this))> elements;
+    for (const auto& [name, value] : value_.items())
+      elements.push_back(read(name, Place(file_, value, pointer_ + '/' + printable(name))));
+    return elements;
+  }
+
+ private:
+  Place(const std::filesystem::path& file, const json& value, std::string pointer)
+      : file_(file), value_(value), pointer_(std::move(pointer)) {}
+
+  void require(bool good, const std::string& wanted) const {
+    if (!good)
+      fail(file_, (pointer_.empty() ? "the whole" : pointer_) + " is " +
+                      printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)) + " instead of " +
+                      wanted + ": give a provenance.json that mssim wrote");
+  }
+
+  const std::filesystem::path& file_;
+  const json& value_;
+  std::string pointer_;
+};
+
+BuildInfo read_build(const Place& build) {
+  return {build["version"].text(),  build["commit"].text(), build["dirty"].truth(),
+          build["compiler"].text(), build["flags"].text(),  build["build_type"].text()};
+}
+
+Cache read_cache(const Place& cache) {
+  return {cache["level"].count<int>(), cache["type"].text(), cache["bytes"].count<std::uint64_t>(),
+          cache["count"].count<int>(), cache["logical_cpus_sharing"].count<int>()};
+}
+
+Machine read_machine(const Place& document) {
+  const Place cpu = document["cpu"];
+  Machine machine;
+  machine.cpu_model = cpu["model"].text();
+  machine.logical_cpus = cpu["logical_cpus"].count<int>();
+  machine.cpu_mhz = cpu["mhz"].number();
+  machine.caches = cpu["caches"].list(read_cache);
+  if (const Place governor = cpu["governor"]; !governor.is_null()) machine.governor = governor.text();
+  machine.load_average = document["load_average"].list([](const Place& average) { return average.number(); });
+  machine.memory_bytes = document["memory_bytes"].count<std::uint64_t>();
+  machine.operating_system = document["operating_system"].text();
+  machine.kernel = document["kernel"].text();
+  if (const auto turbo = cpu.find("turbo"); turbo && !turbo->is_null()) machine.turbo = turbo->truth();
+  return machine;
+}
+
+Provenance read_document(const Place& document) {
+  const auto text_of = [](const Place& place) { return place.text(); };
+  const Place threads = document["threads"];
+  Provenance provenance;
+  provenance.build = read_build(document["build"]);
+  provenance.machine = read_machine(document);
+  provenance.threads = threads["asked_for"].count<int>();
+  provenance.allowed_cpus = threads["allowed_cpus"].list([](const Place& cpu) { return cpu.count<int>(); });
+  provenance.thread_environment = threads["environment"].members(
+      [](const std::string& name, const Place& value) { return std::pair(name, value.text()); });
+  provenance.opencl_devices = document["opencl_devices"].list(text_of);
+  if (const Place tetgen = document["tetgen"]; !tetgen.is_null()) provenance.tetgen = tetgen.text();
+  if (const auto program = document.find("program_fnv1a_64"); program && !program->is_null())
+    provenance.program_fnv1a_64 = program->hash();
+  if (const auto memory = document.find("device_memory"); memory && !memory->is_null())
+    provenance.device_memory = memory->text();
+  provenance.scenes = document["scenes_fnv1a_64"].members([](const std::string& name, const Place& value) {
+    return SceneHash{name, value.hash()};
+  });
+  provenance.command_line = document["command_line"].list(text_of);
+  provenance.started_utc = document["started_utc"].text();
+  if (const auto noise = document.find("noise")) provenance.noise = noise->list(text_of);
+  if (const auto earlier = document.find("earlier_starts_utc"))
+    provenance.earlier_starts_utc = earlier->list(text_of);
+  return provenance;
+}
+
+}  // namespace
+
+json to_json(const Provenance& provenance) {
+  const BuildInfo& build = provenance.build;
+  const Machine& machine = provenance.machine;
+  json environment = json::object(), scenes = json::object();
+  for (const auto& [name, value] : provenance.thread_environment) environment[name] = value;
+  for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = hexadecimal(scene.fnv1a_64);
+  return {{"started_utc", provenance.started_utc},
+          {"earlier_starts_utc", provenance.earlier_starts_utc},
+          {"command_line", provenance.command_line},
+          {"build",
+           {{"version", build.version},
+            {"commit", build.commit},
+            {"dirty", build.dirty},
+            {"compiler", build.compiler},
+            {"flags", build.flags},
+            {"build_type", build.build_type}}},
+          {"program_fnv1a_64",
+           provenance.program_fnv1a_64 ? json(hexadecimal(*provenance.program_fnv1a_64)) : json()},
+          {"cpu",
+           {{"model", machine.cpu_model},
+            {"logical_cpus", machine.logical_cpus},
+            {"mhz", machine.cpu_mhz},
+            {"governor", machine.governor ? json(*machine.governor) : json()},
+            {"turbo", machine.turbo ? json(*machine.turbo) : json()},
+            {"caches", caches_json(machine.caches)}}},
+          {"memory_bytes", machine.memory_bytes},
+          {"load_average", machine.load_average},
+          {"operating_system", machine.operating_system},
+          {"kernel", machine.kernel},
+          {"threads",
+           {{"asked_for", provenance.threads},
+            {"allowed_cpus", provenance.allowed_cpus},
+            {"environment", environment}}},
+          {"device_memory", provenance.device_memory.empty() ? json() : json(provenance.device_memory)},
+          {"opencl_devices", provenance.opencl_devices},
+          {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
+          {"noise", provenance.noise},
+          {"scenes_fnv1a_64", scenes}};
+}
+
+Provenance read_provenance(const std::filesystem::path& file) {
+  return parse_provenance(file, read_text(file));
+}
+
+Provenance parse_provenance(const std::filesystem::path& file, std::string_view text) {
+  json document;
+  try {
+    document = json::parse(text, [&](int depth, json::parse_event_t /*event*/, const json& /*parsed*/) {
+      if (depth > deepest_level)
+        fail(file, "is nested deeper than " + std::to_string(deepest_level) +
+                       " levels: give a provenance.json that mssim wrote");
+      return true;
+    });
+  } catch (const json::exception& error) {
+    // The library's sentence names line and column, behind its own name in brackets.
+    const std::string_view message = error.what();
+    const std::size_t start = message.find("] ");
+    const std::string problem =
+        printable(message.substr(start == std::string_view::npos ? 0 : start + 2), 300);
+    fail(file, "malformed JSON, " + problem + ": give a provenance.json that mssim wrote");
+  }
+  return read_document({file, document});
+}
+
+}  // namespace mssim

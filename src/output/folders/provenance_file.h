@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <stdexcept>
+#include <string_view>
+
+#include "bench/machine/provenance.h"
+
+namespace mssim {
+
+/// Thrown for a provenance.json that cannot be read or understood; what() is one sentence that names the
+/// file, the place in it (a JSON pointer such as /cpu/model), the value and the remedy. Commands end with
+/// exit code 2.
+struct ProvenanceError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Larger files are refused: a provenance has a few thousand bytes, and a wrong file should fill neither the
+/// memory nor a message.
+inline constexpr std::size_t largest_provenance_bytes = std::size_t{256} << 10;
+
+/// All of it. Numbers are finite; what is not known is absent or null.
+nlohmann::json to_json(const Provenance& provenance);
+
+/// Reads what to_json(Provenance) wrote. Every value must be what it should; what mssim has written from the
+/// first must be there, and what a newer one adds is ignored. Throws ProvenanceError.
+Provenance read_provenance(const std::filesystem::path& file);
+
+/// The same of a text; `file` is named in messages.
+Provenance parse_provenance(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace mssim

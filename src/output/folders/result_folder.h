@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "bench/machine/provenance.h"
+#include "bench/results/result.h"
+#include "output/tables/result_table.h"
+#include "output/tables/structure_table.h"
+#include "platform/folder_lock.h"
+
+namespace mssim {
+
+/// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, of garments garment.csv,
+/// benchmark.json, provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md. One at
+/// a time writes into it.
+class ResultFolder {
+ public:
+  /// Creates the folder and those above it. Throws WriteError, also where another ResultFolder, in any
+  /// process, has it.
+  ResultFolder(std::filesystem::path folder, Provenance provenance, TableMaker tables);
+
+  /// Whether an earlier run left rows here.
+  bool has_rows() const;
+  /// Whether it left rows or tables.
+  bool has_results() const;
+  /// Removes the rows and tables that an earlier run left. Throws WriteError.
+  void clear() const;
+  /// Takes the start of the run whose rows stay into this one's provenance.
+  void go_on_with(const Provenance& earlier);
+  /// Writes provenance.json, so that a folder that cannot be written is found before anything is measured.
+  /// Throws WriteError.
+  void begin() const;
+
+  /// Writes all that follows from the rows, each file whole or not at all, timings.csv last: what stands
+  /// there has its samples. To be called after every round. Throws WriteError, and std::invalid_argument for
+  /// a number that is not finite and a table that is not in table_names, then before any file is touched.
+  void write(std::span<const ResultRow> rows) const;
+
+  /// Writes github.json (github_json.h). Throws WriteError.
+  void write_for_github(std::span<const ResultRow> rows) const;
+
+  /// Writes table2.csv and table2.md. Throws WriteError.
+  void write(std::span<const StructureRow> rows) const;
+
+ private:
+  std::filesystem::path folder_;
+  FolderLock lock_;
+  Provenance provenance_;
+  TableMaker tables_;
+};
+
+/// The rows, with their samples and dressings, that an earlier run left in a folder; none when it has no
+/// timings.csv. Throws CsvError.
+std::vector<ResultRow> read_results(const std::filesystem::path& folder);
+
+}  // namespace mssim

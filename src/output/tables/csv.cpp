@@ -1,0 +1,146 @@
+#include "output/tables/csv.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "text/decimal.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string result = "\"";
+  for (const char character : field) {
+    if (character == '"') result += '"';
+    result += character;
+  }
+  return result + '"';
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::error_code error;
+  // A device may never end, and a pipe would block.
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(file, error)) in.open(file, std::ios::binary);
+  if (!in.is_open())
+    throw CsvError("cannot read " + file.string() + ": check that it is a file, exists and may be read");
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+      !error && bytes > largest_csv_bytes)
+    throw CsvError(file.string() + ": has " + std::to_string(bytes) + " bytes and at most " +
+                   std::to_string(largest_csv_bytes) + " are read; give a file that mssim wrote");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) throw CsvError("cannot read " + file.string() + ": check its disk");
+  return text;
+}
+
+template <class Number>
+std::optional<Number> whole_field(const std::string& field) {
+  Number number{};
+  const char* end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+std::string csv_line(const std::vector<std::string>& fields) {
+  std::string line;
+  for (const std::string& field : fields) {
+    if (&field != &fields.front()) line += ',';
+    line += quoted(field);
+  }
+  return line + '\n';
+}
+
+std::string csv_number(double value) {
+  if (!std::isfinite(value)) throw std::invalid_argument("CSV: a number is not finite");
+  return decimal(value);
+}
+
+std::string csv_number(const std::optional<double>& value) {
+  return value ? csv_number(*value) : std::string();
+}
+
+CsvTable::CsvTable(const std::filesystem::path& file) : CsvTable(file.string(), read_text(file)) {}
+
+CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(name)) {
+  std::size_t line = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    Record record{line, {std::string()}};
+    bool in_quotes = false, ended = false;
+    for (; at < text.size() && !ended; ++at) {
+      const char character = text[at];
+      if (character == '\n') ++line;
+      if (in_quotes) {
+        if (character != '"') {
+          record.fields.back() += character;
+        } else if (at + 1 < text.size() && text[at + 1] == '"') {
+          record.fields.back() += text[++at];
+        } else {
+          in_quotes = false;
+        }
+      } else if (character == '"') {
+        in_quotes = true;
+      } else if (character == ',') {
+        record.fields.emplace_back();
+      } else if (character == '\n') {
+        ended = true;
+      } else if (character != '\r') {
+        record.fields.back() += character;
+      }
+    }
+    if (in_quotes)
+      throw CsvError(name_ + ", line " + std::to_string(record.line) +
+                     ": a quoted field does not end; close it with a quotation mark");
+    if (header_.empty()) {
+      header_ = std::move(record.fields);
+      continue;
+    }
+    if (record.fields.size() != header_.size())
+      throw CsvError(name_ + ", line " + std::to_string(record.line) + ": has " +
+                     std::to_string(record.fields.size()) + " fields where the header has " +
+                     std::to_string(header_.size()) + "; write the missing ones, or remove the line");
+    records_.push_back(std::move(record));
+  }
+}
+
+void CsvTable::require_columns(const std::vector<std::string_view>& columns) const {
+  for (std::size_t column = 0; column < columns.size(); ++column)
+    if (column >= header_.size() || header_[column] != columns[column])
+      throw CsvError(name_ + ", line 1: column " + std::to_string(column + 1) + " is " +
+                     (column < header_.size() ? "\"" + printable(header_[column]) + "\"" : "missing") +
+                     " instead of \"" + std::string(columns[column]) + "\"; give a file that mssim wrote");
+}
+
+CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
+  return CsvError{name_ + ", line " + std::to_string(records_[record].line) + ", column " +
+                  printable(header_[column]) + ": \"" + printable(text(record, column)) + "\" " + what};
+}
+
+double CsvTable::number(std::size_t record, std::size_t column) const {
+  const auto value = whole_field<double>(text(record, column));
+  if (!value || !std::isfinite(*value))
+    throw complaint(record, column, "is not a number; write a finite one");
+  return *value;
+}
+
+std::optional<double> CsvTable::optional_number(std::size_t record, std::size_t column) const {
+  if (text(record, column).empty()) return std::nullopt;
+  return number(record, column);
+}
+
+std::uint64_t CsvTable::count(std::size_t record, std::size_t column) const {
+  constexpr std::uint64_t largest = std::uint64_t{1} << 53;
+  const auto value = whole_field<std::uint64_t>(text(record, column));
+  if (!value || *value > largest) throw complaint(record, column, "is not a whole number from 0 to 2^53");
+  return *value;
+}
+
+}  // namespace mssim

@@ -1,0 +1,32 @@
+#include "output/tables/markdown.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace mssim {
+
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
+  return text;
+}
+
+std::string three_digits(double value) {
+  const int before_point = value > 0 ? static_cast<int>(std::floor(std::log10(value))) + 1 : 1;
+  std::array<char, 340> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::fixed, std::max(0, 3 - before_point))
+                       .ptr;
+  return {buffer.data(), end};
+}
+
+std::string one_cell(std::string_view text) {
+  std::string cell;
+  for (const char character : text)
+    cell += character == '|' ? std::string("\\|") : std::string(1, character == '\n' ? ' ' : character);
+  return cell;
+}
+
+}  // namespace mssim

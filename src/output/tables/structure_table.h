@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "bench/machine/provenance.h"
+
+namespace mssim {
+
+/// What the mesh of a body is, a row of table2.csv.
+struct StructureRow {
+  std::string scene;
+  std::uint64_t nodes = 0;
+  std::uint64_t springs_unique = 0;     ///< edges of the tetrahedra
+  std::uint64_t springs_published = 0;  ///< as Hong et al. count them
+  std::uint64_t tetrahedra = 0;
+  double smallest_dihedral_angle_deg = 0;  ///< between two faces of a tetrahedron
+};
+
+/// Table 2 of Hong et al. with our meshes in it.
+struct StructureTable {
+  std::string csv;       ///< the columns of StructureRow, then paper_nodes, paper_springs, same_as_paper
+  std::string markdown;  ///< laid out as published: sizes are columns, a block of lines for each body
+};
+
+/// Rows of scenes that are not the paper's, which are named BODY-SIZE there, stay out of the Markdown. Throws
+/// CsvError when the published table cannot be read.
+StructureTable structure_table(std::span<const StructureRow> rows, const Provenance& provenance);
+
+}  // namespace mssim

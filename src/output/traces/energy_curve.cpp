@@ -1,0 +1,67 @@
+#include "output/traces/energy_curve.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace mssim {
+namespace {
+
+/// to_chars, unlike streams and printf, knows no locale.
+void append_number(std::string& text, double value) {
+  if (!std::isfinite(value)) throw std::invalid_argument("energy curve: a number is not finite");
+  constexpr int significant_digits = 10;
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::general, significant_digits)
+                       .ptr;
+  text.append(buffer.data(), end);
+}
+
+void append_comment(std::string& text, std::string_view comment) {
+  while (!comment.empty()) {
+    const std::size_t length = comment.find('\n');
+    const std::string_view line = comment.substr(0, length);
+    text += line.empty() ? "#" : "# ";
+    text += line;
+    text += '\n';
+    comment.remove_prefix(length == std::string_view::npos ? comment.size() : length + 1);
+  }
+}
+
+}  // namespace
+
+EnergyCurve::EnergyCurve(std::filesystem::path file, std::string_view comment) : file_(std::move(file)) {
+  std::string text;
+  append_comment(text, comment);
+  file_.append(text + "time_s,kinetic_j,elastic_j,gravitational_j,total_j\n");
+}
+
+void EnergyCurve::append(const EnergySample& sample) {
+  if (samples_ > 0 && !(sample.time_s > last_time_s_))
+    throw std::invalid_argument("energy curve: times must increase");
+  const Energy& energy = sample.energy;
+  std::string line;
+  append_number(line, sample.time_s);
+  for (const double value : {energy.kinetic, energy.elastic, energy.gravitational, energy.total()}) {
+    line += ',';
+    append_number(line, value);
+  }
+  file_.append(line + '\n');
+  last_time_s_ = sample.time_s;
+  ++samples_;
+}
+
+std::size_t EnergyCurve::give_up() {
+  if (!file_.is_under_way()) return 0;
+  if (samples_ > 0)
+    file_.keep();
+  else
+    file_.remove();
+  return samples_;
+}
+
+}  // namespace mssim

@@ -1,0 +1,212 @@
+#include "output/traces/h5md_trace.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "output/hdf5/hdf5_write.h"
+#include "output/traces/h5md_body.h"
+#include "platform/atomic_file.h"
+#include "platform/file_space.h"
+#include "platform/write_error.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t dimensions = 3;
+/// What HDF5 itself adds to a file at a time, at most: a few index nodes and chunks of numbers.
+constexpr std::size_t room_for_metadata = 65536;
+
+struct ObservableInfo {
+  const char* path;
+  bool is_loss;
+  double (*value)(const Energy&, const EnergyLosses&);
+};
+constexpr std::array<ObservableInfo, 8> observable_kinds{{
+    {"/observables/kinetic_energy", false, [](const Energy& energy, auto&) { return energy.kinetic; }},
+    {"/observables/elastic_energy", false, [](const Energy& energy, auto&) { return energy.elastic; }},
+    {"/observables/gravitational_energy", false,
+     [](const Energy& energy, auto&) { return energy.gravitational; }},
+    {"/observables/total_energy", false, [](const Energy& energy, auto&) { return energy.total(); }},
+    {"/observables/damping_loss", true, [](auto&, const EnergyLosses& losses) { return losses.damping; }},
+    {"/observables/friction_loss", true, [](auto&, const EnergyLosses& losses) { return losses.friction; }},
+    {"/observables/bounce_loss", true, [](auto&, const EnergyLosses& losses) { return losses.bounce; }},
+    {"/observables/integration_loss", true,
+     [](auto&, const EnergyLosses& losses) { return losses.integration; }},
+}};
+
+/// Series of single numbers. Their chunks hold many frames and are rewritten in place at every flush, which
+/// needs chunks whose stored size never changes: no deflation.
+Hdf5Dataset create_number_series(hid_t file, const std::string& path, hid_t type) {
+  constexpr std::array<hsize_t, 1> none{0}, frames_per_chunk{256};
+  return create_dataset(file, path, type, none, true, chunked(frames_per_chunk, Packing::plain));
+}
+
+Hdf5Dataset create_vector_series(hid_t file, const std::string& path, hid_t type, hsize_t nodes) {
+  return create_dataset(file, path, type, std::array<hsize_t, 3>{0, nodes, dimensions}, true,
+                        chunked(std::array<hsize_t, 3>{1, nodes, dimensions}, Packing::deflated));
+}
+
+void link_step_and_time(hid_t file, const std::string& from, const std::string& to) {
+  for (const char* name : {"/step", "/time"})
+    checked(H5Lcreate_hard(file, (from + name).c_str(), H5L_SAME_LOC, (to + name).c_str(), H5P_DEFAULT,
+                           H5P_DEFAULT),
+            "linking " + to + name);
+}
+
+/// Frames that can be found in a trace, 0 when it cannot be opened.
+std::size_t count_frames(const std::filesystem::path& trace) {
+  try {
+    const Hdf5File file(H5Fopen(trace.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening");
+    const Hdf5Dataset step(H5Dopen2(file.get(), "/observables/total_energy/step", H5P_DEFAULT), "opening");
+    const Hdf5Space space(H5Dget_space(step.get()), "opening");
+    return static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space.get()), "counting"));
+  } catch (const Hdf5Error&) {
+    return 0;
+  }
+}
+
+}  // namespace
+
+H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header,
+                     const Surface& body)
+    : output_(std::move(file)),
+      mesh_(xdmf_mesh_of(system, body, header.in_double)),
+      with_losses_(header.with_losses) {
+  require_fitting_topology(system);
+  require_fitting_body(system, body);
+  prepare_hdf5();
+  require_replaceable(xdmf_of(name()));
+  if (xdmf_of(name()) == name())
+    throw WriteError("cannot write " + name().string() +
+                     ": its XDMF would have the same name; choose a name that ends in .h5");
+  guard([&] { create(system, header, body); });
+}
+
+H5mdTrace::~H5mdTrace() { give_up(); }
+
+void H5mdTrace::create(const System& system, const TraceHeader& header, const Surface& body) {
+  const std::string temporary = temporary_of(name()).string();
+  // The default, oldest format: the newer ones leave a file that only h5clear can open after a crash.
+  file_ = Hdf5File(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                   "creating " + temporary);
+  write_h5md_head(file_.get(), particles(), system, header);
+  write_static_body(file_.get(), body);
+  create_series(system);
+  checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing the head of the trace");
+}
+
+void H5mdTrace::create_series(const System& system) {
+  const hid_t file = file_.get();
+  const hsize_t nodes = system.nodes();
+  const std::string position = particles() + "/position", velocity = particles() + "/velocity";
+  create_group(file, position);
+  create_group(file, velocity);
+  step_ = create_number_series(file, position + "/step", H5T_STD_I64LE);
+  time_ = create_number_series(file, position + "/time", H5T_IEEE_F64LE);
+  const hid_t type = mesh_.in_double ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  position_ = create_vector_series(file, position + "/value", type, nodes);
+  velocity_ = create_vector_series(file, velocity + "/value", type, nodes);
+  link_step_and_time(file, position, velocity);
+
+  const Hdf5Group observables = create_group(file, "/observables");
+  if (const std::string_view work = energies_leave_out(system); !work.empty())
+    write_attribute(observables.get(), "leaves_out", work);
+  for (const ObservableInfo& observable : observable_kinds) {
+    if (observable.is_loss && !with_losses_) continue;
+    create_group(file, observable.path);
+    observables_.push_back(
+        create_number_series(file, observable.path + std::string("/value"), H5T_IEEE_F64LE));
+    link_step_and_time(file, position, observable.path);
+  }
+}
+
+void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state, const Energy& energy,
+                            const std::optional<EnergyLosses>& losses) {
+  if (state.position.size() != mesh_.nodes || state.velocity.size() != mesh_.nodes)
+    throw std::invalid_argument("a frame's state has another size than the trace's system");
+  if (!times_s_.empty() && !(step > last_step_ && time_s > times_s_.back()))
+    throw std::invalid_argument("a trace's steps and times must increase");
+  if (losses.has_value() != with_losses_)
+    throw std::invalid_argument("a frame has losses where the trace's header says otherwise, or has none");
+  guard([&] { append(step, time_s, state, energy, losses.value_or(EnergyLosses{})); });
+  last_step_ = step;
+  times_s_.push_back(time_s);
+}
+
+void H5mdTrace::append(std::int64_t step, double time_s, const State& state, const Energy& energy,
+                       const EnergyLosses& losses) {
+  const hsize_t frame = times_s_.size();
+  reserve(2 * dimensions * mesh_.nodes * mesh_.bytes_per_number() + room_for_metadata);
+  // HDF5 rounds to single precision where that is what the dataset holds.
+  static_assert(sizeof(Vec3d) == dimensions * sizeof(double));
+  write_row(position_, "positions", frame, H5T_NATIVE_DOUBLE, state.position.data());
+  write_row(velocity_, "velocities", frame, H5T_NATIVE_DOUBLE, state.velocity.data());
+  for (std::size_t kind = 0; kind < observables_.size(); ++kind) {
+    const double value = observable_kinds[kind].value(energy, losses);
+    write_row(observables_[kind], "energies", frame, H5T_NATIVE_DOUBLE, &value);
+  }
+  write_row(time_, "times", frame, H5T_NATIVE_DOUBLE, &time_s);
+  write_row(step_, "steps", frame, H5T_NATIVE_INT64, &step);
+  // Only here does a full disk show, and only what is flushed survives a kill.
+  checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing frame " + std::to_string(frame));
+}
+
+void H5mdTrace::close() {
+  guard([&] {
+    const std::string action = "finishing the trace";
+    reserve(room_for_metadata + times_s_.size() * mesh_.parts.size() * xdmf_bytes_per_part_and_frame);
+    map_frames_for_xdmf(file_.get(), mesh_, times_s_.size());
+    checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), action);
+    for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) dataset->close(action);
+    for (Hdf5Dataset& observable : observables_) observable.close(action);
+    file_.close(action);
+    release_reserved_space(temporary_of(name()));
+    output_.move_into_place();
+  });
+  write_xdmf(name(), mesh_, times_s_);
+}
+
+void H5mdTrace::reserve(std::size_t bytes) {
+  // HDF5 spoils a file that it cannot write to its end: the head then promises more than there is.
+  void* descriptor = nullptr;
+  checked(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor), "asking for the file descriptor");
+  const int error_number = reserve_space(*static_cast<const int*>(descriptor), bytes);
+  if (error_number != 0)
+    throw WriteError(write_failure(name(), "reserving " + std::to_string(bytes) + " bytes", error_number));
+}
+
+void H5mdTrace::guard(const std::function<void()>& write) {
+  const auto explain = [&](const std::string& message) {
+    const std::size_t kept = give_up();
+    if (kept > 0)
+      return message + "; " + temporary_of(name()).string() +
+             " keeps the frames written before: " + std::to_string(kept);
+    return times_s_.empty() ? message : message + "; the frames written before could not be saved";
+  };
+  try {
+    write();
+  } catch (const Hdf5Error& error) {
+    throw WriteError(explain(write_failure(name(), error.action, error.error_number, error.what())));
+  } catch (const WriteError& error) {
+    throw WriteError(explain(error.what()));
+  }
+}
+
+/// Closes everything without complaint. Frames that cannot be read don't count.
+std::size_t H5mdTrace::give_up() {
+  if (!output_.is_under_way()) return 0;
+  for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) *dataset = {};
+  observables_.clear();
+  file_ = {};
+  const std::filesystem::path temporary = temporary_of(name());
+  release_reserved_space(temporary);
+  const std::size_t kept = times_s_.empty() ? 0 : std::min(times_s_.size(), count_frames(temporary));
+  if (kept > 0)
+    output_.keep();
+  else
+    output_.remove();
+  return kept;
+}
+
+}  // namespace mssim

@@ -1,0 +1,227 @@
+#include "output/traces/xdmf.h"
+
+#include <array>
+#include <functional>
+#include <numeric>
+
+#include "output/hdf5/hdf5_write.h"
+#include "platform/atomic_file.h"
+#include "text/decimal.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+std::string escape_xml(std::string_view text) {
+  std::string escaped;
+  for (const char character : text) switch (character) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += character;
+    }
+  return escaped;
+}
+
+/// The extents, separated by blanks.
+std::string dimensions_of(std::span<const hsize_t> shape) {
+  std::string text;
+  for (const hsize_t extent : shape) text.append(text.empty() ? "" : " ").append(std::to_string(extent));
+  return text;
+}
+
+/// A dataset of the trace as XDMF names it; `number` is its type's name, of so many bytes.
+std::string data_item(const std::string& trace, const std::string& dataset, const std::string& dimensions,
+                      std::string_view number, std::size_t bytes = sizeof(float)) {
+  std::string item = "<DataItem Dimensions=\"" + dimensions + "\" NumberType=\"";
+  item += number;
+  return item + "\" Precision=\"" + std::to_string(bytes) + "\" Format=\"HDF\">" + trace + ":" + dataset +
+         "</DataItem>";
+}
+
+/// Cells between the nodes, as `dataset` lists their corners.
+std::string cells(const std::string& trace, std::string_view type, hsize_t count, const char* dataset,
+                  int corners) {
+  const std::string number = std::to_string(count);
+  return "<Topology TopologyType=\"" + std::string(type) + "\" NumberOfElements=\"" + number + "\">" +
+         data_item(trace, dataset, number + " " + std::to_string(corners), "UInt") + "</Topology>";
+}
+
+std::string topology_element(const std::string& trace, const XdmfMesh& mesh, const XdmfPart& part) {
+  if (mesh.tetrahedra > 0) return cells(trace, "Tetrahedron", mesh.tetrahedra, tetrahedra_dataset, 4);
+  return "<Topology TopologyType=\"3DSMesh\" Dimensions=\"" + dimensions_of(part.shape) + "\"/>";
+}
+
+std::string geometry(const std::string& points) {
+  return "<Geometry GeometryType=\"XYZ\">" + points + "</Geometry>";
+}
+
+/// Values of the nodes; `type` is Scalar or Vector.
+std::string attribute(const std::string& name, const std::string& type, const std::string& values) {
+  return "<Attribute Name=\"" + name + "\" AttributeType=\"" + type + "\" Center=\"Node\">" + values +
+         "</Attribute>";
+}
+
+/// One mesh of the elements given.
+std::string uniform_grid(const std::string& indent, const std::string& name,
+                         const std::vector<std::string>& elements) {
+  std::string text = indent + "<Grid Name=\"" + escape_xml(printable(name)) + "\" GridType=\"Uniform\">\n";
+  for (const std::string& element : elements) text.append(indent).append("  ").append(element).append("\n");
+  return text + indent + "</Grid>\n";
+}
+
+std::vector<std::string> part_elements(const std::string& trace, const XdmfMesh& mesh, const XdmfPart& part,
+                                       std::size_t frame) {
+  const std::string shape = dimensions_of(part.shape);
+  const auto vectors = [&](std::string_view vector) {
+    return data_item(trace, xdmf_dataset(vector, part, frame), shape + " 3", "Float",
+                     mesh.bytes_per_number());
+  };
+  std::vector<std::string> elements{topology_element(trace, mesh, part), geometry(vectors("position")),
+                                    attribute("velocity", "Vector", vectors("velocity"))};
+  if (part.panel)
+    elements.push_back(
+        attribute("panel", "Scalar", data_item(trace, xdmf_panel_dataset(part), shape, "Int")));
+  return elements;
+}
+
+std::vector<std::string> body_elements(const std::string& trace, const XdmfMesh& mesh) {
+  const std::string points = std::to_string(mesh.body_points);
+  return {cells(trace, "Triangle", mesh.body_triangles, body_triangles_dataset, 3),
+          geometry(data_item(trace, body_points_dataset, points + " 3", "Float")),
+          attribute("panel", "Scalar", data_item(trace, xdmf_panel_dataset_of_body, points, "Int"))};
+}
+
+/// Everything that a frame shows: one grid, or a collection of them by name.
+std::string frame_grids(const std::string& trace, const XdmfMesh& mesh, double time_s, std::size_t frame) {
+  const std::string outer(6, ' '), inner(8, ' ');
+  const std::string time = "<Time Value=\"" + decimal(time_s) + "\"/>";
+  const XdmfPart& first = mesh.parts.front();
+  if (!first.panel) {
+    std::vector<std::string> elements = part_elements(trace, mesh, first, frame);
+    elements.insert(elements.begin(), time);
+    return uniform_grid(outer, first.name, elements);
+  }
+  std::string text = outer + "<Grid Name=\"" + mesh.particles +
+                     "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n" + inner + time + "\n";
+  for (const XdmfPart& part : mesh.parts)
+    text += uniform_grid(inner, part.name, part_elements(trace, mesh, part, frame));
+  if (mesh.body_triangles > 0) text += uniform_grid(inner, "body", body_elements(trace, mesh));
+  return text + outer + "</Grid>\n";
+}
+
+/// The group of a part's virtual datasets.
+std::string folder_of(std::string_view vector, const XdmfPart& part) {
+  const std::string folder = "/xdmf/" + std::string(vector);
+  return part.panel ? folder + "/" + std::to_string(*part.panel) : folder;
+}
+
+/// A dataset that holds one number everywhere.
+void write_constant(hid_t file, const std::string& path, std::span<const hsize_t> shape,
+                    std::int32_t number) {
+  const std::string action = "writing " + path;
+  const Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), action);
+  checked(H5Pset_fill_value(properties.get(), H5T_NATIVE_INT32, &number), action);
+  create_dataset(file, path, H5T_STD_I32LE, shape, false, properties).close(action);
+}
+
+void number_panels_for_xdmf(hid_t trace, const XdmfMesh& mesh) {
+  create_group(trace, "/xdmf/panel");
+  for (const XdmfPart& part : mesh.parts)
+    write_constant(trace, xdmf_panel_dataset(part), part.shape, part.panel.value());
+  if (mesh.body_triangles > 0)
+    write_constant(trace, xdmf_panel_dataset_of_body, std::array{mesh.body_points}, -1);
+}
+
+}  // namespace
+
+XdmfMesh xdmf_mesh_of(const System& system, const Surface& body, bool in_double) {
+  const hsize_t nodes = system.nodes();
+  if (const auto* grid = std::get_if<GridPatch>(&system.topology))
+    return {"cloth", nodes, {{"cloth", {}, 0, {1, grid->rows, grid->columns}}}, in_double};
+  if (const auto* mesh = std::get_if<TetrahedralMesh>(&system.topology))
+    return {"bodies", nodes, {{"bodies", {}, 0, {nodes}}}, in_double, mesh->tetrahedra.size()};
+  XdmfMesh mesh{"garment", nodes, {}, in_double, 0, body.points.size(), body.triangles.size()};
+  for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
+    mesh.parts.push_back({panel.name,
+                          static_cast<std::int32_t>(mesh.parts.size()),
+                          panel.first_node,
+                          {1, panel.rows, panel.columns}});
+  return mesh;
+}
+
+std::string xdmf_dataset(std::string_view vector, const XdmfPart& part, std::size_t frame) {
+  constexpr std::size_t digits = 6;  // so that viewers list the frames in order
+  std::string number = std::to_string(frame);
+  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
+  return folder_of(vector, part) + "/" + number;
+}
+
+std::string xdmf_panel_dataset(const XdmfPart& part) {
+  return "/xdmf/panel/" + std::to_string(part.panel.value());
+}
+
+void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) {
+  const std::string action = "mapping frames for XDMF";
+  constexpr hsize_t dimensions = 3;
+  const std::array<hsize_t, 3> all{frames, mesh.nodes, dimensions};
+  const hid_t type = mesh.in_double ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  const Hdf5Space source(H5Screate_simple(3, all.data(), nullptr), action);
+  create_group(trace, "/xdmf");
+  if (mesh.parts.front().panel) number_panels_for_xdmf(trace, mesh);
+  for (const std::string vector : {"position", "velocity"}) {
+    create_group(trace, "/xdmf/" + vector);
+    const std::string values = "/particles/" + mesh.particles + "/" + vector + "/value";
+    for (const XdmfPart& part : mesh.parts) {
+      if (part.panel) create_group(trace, folder_of(vector, part));
+      std::vector<hsize_t> shape = part.shape;
+      const hsize_t nodes = std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
+      shape.push_back(dimensions);
+      const std::array<hsize_t, 3> count{1, nodes, dimensions};
+      const Hdf5Space target(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), action);
+      for (std::size_t frame = 0; frame < frames; ++frame) {
+        const std::array<hsize_t, 3> start{frame, part.first_node, 0};
+        const Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), action);
+        checked(
+            H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
+            action);
+        // "." is the very file, whatever its name.
+        checked(H5Pset_virtual(properties.get(), target.get(), ".", values.c_str(), source.get()), action);
+        create_dataset(trace, xdmf_dataset(vector, part, frame), type, shape, false, properties)
+            .close(action);
+      }
+    }
+  }
+}
+
+std::filesystem::path xdmf_of(const std::filesystem::path& trace) {
+  return std::filesystem::path(trace).replace_extension(".xdmf");
+}
+
+void write_xdmf(const std::filesystem::path& trace, const XdmfMesh& mesh, std::span<const double> times_s) {
+  const std::string name = escape_xml(trace.filename().string());
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<Xdmf Version=\"3.0\">\n"
+      "  <Domain>\n"
+      "    <Grid Name=\"trace\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t frame = 0; frame < times_s.size(); ++frame)
+    text += frame_grids(name, mesh, times_s[frame], frame);
+  text +=
+      "    </Grid>\n"
+      "  </Domain>\n"
+      "</Xdmf>\n";
+  write_file_atomically(xdmf_of(trace), text);
+}
+
+}  // namespace mssim

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "platform/descriptor.h"
+
+namespace mssim {
+
+/// The name under which `file` is written until it is whole: FILE.part.
+std::filesystem::path temporary_of(const std::filesystem::path& file);
+
+/// Throws WriteError when `file` exists and is not a regular file, so that a rename would replace a folder or
+/// a device.
+void require_replaceable(const std::filesystem::path& file);
+
+/// A file that is filled as FILE.part, by one writer at a time, and gets its name when it is whole: at every
+/// moment, even after a crash of the machine, either the whole old file or the whole new one stands there.
+class AtomicFile {
+ public:
+  /// Makes FILE.part this writer's, and empty. Throws WriteError where another writer has it, in this process
+  /// or another one, where `file` exists and is not a regular file, and where FILE.part cannot be created.
+  explicit AtomicFile(std::filesystem::path file);
+  AtomicFile(AtomicFile&&) = default;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  /// Removes FILE.part unless the writing has ended.
+  ~AtomicFile() { remove(); }
+
+  const std::filesystem::path& name() const { return name_; }
+
+  /// Adds to the end of FILE.part. Throws WriteError; FILE.part then ends where it did before.
+  void append(std::string_view text);
+  /// Ends the writing: syncs FILE.part, renames it to FILE and syncs the folder. Throws WriteError and then
+  /// leaves FILE.part as it is, still this writer's.
+  void move_into_place();
+  /// Ends the writing and leaves FILE.part to the user, for what it holds so far.
+  void keep() { part_ = Descriptor(); }
+  /// Ends the writing and removes FILE.part.
+  void remove();
+  /// Whether the writing has not ended.
+  bool is_under_way() const { return part_.is_open(); }
+
+ private:
+  std::filesystem::path name_;
+  Descriptor part_;  ///< FILE.part, locked
+};
+
+/// Writes a whole file as an AtomicFile. Throws WriteError, after removing FILE.part.
+void write_file_atomically(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace mssim

@@ -1,0 +1,191 @@
+#include "platform/child_process.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <stdexcept>
+
+#include "platform/interruption.h"
+
+namespace mssim {
+namespace {
+
+[[noreturn]] void fail(const ChildProcess& child, const std::string& action, int error) {
+  throw std::runtime_error("cannot run " + child.program.string() + ": " + action + " failed (" +
+                           std::strerror(error) + ")");
+}
+
+/// The two ends of a pipe; the child inherits neither but as stdout and stderr.
+class Pipe {
+ public:
+  explicit Pipe(const ChildProcess& child) {
+    if (::pipe2(ends_.data(), O_CLOEXEC) != 0) fail(child, "opening a pipe", errno);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() {
+    close_writer();
+    ::close(ends_[0]);
+  }
+  int reader() const { return ends_[0]; }
+  int writer() const { return ends_[1]; }
+  void close_writer() {
+    if (ends_[1] >= 0) ::close(ends_[1]);
+    ends_[1] = -1;
+  }
+
+ private:
+  std::array<int, 2> ends_{-1, -1};
+};
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+std::vector<std::string> environment_with(const std::vector<std::string>& added) {
+  std::vector<std::string> all = added;
+  for (char** entry = environ; entry && *entry; ++entry) {
+    const std::string_view text = *entry;
+    const std::string_view name_and_equals = text.substr(0, text.find('=') + 1);
+    bool replaced = false;
+    for (const std::string& own : added) replaced = replaced || own.starts_with(name_and_equals);
+    if (!replaced) all.emplace_back(text);
+  }
+  return all;
+}
+
+void limit(int resource, rlim_t soft, rlim_t hard) {
+  const rlimit limits{soft, hard};
+  // A lower limit that is already in force may not be raised; then it stays, which is as good.
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
+}
+
+/// What the child does between fork and exec, where only async-signal-safe calls are allowed: this process
+/// may have threads. `group`: of processes, 0 for a new one. Returns errno when something fails.
+int become(const char* program, char* const* arguments, char* const* environment, const char* folder,
+           unsigned cpu_seconds, int output, pid_t group) {
+  // A group of their own, so that what it starts in turn can be ended with it; and no orphan if this process
+  // is killed.
+  if (::setpgid(0, group) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return errno;
+  if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0) return errno;
+  limit(RLIMIT_CPU, cpu_seconds, cpu_seconds + 1);
+  limit(RLIMIT_CORE, 0, 0);
+  if (::chdir(folder) != 0) return errno;
+  ::execve(program, arguments, environment);
+  return errno;
+}
+
+/// Reads to the end; keeps the last bytes.
+std::string read_tail(int descriptor) {
+  constexpr std::size_t kept = 64 * 1024;
+  std::string tail;
+  std::array<char, 4096> buffer;
+  while (true) {
+    const ssize_t bytes = ::read(descriptor, buffer.data(), buffer.size());
+    if (bytes < 0 && errno == EINTR) continue;
+    if (bytes <= 0) break;
+    tail.append(buffer.data(), static_cast<std::size_t>(bytes));
+    if (tail.size() > 2 * kept) tail.erase(0, tail.size() - kept);
+  }
+  if (tail.size() > kept) tail.erase(0, tail.size() - kept);
+  return tail;
+}
+
+/// A program under way.
+class Running {
+ public:
+  /// Starts it in that group of processes; 0: in a group of its own, which has the number of its process.
+  Running(const ChildProcess& child, pid_t group, const InterruptionGuard& interruption)
+      : child_(child), output_(child), start_error_(child) {
+    std::vector<std::string> arguments{child.program.filename().string()};
+    arguments.insert(arguments.end(), child.arguments.begin(), child.arguments.end());
+    std::vector<std::string> environment = environment_with(child.environment);
+    const std::vector<char*> argument_pointers = pointers_to(arguments);
+    const std::vector<char*> environment_pointers = pointers_to(environment);
+    process_ = ::fork();
+    if (process_ < 0) fail(child, "fork", errno);
+    if (process_ == 0) {
+      interruption.release_child();
+      const int error = become(child.program.c_str(), argument_pointers.data(), environment_pointers.data(),
+                               child.folder.c_str(), child.cpu_seconds, output_.writer(), group);
+      [[maybe_unused]] const ssize_t written = ::write(start_error_.writer(), &error, sizeof error);
+      ::_exit(127);
+    }
+    // Here as well, so that the group exists before it is watched.
+    ::setpgid(process_, group == 0 ? process_ : group);
+    output_.close_writer();
+    start_error_.close_writer();
+  }
+
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  /// Where it has not ended because another could not be started, it is ended now.
+  ~Running() {
+    if (ended_) return;
+    ::kill(process_, SIGKILL);
+    while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+
+  pid_t process() const { return process_; }
+
+  /// Waits until it has ended.
+  void end() {
+    result_.output = read_tail(output_.reader());
+    if (::read(start_error_.reader(), &error_, sizeof error_) != sizeof error_) error_ = 0;
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0)
+      if (errno != EINTR) fail(child_, "waiting for it", errno);
+    ended_ = true;
+    if (WIFSIGNALED(status))
+      result_.signal = WTERMSIG(status);
+    else
+      result_.exit_code = WEXITSTATUS(status);
+  }
+
+  /// Of one that has ended.
+  const ChildResult& result() const {
+    if (error_ != 0) fail(child_, "starting it", error_);
+    return result_;
+  }
+
+ private:
+  const ChildProcess& child_;
+  Pipe output_, start_error_;  // the latter stays empty when the program starts: exec closes it
+  pid_t process_ = 0;
+  bool ended_ = false;
+  int error_ = 0;
+  ChildResult result_;
+};
+
+}  // namespace
+
+ChildResult run(const ChildProcess& child) { return run_together({&child, 1}).front(); }
+
+std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
+  InterruptionGuard interruption;
+  std::deque<Running> all;
+  for (const ChildProcess& child : children)
+    all.emplace_back(child, all.empty() ? 0 : all.front().process(), interruption);
+  if (!all.empty()) interruption.watch(all.front().process());
+  for (Running& one : all) one.end();
+  interruption.throw_if_interrupted();
+  std::vector<ChildResult> results;
+  for (const Running& one : all) results.push_back(one.result());
+  return results;
+}
+
+}  // namespace mssim

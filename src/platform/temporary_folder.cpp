@@ -1,0 +1,44 @@
+#include "platform/temporary_folder.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+namespace mssim {
+namespace {
+
+std::optional<TemporaryFolder>& folder_of_process() {
+  static std::optional<TemporaryFolder> folder;
+  return folder;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  const char* chosen = std::getenv("TMPDIR");
+  const std::filesystem::path parent = chosen && *chosen ? chosen : "/tmp";
+  std::string name = (parent / "mssim-XXXXXX").string();
+  if (!::mkdtemp(name.data()))
+    throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +
+                             std::strerror(errno) + "); set TMPDIR to a folder that may be written");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+const std::filesystem::path& temporary_folder_of_process() {
+  auto& folder = folder_of_process();
+  if (!folder) folder.emplace();
+  return folder->path();
+}
+
+void remove_temporary_folder_of_process() { folder_of_process().reset(); }
+
+}  // namespace mssim

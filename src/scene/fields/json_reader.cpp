@@ -1,0 +1,253 @@
+#include "scene/fields/json_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/fields/scene_error.h"
+#include "text/counted.h"
+#include "text/nearest_name.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+using nlohmann::json;
+
+std::string described(const json& value) {
+  switch (value.type()) {
+    case json::value_t::object:
+      return "an object";
+    case json::value_t::array:
+      return "a list";
+    case json::value_t::string:
+      return "the text \"" + printable(value.get_ref<const std::string&>()) + '"';
+    default:
+      return value.dump();
+  }
+}
+
+std::string described(const Range& range) {
+  return (range.minimum_excluded ? "above " : "from ") + shown_number(range.minimum) +
+         (range.minimum_excluded ? " and up to " : " to ") + shown_number(range.maximum);
+}
+
+bool contains(const Range& range, double number) {
+  return (range.minimum_excluded ? number > range.minimum : number >= range.minimum) &&
+         number <= range.maximum;
+}
+
+/// Characters of valid UTF-8 (the parser has refused any other).
+std::size_t count_characters(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// Reads one object. Misspelled keys explain missing ones, so both are reported at the end, the former first.
+class JsonReader final : public FieldVisitor {
+ public:
+  JsonReader(const std::filesystem::path& file, std::string pointer, const json& value)
+      : file_(file), pointer_(std::move(pointer)), value_(value) {
+    if (!value.is_object())
+      fail(pointer_.empty() ? "the top level" : pointer_,
+           "is " + described(value) + ": give an object, { ... }");
+  }
+
+  void number(std::string_view key, double& target, const Range& range) override {
+    const std::string wanted = "a number " + described(range);
+    if (const json* value = find(key, Presence::required, wanted))
+      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
+  }
+
+  void optional_number(std::string_view key, std::optional<double>& target, const Range& range) override {
+    const std::string wanted = "a number " + described(range);
+    if (const json* value = find(key, Presence::optional, wanted))
+      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
+  }
+
+  void number_or_auto(std::string_view key, std::optional<double>& target, const Range& range) override {
+    const std::string wanted = "a number " + described(range) + ", or \"auto\"";
+    const json* value = find(key, Presence::required, wanted);
+    if (value == nullptr) return;
+    if (*value == "auto")
+      target.reset();
+    else
+      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
+  }
+
+  void integer(std::string_view key, std::uint32_t& target, std::uint32_t minimum,
+               std::uint32_t maximum) override {
+    const Range range = from(minimum, maximum);
+    const std::string wanted = "an integer " + described(range);
+    const json* value = find(key, Presence::required, wanted);
+    if (value == nullptr) return;
+    const double number = number_of(json_pointer(pointer_, key), *value, range, wanted);
+    if (number != std::floor(number)) refuse(key, *value, wanted);
+    target = static_cast<std::uint32_t>(number);
+  }
+
+  void text(std::string_view key, Presence presence, std::string& target) override {
+    const std::string wanted = "one line of text of at most " + std::to_string(longest_text) + " characters";
+    const json* value = find(key, presence, wanted);
+    if (value == nullptr) return;
+    if (!value->is_string()) refuse(key, *value, wanted);
+    const auto& words = value->get_ref<const std::string&>();
+    const bool one_line =
+        std::none_of(words.begin(), words.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+    if (!one_line || count_characters(words) > longest_text) refuse(key, *value, wanted);
+    target = words;
+  }
+
+  void vector(std::string_view key, Presence presence, Vec3d& target, const Range& each) override {
+    const std::string wanted = "a list of three numbers " + described(each);
+    const json* value = find(key, presence, wanted);
+    if (value == nullptr) return;
+    if (!value->is_array() || value->size() != 3) refuse(key, *value, wanted);
+    const std::string list = json_pointer(pointer_, key);
+    target = {component(list, *value, 0, each), component(list, *value, 1, each),
+              component(list, *value, 2, each)};
+  }
+
+  void points(std::string_view key, std::size_t least, std::size_t most, const Range& each,
+              std::vector<Vec3d>& target) override {
+    const std::string wanted =
+        "a list, [ ... ], of " + std::to_string(least) + " to " + std::to_string(most) + " points [x, y]";
+    const json* value = find(key, Presence::required, wanted);
+    if (value == nullptr) return;
+    const std::string list = json_pointer(pointer_, key);
+    require_length(list, *value, least, most, wanted);
+    target.clear();
+    for (std::size_t i = 0; i < value->size(); ++i) {
+      const json& point = (*value)[i];
+      const std::string pointer = json_pointer(list, std::to_string(i));
+      if (!point.is_array() || point.size() != 2)
+        fail(pointer, "is " + described(point) + ": give a point, two numbers [x, y]");
+      target.push_back({component(pointer, point, 0, each), component(pointer, point, 1, each), 0});
+    }
+  }
+
+  void choice(std::string_view key, Presence presence, std::span<const std::string_view> words,
+              std::uint32_t& target) override {
+    if (const auto number = chosen(key, presence, words)) target = static_cast<std::uint32_t>(*number);
+  }
+
+  void one_of(std::string_view key, std::span<const Section> sections) override {
+    std::vector<std::string_view> names;
+    names.reserve(sections.size());
+    for (const Section& section : sections) names.push_back(section.name);
+    if (const auto number = chosen(key, Presence::required, names))
+      object(names[*number], Presence::required, sections[*number].fields);
+    else
+      known_.insert(known_.end(), names.begin(), names.end());
+  }
+
+  void list(std::string_view key, Presence presence, std::size_t most, const FieldList& element) override {
+    const std::string wanted = "a list, [ ... ], of 1 to " + std::to_string(most) + " objects";
+    const json* value = find(key, presence, wanted);
+    if (value == nullptr) return;
+    const std::string pointer = json_pointer(pointer_, key);
+    require_length(pointer, *value, 1, most, wanted);
+    for (std::size_t i = 0; i < value->size(); ++i) {
+      JsonReader nested(file_, json_pointer(pointer, std::to_string(i)), (*value)[i]);
+      element(nested);
+      nested.finish();
+    }
+  }
+
+  void object(std::string_view key, Presence presence, const FieldList& fields) override {
+    const json* value = find(key, presence, "an object, { ... }");
+    if (value == nullptr) return;
+    JsonReader nested(file_, json_pointer(pointer_, key), *value);
+    fields(nested);
+    nested.finish();
+  }
+
+  /// To be called once, when all fields have been named.
+  void finish() const {
+    for (const auto& [key, value] : value_.items()) {
+      if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+      std::string problem = "is not a known key (its value is ";
+      problem += described(value);
+      problem += "): ";
+      const std::string_view nearest = nearest_name(key, known_);
+      if (nearest.empty()) fail(json_pointer(pointer_, key), problem + "known here are " + listed(known_));
+      fail(json_pointer(pointer_, key), problem + "did you mean \"" + std::string(nearest) + "\"?");
+    }
+    if (!missing_.empty()) fail(missing_, missing_remedy_);
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view pointer, const std::string& problem) const {
+    mssim::refuse(file_, pointer, problem);
+  }
+
+  [[noreturn]] void refuse(std::string_view key, const json& value, const std::string& wanted) const {
+    fail(json_pointer(pointer_, key), "is " + described(value) + ": give " + wanted);
+  }
+
+  /// The key's value, or nullptr when it is not there.
+  const json* find(std::string_view key, Presence presence, const std::string& wanted) {
+    known_.push_back(key);
+    const auto match = value_.find(std::string(key));
+    if (match != value_.end()) return &*match;
+    if (presence == Presence::required && missing_.empty()) {
+      missing_ = json_pointer(pointer_, key);
+      missing_remedy_ = "is missing: add it as " + wanted;
+    }
+    return nullptr;
+  }
+
+  /// The number of the word at `key`, none where the key is missing.
+  std::optional<std::size_t> chosen(std::string_view key, Presence presence,
+                                    std::span<const std::string_view> words) {
+    std::string wanted = "the text " + listed(words, "or");
+    const json* value = find(key, presence, wanted);
+    if (value == nullptr) return std::nullopt;
+    if (!value->is_string()) refuse(key, *value, wanted);
+    const auto& word = value->get_ref<const std::string&>();
+    const auto match = std::find(words.begin(), words.end(), word);
+    if (match == words.end()) {
+      const std::string_view nearest = nearest_name(word, words);
+      if (!nearest.empty() && words.size() > 1) wanted += ", perhaps " + std::string(nearest);
+      refuse(key, *value, wanted);
+    }
+    return static_cast<std::size_t>(match - words.begin());
+  }
+
+  void require_length(std::string_view pointer, const json& value, std::size_t least, std::size_t most,
+                      const std::string& wanted) const {
+    if (!value.is_array()) fail(pointer, "is " + described(value) + ": give " + wanted);
+    if (value.size() < least || value.size() > most)
+      fail(pointer, "has " + counted(value.size(), "element") + ": give " + wanted);
+  }
+
+  double component(std::string_view list, const json& value, std::size_t i, const Range& each) const {
+    return number_of(json_pointer(list, std::to_string(i)), value[i], each, "a number " + described(each));
+  }
+
+  double number_of(std::string_view pointer, const json& value, const Range& range,
+                   const std::string& wanted) const {
+    if (value.is_number())
+      if (const auto number = value.get<double>(); contains(range, number)) return number;
+    fail(pointer, "is " + described(value) + ": give " + wanted);
+  }
+
+  const std::filesystem::path& file_;
+  std::string pointer_;
+  const json& value_;
+  std::vector<std::string_view> known_;
+  std::string missing_;  ///< pointer to the first required key that is not there
+  std::string missing_remedy_;
+};
+
+}  // namespace
+
+void read_fields(const JsonDocument& document, const FieldList& fields) {
+  JsonReader reader(document.file, "", document.value);
+  fields(reader);
+  reader.finish();
+}
+
+}  // namespace mssim

@@ -1,0 +1,23 @@
+#include "scene/spec/memory.h"
+
+#include <string>
+
+#include "platform/available_memory.h"
+#include "scene/fields/scene_error.h"
+
+namespace mssim {
+
+std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs) {
+  constexpr std::uint64_t start = 1, reference_pairs = 4, read_back = 1;
+  return nodes * (start + reference_pairs + read_back) * 2 * sizeof(Vec3d) + springs * sizeof(Spring);
+}
+
+void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts,
+                    std::uint64_t needed, std::string_view remedy) {
+  if (const auto shortage = memory_shortage(needed))
+    refuse(spec.file, pointer,
+           "has " + std::to_string(counts.nodes) + " nodes and " + std::to_string(counts.springs_unique) +
+               " springs and " + *shortage + ": " + std::string(remedy));
+}
+
+}  // namespace mssim

@@ -1,0 +1,153 @@
+// Every way to avoid the data race of the springs against the double-precision reference, for every
+// integrator.
+#include "backends/accumulation/race_ways.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "backends/accumulation/spring_colouring.h"
+#include "bench/verification/verification.h"
+#include "integrators/integrators.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+constexpr double dt_s = 1e-4;
+constexpr std::array<int, 4> thread_counts{1, 2, 3, 5};
+
+class EachWayAndIntegrator : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
+ protected:
+  const RaceWay& way() const { return race_ways()[std::get<0>(GetParam())]; }
+  const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
+  std::unique_ptr<Backend> make(const System& system, int threads) const {
+    return way().backend.make(system, integrator(), dt_s, {threads, ""});
+  }
+  State after(const System& system, int threads, int steps) const {
+    const auto simulation = make(system, threads);
+    simulation->step(steps);
+    return simulation->state();
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Tables, EachWayAndIntegrator,
+                         testing::Combine(testing::Range(std::size_t{0}, race_ways().size()),
+                                          testing::Range(std::size_t{0}, integrators.size())),
+                         [](const auto& test) {
+                           std::string name(race_ways()[std::get<0>(test.param)].backend.name);
+                           name += "__" + std::string(integrators[std::get<1>(test.param)].name);
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST_P(EachWayAndIntegrator, AgreesWithTheReferenceWithAnyNumberOfThreads) {
+  for (const System& system : {cloth_system(37, 23), solid_block(4, 5, 6), two_solid_blocks()}) {
+    const Reference reference = run_reference(system, integrator(), dt_s);
+    ASSERT_FALSE(reference.failure) << *reference.failure;
+    for (const int threads : thread_counts) {
+      const Verification verification = verify(*make(system, threads), system, reference, dt_s);
+      EXPECT_FALSE(verification.failure)
+          << system.nodes() << " nodes, " << threads << " threads: " << verification.failure.value_or("");
+    }
+  }
+}
+
+TEST_P(EachWayAndIntegrator, TakesMoreThreadsThanThereAreNodesOrSprings) {
+  const System system = cloth_system(1, 3);
+  const Reference reference = run_reference(system, integrator(), dt_s);
+  const Verification verification = verify(*make(system, 9), system, reference, dt_s);
+  EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
+}
+
+TEST_P(EachWayAndIntegrator, GivesTheSameBitsAgainWhereItSaysSo) {
+  if (way().repeatable == Repeatable::never) return;
+  constexpr int steps = 50;
+  for (const System& system : {cloth_system(40, 31), solid_block(5, 6, 7)}) {
+    const State alone = after(system, 1, steps);
+    for (const int threads : thread_counts) {
+      const State once = after(system, threads, steps), again = after(system, threads, steps);
+      EXPECT_EQ(once.position, again.position) << threads << " threads";
+      EXPECT_EQ(once.velocity, again.velocity) << threads << " threads";
+      if (way().repeatable != Repeatable::always) continue;
+      EXPECT_EQ(once.position, alone.position) << threads << " threads";
+      EXPECT_EQ(once.velocity, alone.velocity) << threads << " threads";
+    }
+  }
+}
+
+TEST_P(EachWayAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
+  const System system = cloth_system(12, 19);
+  const auto simulation = make(system, 1);  // with one thread every way adds in one order
+  simulation->step(7);
+  const State once = simulation->state();
+  simulation->set_state(system.start);
+  EXPECT_EQ(simulation->state().position, system.start.position);
+  simulation->step(3);
+  simulation->step(4);
+  EXPECT_EQ(simulation->state().position, once.position);
+  EXPECT_EQ(simulation->state().velocity, once.velocity);
+}
+
+TEST(RaceWays, BeginWithTheSerialBaseAndHaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (const RaceWay& way : race_ways()) {
+    EXPECT_TRUE(names.insert(way.backend.name).second) << way.backend.name;
+    EXPECT_FALSE(way.extra_memory.empty() || way.springs_computed.empty() || way.backend.description.empty());
+    EXPECT_FALSE(name_of(way.repeatable).empty());
+  }
+  EXPECT_EQ(race_ways().front().backend.name, "serial");
+  EXPECT_EQ(race_ways().back().backend.name, "openmp");
+}
+
+/// A spring as something that can be counted.
+auto key(const Spring& spring) {
+  return std::tuple(spring.first, spring.second, spring.kind, spring.rest_length);
+}
+
+/// Expects every spring once, and no node twice in a colour.
+void expect_coloured(const std::vector<Spring>& list, std::size_t nodes) {
+  const SpringColouring colouring = colour_springs(list, nodes);
+  std::multiset<decltype(key(Spring{}))> expected, found;
+  for (const Spring& spring : list) expected.insert(key(spring));
+  std::vector<std::uint32_t> degree(nodes, 0);
+  for (std::size_t colour = 0; colour < colouring.colours(); ++colour) {
+    EXPECT_FALSE(colouring.of_colour(colour).empty()) << "colour " << colour;
+    std::set<std::uint32_t> taken;
+    for (const Spring& spring : colouring.of_colour(colour)) {
+      EXPECT_TRUE(taken.insert(spring.first).second) << "node " << spring.first << ", colour " << colour;
+      EXPECT_TRUE(taken.insert(spring.second).second) << "node " << spring.second << ", colour " << colour;
+      ++degree[spring.first];
+      ++degree[spring.second];
+      found.insert(key(spring));
+    }
+  }
+  EXPECT_EQ(found, expected);
+  const std::size_t largest = *std::ranges::max_element(degree);
+  EXPECT_GE(colouring.colours(), largest);
+  EXPECT_LE(colouring.colours(), 2 * largest - 1);
+}
+
+TEST(SpringColouring, LetsNoTwoSpringsOfAColourShareANode) {
+  for (const System& system : {cloth_system(20, 13), cloth_system(2, 2), solid_block(5, 6, 7)})
+    expect_coloured(system.springs, system.nodes());
+}
+
+TEST(SpringColouring, HasColoursEnoughForANodeOfManySprings) {
+  std::vector<Spring> star;  // needs a colour for each spring, more than a machine word has bits
+  for (std::uint32_t node = 1; node <= 200; ++node) star.push_back({0, node, 1, 0});
+  expect_coloured(star, 201);
+  EXPECT_EQ(colour_springs(star, 201).colours(), 200U);
+}
+
+TEST(SpringColouring, OfNoSpringsHasNoColours) { EXPECT_EQ(colour_springs({}, 5).colours(), 0U); }
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,373 @@
+// Every backend against the double-precision reference, for every integrator.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "backends/backends.h"
+#include "backends/layouts/band_sheet.h"
+#include "backends/openmp/openmp.h"
+#include "backends/openmp/step_bands.h"
+#include "backends/spring_list/serial.h"
+#include "bench/verification/verification.h"
+#include "integrators/integrators.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+constexpr double dt_s = 1e-4;
+
+std::string plain(std::string_view name) {
+  std::string text(name);
+  for (char& c : text)
+    if (c == '-') c = '_';
+  return text;
+}
+
+class EachBackendAndIntegrator
+    : public testing::TestWithParam<std::tuple<std::string_view, std::string_view>> {
+ protected:
+  const BackendInfo& backend() const { return *find_backend(std::get<0>(GetParam())); }
+  const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
+  std::unique_ptr<Backend> make(const System& system, int threads = 2) const {
+    return backend().make(system, integrator(), dt_s, {threads, ""});
+  }
+};
+
+std::vector<std::string_view> names_of(const auto& table) {
+  std::vector<std::string_view> names;
+  for (const auto& row : table) names.push_back(row.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Tables, EachBackendAndIntegrator,
+                         testing::Combine(testing::ValuesIn(names_of(backends())),
+                                          testing::ValuesIn(names_of(integrators))),
+                         [](const auto& test) {
+                           return plain(std::get<0>(test.param)) + "__" + plain(std::get<1>(test.param));
+                         });
+
+TEST_P(EachBackendAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
+  // Odd sizes, fewer rows than lanes, single rows and columns: where layouts go wrong.
+  for (const auto& [rows, columns] :
+       {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {2U, 2U}, {1U, 7U}, {7U, 1U}}) {
+    const System system = cloth_system(rows, columns);
+    const Reference reference = run_reference(system, integrator(), dt_s);
+    ASSERT_FALSE(reference.failure) << *reference.failure;
+    ASSERT_EQ(reference.steps, verification_steps);
+    const auto simulation = make(system);
+    const Verification verification = verify(*simulation, system, reference, dt_s);
+    EXPECT_FALSE(verification.failure)
+        << rows << " x " << columns << ": " << verification.failure.value_or("");
+  }
+}
+
+TEST_P(EachBackendAndIntegrator, StaysAsNearToTheReferenceAsTheSpringList) {
+  // Twice what the plain list in single precision is away: no formula or order of sums gives accuracy up.
+  for (const System& system : {cloth_system(50, 50), cloth_system(100, 140)}) {
+    const Reference reference = run_reference(system, integrator(), dt_s);
+    const auto serial = make_serial(system, integrator(), dt_s, {1, ""});
+    const double usual = verify(*serial, system, reference, dt_s).position_error;
+    EXPECT_GT(usual, 0);
+    EXPECT_LE(verify(*make(system), system, reference, dt_s).position_error, 2 * usual) << system.nodes();
+  }
+}
+
+TEST_P(EachBackendAndIntegrator, HoldsPinsExactlyWhereverTheyAre) {
+  SceneSpec spec = cloth_spec(20, 23);
+  std::get<ClothSpec>(spec.body).pins = ClothPins{13, 5};
+  const System system = build_system(spec);
+  ASSERT_GE(system.pins.size(), 5U);
+  const auto simulation = make(system);
+  simulation->step(50);
+  const State state = simulation->state();
+  for (const std::uint32_t node : system.pins) {
+    EXPECT_EQ(state.position[node], system.start.position[node]) << node;
+    EXPECT_EQ(state.velocity[node], Vec3d{}) << node;
+  }
+}
+
+TEST_P(EachBackendAndIntegrator, TreatsTheFloorLikeTheReference) {
+  // A sheet that hits the floor flat, sliding: its nodes land in the same step in any precision.
+  System system = build_system(sheet_spec(20, 17, 0.00101));
+  for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
+  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto simulation = make(system);
+  reference->step(15);
+  simulation->step(15);
+  const State expected = reference->state(), state = simulation->state();
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    EXPECT_GT(expected.velocity[i].y, 0.2) << "it has bounced";
+    EXPECT_LT(expected.velocity[i].x, 0.45) << "friction has slowed it";
+    EXPECT_NEAR(state.velocity[i].x, expected.velocity[i].x, 2e-3);
+    EXPECT_NEAR(state.velocity[i].y, expected.velocity[i].y, 2e-3);
+    EXPECT_NEAR(state.velocity[i].z, expected.velocity[i].z, 2e-3);
+    EXPECT_NEAR(state.position[i].y, expected.position[i].y, 1e-6);
+  }
+}
+
+TEST_P(EachBackendAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
+  const System system = cloth_system(12, 19);
+  const auto simulation = make(system);
+  simulation->step(7);
+  const State once = simulation->state();
+  simulation->set_state(system.start);
+  EXPECT_EQ(simulation->state().position, system.start.position);
+  EXPECT_EQ(simulation->state().velocity, system.start.velocity);
+  simulation->step(7);
+  const State again = simulation->state();
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    EXPECT_NEAR(again.position[i].y, once.position[i].y, 1e-6);
+    EXPECT_NEAR(again.velocity[i].y, once.velocity[i].y, 1e-3);
+  }
+}
+
+class EachBackendAndIntegratorOnBodies : public EachBackendAndIntegrator {};
+INSTANTIATE_TEST_SUITE_P(Tables, EachBackendAndIntegratorOnBodies,
+                         testing::Combine(testing::ValuesIn(names_of(backends())),
+                                          testing::ValuesIn(names_of(integrators))),
+                         [](const auto& test) {
+                           return plain(std::get<0>(test.param)) + "__" + plain(std::get<1>(test.param));
+                         });
+
+/// A small body with a node that hangs on nothing.
+System block_and_lone_node() {
+  System system = solid_block(3, 3, 3);
+  system.start.position.push_back({0.25, 0.75, 0.125});
+  system.start.velocity.push_back({});
+  system.node_mass.push_back(0.003);
+  return system;
+}
+
+/// Bodies where layouts go wrong: less than a vector, a node short of full vectors (63), many windows, bodies
+/// of unlike materials.
+std::vector<System> bodies_of_any_shape() {
+  return {solid_block(2, 2, 2), solid_block(3, 4, 5),  solid_block(3, 3, 7),
+          solid_block(9, 9, 9), block_and_lone_node(), two_solid_blocks()};
+}
+
+TEST_P(EachBackendAndIntegratorOnBodies, AgreesWithTheReference) {
+  for (const System& system : bodies_of_any_shape()) {
+    const Reference reference = run_reference(system, integrator(), dt_s);
+    ASSERT_FALSE(reference.failure) << *reference.failure;
+    ASSERT_EQ(reference.steps, verification_steps);
+    const auto simulation = make(system);
+    const Verification verification = verify(*simulation, system, reference, dt_s);
+    EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
+  }
+}
+
+TEST_P(EachBackendAndIntegratorOnBodies, StaysAsNearToTheReferenceAsTheSpringList) {
+  const System system = solid_block(9, 9, 9);
+  const Reference reference = run_reference(system, integrator(), dt_s);
+  const auto serial = make_serial(system, integrator(), dt_s, {1, ""});
+  const double usual = verify(*serial, system, reference, dt_s).position_error;
+  EXPECT_GT(usual, 0);
+  EXPECT_LE(verify(*make(system), system, reference, dt_s).position_error, 2 * usual);
+}
+
+TEST_P(EachBackendAndIntegratorOnBodies, HoldsPinsExactlyEvenBelowTheFloor) {
+  System system = solid_block(5, 4, 7);
+  system.pins = {0, 7, 63, 64, 139};
+  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
+  system.floor.height = 0.504;
+  ASSERT_LT(system.start.position[0].y, system.floor.height);
+  const auto simulation = make(system);
+  simulation->step(50);
+  const State state = simulation->state();
+  for (const std::uint32_t node : system.pins) {
+    EXPECT_EQ(state.position[node], system.start.position[node]) << node;
+    EXPECT_EQ(state.velocity[node], Vec3d{}) << node;
+  }
+  EXPECT_NE(state.position[1], system.start.position[1]) << "the others move";
+}
+
+TEST_P(EachBackendAndIntegratorOnBodies, TreatsTheFloorLikeTheReference) {
+  // A relaxed block whose flat bottom hits the floor, sliding: its nodes land in the same step in any
+  // precision.
+  constexpr std::uint32_t nx = 5, ny = 3, nz = 7;
+  System system = solid_block(nx, ny, nz, 0.00101);
+  const auto on_bottom = [](std::size_t node) { return node / nx % ny == 0; };
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    if (on_bottom(i)) system.start.position[i].y = 0.00101;
+    system.start.velocity[i] = {0.5, -1, 0.25};
+  }
+  round_to_single(system.start);
+  for (Spring& spring : system.springs) {
+    const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
+    spring.rest_length = static_cast<float>(std::sqrt(dot(d, d)));
+  }
+  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto simulation = make(system);
+  reference->step(15);
+  simulation->step(15);
+  const State expected = reference->state(), state = simulation->state();
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    if (on_bottom(i)) {
+      EXPECT_GT(expected.velocity[i].y, 0.2) << "it has bounced";
+      EXPECT_LT(expected.velocity[i].x, 0.45) << "friction has slowed it";
+    }
+    EXPECT_NEAR(state.velocity[i].x, expected.velocity[i].x, 2e-3);
+    EXPECT_NEAR(state.velocity[i].y, expected.velocity[i].y, 2e-3);
+    EXPECT_NEAR(state.velocity[i].z, expected.velocity[i].z, 2e-3);
+    EXPECT_NEAR(state.position[i].y, expected.position[i].y, 1e-6);
+  }
+}
+
+TEST_P(EachBackendAndIntegratorOnBodies, StartsAgainFromAStateThatItIsGiven) {
+  const System system = two_solid_blocks();
+  const auto simulation = make(system);
+  simulation->step(7);
+  const State once = simulation->state();
+  simulation->set_state(system.start);
+  EXPECT_EQ(simulation->state().position, system.start.position);
+  EXPECT_EQ(simulation->state().velocity, system.start.velocity);
+  simulation->step(3);
+  simulation->step(4);
+  const State again = simulation->state();
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    EXPECT_NEAR(again.position[i].y, once.position[i].y, 1e-6);
+    EXPECT_NEAR(again.velocity[i].y, once.velocity[i].y, 1e-3);
+  }
+}
+
+class EachIntegratorOnOpenMp : public testing::TestWithParam<std::string_view> {
+ protected:
+  const Integrator& integrator() const { return *find_integrator(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorOnOpenMp, testing::ValuesIn(names_of(integrators)),
+                         [](const auto& test) { return plain(test.param); });
+
+/// Steps in which what starts a few millimetres above the floor bounces off it.
+constexpr int steps_with_a_bounce = 300;
+
+/// A cloth that meets the floor in that time.
+System low_cloth(std::uint32_t rows, std::uint32_t columns) {
+  SceneSpec spec = cloth_spec(rows, columns);
+  std::get<ClothSpec>(spec.body).ceiling_height_m = 0.0035;
+  return build_system(spec);
+}
+
+/// Whether a node lies on the floor or rises from it.
+bool has_met_floor(const System& system, const State& state) {
+  for (std::size_t node = 0; node < system.nodes(); ++node)
+    if (state.velocity[node].y > 0 || state.position[node].y == system.floor.height) return true;
+  return false;
+}
+
+/// Expects the same bits after a bounce with any number of threads.
+void expect_same_bits(const System& system, const Integrator& integrator) {
+  const auto alone = make_openmp(system, integrator, dt_s, {1, ""});
+  alone->step(steps_with_a_bounce);
+  const State expected = alone->state();
+  EXPECT_TRUE(has_met_floor(system, expected));
+  for (const int threads : {2, 3, 4, 7}) {
+    const auto simulation = make_openmp(system, integrator, dt_s, {threads, ""});
+    simulation->step(steps_with_a_bounce);
+    const State state = simulation->state();
+    EXPECT_EQ(state.position, expected.position) << threads << " threads";
+    EXPECT_EQ(state.velocity, expected.velocity) << threads << " threads";
+  }
+}
+
+TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
+  for (const auto& [rows, columns] : {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {61U, 80U}}) {
+    SCOPED_TRACE(std::to_string(rows) + " x " + std::to_string(columns));
+    expect_same_bits(low_cloth(rows, columns), integrator());
+  }
+}
+
+TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverManyStepsAPassTakes) {
+  const BandKernel kernel = band_kernels().front();
+  for (const auto& [rows, columns] : {std::pair{37U, 23U}, {9U, 11U}, {61U, 80U}, {1U, 7U}, {7U, 1U}}) {
+    const System system = low_cloth(rows, columns);
+    const auto& grid = std::get<GridPatch>(system.topology);
+    const auto state_after = [&](std::size_t threads, std::size_t steps_per_pass) {
+      BandSheet sheet(system, grid, integrator(), dt_s, kernel.lanes, threads, steps_per_pass);
+      sheet.set_state(system.start);
+      kernel.step(sheet, steps_with_a_bounce + 1);  // the last pass is a short one
+      return sheet.state();
+    };
+    const State expected = state_after(1, 1);
+    // A strip may hang in the air again by now.
+    EXPECT_TRUE(rows == 1 || has_met_floor(system, expected)) << rows << " x " << columns;
+    for (std::size_t steps = 2; steps * integrator().stage_count <= stages_under_way; ++steps)
+      for (const std::size_t threads : {1U, 2U, 3U, 4U}) {
+        const State state = state_after(threads, steps);
+        EXPECT_EQ(state.position, expected.position) << steps << " steps, " << threads << " threads";
+        EXPECT_EQ(state.velocity, expected.velocity) << steps << " steps, " << threads << " threads";
+      }
+  }
+}
+
+TEST(OpenMpOnAnUncommonlyLargeCloth, TakesSeveralStepsInAPass) {
+  // Half a last-level cache is exceeded by a cloth's state, 24 bytes a node, on all but a few machines.
+  const System small = cloth_system(50, 50), large = cloth_system(1000, 2000);
+  const Integrator& euler = *find_integrator("semi-euler");
+  EXPECT_EQ(make_openmp(small, euler, dt_s, {2, ""})->steps_per_pass(), 1);
+  const int steps = make_openmp(large, euler, dt_s, {2, ""})->steps_per_pass();
+  const long cache = sysconf(_SC_LEVEL3_CACHE_SIZE);
+  EXPECT_EQ(steps, cache < 2 * 24 * 2'000'000 ? static_cast<int>(stages_under_way) : 1) << cache;
+}
+
+TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreadsOnBodies) {
+  for (System system : bodies_of_any_shape()) {
+    system.floor.height = 0.497;  // it is met on the way
+    SCOPED_TRACE(std::to_string(system.nodes()) + " nodes");
+    expect_same_bits(system, integrator());
+  }
+}
+
+TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
+  System system = solid_block(9, 9, 9);
+  system.floor.height = 0.49;
+  const auto alone = make_openmp(system, integrator(), dt_s, {1, ""});
+  // More threads than cores, with lots for each, and other work on all cores.
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const auto crowd =
+      make_openmp(system, integrator(), dt_s, {static_cast<int>(std::min(3 * cores, 16U)), ""});
+  std::vector<std::jthread> neighbours;
+  for (unsigned i = 0; i < cores; ++i)
+    neighbours.emplace_back([](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+      }
+    });
+  for (const int steps : {1, 200, 99}) {
+    alone->step(steps);
+    crowd->step(steps);
+    const State expected = alone->state(), state = crowd->state();
+    EXPECT_EQ(state.position, expected.position);
+    EXPECT_EQ(state.velocity, expected.velocity);
+  }
+}
+
+TEST(BackendTable, NamesEachOnceWithItsPaperConfiguration) {
+  for (const BackendInfo& backend : backends()) {
+    EXPECT_EQ(find_backend(backend.name), &backend);
+    EXPECT_FALSE(backend.paper_configuration.empty());
+  }
+  EXPECT_EQ(backends().size(), 5U);
+  EXPECT_EQ(find_backend("cuda"), nullptr);
+}
+
+TEST(BackendTable, SaysWhyADeviceBackendCannotRun) {
+  const ExecutionOptions options{1, "no such device"};
+  for (const BackendInfo& backend : backends()) {
+    const std::string reason = unavailable_reason(backend, options);
+    EXPECT_EQ(reason.empty(), !backend.uses_device) << backend.name;
+    if (!backend.uses_device) continue;
+    EXPECT_NE(reason.find("no such device"), std::string::npos) << reason;
+    const System system = cloth_system(4, 4);
+    EXPECT_THROW(backend.make(system, integrators[0], dt_s, options), Unavailable);
+  }
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,49 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+
+#include "backends/devices/program.h"
+#include "backends/opencl/grid_program.h"
+#include "backends/opencl/mesh_program.h"
+#include "integrators/integrators.h"
+
+namespace mssim {
+namespace {
+
+using ::testing::HasSubstr;
+
+int count(const std::string& text, const std::string& what) {
+  int found = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+  return found;
+}
+
+TEST(GridProgram, HasOneKernelPerStageOfEveryIntegrator) {
+  for (const Integrator& integrator : integrators)
+    for (const int lanes : {1, 16}) {
+      const std::string text = grid_program_text(integrator, lanes);
+      EXPECT_EQ(count(text, "__kernel"), static_cast<int>(integrator.stage_count)) << integrator.name;
+      for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
+        EXPECT_THAT(text, HasSubstr("__kernel void " + stage_kernel_name(stage) + "(")) << integrator.name;
+    }
+}
+
+TEST(GridProgram, VisitsEverySpringFromBothEndsOnOneLaneAndOnceOnMore) {
+  EXPECT_EQ(count(grid_program_text(integrators.front(), 1), "  add_spring(&sum"), 12);
+  EXPECT_EQ(count(grid_program_text(integrators.front(), 16), "  add_spring(&force"), 6);
+}
+
+TEST(MeshProgram, HasOneKernelPerStageOfEveryIntegrator) {
+  for (const Integrator& integrator : integrators)
+    for (const int lanes : {1, 16}) {
+      const std::string text = mesh_program_text(integrator, lanes);
+      for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
+        EXPECT_THAT(text, HasSubstr("__kernel void " + stage_kernel_name(stage) + "(")) << integrator.name;
+      EXPECT_EQ(text.find("__kernel void " + stage_kernel_name(integrator.stage_count)), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace mssim

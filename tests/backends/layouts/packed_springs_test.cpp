@@ -1,0 +1,119 @@
+#include "backends/layouts/packed_springs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "tests/support/cloth_system.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
+
+/// The unit of a slice's node in an entry, in places.
+struct Unit {
+  std::uint32_t first, second, kind;
+  float rest_length;
+};
+
+Unit unit_at(const PackedSprings& packed, std::size_t entry, std::size_t node) {
+  const std::uint32_t* at = &packed.units[entry * 2 * slice_nodes + node];
+  return {static_cast<std::uint32_t>(packed.entries[entry].slice * slice_nodes + node), at[0],
+          packed.entries[entry].kind, std::bit_cast<float>(at[slice_nodes])};
+}
+
+/// A unit in the scene's numbers, the lower node first.
+using Ends = std::tuple<std::uint32_t, std::uint32_t, float, std::uint32_t>;
+Ends in_scene(const PackedSprings& packed, const Unit& unit) {
+  const auto [low, high] = std::minmax(packed.scene_node[unit.first], packed.scene_node[unit.second]);
+  return {low, high, unit.rest_length, unit.kind};
+}
+
+/// A body in whose nodes springs of two materials meet.
+System mixed_block() {
+  System system = solid_block(7, 5, 6);
+  system.materials.push_back({100, 0});
+  for (std::size_t i = 0; i < system.springs.size(); i += 3) system.springs[i].kind = 1;
+  return system;
+}
+
+class EachSystem : public testing::TestWithParam<int> {
+ protected:
+  const System system = GetParam() == 0   ? solid_block(7, 5, 6)
+                        : GetParam() == 1 ? two_solid_blocks()
+                        : GetParam() == 2 ? solid_block(2, 2, 2)
+                        : GetParam() == 3 ? cloth_system(13, 9)
+                                          : mixed_block();
+  const PackedSprings packed{system};
+};
+INSTANTIATE_TEST_SUITE_P(Systems, EachSystem, testing::Range(0, 5));
+
+TEST_P(EachSystem, PacksEverySpringOnceInEntriesOfOneSliceAndKind) {
+  std::map<Ends, int> springs;
+  for (const Spring& spring : system.springs)
+    ++springs[{std::min(spring.first, spring.second), std::max(spring.first, spring.second),
+               spring.rest_length, spring.kind}];
+  std::size_t found = 0;
+  for (std::size_t slice = 0; slice < packed.slices(); ++slice)
+    for (std::size_t entry = packed.first_entry[slice]; entry < packed.first_entry[slice + 1]; ++entry) {
+      EXPECT_EQ(packed.entries[entry].slice, slice);
+      for (std::size_t node = 0; node < slice_nodes; ++node) {
+        const Unit unit = unit_at(packed, entry, node);
+        if (unit.rest_length == PackedSprings::empty_unit) {
+          EXPECT_EQ(unit.second, unit.first) << "a device may read what an empty unit names";
+          continue;
+        }
+        --springs[in_scene(packed, unit)];
+        ++found;
+      }
+    }
+  EXPECT_EQ(found, system.springs.size());
+  for (const auto& [spring, count] : springs) EXPECT_EQ(count, 0) << std::get<0>(spring);
+  EXPECT_EQ(packed.entries.size(), packed.first_entry.back());
+}
+
+TEST_P(EachSystem, ListsEveryForceAtItsSecondEndOnce) {
+  constexpr std::size_t list_nodes = PackedSprings::list_nodes;
+  std::vector<std::size_t> node_at(slice_nodes);  // by the place of the force
+  for (std::size_t node = 0; node < slice_nodes; ++node) node_at[PackedSprings::force_place(node)] = node;
+  std::vector<int> listed(packed.unit_count(), 0);
+  for (std::size_t list = 0; list < packed.places() / list_nodes; ++list)
+    for (std::size_t i = packed.first_subtracted[list] * list_nodes;
+         i < packed.first_subtracted[list + 1] * list_nodes; ++i) {
+      const std::uint32_t force = packed.subtracted[i];
+      if (force == packed.no_force()) continue;
+      ASSERT_LT(force, packed.unit_count());
+      ++listed[force];
+      const Unit unit = unit_at(packed, force / slice_nodes, node_at[force % slice_nodes]);
+      EXPECT_EQ(unit.second, list * list_nodes + i % list_nodes);
+      EXPECT_NE(unit.rest_length, PackedSprings::empty_unit);
+    }
+  for (const int times : listed) EXPECT_LE(times, 1);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(listed.begin(), listed.end(), 1)), system.springs.size());
+}
+
+TEST_P(EachSystem, NumbersEveryNodeOnce) {
+  ASSERT_EQ(packed.places() % slice_nodes, 0U);
+  ASSERT_LT(packed.places(), system.nodes() + slice_nodes);
+  for (std::size_t place = system.nodes(); place < packed.places(); ++place)
+    EXPECT_EQ(packed.scene_node[place], PackedSprings::no_node);
+  for (std::uint32_t node = 0; node < system.nodes(); ++node)
+    EXPECT_EQ(packed.scene_node[packed.place[node]], node);
+}
+
+TEST(PackedSprings, HaveFewEmptyUnitsInABody) {
+  const System system = solid_block(13, 13, 13);
+  const PackedSprings packed(system);
+  EXPECT_LT(static_cast<double>(packed.unit_count()), 1.12 * static_cast<double>(system.springs.size()));
+  EXPECT_LT(static_cast<double>(packed.subtracted.size()), 1.12 * static_cast<double>(system.springs.size()));
+}
+
+}  // namespace
+}  // namespace mssim

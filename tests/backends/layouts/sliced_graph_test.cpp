@@ -1,0 +1,223 @@
+#include "backends/layouts/sliced_graph.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <string>
+
+#include "backends/interface/backend.h"
+#include "backends/layouts/cuthill_mckee.h"
+#include "backends/openmp/sliced_bodies.h"
+#include "integrators/integrators.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+
+/// The same springs between nodes numbered at random, as a mesher might number them.
+std::vector<Spring> shuffled(std::vector<Spring> springs, std::size_t nodes) {
+  std::vector<std::uint32_t> number(nodes);
+  std::iota(number.begin(), number.end(), 0U);
+  std::shuffle(number.begin(), number.end(), std::mt19937(7));
+  for (Spring& spring : springs) {
+    spring.first = number[spring.first];
+    spring.second = number[spring.second];
+  }
+  return springs;
+}
+
+/// Largest distance between the two ends of a spring, by their places in the order.
+std::uint32_t bandwidth(const std::vector<Spring>& springs, const std::vector<std::uint32_t>& order) {
+  std::vector<std::uint32_t> place(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  std::uint32_t largest = 0;
+  for (const Spring& spring : springs)
+    largest = std::max(largest, std::max(place[spring.first], place[spring.second]) -
+                                    std::min(place[spring.first], place[spring.second]));
+  return largest;
+}
+
+bool is_permutation(std::vector<std::uint32_t> order, std::size_t nodes) {
+  std::sort(order.begin(), order.end());
+  for (std::uint32_t i = 0; i < order.size(); ++i)
+    if (order[i] != i) return false;
+  return order.size() == nodes;
+}
+
+TEST(ReverseCuthillMckee, ShrinksTheBandwidthOfABodyToAboutALayerOfNodes) {
+  const System system = solid_block(6, 6, 20);
+  const std::vector<Spring> springs = shuffled(system.springs, system.nodes());
+  std::vector<std::uint32_t> as_numbered(system.nodes());
+  std::iota(as_numbered.begin(), as_numbered.end(), 0U);
+  const auto order = reverse_cuthill_mckee(system.nodes(), springs);
+  ASSERT_TRUE(is_permutation(order, system.nodes()));
+  EXPECT_GT(bandwidth(springs, as_numbered), 600U);
+  EXPECT_LT(bandwidth(springs, order), 3U * 6 * 6);
+}
+
+TEST(ReverseCuthillMckee, PutsTheNodesOfAChainInARow) {
+  constexpr std::uint32_t nodes = 50;
+  std::vector<Spring> chain;
+  for (std::uint32_t i = 0; i + 1 < nodes; ++i) chain.push_back({i, i + 1, 1, 0});
+  chain = shuffled(chain, nodes);
+  const auto order = reverse_cuthill_mckee(nodes, chain);
+  ASSERT_TRUE(is_permutation(order, nodes));
+  EXPECT_EQ(bandwidth(chain, order), 1U);
+}
+
+TEST(ReverseCuthillMckee, KeepsBodiesOneAfterTheOtherAndLosesNoLoneNode) {
+  const System system = two_solid_blocks();
+  const std::size_t first = 4 * 5 * 3;
+  const auto order = reverse_cuthill_mckee(system.nodes() + 1, system.springs);
+  ASSERT_TRUE(is_permutation(order, system.nodes() + 1));
+  EXPECT_TRUE(
+      std::all_of(order.begin(), order.begin() + first, [](std::uint32_t node) { return node < 60; }));
+  EXPECT_EQ(order.back(), system.nodes());
+  EXPECT_TRUE(reverse_cuthill_mckee(0, {}).empty());
+}
+
+/// Bodies of many shapes: among them less than a slice, one node short of a slice, several windows.
+std::vector<System> bodies() {
+  std::vector<System> systems{solid_block(2, 2, 2), solid_block(3, 4, 5), solid_block(3, 3, 7),
+                              solid_block(9, 9, 9), two_solid_blocks()};
+  systems.push_back(solid_block(3, 3, 3));  // with a node that hangs on nothing, and pins
+  System& lone = systems.back();
+  lone.start.position.push_back({1, 1, 1});
+  lone.start.velocity.push_back({});
+  lone.node_mass.push_back(0.001);
+  lone.pins = {0, 13, 26};
+  return systems;
+}
+
+class SlicedGraphOfLanes : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Widths, SlicedGraphOfLanes, testing::Values(1, 4, 8, 16, 64));
+
+TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThatEnd) {
+  for (const System& system : bodies()) {
+    const SlicedGraph graph(system, GetParam());
+    ASSERT_EQ(graph.nodes(), system.nodes());
+    std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
+    for (const Spring& spring : system.springs)
+      for (const auto& [node, other] :
+           {std::pair{spring.first, spring.second}, {spring.second, spring.first}})
+        expected[{node, other}] =
+            static_cast<float>(system.materials[spring.kind].stiffness *
+                               static_cast<double>(spring.rest_length) / system.node_mass[node]);
+    for (std::size_t slice = 0; slice < graph.slices(); ++slice)
+      for (std::size_t lane = 0; lane < graph.lanes; ++lane) {
+        const std::size_t place = slice * graph.lanes + lane;
+        std::uint32_t last = 0;
+        for (std::size_t e = graph.first_entry[slice]; e < graph.first_entry[slice + 1]; ++e) {
+          const std::size_t element = e * graph.lanes + lane;
+          if (graph.stiffness_rest[element] < 0) continue;
+          ASSERT_LT(graph.neighbour[element], graph.nodes());
+          ASSERT_NE(graph.scene_node[place], SlicedGraph::no_node);
+          const std::pair spring{graph.scene_node[place], graph.scene_node[graph.neighbour[element]]};
+          EXPECT_TRUE(found.emplace(spring, graph.stiffness_rest[element]).second)
+              << "a spring appears twice";
+          EXPECT_GE(graph.neighbour[element], last) << "the order of sums is that of the numbers";
+          last = graph.neighbour[element];
+        }
+      }
+    EXPECT_EQ(found, expected);
+    for (const Spring& spring : system.springs)
+      for (const std::uint32_t node : {spring.first, spring.second}) {
+        const SpringMaterial& material = system.materials[spring.kind];
+        EXPECT_EQ(graph.stiffness[graph.place[node]],
+                  static_cast<float>(material.stiffness / system.node_mass[node]));
+        EXPECT_EQ(graph.damping[graph.place[node]],
+                  static_cast<float>(material.damping / system.node_mass[node]));
+      }
+  }
+}
+
+TEST_P(SlicedGraphOfLanes, FillsUpSlicesWithWhatFeelsNothingAndDoesNotMove) {
+  for (const System& system : bodies()) {
+    const SlicedGraph graph(system, GetParam());
+    EXPECT_EQ(graph.places(), graph.slices() * graph.lanes);
+    EXPECT_LT(graph.places() - graph.nodes(), graph.lanes);
+    std::vector<std::size_t> degree(graph.places(), 0);
+    for (std::size_t slice = 0; slice < graph.slices(); ++slice) {
+      std::size_t largest = 0;
+      for (std::size_t lane = 0; lane < graph.lanes; ++lane) {
+        const std::size_t place = slice * graph.lanes + lane;
+        bool empty = false;
+        for (std::size_t e = graph.first_entry[slice]; e < graph.first_entry[slice + 1]; ++e) {
+          const std::size_t element = e * graph.lanes + lane;
+          if (graph.stiffness_rest[element] < 0) {
+            empty = true;
+            EXPECT_EQ(graph.stiffness_rest[element], SlicedGraph::empty_entry);
+            EXPECT_EQ(graph.neighbour[element], place);
+          } else {
+            EXPECT_FALSE(empty) << "empty entries come last";
+            ++degree[place];
+          }
+        }
+        largest = std::max(largest, degree[place]);
+      }
+      EXPECT_EQ(largest, graph.first_entry[slice + 1] - graph.first_entry[slice]) << "no entry for nobody";
+    }
+    std::vector<std::uint32_t> held(graph.places(), 0);
+    for (const std::uint32_t pin : system.pins) held[graph.place[pin]] = 1;
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t place = 0; place < graph.places(); ++place) {
+      if (graph.scene_node[place] != SlicedGraph::no_node) {
+        nodes.push_back(graph.scene_node[place]);
+        EXPECT_EQ(graph.place[graph.scene_node[place]], place);
+        continue;
+      }
+      EXPECT_GE(place, graph.nodes());
+      EXPECT_EQ(degree[place], 0U);
+      held[place] = 1;
+    }
+    EXPECT_TRUE(is_permutation(nodes, system.nodes()));
+    EXPECT_EQ(graph.held, held);
+  }
+}
+
+TEST(SlicedGraph, HasFewEmptyEntriesInABody) {
+  const System system = solid_block(9, 9, 9);
+  const SlicedGraph graph(system, 16);
+  EXPECT_LT(static_cast<double>(graph.entries() * graph.lanes),
+            1.12 * 2 * static_cast<double>(system.springs.size()));
+}
+
+TEST(SlicedGraph, RefusesSpringsOfUnlikeMaterialsInOneNode) {
+  System system = solid_block(2, 2, 2);
+  system.materials.push_back({100, 0});
+  system.springs.back().kind = 1;
+  try {
+    const SlicedGraph graph(system, 8);
+    FAIL() << "it was taken";
+  } catch (const Unsupported& refusal) {
+    EXPECT_THAT(refusal.what(), HasSubstr("springs of different materials meet in node "));
+  }
+}
+
+TEST(SlicedBodies, GiveEverySliceToOneLotInFairShares) {
+  const System system = solid_block(9, 9, 9);
+  for (const std::size_t threads : {1U, 2U, 3U, 7U, 46U, 1000U}) {
+    const SlicedBodies bodies(system, integrators[0], 1e-4, 16, threads);
+    ASSERT_EQ(bodies.threads, std::min(threads, bodies.slices()));
+    ASSERT_EQ(bodies.lots.size(), std::min(4 * threads, bodies.slices()));
+    std::size_t next = 0;
+    for (const SlicedBodies::Lot& lot : bodies.lots) {
+      EXPECT_EQ(lot.begin, next);
+      next = lot.end;
+      if (threads > 2) continue;  // a slice more or less is then a large share
+      const auto entries = static_cast<double>(bodies.first_entry[lot.end] - bodies.first_entry[lot.begin]);
+      EXPECT_NEAR(
+          entries * static_cast<double>(bodies.lots.size()) / static_cast<double>(bodies.first_entry.back()),
+          1, 0.25);
+    }
+    EXPECT_EQ(next, bodies.slices());
+  }
+}
+
+}  // namespace
+}  // namespace mssim

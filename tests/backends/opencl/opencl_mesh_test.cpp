@@ -1,0 +1,215 @@
+// Tetrahedral bodies on the OpenCL backends, in every width, against the double-precision reference.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "backends/layouts/packed_springs.h"
+#include "backends/spring_list/serial.h"
+#include "bench/verification/verification.h"
+#include "integrators/integrators.h"
+#include "tests/support/opencl_ways.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double dt_s = 1e-4;
+
+class EachWidthAndIntegrator : public testing::TestWithParam<std::tuple<bool, int, Integrator>> {
+ protected:
+  const Integrator& integrator() const { return *find_integrator(std::get<2>(GetParam()).name); }
+  std::unique_ptr<Backend> make(const System& system) const {
+    return OpenclWay{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator(), dt_s);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Tables, EachWidthAndIntegrator,
+                         testing::Combine(testing::Bool(), testing::ValuesIn(opencl_lanes),
+                                          testing::ValuesIn(integrators)),
+                         [](const auto& test) {
+                           std::string name = std::string(std::get<0>(test.param) ? "hybrid" : "opencl") +
+                                              "_" + std::to_string(std::get<1>(test.param)) + "_lanes_" +
+                                              std::string(std::get<2>(test.param).name);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST_P(EachWidthAndIntegrator, AgreesWithTheReferenceOnBodiesOfAnySize) {
+  // One tetrahedral cube, fewer nodes than lanes, sizes that no number of lanes divides, two bodies in one.
+  for (const System& system : {solid_block(2, 2, 2), solid_block(2, 3, 2), solid_block(3, 4, 5),
+                               solid_block(7, 5, 6), two_solid_blocks()}) {
+    const Reference reference = run_reference(system, integrator(), dt_s);
+    ASSERT_FALSE(reference.failure) << *reference.failure;
+    ASSERT_EQ(reference.steps, verification_steps);
+    const auto simulation = make(system);
+    const Verification verification = verify(*simulation, system, reference, dt_s);
+    EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
+  }
+}
+
+TEST_P(EachWidthAndIntegrator, HoldsPinsExactlyAndMovesTheirNeighboursLikeTheReference) {
+  System system = solid_block(5, 4, 6);
+  const auto last = static_cast<std::uint32_t>(system.nodes() - 1);
+  system.pins = {0, 1, 17, 50, last};
+  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
+  const Reference reference = run_reference(system, integrator(), dt_s);
+  ASSERT_FALSE(reference.failure) << *reference.failure;
+  const auto simulation = make(system);
+  const Verification verification = verify(*simulation, system, reference, dt_s);
+  EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
+  const State state = simulation->state();
+  for (const std::uint32_t pin : system.pins) {
+    EXPECT_EQ(state.position[pin], system.start.position[pin]) << pin;
+    EXPECT_EQ(state.velocity[pin], Vec3d{}) << pin;
+  }
+}
+
+TEST_P(EachWidthAndIntegrator, BouncesOffTheFloorLikeTheReference) {
+  // Flat on the floor and slow enough that, in any precision, the same nodes land in the same step.
+  System system = solid_block(4, 3, 5, 0);
+  for (Vec3d& x : system.start.position) x.y = std::max(x.y, 0.0) + (x.y < 0.012 ? -1e-3 : 0);
+  for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
+  round_to_single(system.start);
+  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto simulation = make(system);
+  reference->step(1);
+  simulation->step(1);
+  const State expected = reference->state(), state = simulation->state();
+  int landed = 0;
+  for (std::size_t node = 0; node < system.nodes(); ++node) {
+    if (expected.position[node].y == 0) {
+      ++landed;
+      EXPECT_EQ(state.position[node].y, 0);
+      EXPECT_GT(state.velocity[node].y, 0);
+    }
+    EXPECT_NEAR(state.velocity[node].x, expected.velocity[node].x, 1e-4) << node;
+    EXPECT_NEAR(state.velocity[node].y, expected.velocity[node].y, 1e-4) << node;
+    EXPECT_NEAR(state.velocity[node].z, expected.velocity[node].z, 1e-4) << node;
+    EXPECT_NEAR(state.position[node].y, expected.position[node].y, 1e-7) << node;
+  }
+  EXPECT_GT(landed, 4);
+}
+
+TEST_P(EachWidthAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
+  const System system = two_solid_blocks();
+  const auto simulation = make(system);
+  simulation->step(7);
+  const State once = simulation->state();
+  simulation->step(4);
+  simulation->set_state(system.start);
+  EXPECT_EQ(simulation->state().position, system.start.position);
+  EXPECT_EQ(simulation->state().velocity, system.start.velocity);
+  simulation->step(7);
+  EXPECT_EQ(simulation->state().position, once.position);
+  EXPECT_EQ(simulation->state().velocity, once.velocity);
+}
+
+/// x = travel after `steps` of free fall from rest in units of g dt^2.
+double fall(const Integrator& integrator, double steps) {
+  return integrator.name == "semi-euler" ? steps * (steps + 1) / 2 : steps * steps / 2;
+}
+
+TEST_P(EachWidthAndIntegrator, LetsNodesWithoutSpringsFall) {
+  System system = solid_block(2, 3, 3);
+  for (int i = 0; i < 3; ++i) {
+    system.start.position.push_back({1.0 + i, 0.25, 0});
+    system.start.velocity.push_back({});
+    system.node_mass.push_back(0.004);
+  }
+  system.viscous_damping = 0;
+  const auto simulation = make(system);
+  simulation->step(100);
+  const State state = simulation->state();
+  for (std::size_t node = system.nodes() - 3; node < system.nodes(); ++node) {
+    EXPECT_EQ(state.position[node].x, system.start.position[node].x);
+    EXPECT_NEAR(state.position[node].y, 0.25 - 9.81 * dt_s * dt_s * fall(integrator(), 100), 1e-6);
+    EXPECT_NEAR(state.velocity[node].y, -9.81 * dt_s * 100, 1e-5);
+  }
+}
+
+TEST_P(EachWidthAndIntegrator, StepsNodesThatHaveNoSpringsAtAll) {
+  System system = solid_block(2, 2, 2);
+  system.springs.clear();
+  system.topology = TetrahedralMesh{};
+  system.viscous_damping = 0;
+  const auto simulation = make(system);
+  simulation->step(10);
+  const State state = simulation->state();
+  for (std::size_t node = 0; node < system.nodes(); ++node)
+    EXPECT_NEAR(state.velocity[node].y, system.start.velocity[node].y - 9.81 * dt_s * 10, 1e-6);
+}
+
+TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
+  System system = solid_block(7, 5, 6);
+  system.materials.push_back({50, 0.2});
+  for (std::size_t i = 0; i < system.springs.size(); i += 3) system.springs[i].kind = 1;
+  for (const Integrator& integrator : integrators)
+    for (const int lanes : {1, most_opencl_lanes}) {
+      const Reference reference = run_reference(system, integrator, dt_s);
+      const auto hybrid = OpenclWay{true, lanes}.make(system, integrator, dt_s);
+      const Verification verification = verify(*hybrid, system, reference, dt_s);
+      EXPECT_FALSE(verification.failure) << integrator.name << ": " << verification.failure.value_or("");
+    }
+}
+
+TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
+  const System system = solid_block(7, 5, 6);
+  for (const Integrator& integrator : integrators) {
+    const auto run = [&](const OpenclWay& way) {
+      const auto backend = way.make(system, integrator, dt_s);
+      backend->step(30);
+      return backend->state().position;
+    };
+    for (const int lanes : opencl_lanes) {
+      if (lanes == 1) continue;  // a GPU's kernels sum in another order
+      for (const bool hybrid : {false, true})
+        EXPECT_EQ(run({hybrid, lanes}), run({hybrid, most_opencl_lanes})) << integrator.name << ", " << lanes;
+    }
+    EXPECT_EQ(run({true, most_opencl_lanes, 1}), run({true, most_opencl_lanes, 3})) << integrator.name;
+  }
+}
+
+TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
+  const System system = two_solid_blocks();
+  for (const Integrator& integrator : integrators)
+    for (const OpenclWay way : {OpenclWay{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
+      std::vector<State> found;
+      for (const DeviceInMemory& memory : ways_to_memory()) {
+        const auto backend = way.make_in(memory, system, integrator, dt_s);
+        backend->step(31);
+        found.push_back(backend->state());
+        EXPECT_EQ(found.back().position, found[0].position) << memory.name << ", " << integrator.name;
+        EXPECT_EQ(found.back().velocity, found[0].velocity) << memory.name << ", " << integrator.name;
+      }
+      EXPECT_NE(found[0].position, system.start.position);
+    }
+}
+
+TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
+  const System system = solid_block(7, 5, 6);
+  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  device.max_allocation_bytes = 1000;
+  for (const bool is_hybrid : {false, true}) try {
+      if (is_hybrid)
+        make_hybrid(system, integrators.front(), dt_s, device, 1, 4);
+      else
+        make_opencl(system, integrators.front(), dt_s, device, 4);
+      FAIL() << "nothing was thrown";
+    } catch (const Unsupported& error) {
+      EXPECT_THAT(error.what(), HasSubstr("needs an OpenCL buffer of"));
+      EXPECT_THAT(error.what(), HasSubstr(device.name));
+    }
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,140 @@
+// openmp's vector code for every instruction set that this processor has: from one lane to sixteen.
+#include "backends/vectors/instruction_sets.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "backends/openmp/openmp.h"
+#include "backends/openmp/step_bands.h"
+#include "backends/openmp/step_slices.h"
+#include "bench/verification/verification.h"
+#include "integrators/integrators.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+using testing::ElementsAreArray;
+
+constexpr double dt_s = 1e-4;
+
+/// Names and lanes of what this processor has, best first, asked of the compiler's library and not of
+/// Highway.
+std::vector<std::pair<std::string, std::size_t>> expected_kernels() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  std::vector<std::pair<std::string, std::size_t>> sets;
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    sets.emplace_back("AVX3", 16);
+  if (avx2) sets.emplace_back("AVX2", 8);
+  if (__builtin_cpu_supports("sse4.2")) sets.emplace_back("SSE4", 4);
+#ifdef __clang__
+  sets.emplace_back("EMU128", 4);  // vectors made up of floats, which Highway does not trust g++ with
+#else
+  sets.emplace_back("SCALAR", 1);
+#endif
+  return sets;
+#elif defined(__aarch64__)
+  return {{"NEON", 4}};
+#else
+  return {{"SCALAR", 1}};
+#endif
+}
+
+template <class Kernel>
+std::vector<std::pair<std::string, std::size_t>> names_and_lanes(const std::vector<Kernel>& kernels) {
+  std::vector<std::pair<std::string, std::size_t>> list;
+  for (const Kernel& kernel : kernels) list.emplace_back(kernel.instruction_set, kernel.lanes);
+  return list;
+}
+
+TEST(InstructionSets, AreAllThatThisProcessorHasTheBestFirst) {
+  EXPECT_THAT(names_and_lanes(band_kernels()), ElementsAreArray(expected_kernels()));
+  EXPECT_THAT(names_and_lanes(slice_kernels()), ElementsAreArray(expected_kernels()));
+}
+
+TEST(InstructionSets, AreTakenAsNamedTheBestWhereNoneIs) {
+  for (const System& system : {cloth_system(9, 11), solid_block(3, 4, 5)}) {
+    const auto sets = openmp_instruction_sets();
+    for (const std::string_view set : sets)
+      EXPECT_EQ(make_openmp(system, integrators[0], dt_s, {1, ""}, set)->device(), "cpu " + std::string(set));
+    EXPECT_EQ(make_openmp(system, integrators[0], dt_s, {1, ""})->device(),
+              "cpu " + std::string(sets.front()));
+    EXPECT_THROW(make_openmp(system, integrators[0], dt_s, {1, ""}, "MMX"), std::invalid_argument);
+  }
+}
+
+/// Cloths and bodies where layouts go wrong: fewer rows than lanes, single rows and columns, dummy rows, less
+/// than a slice, several windows.
+std::vector<System> systems_of_any_shape() {
+  std::vector<System> systems;
+  for (const auto& [rows, columns] :
+       {std::pair{50U, 50U}, {37U, 23U}, {17U, 30U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {1U, 7U}, {7U, 1U}})
+    systems.push_back(cloth_system(rows, columns));
+  for (System& system : std::vector<System>{solid_block(2, 2, 2), solid_block(3, 3, 7), solid_block(9, 9, 9),
+                                            two_solid_blocks()})
+    systems.push_back(std::move(system));
+  return systems;
+}
+
+class EachInstructionSetAndIntegrator
+    : public testing::TestWithParam<std::tuple<std::string_view, std::size_t>> {
+ protected:
+  std::string_view instruction_set() const { return std::get<0>(GetParam()); }
+  const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
+};
+INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachInstructionSetAndIntegrator,
+                         testing::Combine(testing::ValuesIn(openmp_instruction_sets()),
+                                          testing::Range(std::size_t{0}, integrators.size())),
+                         [](const auto& test) {
+                           std::string name = std::string(std::get<0>(test.param)) + "__" +
+                                              std::string(integrators[std::get<1>(test.param)].name);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST_P(EachInstructionSetAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShape) {
+  for (const System& system : systems_of_any_shape()) {
+    const Reference reference = run_reference(system, integrator(), dt_s);
+    ASSERT_EQ(reference.steps, verification_steps);
+    const auto simulation = make_openmp(system, integrator(), dt_s, {2, ""}, instruction_set());
+    const Verification verification = verify(*simulation, system, reference, dt_s);
+    EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
+  }
+}
+
+/// Whether an instruction set has multiply-adds, which round once where a product and a sum round twice.
+bool fuses(std::string_view instruction_set) {
+  return instruction_set == "AVX3" || instruction_set == "AVX2" || instruction_set == "NEON";
+}
+
+TEST_P(EachInstructionSetAndIntegrator, GivesTheSameBitsAsTheBestThatRoundsAlike) {
+  const auto sets = openmp_instruction_sets();
+  const std::string_view best = *std::find_if(sets.begin(), sets.end(), [&](std::string_view other) {
+    return fuses(other) == fuses(instruction_set());
+  });
+  for (System system : systems_of_any_shape()) {
+    system.floor.height = system.start.position[0].y - 0.001;  // it is met on the way
+    const auto expected = make_openmp(system, integrator(), dt_s, {1, ""}, best);
+    const auto simulation = make_openmp(system, integrator(), dt_s, {2, ""}, instruction_set());
+    expected->step(300);
+    simulation->step(300);
+    const State one = expected->state(), other = simulation->state();
+    EXPECT_EQ(one.position, other.position) << best << ", " << system.nodes() << " nodes";
+    EXPECT_EQ(one.velocity, other.velocity) << best << ", " << system.nodes() << " nodes";
+  }
+}
+
+}  // namespace
+}  // namespace mssim

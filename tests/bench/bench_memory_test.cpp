@@ -1,0 +1,122 @@
+#include "bench/bench_memory.h"
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "backends/accumulation/race_ways.h"
+#include "backends/backends.h"
+#include "integrators/integrators.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+/// A line of /proc/self/status, in bytes.
+double status_bytes(const std::string& wanted) {
+  std::ifstream status("/proc/self/status");
+  for (std::string key; status >> key;) {
+    double kibibytes = 0;
+    if (key == wanted + ":" && status >> kibibytes) return 1024 * kibibytes;
+    status.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  ADD_FAILURE() << "no " << wanted;
+  return 0;
+}
+
+/// Bytes that this process has more at its peak during `act` than before.
+template <class Act>
+double growth_during(Act&& act) {
+  malloc_trim(0);  // what earlier tests have left in the heap would be used first
+  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
+  const double before = status_bytes("VmRSS");
+  act();
+  return status_bytes("VmHWM") - before;
+}
+
+std::vector<BackendInfo> backends_and_ways() {
+  std::vector<BackendInfo> all(backends().begin(), backends().end());
+  for (const RaceWay& way : race_ways())
+    if (!find_backend(way.backend.name)) all.push_back(way.backend);
+  return all;
+}
+
+const ExecutionOptions two_threads{2, {}};
+constexpr double small_change = 20e6;  // of the runtimes and the heap, whatever the scene
+
+/// Expects that making a backend, a step and reading its state back take about as much as its row says.
+void expect_as_stated(const BackendInfo& backend, const MemoryUse& use, const System& system) {
+  const Integrator& rk4 = *find_integrator("rk4");        // has the most pairs
+  backend.make(system, rk4, 1e-5, two_threads)->step(1);  // what is compiled once
+  const double grown = growth_during([&] {
+    const auto simulation = backend.make(system, rk4, 1e-5, two_threads);
+    simulation->step(1);
+    EXPECT_EQ(simulation->state().position.size(), system.nodes());
+  });
+  const double state = 2 * sizeof(Vec3d) * static_cast<double>(system.nodes());
+  const double stated = use.bytes(rk4, system.nodes(), system.springs.size(), two_threads.threads) + state;
+  EXPECT_LT(grown, 1.25 * stated + small_change) << backend.name;
+  EXPECT_GT(grown, 0.75 * stated - small_change) << backend.name;
+}
+
+TEST(MemoryUse, IsWhatEveryBackendAndWayTakesForACloth) {
+  const System system = cloth_system(1000, 700);
+  for (const BackendInfo& backend : backends_and_ways())
+    expect_as_stated(backend, backend.grid_memory, system);
+}
+
+TEST(MemoryUse, IsWhatEveryBackendAndWayTakesForBodies) {
+  const System system = solid_block(60, 60, 60);
+  for (const BackendInfo& backend : backends_and_ways())
+    expect_as_stated(backend, backend.mesh_memory, system);
+}
+
+SceneJob job_of(const std::vector<std::string_view>& backend_names,
+                const std::vector<std::string_view>& integrator_names) {
+  SceneJob job;
+  for (const std::string_view name : backend_names) job.backends.push_back(find_backend(name));
+  for (const std::string_view name : integrator_names) job.integrators.push_back(find_integrator(name));
+  job.execution.threads = 2;
+  return job;
+}
+
+TEST(BenchMemory, OfOneSmallBackendIsThatOfTheReference) {
+  // System 56, reference 81, three states of 48 bytes a node; 16 bytes a spring.
+  EXPECT_EQ(bench_memory_needed(job_of({"openmp"}, {"semi-euler"}), {1000, 6000, true}),
+            1000U * (56 + 81 + 3 * 48) + 6000U * 16);
+}
+
+TEST(BenchMemory, HoldsAllCombinationsAtOnce) {
+  const SceneSize size{1'000'000, 6'000'000, true};
+  const auto needed = [&](const std::vector<std::string_view>& backend_names,
+                          const std::vector<std::string_view>& integrator_names) {
+    return static_cast<double>(bench_memory_needed(job_of(backend_names, integrator_names), size));
+  };
+  const double hybrid =
+      find_backend("hybrid")->grid_memory.bytes(*find_integrator("semi-euler"), size.nodes, size.springs, 2);
+  EXPECT_EQ(needed({"hybrid", "threads-mutex"}, {"semi-euler"}) - needed({"hybrid"}, {"semi-euler"}), 41e6);
+  EXPECT_GT(needed({"hybrid"}, {"semi-euler", "rk4"}) - needed({"hybrid"}, {"semi-euler"}), hybrid);
+}
+
+TEST(BenchMemory, OfAGarmentHoldsTheStatesOfItsReference) {
+  const SceneJob job = job_of({"openmp"}, {"semi-euler"});
+  // Both ends of 20 stretches while the seams close and of 20 when draped, 48 bytes a node each; 40 errors.
+  EXPECT_EQ(bench_memory_needed(job, {1000, 6000, false, true}),
+            bench_memory_needed(job, {1000, 6000, false, false}) + 1000U * (80 * 48 + 40 * 8));
+}
+
+TEST(BenchMemory, OfSixteenMillionNodesWithAllBackendsFitsInto24GiB) {
+  const SceneSize size{16'000'000, 95'960'002, true};
+  const std::uint64_t needed = bench_memory_needed(
+      job_of({"serial", "threads-mutex", "openmp", "opencl", "hybrid"}, {"semi-euler"}), size);
+  EXPECT_LT(needed, std::uint64_t{24} << 30);
+  EXPECT_GT(needed, std::uint64_t{10} << 30);  // 12.1 GB at the peak were measured
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,248 @@
+#include "bench/bench_scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "backends/backends.h"
+#include "integrators/integrators.h"
+#include "tests/support/cloth_system.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+
+/// A backend that is right until its state has been set a number of times, as a data race may be.
+class RightForAWhile final : public Backend {
+ public:
+  explicit RightForAWhile(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {}
+  void set_state(const State& state) override {
+    ++sets_;
+    serial_->set_state(state);
+  }
+  void step(int count) override { serial_->step(count); }
+  State state() const override {
+    State state = serial_->state();
+    if (sets_ > 12) state.position[3].y = std::numeric_limits<double>::quiet_NaN();
+    return state;
+  }
+  std::string device() const override { return "made up"; }
+  int threads() const override { return 1; }
+
+ private:
+  std::unique_ptr<Backend> serial_;
+  int sets_ = 0;
+};
+
+std::unique_ptr<Backend> right_for_a_while(const System& system, const Integrator& integrator, double dt_s,
+                                           const ExecutionOptions& options) {
+  return std::make_unique<RightForAWhile>(find_backend("serial")->make(system, integrator, dt_s, options));
+}
+constexpr BackendInfo flaky{"flaky", "", "fails in the end", false, right_for_a_while, {}, {}};
+
+/// What a row looks like that a verification has found wrong.
+void fail_row(ResultRow& row, const std::string& status) {
+  row.status = status;
+  row.verified = false;
+}
+
+/// A right one that takes two processors whatever it was asked for, as a device that cannot be divided.
+class OnTwoProcessors final : public Backend {
+ public:
+  explicit OnTwoProcessors(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {}
+  void set_state(const State& state) override { serial_->set_state(state); }
+  void step(int count) override { serial_->step(count); }
+  State state() const override { return serial_->state(); }
+  std::string device() const override { return "made up"; }
+  int threads() const override { return 2; }
+
+ private:
+  std::unique_ptr<Backend> serial_;
+};
+
+std::unique_ptr<Backend> on_two_processors(const System& system, const Integrator& integrator, double dt_s,
+                                           const ExecutionOptions& options) {
+  return std::make_unique<OnTwoProcessors>(find_backend("serial")->make(system, integrator, dt_s, options));
+}
+constexpr BackendInfo undividable{"undividable", "", "takes two", false, on_two_processors, {}, {}};
+
+class BenchScene : public testing::Test {
+ protected:
+  BenchScene() {
+    job_.name = "test";
+    job_.system = &system_;
+    job_.dt_s = 1e-4;
+    job_.backends = {find_backend("serial"), find_backend("openmp")};
+    job_.integrators = {find_integrator("semi-euler"), find_integrator("rk4")};
+    job_.execution.threads = 1;
+    job_.rounds = 3;
+    job_.sample_seconds = 1e-4;
+  }
+  std::vector<ResultRow> run() {
+    return bench_scene(job_,
+                       {.progress =
+                            [](const std::string&, double done) {
+                              EXPECT_GE(done, 0);
+                              EXPECT_LE(done, 1);
+                            },
+                        .after_round = [&](const std::vector<ResultRow>& rows) { kept_.push_back(rows); },
+                        .stop = [&] { return asked_++ >= stop_after_; }});
+  }
+
+  System system_ = cloth_system(9, 11);
+  SceneJob job_;
+  std::vector<std::vector<ResultRow>> kept_;  ///< after every round
+  int asked_ = 0;
+  int stop_after_ = std::numeric_limits<int>::max();
+};
+
+TEST_F(BenchScene, GivesARowForEveryCombinationAndKeepsEveryRound) {
+  const std::vector<ResultRow> rows = run();
+  ASSERT_EQ(rows.size(), 4U);
+  ASSERT_EQ(kept_.size(), 3U);
+  for (const ResultRow& row : rows) {
+    EXPECT_EQ(row.status, "ok");
+    EXPECT_TRUE(row.verified);
+    EXPECT_EQ(row.rounds, 3);
+    EXPECT_GE(row.warm_up_trials, 3);
+    EXPECT_GT(row.ms_per_step, 0);
+    EXPECT_GT(row.roofline_fraction, 0);
+    EXPECT_GT(row.speedup_vs_serial, 0);
+  }
+  EXPECT_EQ(rows[0].backend, "serial");
+  EXPECT_EQ(rows[0].speedup_vs_serial, 1);
+  EXPECT_EQ(rows[3].integrator, "rk4");
+  for (std::size_t round = 0; round < kept_.size(); ++round)
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      ASSERT_EQ(kept_[round][i].samples_ms.size(), round + 1);
+      EXPECT_EQ(kept_[round][i].samples_ms[round], rows[i].samples_ms[round]);
+    }
+}
+
+TEST_F(BenchScene, SaysOfARowThatItTookMoreProcessorsThanWereAskedFor) {
+  job_.backends = {find_backend("openmp"), &undividable};
+  job_.note = "another mesh";
+  const std::vector<ResultRow> rows = run();
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].threads, 1);
+  EXPECT_EQ(rows[0].note, "another mesh");
+  EXPECT_EQ(rows[1].threads, 2);
+  EXPECT_EQ(rows[1].note,
+            "another mesh; on 2 processors instead of 1: the driver of made up cannot divide it");
+  EXPECT_GT(rows[1].roofline_fraction, 0);  // of what two processors can do
+  job_.execution.threads = 2;
+  EXPECT_EQ(run()[1].note, "another mesh");
+}
+
+TEST_F(BenchScene, GoesOnWithTheRoundsThatAllCombinationsHave) {
+  const std::vector<ResultRow> first = run();
+  job_.earlier = first;
+  job_.earlier[2].samples_ms.resize(2);  // killed between two files
+  job_.earlier[2].sample_steps.resize(2);
+  job_.rounds = 5;
+  kept_.clear();
+  const std::vector<ResultRow> rows = run();
+  EXPECT_EQ(kept_.size(), 3U);  // rounds 3, 4 and 5
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(rows[i].samples_ms.size(), 5U);
+    ASSERT_EQ(rows[i].sample_steps.size(), 5U);
+    EXPECT_EQ(rows[i].samples_ms[0], first[i].samples_ms[0]);
+    EXPECT_EQ(rows[i].samples_ms[1], first[i].samples_ms[1]);
+    EXPECT_EQ(rows[i].rounds, 5);
+  }
+}
+
+TEST_F(BenchScene, StopsWithTheRoundsThatAreComplete) {
+  run();
+  const int asked_in_all = std::exchange(asked_, 0);
+  kept_.clear();
+  stop_after_ = asked_in_all - 2;  // in the midst of the last round
+  const std::vector<ResultRow> rows = run();
+  EXPECT_EQ(kept_.size(), 2U);
+  ASSERT_EQ(rows.size(), 4U);
+  for (const ResultRow& row : rows) EXPECT_EQ(row.samples_ms.size(), 2U);
+}
+
+TEST_F(BenchScene, GivesNoRowsWhenItIsStoppedBeforeARoundIsComplete) {
+  for (stop_after_ = 0; stop_after_ < 9; ++stop_after_) {
+    asked_ = 0;
+    EXPECT_TRUE(run().empty()) << stop_after_;
+  }
+  EXPECT_TRUE(kept_.empty());
+}
+
+TEST_F(BenchScene, TakesAsManyRoundsAsFitBeforeADeadlineAndAtLeastOne) {
+  job_.rounds = 100'000;
+  job_.deadline = std::chrono::steady_clock::now();
+  EXPECT_EQ(run().front().rounds, 1);
+  job_.deadline = std::chrono::steady_clock::now() + std::chrono::seconds(4);
+  EXPECT_GT(run().front().rounds, 3);
+}
+
+TEST_F(BenchScene, OnlySamplesWhatAnEarlierProcessHasVerified) {
+  job_.verified = run();
+  job_.verified->at(0).position_error = 1e-7;  // not what a verification would find
+  job_.verified->at(1).verified = false;
+  fail_row(job_.verified->at(2), "failed: not near enough");
+  kept_.clear();
+  const std::vector<ResultRow> rows = run();
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].status, "ok");
+  EXPECT_TRUE(rows[0].verified);
+  EXPECT_EQ(rows[0].position_error, 1e-7);
+  EXPECT_EQ(rows[0].note, "verified by an earlier process");
+  EXPECT_EQ(rows[0].rounds, 3);
+  EXPECT_EQ(rows[0].roofline_fraction, std::nullopt);
+  EXPECT_EQ(rows[1].status, "failed: not verified");
+  EXPECT_EQ(rows[2].status, "failed: not near enough");
+  for (const std::size_t wrong : {1UL, 2UL}) {
+    EXPECT_FALSE(rows[wrong].verified);
+    EXPECT_EQ(rows[wrong].rounds, 0);
+  }
+  EXPECT_EQ(rows[3].status, "ok");
+  EXPECT_EQ(kept_.size(), 3U);
+}
+
+TEST_F(BenchScene, DoesNotTakeOverWhatWasVerifiedOfAnotherSystemOrPlace) {
+  job_.integrators = {find_integrator("semi-euler")};
+  job_.backends = {find_backend("serial")};
+  const std::vector<ResultRow> verified = run();
+  const auto status_with = [&](auto change) {
+    job_.verified = verified;
+    change(job_.verified->front());
+    const ResultRow row = run().front();
+    EXPECT_FALSE(row.verified);
+    EXPECT_EQ(row.ms_per_step, std::nullopt);
+    return row.status;
+  };
+  EXPECT_THAT(status_with([](ResultRow& row) { row.threads = 7; }), HasSubstr("with 7 threads, and this is"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.device = "a GPU"; }),
+              HasSubstr("on a GPU with 1 thread,"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.dt_s = 0.5; }), HasSubstr("in steps of 0.5 s"));
+  EXPECT_THAT(status_with([](ResultRow& row) { ++row.nodes; }), HasSubstr("failed: verified was 100 nodes"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.springs_unique = 1; }), HasSubstr("and 1 springs"));
+  EXPECT_THAT(status_with([](ResultRow& row) { row.backend = "openmp"; }), HasSubstr("no earlier process"));
+}
+
+TEST_F(BenchScene, SaysWhatFailedInTheMidstOfTheRounds) {
+  job_.backends = {find_backend("serial"), &flaky};
+  job_.integrators = {find_integrator("semi-euler")};
+  job_.rounds = 40;
+  const std::vector<ResultRow> rows = run();
+  EXPECT_EQ(rows[0].status, "ok");
+  EXPECT_EQ(rows[0].rounds, 40);
+  EXPECT_THAT(rows[1].status, HasSubstr("failed: "));
+  EXPECT_FALSE(rows[1].verified);
+  EXPECT_EQ(rows[1].ms_per_step, std::nullopt);
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,141 @@
+#include "bench/machine/provenance.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "output/folders/provenance_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace mssim {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class MadeUpMachine : public TemporaryFolderTest {
+ protected:
+  void put_cache(int cpu, int index, const std::string& level, const std::string& type,
+                 const std::string& size, const std::string& shared) const {
+    const std::string folder =
+        "sys/devices/system/cpu/cpu" + std::to_string(cpu) + "/cache/index" + std::to_string(index) + "/";
+    put(folder + "level", level + "\n");
+    put(folder + "type", type + "\n");
+    put(folder + "size", size + "\n");
+    put(folder + "shared_cpu_list", shared + "\n");
+  }
+};
+
+TEST_F(MadeUpMachine, IsReadFromItsFiles) {
+  put("proc/cpuinfo", "processor\t: 0\nmodel name\t: A Processor (R) 9000\ncpu MHz\t\t: 3400.125\n");
+  put("proc/meminfo", "MemTotal:       16384 kB\nMemFree: 1 kB\n");
+  put("proc/loadavg", "0.50 1.25 2.00 1/100 4242\n");
+  put("etc/os-release", "ID=x\nPRETTY_NAME=\"Some Linux 12 (name)\"\n");
+  put("sys/devices/system/cpu/online", "0-2,5\n");
+  put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance\n");
+  for (const int cpu : {0, 1, 2, 5}) {
+    put_cache(cpu, 0, "1", "Data", "48K", std::to_string(cpu));
+    put_cache(cpu, 1, "1", "Instruction", "32K", std::to_string(cpu));
+    put_cache(cpu, 2, "3", "Unified", "32M", "0-2,5");
+  }
+  const Machine machine = read_machine(folder());
+  EXPECT_EQ(machine.cpu_model, "A Processor (R) 9000");
+  EXPECT_EQ(machine.cpu_mhz, 3400.125);
+  EXPECT_EQ(machine.logical_cpus, 4);
+  EXPECT_EQ(machine.memory_bytes, 16U << 20);
+  EXPECT_THAT(machine.load_average, ElementsAre(0.5, 1.25, 2.0));
+  EXPECT_EQ(machine.operating_system, "Some Linux 12 (name)");
+  EXPECT_EQ(machine.governor, "performance");
+  ASSERT_EQ(machine.caches.size(), 3U);
+  EXPECT_EQ(machine.caches[0].type, "Data");
+  EXPECT_EQ(machine.caches[0].bytes, 48U << 10);
+  EXPECT_EQ(machine.caches[0].count, 4);
+  EXPECT_EQ(machine.caches[0].sharing, 1);
+  EXPECT_EQ(machine.caches[2].level, 3);
+  EXPECT_EQ(machine.caches[2].bytes, 32U << 20);
+  EXPECT_EQ(machine.caches[2].count, 1);
+  EXPECT_EQ(machine.caches[2].sharing, 4);
+}
+
+TEST_F(MadeUpMachine, MayHideEverything) {
+  const Machine machine = read_machine(folder() / "nothing");
+  EXPECT_EQ(machine.cpu_model, "");
+  EXPECT_EQ(machine.governor, std::nullopt);
+  EXPECT_TRUE(machine.caches.empty());
+  EXPECT_TRUE(machine.load_average.empty());
+  EXPECT_EQ(machine.memory_bytes, 0U);
+}
+
+TEST_F(MadeUpMachine, OfArmIsNamedByItsNumbers) {
+  put("proc/cpuinfo", "processor : 0\nCPU implementer\t: 0x41\nCPU part\t: 0xd0c\n");
+  EXPECT_EQ(read_machine(folder()).cpu_model, "implementer 0x41 part 0xd0c");
+}
+
+void expect_finite_numbers(const nlohmann::json& value) {
+  if (value.is_number_float()) {
+    EXPECT_TRUE(std::isfinite(value.get<double>()));
+  }
+  if (value.is_structured()) {
+    for (const auto& child : value) expect_finite_numbers(child);
+  }
+}
+
+TEST(Provenance, TellsWhatRanWhereAndHow) {
+  setenv("OMP_PLACES", "cores", 1);
+  Provenance provenance = gather_provenance({"/opt/x/bin/mssim", "bench", "--threads", "2"}, 2);
+  unsetenv("OMP_PLACES");
+  add_scene(provenance, "cloth2500", "foobar");
+  provenance.opencl_devices = {"platform / device / driver"};
+  provenance.tetgen = "1.5";
+  const nlohmann::json json = nlohmann::json::parse(to_json(provenance).dump());
+  EXPECT_THAT(json["command_line"], ElementsAre("mssim", "bench", "--threads", "2"));
+  EXPECT_EQ(json["build"]["commit"], build_info().commit);
+  EXPECT_EQ(json["build"]["compiler"], build_info().compiler);
+  EXPECT_EQ(json["program_fnv1a_64"].get<std::string>().size(), 16U);
+  EXPECT_EQ(json["threads"]["asked_for"], 2);
+  EXPECT_EQ(json["threads"]["environment"]["OMP_PLACES"], "cores");
+  EXPECT_GE(json["threads"]["allowed_cpus"].size(), 1U);
+  EXPECT_GE(json["cpu"]["logical_cpus"], 1);
+  EXPECT_GT(json["memory_bytes"], 1 << 20);
+  EXPECT_EQ(json["scenes_fnv1a_64"]["cloth2500"], "85944171f73967e8");
+  EXPECT_EQ(json["opencl_devices"][0], "platform / device / driver");
+  EXPECT_EQ(json["tetgen"], "1.5");
+  EXPECT_THAT(json["started_utc"].get<std::string>(),
+              testing::MatchesRegex("20[0-9]{2}-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"));
+  expect_finite_numbers(json);
+}
+
+TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
+  setenv("MSSIM_TEST_TOKEN", "hush-hush", 1);
+  const char* variable = std::getenv("HOME");
+  const std::string home = variable ? variable : "";
+  setenv("HOME", "/home/jane_doe", 1);
+  const std::string json =
+      to_json(gather_provenance({"/home/jane_doe/mssim/bin/mssim", "bench", "--out=/home/jane_doe/results",
+                                 "/home/jane_doe2", "/home/jane_doe"},
+                                1))
+          .dump();
+  setenv("HOME", home.c_str(), 1);
+  unsetenv("MSSIM_TEST_TOKEN");
+  EXPECT_THAT(json, Not(HasSubstr("hush-hush")));
+  EXPECT_THAT(json, HasSubstr(R"(["mssim","bench","--out=~/results","/home/jane_doe2","~"])"));
+}
+
+TEST(Provenance, HoldsTheseFactsAndNoOthers) {
+  std::vector<std::string> facts;
+  const nlohmann::json json = to_json(gather_provenance({"mssim"}, 1));
+  for (const auto& [name, value] : json.items()) facts.push_back(name);
+  EXPECT_THAT(facts,
+              ElementsAre("build", "command_line", "cpu", "device_memory", "earlier_starts_utc", "kernel",
+                          "load_average", "memory_bytes", "noise", "opencl_devices", "operating_system",
+                          "program_fnv1a_64", "scenes_fnv1a_64", "started_utc", "tetgen", "threads"));
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,189 @@
+#include "bench/results/comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "output/tables/comparison_table.h"
+#include "tests/support/result_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double threshold = 0.05;
+
+/// A row of `count` samples about `ms`, spread evenly over plus and minus `spread`.
+ResultRow row_of(const std::string& backend, double ms, double spread = 0.02, int count = 15) {
+  ResultRow row = measured_row(backend, ms, std::nullopt);
+  row.samples_ms.clear();
+  for (int i = 0; i < count; ++i) row.samples_ms.push_back(ms * (1 + spread * (2. * i / (count - 1) - 1)));
+  row.sample_steps.assign(row.samples_ms.size(), 10);
+  return row;
+}
+
+ComparedRow compared(const ResultRow& base, const ResultRow& next) {
+  const RunComparison comparison = compare(std::vector{base}, std::vector{next}, threshold);
+  EXPECT_EQ(comparison.rows.size(), 1U);
+  return comparison.rows.at(0);
+}
+
+TEST(Verdict, OfATimeThatRoseBeyondTheThresholdIsSlower) {
+  const ComparedRow row = compared(row_of("openmp", 1), row_of("openmp", 1.1));
+  EXPECT_EQ(row.verdict, Verdict::slower);
+  EXPECT_NEAR(row.ratio->ratio, 1.1, 0.01);
+  EXPECT_LT(row.ratio->p, significance);
+  EXPECT_EQ(row.samples_needed, std::nullopt);
+}
+
+TEST(Verdict, OfATimeThatFellBeyondTheThresholdIsFaster) {
+  EXPECT_EQ(compared(row_of("openmp", 1.1), row_of("openmp", 1)).verdict, Verdict::faster);
+}
+
+TEST(Verdict, OfASmallChangeIsSameThoughItIsSignificant) {
+  const ComparedRow row = compared(row_of("openmp", 1, 0.01), row_of("openmp", 1.03, 0.01));
+  EXPECT_LT(row.ratio->p, significance);
+  EXPECT_EQ(row.verdict, Verdict::same);
+}
+
+TEST(Verdict, OfARunWithItselfIsSame) {
+  EXPECT_EQ(compared(row_of("openmp", 1), row_of("openmp", 1)).verdict, Verdict::same);
+}
+
+TEST(Verdict, OfNoisyTimesIsUndecidedAndSaysHowManyWouldDo) {
+  const ComparedRow row = compared(row_of("openmp", 1, 0.3), row_of("openmp", 1.01, 0.3));
+  EXPECT_EQ(row.verdict, Verdict::undecided);
+  ASSERT_TRUE(row.samples_needed);
+  EXPECT_GT(*row.samples_needed, 50U);
+  EXPECT_LT(*row.samples_needed, 500U);
+}
+
+TEST(Verdict, OfAChangeAtTheThresholdItselfWouldNeedManySamples) {
+  const ComparedRow row = compared(row_of("openmp", 1, 0.3), row_of("openmp", 1.0499, 0.3));
+  EXPECT_EQ(row.verdict, Verdict::undecided);
+  EXPECT_EQ(row.samples_needed, std::nullopt);
+}
+
+TEST(Verdict, OfFewSamplesIsUndecidedHoweverFarApart) {
+  const ComparedRow row = compared(row_of("openmp", 1, 0.01, 3), row_of("openmp", 2, 0.01, 3));
+  EXPECT_EQ(row.verdict, Verdict::undecided);
+  EXPECT_EQ(row.samples_needed, 5U);
+  EXPECT_EQ(compared(row_of("openmp", 1, 0.01, 5), row_of("openmp", 2, 0.01, 5)).verdict, Verdict::slower);
+  // Three samples that agree have no 95 % interval, so they are not the same either.
+  EXPECT_EQ(compared(row_of("openmp", 1, 0, 3), row_of("openmp", 1, 0, 3)).verdict, Verdict::undecided);
+}
+
+TEST(Verdict, WithAsManySamplesAsAskedForIsUsuallyReached) {
+  // 100 pairs of lognormal samples of 8 that differ by nothing or by 12 %, each then repeated with as many as
+  // it asked for: most must be decided, and rightly.
+  std::mt19937_64 random(3);
+  int asked = 0, decided = 0, wrong = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const double factor = trial % 2 == 0 ? 1 : 1.12;
+    std::lognormal_distribution<double> draw(0, 0.08);
+    const auto row_with = [&](std::size_t count, double ms) {
+      ResultRow row = row_of("openmp", ms);
+      row.samples_ms.assign(count, 0);
+      for (double& sample : row.samples_ms) sample = ms * draw(random);
+      return row;
+    };
+    const ComparedRow first = compared(row_with(8, 1), row_with(8, factor));
+    if (!first.samples_needed) continue;
+    ++asked;
+    const ComparedRow again =
+        compared(row_with(*first.samples_needed, 1), row_with(*first.samples_needed, factor));
+    decided += again.verdict != Verdict::undecided;
+    wrong += again.verdict != Verdict::undecided &&
+             again.verdict != (factor > 1 ? Verdict::slower : Verdict::same);
+  }
+  EXPECT_GE(asked, 40);
+  EXPECT_GE(decided, asked / 2);
+  EXPECT_LE(wrong, 5);
+}
+
+TEST(RunComparison, CallsARowLostThatHasNoTimeAnyMore) {
+  const ComparedRow failed = compared(row_of("openmp", 1), failed_row("openmp", "failed: step 3"));
+  EXPECT_EQ(failed.verdict, Verdict::lost);
+  EXPECT_EQ(failed.reason, "failed: step 3");
+  EXPECT_EQ(failed.new_ms, std::nullopt);
+  ResultRow unverified = row_of("openmp", 1);
+  unverified.verified = false;
+  EXPECT_EQ(compared(row_of("openmp", 1), unverified).reason, "failed: not verified");
+}
+
+TEST(RunComparison, NamesWhatItLeavesOut) {
+  const std::vector<ResultRow> base{row_of("openmp", 1), row_of("serial", 1),
+                                    failed_row("opencl", "unavailable: x")};
+  const std::vector<ResultRow> next{row_of("hybrid", 1), row_of("openmp", 1), row_of("opencl", 1)};
+  const RunComparison comparison = compare(base, next, threshold);
+  ASSERT_EQ(comparison.rows.size(), 1U);
+  EXPECT_EQ(comparison.rows[0].backend, "openmp");
+  EXPECT_THAT(comparison.only_base, ElementsAre("cloth2500, serial, semi-euler"));
+  EXPECT_THAT(comparison.only_new, ElementsAre("cloth2500, hybrid, semi-euler"));
+  EXPECT_THAT(comparison.untimed, ElementsAre("cloth2500, opencl, semi-euler"));
+}
+
+TEST(RunComparison, MeansRatiosOverAllAndByBackend) {
+  std::vector<ResultRow> base{row_of("openmp", 1), row_of("openmp", 1), row_of("serial", 1),
+                              row_of("opencl", 1)};
+  base[1].integrator = "rk4";
+  std::vector<ResultRow> next{row_of("openmp", 2), row_of("openmp", 8), row_of("serial", 0.5),
+                              failed_row("opencl", "failed: x")};
+  next[1].integrator = "rk4";
+  const RunComparison comparison = compare(base, next, threshold);
+  ASSERT_EQ(comparison.means.size(), 3U);
+  EXPECT_EQ(comparison.means[0].backend, "");
+  EXPECT_EQ(comparison.means[0].rows, 3U);
+  EXPECT_NEAR(comparison.means[0].ratio, 2, 1e-12);
+  EXPECT_EQ(comparison.means[1].backend, "openmp");
+  EXPECT_NEAR(comparison.means[1].ratio, 4, 1e-12);
+  EXPECT_NEAR(comparison.means[2].ratio, 0.5, 1e-12);
+}
+
+TEST(RunComparison, IsARegressionWhereARowIsSlowerOrLost) {
+  const auto regression = [](const ResultRow& next) {
+    return has_regression(compare(std::vector{row_of("openmp", 1)}, std::vector{next}, threshold));
+  };
+  EXPECT_FALSE(regression(row_of("openmp", 1)));
+  EXPECT_FALSE(regression(row_of("openmp", 0.5)));
+  EXPECT_FALSE(regression(row_of("openmp", 1, 0.5)));
+  EXPECT_TRUE(regression(row_of("openmp", 2)));
+  EXPECT_TRUE(regression(failed_row("openmp", "failed: x")));
+  EXPECT_THAT(compare({}, {}, threshold).rows, IsEmpty());
+}
+
+TEST(ComparisonTable, HoldsEveryRowInEveryFormat) {
+  const std::vector<ResultRow> base{row_of("openmp", 1), row_of("serial", 1), row_of("opencl", 1),
+                                    row_of("hybrid", 1, 0.3)};
+  const std::vector<ResultRow> next{row_of("openmp", 2), row_of("serial", 1),
+                                    failed_row("opencl", "failed: a | b"), row_of("hybrid", 1.01, 0.3)};
+  const RunComparison comparison = compare(base, next, threshold);
+  const std::string table = to_text(comparison, ComparisonFormat::table);
+  EXPECT_THAT(table, testing::ContainsRegex("cloth2500  openmp   semi-euler +1 +2 +2 .*slower"));
+  EXPECT_THAT(table, testing::ContainsRegex("hybrid .*undecided  [0-9]+ samples a side would decide"));
+  EXPECT_THAT(table, testing::ContainsRegex("all +3 +1"));
+  const std::string markdown = to_text(comparison, ComparisonFormat::markdown);
+  EXPECT_THAT(markdown, HasSubstr("| cloth2500 | `openmp` | semi-euler | 1.00 | 2.00 | 2.00 | "));
+  EXPECT_THAT(markdown, HasSubstr("| **slower** |"));
+  EXPECT_THAT(markdown, HasSubstr("| – | – | – | **lost**: failed: a \\| b |"));
+  const nlohmann::json json = nlohmann::json::parse(to_text(comparison, ComparisonFormat::json));
+  EXPECT_EQ(json["regression"], true);
+  EXPECT_EQ(json["threshold"], threshold);
+  ASSERT_EQ(json["rows"].size(), 4U);
+  EXPECT_EQ(json["rows"][1]["verdict"], "same");
+  EXPECT_EQ(json["rows"][2]["verdict"], "lost");
+  EXPECT_EQ(json["rows"][2]["ratio"], nullptr);
+  EXPECT_NEAR(json["rows"][0]["ratio"].get<double>(), 2, 1e-12);
+  EXPECT_EQ(json["geometric_means"][0]["backend"], "all");
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,155 @@
+// A check that could not fail would be none: backends that are wrong on purpose must be found.
+#include "bench/verification/verification.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "backends/openmp/openmp.h"
+#include "backends/spring_list/serial.h"
+#include "bench/verification/blow_up.h"
+#include "integrators/integrators.h"
+#include "scene/scene_file.h"
+#include "tests/support/cloth_system.h"
+
+namespace mssim {
+namespace {
+
+constexpr double dt_s = 1e-4;
+
+struct Mistake {
+  std::string name;
+  std::function<void(System&)> make;
+};
+
+/// What a wrong backend might do, as a changed system that a right backend steps.
+const std::vector<Mistake> mistakes{
+    {"spring damping left out",
+     [](System& s) {
+       for (SpringMaterial& m : s.materials) m.damping = 0;
+     }},
+    {"stiffness of one kind 1 % off", [](System& s) { s.materials[shear].stiffness *= 1.01; }},
+    {"bending springs left out",
+     [](System& s) {
+       s.materials[bending] = {0, 0};
+     }},
+    {"one spring in the middle missing", [](System& s) { s.springs.erase(s.springs.begin() + 6 * 275); }},
+    {"one border spring missing", [](System& s) { s.springs.pop_back(); }},
+    {"one pin forgotten", [](System& s) { s.pins.pop_back(); }},
+    {"no gravity", [](System& s) { s.gravity = 0; }},
+    {"mass 1 % off",
+     [](System& s) {
+       for (double& mass : s.node_mass) mass *= 1.01;
+     }},
+};
+
+/// Near the origin, where positions are rounded least.
+System low_cloth() {
+  SceneSpec spec = cloth_spec(20, 25);
+  std::get<ClothSpec>(spec.body).ceiling_height_m = 0.2;
+  return build_system(spec);
+}
+
+TEST(Verification, PassesARightBackend) {
+  const System system = low_cloth();
+  const Reference reference = run_reference(system, integrators[0], dt_s);
+  const auto backend = make_serial(system, integrators[0], dt_s, {});
+  const Verification verification = verify(*backend, system, reference, dt_s);
+  EXPECT_FALSE(verification.failure) << *verification.failure;
+  EXPECT_GT(verification.position_error, 0) << "single precision cannot be exact";
+  EXPECT_LT(verification.position_error, reference.tolerance);
+}
+
+/// Expects a right backend to pass and each mistake to be found, with every integrator.
+void expect_found(const std::vector<Mistake>& all, const System& system, double step_s) {
+  for (const Integrator& integrator : integrators) {
+    const Reference reference = run_reference(system, integrator, step_s);
+    const auto verified = [&](const System& stepped) {
+      return verify(*make_serial(stepped, integrator, step_s, {}), system, reference, step_s);
+    };
+    ASSERT_FALSE(verified(system).failure) << integrator.name;
+    for (const Mistake& mistake : all) {
+      System wrong = system;
+      mistake.make(wrong);
+      const Verification verification = verified(wrong);
+      EXPECT_TRUE(verification.failure) << mistake.name << ", " << integrator.name << ": error "
+                                        << verification.position_error << " of " << reference.tolerance;
+    }
+  }
+}
+
+TEST(Verification, FindsEveryMistake) { expect_found(mistakes, low_cloth(), dt_s); }
+
+const std::vector<Mistake> body_mistakes{
+    {"spring damping left out", [](System& s) { s.materials[0].damping = 0; }},
+    {"stiffness 1 % off", [](System& s) { s.materials[0].stiffness *= 1.01; }},
+    {"one spring in the middle missing", [](System& s) { s.springs.erase(s.springs.begin() + 2000); }},
+    {"the last spring missing", [](System& s) { s.springs.pop_back(); }},
+    {"one rest length 1 % off", [](System& s) { s.springs[1000].rest_length *= 1.01F; }},
+    {"no gravity", [](System& s) { s.gravity = 0; }},
+    {"mass 1 % off",
+     [](System& s) {
+       for (double& mass : s.node_mass) mass *= 1.01;
+     }},
+};
+
+TEST(Verification, FindsEveryMistakeWithABodyOfThePaper) {
+  const SceneSpec spec = find_scene("box-small");
+  ASSERT_TRUE(spec.dt_s);
+  expect_found(body_mistakes, build_system(spec), *spec.dt_s);
+}
+
+TEST(Verification, FindsAStepOfTheWrongLength) {
+  const System system = low_cloth();
+  const Reference reference = run_reference(system, integrators[0], dt_s);
+  const auto backend = make_serial(system, integrators[0], 1.01 * dt_s, {});
+  EXPECT_TRUE(verify(*backend, system, reference, dt_s).failure);
+}
+
+TEST(Verification, StopsBeforeTheFloor) {
+  SceneSpec spec = cloth_spec(8, 8);
+  std::get<ClothSpec>(spec.body).ceiling_height_m = 0.0015;
+  const System system = build_system(spec);
+  const Reference reference = run_reference(system, integrators[0], dt_s);
+  EXPECT_FALSE(reference.failure);
+  EXPECT_GT(reference.steps, 0);
+  EXPECT_LT(reference.steps, verification_steps);
+  for (const Vec3d& x : reference.state.position) EXPECT_GT(x.y, system.floor.height);
+}
+
+TEST(BlowUp, IsFoundAtTheFirstBadStepAndNode) {
+  const System system = cloth_system(10, 10);
+  const double too_long = 20 * dt_s;
+  const int steps = 100;
+  int first_bad = 0;
+  const auto slow = make_openmp(system, integrators[0], too_long, {1, ""});
+  while (first_bad < steps && !first_bad_node(slow->state())) {
+    slow->step(1);
+    ++first_bad;
+  }
+  ASSERT_LT(first_bad, steps) << "this dt must be too long";
+
+  const auto backend = make_openmp(system, integrators[0], too_long, {2, ""});
+  const auto blow_up = find_blow_up(*backend, system.start, steps);
+  ASSERT_TRUE(blow_up);
+  EXPECT_EQ(blow_up->step, first_bad);
+  EXPECT_EQ(blow_up->node, *first_bad_node(slow->state()));
+  const std::string text = describe(*blow_up, too_long);
+  EXPECT_NE(text.find("step " + std::to_string(first_bad)), std::string::npos) << text;
+  EXPECT_NE(text.find("node " + std::to_string(blow_up->node)), std::string::npos) << text;
+}
+
+TEST(BlowUp, OfTheReferenceFailsEveryRow) {
+  const System system = cloth_system(10, 10);
+  const Reference reference = run_reference(system, integrators[0], 50 * dt_s);
+  ASSERT_TRUE(reference.failure);
+  EXPECT_NE(reference.failure->find("blew up at step"), std::string::npos) << *reference.failure;
+  const auto backend = make_serial(system, integrators[0], 50 * dt_s, {});
+  EXPECT_EQ(verify(*backend, system, reference, 50 * dt_s).failure, reference.failure);
+}
+
+}  // namespace
+}  // namespace mssim

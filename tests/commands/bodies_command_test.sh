@@ -1,0 +1,226 @@
+#!/usr/bin/env bash
+# What a user of tetrahedral bodies meets at the command line: scenes, meshes of his own, TetGen missing, broken, of another
+# make, or interrupted.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+export XDG_CACHE_HOME=$work/cache TMPDIR=$work/temporary
+mkdir "$TMPDIR" "$work/no-programs"
+
+# succeed ARGUMENTS...: mssim must exit with 0 and say nothing on stderr
+succeed() {
+  "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null || fail "mssim $* exits with $?: $(cat "$work/err")"
+  [ ! -s "$work/err" ] || fail "mssim $* says $(cat "$work/err")"
+}
+
+# result COLUMN: that column of the one row that `mssim run` printed (no field after it may hold a blank)
+result() {
+  awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) from_end = NF - i; next }
+    { print $(NF - from_end) }' "$work/out"
+}
+
+# tetgen_that SCRIPT: a folder with a program named tetgen that is this shell script
+tetgen_that() {
+  local folder
+  folder=$(mktemp -d "$work/programs.XXXXXX")
+  printf '#!/bin/sh\n%s\n' "$1" >"$folder/tetgen"
+  chmod +x "$folder/tetgen"
+  echo "$folder"
+}
+
+# scene FILE BODY: a scene of one body
+scene() {
+  cat >"$work/$1" <<END
+{"kind": "bodies", "description": "of a test", "dt_s": 5e-5, "gravity_m_per_s2": 9.81, "viscous_damping_per_s": 0.1,
+ "floor": {"height_m": 0, "restitution": 0.5, "friction": 0.4},
+ "bodies": {"density_kg_per_m3": 1000, "springs": {"stiffness_n_per_m": 10000, "damping_n_s_per_m": 0.5}, "list": [
+   {$2, "centre_m": [0, 0.3, 0], "velocity_m_per_s": [0, 0, 0], "spin_rad_per_s": [0, 0, 0], "swell_per_s": 1}]}}
+END
+}
+surface() { scene "$1" "\"shape\": \"surface\", \"surface\": {\"file\": \"$2\", \"unit_m\": ${3:-0.1}, \"largest_tetrahedron_m3\": 0}"; }
+
+# refuse FILE PATTERN: a scene with this surface must be refused with a sentence that names the scene, the body and the file
+refuse() {
+  surface refused.json "$1"
+  expect 2 "refused.json: /bodies/list/0 has no mesh: .*$1.*$2" run --scene "$work/refused.json"
+}
+
+# Without TetGen and without a mesh made before.
+PATH=$work/no-programs "$mssim" list scenes --format csv >"$work/out" 2>"$work/err" || fail "list exits with $?"
+[ "$(wc -l <"$work/err")" -eq 1 ] || fail "list scenes does not say once that TetGen is missing"
+grep -q 'torus-small, .* and bodies38233 .*install Debian.s package tetgen' "$work/err" || fail "list scenes: $(cat "$work/err")"
+[ "$(grep -c '^[a-z0-9-]*,bodies,,,,' "$work/out")" -eq 15 ] || fail "not fifteen scenes without counts"
+grep -q '^cloth350k,cloth,350000,' "$work/out" || fail "cloths are not counted without TetGen"
+for arguments in 'run --scene torus-small --trace never.h5' 'bench --suite table2 --out never' \
+  'bench --scene cloth2500,box-small --out never'; do
+  status=0
+  # shellcheck disable=SC2086 # words of their own
+  (cd "$work" && PATH=$work/no-programs "$mssim" $arguments >out 2>err) || status=$?
+  [ "$status" -eq 3 ] || fail "$arguments without TetGen exits with $status"
+  [ ! -s "$work/out" ] || fail "$arguments without TetGen writes to stdout"
+  grep -q 'install Debian.s package tetgen' "$work/err" || fail "$arguments without TetGen: $(cat "$work/err")"
+done
+[ -z "$(find "$work" -name 'never*')" ] || fail "something half-written is left without TetGen"
+
+# Fifteen scenes with their counts, from a cache that cannot be written, by several at once, and then without TetGen.
+touch "$work/no-folder"
+XDG_CACHE_HOME=$work/no-folder succeed list scenes --format csv
+cp "$work/out" "$work/counted"
+for i in 1 2 3; do "$mssim" list scenes --format csv >"$work/list$i" 2>&1 & done
+wait
+for i in 1 2 3; do cmp "$work/list$i" "$work/counted" || fail "lists made at once differ"; done
+PATH=$work/no-programs succeed list scenes --format csv
+cmp "$work/out" "$work/counted" || fail "a list from the cache differs"
+grep -q '^torus-small,bodies,620,3690,11070,' "$work/out" || fail "torus-small has other counts"
+grep -q '^bodies38233,bodies,38233,253110,759330,' "$work/out" || fail "bodies38233 has other counts"
+[ "$(find "$work/cache/mssim/meshes" -type f | wc -l)" -eq 9 ] || fail "not nine meshes in the cache"
+
+# A body falls: what is lost and what is left balance, and the trace holds its tetrahedra.
+succeed run --scene torus-small --backend serial --duration 0.3 --losses --trace "$work/fall.h5"
+result energy_imbalance | awk '!($1 < 1e-4 && $1 > -1e-4) { bad = 1 } END { exit bad }' || fail "energy: $(cat "$work/out")"
+result friction_loss_j | awk '!($1 > 0) { bad = 1 } END { exit bad }' || fail "no friction: $(cat "$work/out")"
+[ -s "$work/fall.xdmf" ] || fail "no .xdmf"
+if command -v h5dump >/dev/null; then
+  h5dump -n "$work/fall.h5" >"$work/names"
+  for name in connectivity/tetrahedra connectivity/springs observables/bounce_loss/value particles/bodies/position/value; do
+    grep -q "/$name\$" "$work/names" || fail "the trace has no $name"
+  done
+fi
+
+# The structure of the bodies.
+"$mssim" bench --suite table2 --out "$work/table2" >"$work/out" 2>&1 || fail "table2 exits with $?"
+[ "$(awk -F, '$NF == "true"' "$work/table2/table2.csv" | wc -l)" -eq 9 ] || fail "table2.csv: $(cat "$work/table2/table2.csv")"
+
+# Meshes of the user's own: a cube as OBJ and as STL, and two tetrahedra in TetGen's files, counted from 0 and from 1.
+cat >"$work/cube.obj" <<'END'
+v 0 0 0
+v 0 0 1
+v 0 1 0
+v 0 1 1
+v 1 0 0
+v 1 0 1
+v 1 1 0
+v 1 1 1
+f 1 2 4 3
+f 5 7 8 6
+f 1 5 6 2
+f 3 4 8 7
+f 1 3 7 5
+f 2 6 8 4
+END
+awk '
+  $1 == "v" { point[++points] = $2 " " $3 " " $4 }
+  function facet(a, b, c) {
+    print "facet normal 0 0 0\nouter loop\nvertex " point[a] "\nvertex " point[b] "\nvertex " point[c] "\nendloop\nendfacet"
+  }
+  BEGIN { print "solid cube" }
+  $1 == "f" { facet($2, $3, $4); facet($2, $4, $5) }
+  END { print "endsolid cube" }' "$work/cube.obj" >"$work/cube.stl"
+for first in 0 1; do
+  awk -v first=$first 'BEGIN {
+    print "5 3 0 0"; n = split("0 0 0|1 0 0|0 1 0|0 0 1|1 1 1", at, "|")
+    for (i = 1; i <= n; ++i) print i - 1 + first, at[i] }' >"$work/two$first.node"
+  awk -v first=$first 'BEGIN {
+    print "2 4 0"; print first, first, 1 + first, 2 + first, 3 + first; print 1 + first, 4 + first, 1 + first, 3 + first, 2 + first
+    }' >"$work/two$first.ele"
+  scene "two$first.json" "\"shape\": \"tetgen\", \"tetgen\": {\"node_file\": \"two$first.node\", \"ele_file\": \"two$first.ele\", \"unit_m\": 0.1}"
+  succeed run --scene "$work/two$first.json" --duration 0.001 --backend serial
+  result elastic_j >"$work/elastic$first"
+done
+cmp "$work/elastic0" "$work/elastic1" || fail "numbering from 0 and from 1 gives different bodies"
+for kind in obj stl; do
+  surface "cube-$kind.json" "cube.$kind"
+  succeed run --scene "$work/cube-$kind.json" --duration 0.001 --backend serial
+  result elastic_j >"$work/elastic-$kind"
+done
+cmp "$work/elastic-obj" "$work/elastic-stl" || fail "OBJ and STL give different bodies"
+awk '!($1 > 0) { bad = 1 } END { exit bad || NR != 2 }' "$work/elastic0" "$work/elastic-obj" || fail "no elastic energy"
+
+# From another folder, with blanks and quotes in every name, and as the shape of another scene.
+mkdir "$work/a \"folder\"" "$work/elsewhere"
+mv "$work/cube.obj" "$work/a \"folder\"/the cube's.obj"
+surface "a \"folder\"/the scene's.json" "the cube's.obj"
+scene "a \"folder\"/borrowed.json" "\"shape\": \"scene\", \"scene\": {\"name\": \"the scene's.json\"}"
+cd "$work/elsewhere"
+for name in "the scene's" borrowed; do
+  succeed run --scene "../a \"folder\"/$name.json" --duration 0.001 --backend serial --trace "the 'trace'.h5"
+  grep -q "$(cat "$work/elastic-obj")" "$work/out" || fail "$name from another folder: $(cat "$work/out")"
+done
+[ -s "the 'trace'.h5" ] || fail "no trace with quotes in its name"
+cd "$work"
+cp "a \"folder\"/the cube's.obj" cube.obj
+
+# Files that are none: each is refused, at once, and said where.
+sed '$d' cube.obj >open.obj && refuse open.obj 'belongs to one triangle only'
+awk '$1 == "f" { print $1, $5, $4, $3, $2; next } { print }' cube.obj >mirrored.obj && refuse mirrored.obj 'turn its triangles round'
+awk '$1 == "v" { v[++n] = "v " $2 + 0.5 " " $3 + 0.25 " " $4 + 0.125 } $1 == "f" { f[++m] = "f " $2 + 8 " " $3 + 8 " " $4 + 8 " " $5 + 8 }
+  { print } END { for (i = 1; i <= n; ++i) print v[i]; for (i = 1; i <= m; ++i) print f[i] }' cube.obj >crossing.obj
+refuse crossing.obj 'crosses or touches itself'
+head -c 100 cube.obj >truncated.obj && refuse truncated.obj 'line 12: the face has 2 corners'
+head -c 300 cube.stl >truncated.stl && refuse truncated.stl 'line 25: .*damaged'
+sed 's/^f 1 2 4 3/f 1 2 4 4294967297/' cube.obj >index.obj && refuse index.obj 'line 9: the face names vertex 4294967297 of 8'
+: >empty.obj && refuse empty.obj 'give an OBJ file with a surface'
+: >empty.stl && refuse empty.stl 'empty'
+refuse missing.obj 'is missing'
+mkdir folder.obj && refuse folder.obj 'not a regular file'
+mkfifo pipe.obj && refuse pipe.obj 'not a regular file'
+ln -s /dev/zero endless.stl && refuse endless.stl 'not a regular file'
+truncate -s 100G sparse.obj && refuse sparse.obj '107374182400 bytes'
+surface millimetres.json cube.obj 100
+expect 2 'which is 100 m high, would start at -49.7' run --scene millimetres.json
+surface nothing.json cube.obj 0
+expect 2 '/bodies/list/0/surface/unit_m is 0' run --scene nothing.json
+sed 's/"centre_m": \[0, 0.3/"centre_m": [0, -0.3/' cube-obj.json >below.json
+expect 2 'below.json: /bodies/list/0/centre_m/1 is -0.3.*raise it' run --scene below.json
+scene cloth.json '"shape": "scene", "scene": {"name": "cloth2500"}'
+expect 2 'cloth.json: /bodies/list/0 has no mesh: .*cloth2500" has no bodies' run --scene cloth.json
+mkfifo pipe.json && expect 2 'not a regular file' run --scene pipe.json
+
+# Another TetGen makes another mesh: said on stderr and in the note, and no published time stands beside it.
+other=$(tetgen_that "exec '$(command -v tetgen)' \"\${1}q\" \"\$2\"")
+status=0
+PATH=$other:$PATH "$mssim" bench --scene bodies3858 --backend serial --integrator semi-euler --rounds 1 --out other >out 2>err ||
+  status=$?
+[ "$status" -eq 0 ] || fail "another mesh gives $status"
+difference='the mesh has 3858 nodes and [0-9]* springs where the scene states 3858 and 24317'
+grep -q "bodies3858: $difference" err || fail "another mesh: $(cat err)"
+grep -q ",ok,\"\?$difference" other/timings.csv || fail "another mesh is not noted: $(cat other/timings.csv)"
+awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "paper_ms") c = i; next } $c != "" { bad = 1 } END { exit bad || NR != 2 }' \
+  other/timings.csv || fail "a published time stands beside another mesh"
+[ ! -e other/table3.md ] || fail "another mesh stands in Table 3"
+PATH=$other:$PATH "$mssim" run --scene torus-small --duration 0.001 >out 2>err || fail "run with another mesh exits with $?"
+grep -q 'torus-small: the mesh has 620 nodes and .* where the scene states 620 and 3690' err || fail "run does not tell: $(cat err)"
+
+# A program that is no TetGen.
+while IFS='|' read -r script said; do
+  broken=$(tetgen_that "$script")
+  PATH=$broken:$PATH expect 2 "torus-small.json: /bodies/list/0 has no mesh: .*$said" run --scene torus-small --duration 0.001
+done <<'END'
+exit 0|ended without writing a mesh.*make sure that .*/tetgen is TetGen
+echo no licence >&2; exit 7|ended with exit code 7 after writing "no licence"
+echo garbage >body.1.node; echo garbage >body.1.ele|/tetgen made cannot be used: .*"garbage"
+kill -KILL $$|was stopped
+END
+[ "$(find "$work/cache" -type f | wc -l)" -ge 9 ] || fail "the cache has shrunk"
+
+# Ctrl-C while TetGen runs: mssim ends by the signal, and neither TetGen nor its folder is left behind.
+slow=$(tetgen_that "echo \$\$ >'$work/slow-tetgen'; sleep 60; exit 1")
+for signal in INT TERM; do
+  rm -f slow-tetgen
+  # Shells start what runs in the background with SIGINT ignored; env puts it back.
+  PATH=$slow:$PATH env --default-signal=INT "$mssim" run --scene torus-small >out 2>err &
+  process=$!
+  for _ in $(seq 100); do [ -s slow-tetgen ] && break; sleep 0.05; done
+  [ -s slow-tetgen ] || fail "TetGen does not start"
+  kill -s "$signal" "$process"
+  status=0
+  wait "$process" || status=$?
+  [ "$status" -eq $((128 + $(kill -l "$signal"))) ] || fail "SIG$signal while TetGen runs gives $status"
+  for _ in $(seq 100); do kill -0 "$(cat slow-tetgen)" 2>/dev/null || break; sleep 0.05; done
+  if kill -0 "$(cat slow-tetgen)" 2>/dev/null; then fail "TetGen goes on after SIG$signal"; fi
+done
+[ -z "$(ls -A "$TMPDIR")" ] || fail "temporary files are left: $(ls "$TMPDIR")"
+[ -z "$(find "$XDG_CACHE_HOME" -type f ! -name '*.mesh')" ] || fail "half-written meshes are left in the cache"
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

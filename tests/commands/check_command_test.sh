@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# mssim check says that a scene is right and what it would be, without running it.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+export XDG_CACHE_HOME=$work/cache
+
+# check STATUS ARGUMENTS...
+check() {
+  local wanted=$1 status=0
+  shift
+  "$mssim" check "$@" >"$work/out" 2>"$work/err" </dev/null || status=$?
+  echo "mssim check $*: $status"
+  cat "$work/out" "$work/err"
+  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
+}
+
+# A cloth: every combination, all of them stable and within a memory that bench is content with.
+check 0 cloth2500 --format csv
+[ ! -s "$work/err" ] || fail "a good scene has messages"
+cp "$work/out" "$work/cloth.csv"
+column() { column_of "$work/cloth.csv" "$1"; }
+[ "$(wc -l <"$work/cloth.csv")" -eq 26 ] || fail "not five integrators on five backends"
+[ "$(column scene | sort -u)/$(column kind | sort -u)/$(column nodes | sort -u)/$(column springs_unique | sort -u)/$(column dt_s | sort -u)" = \
+  cloth2500/cloth/2500/14502/5e-05 ] || fail "what the scene is"
+[ "$(column tetrahedra | sort -u)" = '' ] || fail "a cloth has tetrahedra"
+awk -F, 'NR > 1 && !($11 > 1e5 && $11 < 1e8 && $12 > 0 && $13 > 0)' "$work/cloth.csv" | grep . && fail "memory and times"
+for integrator in semi-euler midpoint rk4; do
+  grep -q ",$integrator,.*,true,openmp," "$work/cloth.csv" || fail "$integrator is not stable"
+done
+# In the other formats the same.
+check 0 cloth2500 --format json
+[ "$(grep -c '"largest_stable_dt_s": ' "$work/out")" -eq 25 ] || fail "the JSON has not 25 rows"
+check 0 cloth2500 torus-small
+grep -q '^cloth2500  *cloth  *2500  *14502  *-  *5e-05$' "$work/out" || fail "the table of a cloth"
+grep -q '^torus-small  *bodies  *620  *3690  *2800 ' "$work/out" || fail "the table of a body"
+[ "$(grep -c '^rk4  *[0-9.e-]*  *yes  *openmp ' "$work/out")" -eq 2 ] || fail "the tables of their combinations"
+
+# Below the limit a cloth stays whole, far above it blows up, and check says so.
+limit=$(awk -F, '$7 == "semi-euler" { print $8; exit }' "$work/cloth.csv")
+for factor in 0.9 2; do
+  sed "s/\"dt_s\": 5e-5/\"dt_s\": $(awk -v l="$limit" -v f="$factor" 'BEGIN { printf "%.6e", l * f }')/" \
+    "$source/scenes/cloth2500.json" >"$work/cloth-$factor.json"
+done
+check 0 "$work/cloth-0.9.json"
+grep -q 'limit of .*semi-euler' "$work/err" && fail "a dt below the limit is above it"
+"$mssim" run --scene "$work/cloth-0.9.json" --duration 0.1 --backend serial >"$work/out" 2>&1 || fail "a stable cloth: $(cat "$work/out")"
+check 0 "$work/cloth-2.json"
+grep -q '^mssim: cloth-2: dt_s [0-9.e-]* is above the stability limit of .*semi-euler.*: give at most [0-9.e-]*, or "auto"$' "$work/err" ||
+  fail "a dt above the limit is not warned of"
+status=0
+"$mssim" run --scene "$work/cloth-2.json" --duration 0.1 --backend serial >"$work/out" 2>"$work/err" || status=$?
+[ "$status" -eq 1 ] || fail "a cloth above the limit ends with $status"
+
+# A garment is dressed by three backends with one integrator.
+check 0 jeans1k --format csv
+[ "$(wc -l <"$work/out")" -eq 4 ] && grep -q '^jeans1k,garment,1050,.*,semi-euler,.*,opencl,' "$work/out" || fail "combinations of a garment"
+
+# What is wrong is said as run says it, and nothing is printed of the others.
+sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
+expect 2 'typo.json: /cloth/rowz is not a known key.*did you mean "rows"' check cloth2500 "$work/typo.json"
+cp "$work/err" "$work/said"
+"$mssim" run --scene "$work/typo.json" >"$work/out" 2>"$work/err" && fail "run takes a scene that check refuses"
+cmp "$work/err" "$work/said" || fail "run and check differ"
+expect 2 'SCENE is missing' check
+expect 2 'no scene is named "cloth2501"' check cloth2501
+
+# More than can be meshed or held is refused before it is.
+sed 's/"cells_\([xyz]\)": [0-9]*/"cells_\1": 1000/' "$source/scenes/box-small.json" >"$work/fine-box.json"
+expect 2 'fine-box.json: /bodies/list/0 has no mesh: its mesh would have 6000[0-9]* points or more, .*; make it of at most 4000000' check "$work/fine-box.json"
+sed 's/"frequency": [0-9]*/"frequency": 900/' "$source/scenes/sphere-small.json" >"$work/fine-sphere.json"
+expect 2 'fine-sphere.json: .* its mesh would have 8100[0-9]* points or more' run --scene "$work/fine-sphere.json"
+sed 's/"cells_around": [0-9]*/"cells_around": 900/; s/"cells_across": [0-9]*/"cells_across": 900/' "$source/scenes/torus-small.json" >"$work/fine-torus.json"
+# limited KILOBYTES PATTERN ARGUMENTS...: with so much address space mssim refuses
+limited() {
+  local kilobytes=$1
+  shift
+  (failures=0 && ulimit -v "$kilobytes" && expect "$@" && [ "$failures" -eq 0 ]) || fail "in $kilobytes KiB"
+}
+limited 2000000 2 'TetGen makes its mesh of 810350 points or more, which needs at least 3.08 GB of memory, but [0-9.]* GB are available' check "$work/fine-torus.json"
+limited 250000 2 'fine-torus.json: /bodies has at least 810350 nodes and 2430694 springs and needs at least 0.27 GB of memory, but 0.[0-9]* GB are available: give fewer bodies' \
+  check "$work/fine-torus.json"
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Results in the formats that other tools read: Google Benchmark's compare.py and github-action-benchmark.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+bench=(bench --scene cloth2500 --backend serial,opencl --integrator semi-euler,rk4 --threads 1 --rounds 10)
+"$mssim" "${bench[@]}" --format github --out a >github.json 2>err || fail "a bench exits with $?: $(cat err)"
+"$mssim" "${bench[@]}" --format csv --out b >table.csv 2>err || fail "a bench exits with $?: $(cat err)"
+
+# Google Benchmark's own tool takes benchmark.json as it is and compares every combination, by a U test too.
+/usr/bin/python3 /usr/share/benchmark/compare.py --no-color benchmarks a/benchmark.json b/benchmark.json >compared 2>err ||
+  fail "compare.py exits with $?: $(tail -n 1 err)"
+for backend in serial opencl; do
+  for integrator in semi-euler rk4; do
+    for what in _median _mean _stddev _pvalue; do
+      grep -q "^cloth2500/$backend/$integrator$what " compared || fail "compare.py shows no $backend/$integrator$what"
+    done
+    [ "$(grep -c "^cloth2500/$backend/$integrator " compared)" -eq 10 ] || fail "compare.py shows not all samples of $backend"
+  done
+done
+
+# github-action-benchmark's own format: on stdout, and in the folder.
+cmp -s github.json a/github.json || fail "a/github.json is not what was printed"
+[ ! -e b/github.json ] || fail "github.json is written unasked"
+/usr/bin/python3 - a <<'END' || fail "github.json is not what github-action-benchmark reads"
+import csv, json, sys
+rows = {"/".join((r["scene"], r["backend"], r["integrator"])): r for r in csv.DictReader(open(sys.argv[1] + "/timings.csv"))}
+entries = json.load(open(sys.argv[1] + "/github.json"))
+assert len(entries) == len(rows) == 4
+for entry in entries:
+    row = rows[entry["name"]]
+    assert entry["unit"] == "ms/step" and entry["value"] == float(row["ms_per_step"]) > 0, entry
+    assert entry["range"] == f'{row["ms_per_step_low"]} to {row["ms_per_step_high"]}', entry
+END
+
+# The other formats of the summary.
+[ "$(head -n 1 table.csv | cut -d, -f1-2)" = scene,nodes ] || fail "--format csv prints no table: $(head -n 1 table.csv)"
+[ "$(wc -l <table.csv)" -eq 5 ] || fail "--format csv has not four rows"
+expect 2 'format: unknown value "xml": known are csv, github, json and table; see mssim bench --help' bench --scene cloth2500 --format xml
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -1,0 +1,122 @@
+#!/usr/bin/env bash
+# What a user meets at the command line: exit codes, one clear sentence for each mistake, nothing half-written.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+
+# column NAME: of the latest results
+column() { column_of "$work/results/timings.csv" "$1"; }
+
+# Usage.
+expect 2 'nothing to measure' bench
+expect 2 'rounds' bench --rounds 0 --scene cloth2500
+expect 2 'threads' bench --threads -3 --scene cloth2500
+OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;' run --threads 2 --scene cloth2500
+expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
+expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
+expect 2 'unknown backend "openpm" (did you mean openmp?)' bench --scene cloth2500 --backend openpm
+expect 2 'known are serial, threads-mutex, openmp, opencl and hybrid' bench --scene cloth2500 --backend cuda
+expect 2 'rk4-frozen' bench --scene cloth2500 --integrator verlet
+expect 2 'cloth2500' bench --scene cloth2501
+expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json
+expect 2 'table1.*races.*scaling' bench --suite table9
+expect 2 'did you mean gather?): known are serial, mutex-per-group' bench --suite races --backend gahter
+expect 2 'unknown backend "atomic"' bench --scene cloth2500 --backend atomic
+expect 2 'unknown backend "hybrid"' bench --suite races --backend hybrid
+expect 2 'give --out' bench --scene cloth2500 --trace
+expect 2 'duration' run --scene cloth2500 --duration 1e-9
+expect 2 'fps' run --scene cloth2500 --fps 1e9
+expect 2 'duration: "nan" is not a positive number' run --scene cloth2500 --duration nan
+expect 2 'dt' run --scene cloth2500 --dt -1
+expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
+
+# Plans.
+"$mssim" bench --suite table1 --dry-run --out "$work/never" >"$work/out" || fail "--dry-run exits with $?"
+[ "$(grep -c '^cloth' "$work/out")" -eq 6 ] || fail "--dry-run does not name the six cloths"
+grep -q '^about [0-9]* s in all$' "$work/out" || fail "--dry-run does not say how long it takes"
+"$mssim" bench --suite table2 --dry-run >"$work/out" || fail "--dry-run of table2 exits with $?"
+[ ! -e "$work/never" ] || fail "--dry-run has made a folder"
+expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite table1 --time-budget 5
+expect 2 'time-budget' bench --scene cloth2500 --time-budget nan
+
+# Scenes.
+sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
+expect 2 'typo.json.*rowz.*rows' bench --scene "$work/typo.json"
+sed 's/"rows": 50/"rows": 1000000/; s/"columns": 50/"columns": 4000/' "$source/scenes/cloth2500.json" >"$work/huge.json"
+expect 2 'huge.json.*GB.*name fewer with --backend' bench --scene "$work/huge.json" --out "$work/never"
+
+# Devices and files.
+expect 3 'no such device' run --scene cloth2500 --backend opencl --device 'no such device'
+expect 4 'not-a-folder' bench --scene cloth2500 --out "$work/typo.json/not-a-folder"
+expect 4 'no/such' run --scene cloth2500 --duration 0.01 --trace "$work/no/such/trace.h5"
+[ -z "$(find "$work" -name '*.part' -o -name never)" ] || fail "something half-written is left"
+
+# A simulation that blows up: named, and not verified.
+sed 's/"dt_s": 5e-5/"dt_s": 1e-2/' "$source/scenes/cloth2500.json" >"$work/wild.json"
+expect 1 'blew up at step [0-9]* (t = .* s): node [0-9]* is not finite' run --scene "$work/wild.json"
+status=0
+"$mssim" bench --scene "$work/wild.json" --backend serial,openmp --rounds 2 --out "$work/results" >"$work/out" 2>"$work/err" ||
+  status=$?
+[ "$status" -eq 1 ] || fail "a bench that blows up exits with $status"
+[ "$(column verified | sort -u)" = false ] || fail "a row that blew up is verified"
+[ "$(grep -c '^mssim: wild, \(serial\|openmp\), [a-z0-9-]*: failed: ' "$work/err")" -eq 3 ] && grep -q '^mssim: and 3 more$' "$work/err" ||
+  fail "stderr does not say which rows failed and why: $(cat "$work/err")"
+grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timings.csv does not say what failed"
+
+# A bench as it should be.
+"$mssim" bench --scene cloth2500 --rounds 3 --threads 2 --trace --out "$work/results" --overwrite >"$work/out" 2>"$work/err" ||
+  fail "bench exits with $?"
+cat "$work/out"
+[ "$(column nodes | sort -u)" = 2500 ] || fail "nodes"
+[ "$(column springs_published | sort -u)" = 29004 ] || fail "springs"
+[ "$(column verified | grep -c true)" -eq 15 ] || fail "not 15 verified rows"
+for file in timings.csv samples.csv table1.csv table1.md benchmark.json provenance.json; do
+  [ -s "$work/results/$file" ] || fail "$file is missing"
+done
+[ "$(find "$work/results/traces" -name '*.h5' | wc -l)" -eq 15 ] || fail "not 15 traces"
+[ "$(awk -F, 'NR > 1' "$work/results/samples.csv" | wc -l)" -eq 45 ] || fail "not 45 samples"
+
+# Data copied between host and device: the rows that do so say it.
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite \
+  >"$work/out" 2>"$work/err" || fail "bench --memory copy exits with $?"
+[ "$(column verified | grep -c true)" -eq 5 ] || fail "not 5 verified rows with copied memory"
+[ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
+
+# A device that is missing: its rows say so; asked for by name it is an error.
+status=0
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --out "$work/results" --overwrite >"$work/out" 2>&1 ||
+  status=$?
+[ "$status" -eq 0 ] || fail "an unavailable backend that nobody asked for gives $status"
+[ "$(grep -c 'unavailable: ' "$work/results/timings.csv")" -eq 2 ] || fail "not two unavailable rows"
+status=0
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --backend opencl >"$work/out" 2>&1 ||
+  status=$?
+[ "$status" -eq 3 ] || fail "an unavailable backend that was asked for gives $status"
+grep -q '^mssim: cloth2500, opencl, semi-euler: unavailable: ' "$work/out" || fail "stderr does not say what is unavailable: $(cat "$work/out")"
+
+# The ways to avoid the data race: those asked for, and the base of the ratios where it is one of them.
+"$mssim" bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races" >"$work/out" 2>"$work/err" ||
+  fail "races exits with $?"
+[ "$(wc -l <"$work/races/races.csv")" -eq 5 ] || fail "races.csv has not four ways: $(cat "$work/races/races.csv")"
+[ "$(grep -c ',yes,ok$' "$work/races/races.csv")" -eq 4 ] || fail "races.csv: $(cat "$work/races/races.csv")"
+[ -s "$work/races/races.md" ] || fail "races.md is missing"
+[ ! -e "$work/races/table1.csv" ] || fail "races make Table 1"
+
+# Help and listings.
+for arguments in '--help' 'bench --help' 'run --help' 'check --help' 'compare --help' 'measure --help' 'list --help' 'help --help'; do
+  # shellcheck disable=SC2086 # words of their own
+  "$mssim" $arguments >"$work/out" 2>"$work/err" || fail "$arguments exits with $?"
+  grep -q 'Example' "$work/out" || fail "$arguments shows no example"
+  [ ! -s "$work/err" ] || fail "$arguments writes to stderr"
+done
+"$mssim" list scenes --format csv | grep '^cloth350k,cloth,350000,2094002,4188004,' >/dev/null || fail "list scenes"
+[ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 5 ] || fail "list integrators"
+"$mssim" list backends | grep '^hybrid ' >/dev/null || fail "list backends"
+"$mssim" list ways --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list ways"
+"$mssim" list suites --format csv | grep '^scaling,true,false,"cloth40k, .* and cloth16m",' >/dev/null || fail "list suites"
+"$mssim" bench --help | tr -s '\n ' ' ' | grep 'tables stands for table1, table2 and table3' >/dev/null || fail "bench --help does not say what tables is"
+if "$mssim" list scenes >/dev/full 2>"$work/err"; then fail "a full standard output is no error"; fi
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

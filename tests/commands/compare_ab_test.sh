@@ -1,0 +1,225 @@
+#!/usr/bin/env bash
+# mssim compare --ab: programs that take turns. Most are scripts here, which write times as mssim does, so that what comes
+# out is known.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+export TMPDIR=$work/tmp
+mkdir "$TMPDIR"
+
+# program NAME COMMANDS: a program that finds its result folder in $out and the backends in $backends, may call
+# `times MS [STATUS [VERIFIED [BACKEND]]]` for each row that it has, and counts its runs in NAME.runs. Its help knows
+# --verified where NAME begins with "new-"; then $verified is the folder that it is given, which must have been written.
+program() {
+  cat >"$work/$1" <<SCRIPT
+#!/usr/bin/env bash
+[ "\$1" = bench ] || exit 9
+[ "\$2" != --help ] || { case \${0##*/} in new-*) echo "  --verified TEXT" ;; esac; exit 0; }
+echo "\$*" >>"\$0.runs"
+verified=
+while [ \$# -gt 1 ]; do
+  case \$1 in --out) out=\$2 ;; --verified) verified=\$2 ;; --backend) backends=\$2 ;; esac
+  shift
+done
+[ -z "\$verified" ] || [ -f "\$verified/timings.csv" ] || exit 8
+times() {
+  mkdir -p "\$out"
+  [ -e "\$out/timings.csv" ] || echo scene,backend,integrator,ms_per_step_min,verified,status >"\$out/timings.csv"
+  echo "cloth2500,\${4-openmp},semi-euler,\$1,\${3-true},\${2-ok}" >>"\$out/timings.csv"
+}
+runs=\$(wc -l <"\$0.runs")
+$2
+SCRIPT
+  chmod +x "$work/$1"
+}
+
+# ab STATUS BASE NEW OPTIONS...: compare --ab must exit with STATUS and leave nothing in the folder for temporary files
+ab() {
+  local wanted=$1 status=0 base=$2 new=$3
+  shift 3
+  rm -f "$work/$base.runs" "$work/$new.runs"
+  "$mssim" compare --ab "$work/$base" "$work/$new" --scene cloth2500 "$@" >"$work/out" 2>"$work/err" || status=$?
+  echo "compare --ab $base $new $*: $status"
+  cat "$work/out" "$work/err"
+  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
+  [ -z "$(ls -A "$TMPDIR")" ] || fail "something is left in $TMPDIR"
+}
+says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\""; }
+warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\""; }
+
+# Times that vary a little from run to run.
+# shellcheck disable=SC2016 # for the programs' own shell
+{
+  program steady 'times "1.00$((runs * 7 % 10))"'
+  program steady2 'times "1.00$((runs * 3 % 10))"'
+  program slow 'times "1.10$((runs * 3 % 10))"'
+  program quick 'times "0.90$((runs * 3 % 10))"'
+  program wild 'times "$((runs % 4 + 1)).5"; sleep 0.05'
+  program wild2 'times "$(((runs ^ 1) % 4 + 1)).5"; sleep 0.05'  # by turns less and more, so that nobody can tell
+  program wrong 'times 1.0 ok false; exit 1'
+  program broken 'times not-a-number'
+  program fickle 'if [ "$runs" -gt 2 ]; then times 1 "failed: step 3"; exit 1; else times 1; fi'
+  program crash 'echo "what went wrong"; kill -SEGV $$'
+  program deaf 'echo "no such device" >&2; exit 3'
+  program silent 'exit 0'
+  program new-steady 'times "1.00$((runs * 7 % 10))"'
+  program new-steady2 'times "1.00$((runs * 3 % 10))"'
+  program new-slow 'times "1.10$((runs * 3 % 10))"'
+  program new-wrong 'times 1.0 ok false; exit 1'
+  program new-refusing '[ -z "$verified" ] || { echo "what is wrong with it"; exit 2; }; times 1'
+  program new-unsure '[ -z "$verified" ] || { times 1 ok false; exit 1; }; times 1'
+  # Each verifies while the other does: they wait for one another, ten seconds at most.
+  meet='touch "$0.here"; i=0; until [ -e "${0%/*}/$other.here" ]; do i=$((i + 1)); [ $i -lt 1000 ] || exit 9; sleep 0.01; done'
+  program new-meeting "other=new-meeting2; $meet; times 1.00\$((runs * 7 % 10))"
+  program new-meeting2 "other=new-meeting; $meet; times 1.00\$((runs * 3 % 10))"
+  program new-two 'times "1.00$((runs % 7))"; times "$((runs % 4 + 1)).5" ok true serial'
+  # What nobody can tell apart goes on, here until it fails in the 14th run.
+  program new-two2 'times "1.00$((runs % 5))"
+    if [ "$runs" -lt 14 ]; then times "$(((runs ^ 1) % 4 + 1)).5" ok true serial; else times 1 "failed: late" false serial; exit 1; fi'
+  program sleepy 'echo $$ >"$0.pid"; sleep 60'
+}
+
+ab 0 steady steady2
+says 'openmp .* same'
+warns '10 rounds in'
+warns 'steady has no bench --verified: each process of both programs verifies again'
+[ "$(wc -l <"$work/steady.runs")" -eq 10 ] || fail "not 10 runs"
+grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 7 --out ' "$work/steady.runs" ||
+  fail "the program is not given what was asked for: $(head -n 1 "$work/steady.runs")"
+ab 1 steady slow
+says 'openmp .* slower'
+warns '^mssim: 10 rounds in [0-9]* s$'
+ab 0 steady slow --threshold 20
+says 'openmp .* same'
+ab 0 steady quick --format json
+says '"verdict": "faster"'
+ab 1 steady slow --format markdown
+says '| \*\*slower\*\* |'
+
+# The budget: no round is begun that would not fit, and what is not known is not said.
+start=$(date +%s%N)
+ab 0 wild wild2 --time-budget 2 --backend openmp,serial --integrator rk4 --threads 2
+says 'undecided'
+warns 'the time budget ended'
+(($(date +%s%N) - start < 4000000000)) || fail "the time budget of 2 s is exceeded by far"
+grep -q -- '--backend openmp,serial --integrator rk4 --rounds 7 --out [^ ]* --threads 2$' "$work/wild.runs" || fail "options"
+
+# Verified once: the first run of each verifies, all others rely on its folder, and every one is a process of its own.
+ab 0 new-steady new-steady2
+says 'openmp .* same'
+warns '10 rounds in'
+if grep -q 'verifies again' "$work/err"; then fail "both know --verified"; fi
+for name in new-steady new-steady2; do
+  [ "$(wc -l <"$work/$name.runs")" -eq 11 ] || fail "not 11 runs of $name"
+  grep -q '^bench --scene cloth2500 --backend openmp --integrator semi-euler --rounds 1 --out [^ ]*$' \
+    <(head -n 1 "$work/$name.runs") || fail "$name is not asked to verify first"
+  folder=$(sed -n '1s/.*--out //p' "$work/$name.runs")
+  [ "$(grep -c -- "--rounds 7 --out [^ ]* --verified $folder\$" "$work/$name.runs")" -eq 10 ] ||
+    fail "$name is not sampled ten times with what it has verified"
+done
+ab 0 new-meeting new-meeting2
+says 'openmp .* same'
+ab 1 new-steady new-slow
+says 'openmp .* slower'
+# One that is older: nobody is spared the verification, so that both are measured alike.
+ab 0 steady new-steady2
+warns 'steady has no bench --verified'
+ab 1 new-steady slow
+warns 'slow has no bench --verified'
+says 'openmp .* slower'
+if grep -q -- --verified "$work/steady.runs" "$work/slow.runs" "$work/new-steady.runs" "$work/new-steady2.runs"; then
+  fail "one of the two is not verified again"
+fi
+# What is wrong is found before anything is sampled; and what turns out not to be verified does not count.
+ab 1 new-steady new-wrong
+says 'lost  *failed: not verified'
+warns '^mssim: 0 rounds in'
+ab 2 new-wrong new-steady
+warns 'nothing to compare'
+ab 1 new-steady new-unsure
+says 'lost  *failed: not verified'
+ab 2 new-unsure new-steady
+warns 'not in another (failed: not verified)'
+ab 2 new-steady new-refusing
+warns '^what is wrong with it$'
+warns 'new-refusing bench exited with 2'
+# What is settled is not measured any further.
+ab 1 new-two new-two2 --backend openmp,serial
+says 'openmp .* same'
+says 'serial .* lost  *failed: late'
+[ "$(grep -c -- '--backend openmp,serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 10 ] ||
+  fail "openmp is not sampled ten times"
+[ "$(grep -c -- '--backend serial --integrator semi-euler --rounds 7 ' "$work/new-two.runs")" -eq 3 ] ||
+  fail "serial is not gone on with alone"
+
+# Programs that fail.
+ab 1 steady wrong
+says 'lost  *failed: not verified'
+ab 2 wrong steady
+warns 'nothing to compare'
+ab 1 steady fickle
+says 'lost  *failed: step 3'
+ab 2 fickle steady
+warns 'not in another (failed: step 3)'
+ab 2 steady crash
+warns '^what went wrong$'
+warns 'crash bench was ended by signal 11'
+ab 3 steady deaf
+warns '^no such device$'
+warns 'deaf bench exited with 3'
+ab 2 steady silent
+warns 'silent bench exited with 0 instead of measuring, saying nothing'
+ab 2 steady broken
+warns 'timings.csv, line 2, column ms_per_step_min: "not-a-number" is not a number'
+ab 3 steady missing
+warns 'cannot run .*missing: give the path'
+expect 2 'needs a --scene' compare --ab "$work/steady" "$work/slow"
+expect 2 'scene goes with --ab alone' compare "$work" "$work" --scene cloth2500
+expect 2 'time-budget' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --time-budget 0
+expect 2 'ab does not go with --force' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
+
+# Interrupted: ends the program under way, leaves nothing.
+set -m
+"$mssim" compare --ab "$work/sleepy" "$work/sleepy" --scene cloth2500 >"$work/out" 2>"$work/err" &
+compare=$!
+set +m
+for ((i = 0; i < 100; ++i)); do
+  [ ! -s "$work/sleepy.pid" ] || break
+  sleep 0.1
+done
+kill -INT "$compare"
+status=0
+wait "$compare" || status=$?
+[ "$status" -eq 130 ] || fail "interrupted it exits with $status"
+if kill -0 "$(cat "$work/sleepy.pid")" 2>/dev/null; then fail "the program under way goes on"; fi
+[ -z "$(ls -A "$TMPDIR")" ] || fail "interrupted it leaves something in $TMPDIR"
+
+# The real thing against itself: whatever the noise, never slower by more than a factor of 20.
+status=0
+"$mssim" compare --ab "$mssim" "$mssim" --scene cloth2500 --threads 1 --threshold 1900 --time-budget 60 >"$work/out" \
+  2>"$work/err" || status=$?
+cat "$work/out" "$work/err"
+[ "$status" -eq 0 ] || fail "a comparison with itself exits with $status"
+says 'cloth2500  openmp   semi-euler .* same'
+warns '^mssim: 10 rounds in'
+if grep -q 'verifies again' "$work/err"; then fail "it knows --verified itself"; fi
+# And against an older one, which is this one with an option less.
+cat >"$work/older" <<SCRIPT
+#!/usr/bin/env bash
+case "\$*" in
+  *--help) "$mssim" "\$@" | grep -v -- --verified ;;
+  *--verified*) exit 9 ;;
+  *) exec "$mssim" "\$@" ;;
+esac
+SCRIPT
+chmod +x "$work/older"
+status=0
+"$mssim" compare --ab "$work/older" "$mssim" --scene cloth2500 --threads 1 --threshold 1900 --time-budget 60 \
+  >"$work/out" 2>"$work/err" || status=$?
+cat "$work/out" "$work/err"
+[ "$status" -eq 0 ] || fail "a comparison with an older one exits with $status"
+says 'cloth2500  openmp   semi-euler .* same'
+warns 'older has no bench --verified'
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

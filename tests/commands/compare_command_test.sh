@@ -1,0 +1,149 @@
+#!/usr/bin/env bash
+# mssim compare on result folders, made up here: verdicts, exit codes, one clear sentence for each mistake.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+
+# A folder in which nothing but the samples is made up.
+source_run=$2/results/table1
+
+# make NAME BACKEND=MS[:SPREAD][:COUNT]...: a result folder with samples of each backend, spread evenly about MS
+make() {
+  local folder=$work/$1 backend ms spread count pair
+  shift
+  mkdir "$folder"
+  cp "$source_run/provenance.json" "$folder"
+  head -n 1 "$source_run/timings.csv" >"$folder/timings.csv"
+  head -n 1 "$source_run/samples.csv" >"$folder/samples.csv"
+  for pair in "$@"; do
+    backend=${pair%%=*}
+    IFS=: read -r ms spread count <<<"${pair#*=}"
+    grep "^cloth2500,.*,$backend,.*,semi-euler," "$source_run/timings.csv" >>"$folder/timings.csv"
+    awk -v b="$backend" -v ms="$ms" -v s="${spread:-0.02}" -v n="${count:-15}" 'BEGIN {
+        for (i = 1; i <= n; ++i) print "cloth2500," b ",semi-euler," i ",10," ms * (1 + s * (2 * (i - 1) / (n - 1) - 1)) ","
+      }' >>"$folder/samples.csv"
+  done
+}
+
+# compare STATUS ARGUMENTS...: mssim compare must exit with STATUS; its results are in $work/out, messages in $work/err
+compare() {
+  local wanted=$1 status=0
+  shift
+  "$mssim" compare "$@" >"$work/out" 2>"$work/err" || status=$?
+  echo "mssim compare $*: $status $(cat "$work/err")"
+  cat "$work/out"
+  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
+}
+
+# says PATTERN, warns PATTERN: what stands in the results, in the messages
+says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\""; }
+warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\""; }
+
+make base serial=1 openmp=0.1
+make slower serial=1 openmp=0.112
+make faster serial=1 openmp=0.09
+make noisy serial=1:0.3 openmp=0.1
+make few serial=1:0.02:3
+make few-slower serial=2:0.02:3
+make other hybrid=1
+
+# Verdicts and exit codes.
+compare 0 "$work/base" "$work/base"
+says 'serial .* same'
+says 'openmp .* same'
+says '^all  *2 '
+[ ! -s "$work/err" ] || fail "a comparison with itself has messages"
+compare 1 "$work/base" "$work/slower"
+says 'openmp .* 1\.12 .* slower'
+warns '^mssim: cloth2500, openmp, semi-euler: slower, 1\.12 times the time (1\.[01][0-9]* to 1\.1[0-9]*)$'
+says 'serial .* same'
+compare 0 "$work/base" "$work/slower" --threshold 15
+says 'openmp .* same'
+compare 0 "$work/base" "$work/faster"
+says 'openmp .* 0\.9 .* faster'
+compare 0 "$work/base" "$work/noisy"
+says 'serial .* undecided  [0-9]* samples a side would decide'
+warns '1 of 2 combinations is undecided'
+compare 0 "$work/few" "$work/few-slower"
+says 'serial .* undecided  5 samples a side would decide'
+compare 0 "$work/base" "$work/few"
+warns 'only BASE has: cloth2500, openmp, semi-euler$'
+compare 0 "$work/few" "$work/base/timings.csv"
+warns 'only NEW has: cloth2500, openmp, semi-euler$'
+
+# A row that is gone.
+cp -r "$work/base" "$work/lost"
+sed -i '/,openmp,/s/,true,ok,/,false,failed: step 7 is not finite,/' "$work/lost/timings.csv"
+compare 1 "$work/base" "$work/lost"
+says 'openmp .* lost  *failed: step 7 is not finite'
+compare 0 "$work/lost" "$work/base"
+warns 'without a verified time in BASE: cloth2500, openmp, semi-euler'
+
+# Formats.
+compare 1 "$work/base" "$work/slower" --format markdown
+# shellcheck disable=SC2016 # the backquotes are Markdown's
+says '^| cloth2500 | `openmp` | semi-euler | 0.100 | 0.112 | 1.12 | .* | \*\*slower\*\* |$'
+compare 1 "$work/base" "$work/slower" --format json
+/usr/bin/python3 - "$work/out" <<'PYTHON' || fail "the JSON is not what it should be"
+import json, math, sys
+def refuse(constant):
+    raise ValueError(constant)
+result = json.load(open(sys.argv[1]), parse_constant=refuse)
+assert result["regression"] is True and result["threshold"] == 0.05, result
+assert [row["verdict"] for row in result["rows"]] == ["same", "slower"], result
+assert math.isclose(result["geometric_means"][0]["geometric_mean_ratio"], math.sqrt(1.12), rel_tol=1e-9), result
+PYTHON
+
+# Runs that are not alike.
+cp -r "$work/base" "$work/cpu"
+sed -i 's/"model": "[^"]*"/"model": "Another CPU"/' "$work/cpu/provenance.json"
+expect 2 'not comparable: the CPU was .* and is Another CPU with 2 logical CPUs; .*--force' compare "$work/base" "$work/cpu"
+compare 0 "$work/base" "$work/cpu" --force
+warns 'compared all the same: the CPU was '
+says 'openmp .* same'
+cp -r "$work/base" "$work/scene"
+sed -i 's/"cloth2500": "[0-9a-f]*"/"cloth2500": "0123456789abcdef"/' "$work/scene/provenance.json"
+expect 2 'the hash of scene cloth2500 was [0-9a-f]* and is 0123456789abcdef' compare "$work/base" "$work/scene"
+cp -r "$work/base" "$work/device"
+sed -i 's/,openmp,cpu[^,]*,/,openmp,cpu SSE2,/' "$work/device/timings.csv"
+expect 2 'the device of openmp was cpu .* and is cpu SSE2' compare "$work/base" "$work/device"
+cp -r "$work/base" "$work/threads"
+sed -i 's/"asked_for": 2/"asked_for": 1/; s/GNU 12/GNU 13/' "$work/threads/provenance.json"
+expect 2 'the compiler was GNU 12.* and is GNU 13.*; the number of threads was 2 and is 1' compare "$work/base" "$work/threads"
+
+# Nothing to compare is no success.
+mkdir "$work/empty"
+expect 2 'nothing to compare' compare "$work/base" "$work/other"
+expect 2 'empty holds no timings.csv' compare "$work/base" "$work/empty"
+expect 2 'there is no .*missing' compare "$work/missing" "$work/base"
+expect 2 'NEW is missing: give what is compared with BASE' compare "$work/base"
+
+# Files that are broken.
+broken() {
+  rm -rf "$work/broken"
+  cp -r "$work/base" "$work/broken"
+}
+broken && sed -i 's/,0.1\([0-9]*\),$/,nan,/' "$work/broken/samples.csv"
+expect 2 'samples.csv, line [0-9]*, column ms_per_step: "nan" is not a number' compare "$work/base" "$work/broken"
+broken && sed -i 's/,10,0.1\([0-9]*\),$/,10,0,/' "$work/broken/samples.csv"
+expect 2 'openmp, semi-euler has no time above zero in round' compare "$work/base" "$work/broken"
+broken && sed -i '/,openmp,/d' "$work/broken/samples.csv"
+expect 2 'openmp, semi-euler has no samples' compare "$work/base" "$work/broken"
+broken && echo 'cloth2500,serial' >>"$work/broken/timings.csv"
+expect 2 'timings.csv, line 4: has 2 fields' compare "$work/base" "$work/broken"
+broken && rm "$work/broken/samples.csv"
+expect 2 'samples.csv' compare "$work/base" "$work/broken"
+broken && rm "$work/broken/provenance.json"
+expect 2 'provenance.json: cannot be read (No such file' compare "$work/base" "$work/broken"
+broken && truncate -s 100 "$work/broken/provenance.json"
+expect 2 'provenance.json: malformed JSON' compare "$work/base" "$work/broken"
+broken && sed -i 's/"logical_cpus": 2/"logical_cpus": "two"/' "$work/broken/provenance.json"
+expect 2 '/cpu/logical_cpus is "two"' compare "$work/broken" "$work/base"
+
+# Options.
+expect 2 'threshold' compare "$work/base" "$work/base" --threshold -5
+expect 2 'threshold' compare "$work/base" "$work/base" --threshold nan
+expect 2 'format.*github' compare "$work/base" "$work/base" --format github
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

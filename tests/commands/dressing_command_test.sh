@@ -1,0 +1,100 @@
+#!/usr/bin/env bash
+# Jeans are dressed from the command line, fit within bounds, and what does not fit is found.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+
+# dress STATUS ARGUMENTS...: mssim run must exit with STATUS
+dress() {
+  local wanted=$1 status=0
+  shift
+  "$mssim" run "$@" >"$work/out" 2>"$work/err" || status=$?
+  echo "mssim run $*: $status"
+  cat "$work/out" "$work/err"
+  [ "$status" -eq "$wanted" ] || fail "exit status $status instead of $wanted"
+}
+# value COLUMN: of the row that tells of the dressing
+value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR == 2 { print $c }' "$work/out"; }
+# fit NUMBER: from the lines below it
+fit() { awk -v name="$1" '$1 == name { print $2 }' "$work/out"; }
+misfit() { grep -q "$1" "$work/err" || fail "\"$1\" is not found out"; }
+
+# It fits, whoever dresses, and openmp gives the same for any number of threads.
+dress 0 --scene jeans2k --backend serial
+dress 0 --scene jeans2k --backend openmp --threads 1
+iterations=$(value iterations) edge=$(fit upper_edge_rise_mm)
+dress 0 --scene jeans2k --backend openmp --threads 3
+[ "$(value iterations)" = "$iterations" ] && [ "$(fit upper_edge_rise_mm)" = "$edge" ] ||
+  fail "three threads dress otherwise than one"
+[ "$(fit rows_astray)" -eq 0 ] && [ "$(fit rows)" -ge 50 ] || fail "rows: $(cat "$work/out")"
+# Where OpenMP may not give more, there is one thread, and said to be.
+OMP_THREAD_LIMIT=1 dress 0 --scene jeans1k --backend openmp
+[ "$(value threads)" -eq 1 ] || fail "threads: $(cat "$work/out")"
+dress 0 --scene jeans1k --backend opencl
+dress 0 --scene jeans1k --backend opencl --memory copy
+
+# It is dressed as long as --duration says, whether it has settled by then or not.
+dress 1 --scene jeans1k --duration 0.312
+[ "$(value simulated_s)" = 0.312 ] || fail "0.312 s of dressing: $(cat "$work/out")"
+misfit '^mssim: jeans1k: after 0.312 s the garment is still moving; a longer --duration gives it more time$'
+misfit 'the garment did not come to rest'
+dress 0 --scene jeans1k --duration 3
+settled=$(value iterations)
+dress 0 --scene jeans1k
+[ "$(value iterations)" = "$settled" ] || fail "a garment that settles in time is dressed otherwise"
+dress 2 --scene jeans1k --duration 1e-9
+misfit '.--duration must give between one step and'
+
+# So does a garment that is drawn in its scene.
+dress 0 --scene skirt --backend openmp
+
+# So does it on other bodies, to the same bounds.
+dress 0 --scene jeans4k-hip88 --backend openmp
+dress 0 --scene jeans4k-hip115 --backend openmp
+
+# wrong NAME CHANGE: the scene with a change, as $work/NAME.json
+wrong() {
+  sed "$2" "$source/scenes/jeans2k.json" >"$work/$1.json"
+  cmp -s "$work/$1.json" "$source/scenes/jeans2k.json" && fail "$2 changes nothing"
+  return 0
+}
+# With gravity from the start the jeans fall before they hold, and are found on the floor although their seams close.
+wrong falling 's/"seaming_gravity": 0/"seaming_gravity": 1/; s/"seam_force_n_per_m": 4/"seam_force_n_per_m": 1/'
+dress 1 --scene "$work/falling.json"
+misfit 'the upper edge.s distance from where it is worn is -[0-9.]* mm, beyond ±20 mm; try a lower waist'
+misfit 'the garment slid down: '
+grep -qE '^upper_edge_rise_mm +-[0-9.]+ +±20 +no$' "$work/out" || fail "the table's bound: $(cat "$work/out")"
+# Without correction the springs of a softer cloth are too long.
+wrong slack 's/"correction": "bounded"/"correction": "none"/; s/"bounded": {[^}]*}/"none": {}/; s/": 200,/": 60,/'
+dress 1 --scene "$work/slack.json"
+misfit 'the elongation that 99.9 % stay below is [0-9.]* %, beyond 8 %'
+# Without a force no seam closes in time, and what is sewn as it is does not sit.
+wrong open 's/"seam_force_n_per_m": 4/"seam_force_n_per_m": 0/'
+dress 1 --scene "$work/open.json"
+
+# A tunic over jeans, small enough for a debug build: layers that touch keep apart, others cross.
+sed 's/"nodes": 4000/"nodes": 1000/; s/"rows": 36, "columns": 28/"rows": 26, "columns": 20/; s/2.7e-4/3.7e-4/;
+     s/6036, "springs": 33948/2030, "springs": 10922/' \
+  "$source/scenes/outfit.json" >"$work/outfit.json"
+sed '/"layers"/d' "$work/outfit.json" >"$work/apart.json"
+dress 0 --scene "$work/outfit.json" --backend openmp
+[ "$(fit crossings)" -eq 0 ] && [ "$(value nodes)" -eq 2030 ] || fail "an outfit that fits: $(cat "$work/out")"
+dress 1 --scene "$work/apart.json" --backend openmp
+misfit 'layers of the cloth cross is [1-9][0-9]*, beyond 0'
+
+# Bodies that are none, and what a garment cannot have.
+wrong thin 's/"girth_m": 0.98/"girth_m": 0.3/'
+dress 2 --scene "$work/thin.json"
+misfit '/garment/body is no body: '
+for backend in threads-mutex hybrid; do
+  dress 2 --scene jeans2k --backend "$backend"
+  misfit 'garments are dressed by serial, openmp and opencl'
+done
+for backend in serial openmp opencl; do
+  dress 2 --scene jeans2k --backend "$backend" --integrator rk4
+  misfit 'semi-euler only'
+done
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

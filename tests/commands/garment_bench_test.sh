@@ -1,0 +1,109 @@
+#!/usr/bin/env bash
+# Garments are timed, dressed and verified from the command line like any scene.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+# bench STATUS ARGUMENTS...: mssim bench must exit with STATUS
+bench() {
+  local wanted=$1 status=0
+  shift
+  "$mssim" bench "$@" >out 2>err </dev/null || status=$?
+  echo "mssim bench $*: $status"
+  grep -v 'noise:' err || true
+  [ "$status" -eq "$wanted" ] || fail "mssim bench $*: exit status $status instead of $wanted"
+}
+# column FILE NAME BACKEND: of the rows of a backend, in one line; no field before it may hold a comma
+column() {
+  awk -F, -v name="$2" -v backend="$3" '
+    NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == name) c = i; if ($i == "backend") b = i } if (!c) exit 1; next }
+    $b == backend { printf "%s ", $c }' "$1"
+}
+# has FILE NAME BACKEND VALUE
+has() { [ "$(column "$1" "$2" "$3")" = "$4 " ] || fail "$1: $2 of $3 is \"$(column "$1" "$2" "$3")\", not \"$4 \""; }
+
+# A garment is dressed by each backend, verified and timed.
+jeans=(--scene jeans1k --backend "serial,openmp" --integrator semi-euler --threads 1)
+bench 0 "${jeans[@]}" --rounds 1 --out jeans
+for backend in serial openmp; do
+  for yes in verified settled largest_gap_mm_within deepest_node_mm_within deepest_face_mm_within elongation_99_within \
+    elongation_999_within upper_edge_rise_mm_within crotch_rise_mm_within rows_astray_within; do
+    has jeans/garment.csv "$yes" "$backend" true
+  done
+  has jeans/garment.csv status "$backend" ok
+  has jeans/timings.csv verified "$backend" true
+  # What was never published or cannot be counted is not made up.
+  for none in springs_published gigabytes_per_second roofline_fraction paper_ms; do has jeans/timings.csv "$none" "$backend" ""; done
+  awk -v ms="$(column jeans/garment.csv ms_per_iteration "$backend")" -v ns="$(column jeans/garment.csv ns_per_iteration_and_vertex "$backend")" \
+    'BEGIN { exit !(ms > 0 && ns / (ms * 1e6 / 1050) > 0.999 && ns / (ms * 1e6 / 1050) < 1.001) }' || fail "times of $backend"
+done
+has jeans/garment.csv speedup_vs_serial serial 1
+grep -q '^| with: .openmp. | \*\*[0-9.]*\*\* ([0-9.]*×) |$' jeans/figure6.md || fail "figure6.md: $(cat jeans/figure6.md)"
+grep -q '^serial,semi-euler,without,ms_per_iteration,[0-9.e-]*$' jeans/figure6.csv || fail "figure6.csv: $(cat jeans/figure6.csv)"
+grep -q '"name": "jeans1k/openmp/semi-euler"' jeans/benchmark.json || fail "benchmark.json"
+
+# The dressing is the one that mssim run shows.
+"$mssim" run --scene jeans1k --backend openmp --threads 1 >out
+iterations=$(awk 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "iterations") c = i } NR == 2 { print $c }' out)
+has jeans/garment.csv dressing_iterations openmp "$iterations"
+
+# --resume adds rounds and does not dress again; then nothing is left to do.
+dressed=$(column jeans/garment.csv dressing_s serial)$(column jeans/garment.csv dressing_s openmp)
+bench 0 "${jeans[@]}" --rounds 2 --out jeans --resume
+has jeans/timings.csv rounds serial 2
+[ "$(column jeans/garment.csv dressing_s serial)$(column jeans/garment.csv dressing_s openmp)" = "$dressed" ] || fail "--resume dresses again"
+before=$(cat jeans/garment.csv)
+bench 0 "${jeans[@]}" --rounds 2 --out jeans --resume
+[ "$(cat jeans/garment.csv)" = "$before" ] || fail "a finished folder is changed"
+
+# What cannot dress is a row that says why, and an error only where it was asked for.
+bench 0 --scene jeans1k --rounds 1 --format csv
+[ "$(wc -l <out)" -eq 16 ] || fail "there are not fifteen rows and a header"
+[ "$(grep -Ec '^jeans1k,1050,,semi-euler,(serial|openmp),.*,true,ok$' out)" -eq 2 ] || fail "not both rows are ok: $(cat out)"
+[ "$(grep -Ec '^jeans1k,.*,(threads-mutex|hybrid),.*,false,"?unsupported: .*garments' out)" -eq 6 ] || fail "six rows are unsupported: $(cat out)"
+[ "$(grep -Ec '^jeans1k,.*,(midpoint|rk4),(serial|openmp),.*,false,"?unsupported: .*semi-euler only' out)" -eq 4 ] || fail "four are not semi-euler: $(cat out)"
+bench 0 --scene jeans1k --backend openmp --rounds 1 --format github
+grep -q '"jeans1k/openmp/semi-euler"' out || fail "github: $(cat out)"
+bench 3 --scene jeans1k --backend openmp,hybrid --rounds 1
+bench 3 --scene jeans1k --backend openmp --integrator rk4 --rounds 1 --format json
+grep -q '"status": "unsupported: a garment is dressed with semi-euler only' out || fail "rk4: $(cat out)"
+
+# What does not fit is no result.
+sed 's/"correction": "bounded"/"correction": "none"/; s/"bounded": {[^}]*}/"none": {}/; s/": 200,/": 60,/' \
+  "$source/scenes/jeans1k.json" >slack.json
+bench 1 --scene slack.json --backend serial --integrator semi-euler --rounds 1 --out slack
+grep -q 'failed: dressed, .*the elongation that 99.9 % stay below is [0-9.]* %, beyond 8 %' slack/timings.csv || fail "slack: $(cat slack/timings.csv)"
+has slack/garment.csv ms_per_iteration serial ""
+has slack/garment.csv verified serial false
+head -n 1 slack/garment.csv | grep elongation_999_within >/dev/null || fail "the fit of what does not fit is not told"
+
+# Plans, budgets, and what does not go with a garment.
+bench 0 --suite garment --dry-run
+[ "$(grep -c '^jeans[0-9]*k ' out)" -eq 6 ] || fail "the plan has not six jeans: $(cat out)"
+awk '/^about/ { exit !($2 > 20 && $2 < 600) }' out || fail "the suite is expected to take $(tail -n 1 out)"
+expect 2 'time-budget is too short' bench --scene jeans1k --time-budget 0.1
+expect 2 '.--trace does not go with jeans1k, which is a garment' bench --scene jeans1k --trace --out traced
+[ ! -e traced ] || fail "a folder is made for what is refused"
+bench 0 --scene jeans1k --backend serial --integrator semi-euler --time-budget 20 --rounds 2 --format json
+"$mssim" list scenes --format csv >out
+grep -q '^jeans1k,garment,[0-9]*,[0-9]*,,' out || fail "a garment has a published count"
+
+# Ctrl-C while it dresses ends it soon, and says that there is nothing yet.
+env --default-signal=INT "$mssim" bench --scene jeans64k --backend serial --integrator semi-euler --out stopped >out 2>err </dev/null &
+process=$!
+for ((i = 0; i < 300; ++i)); do
+  if [ -e stopped/provenance.json ]; then break; fi
+  sleep 0.1
+done
+sleep 1
+kill -INT "$process"
+status=0
+wait "$process" || status=$?
+[ "$status" -eq 130 ] || fail "SIGINT gives exit status $status"
+grep -q 'nothing was measured yet' err || fail "SIGINT: $(cat err)"
+[ ! -e stopped/timings.csv ] || fail "there are times of what was not timed"
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

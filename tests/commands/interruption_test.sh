@@ -1,0 +1,170 @@
+#!/usr/bin/env bash
+# Nothing that was measured or traced is lost, whatever ends mssim.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+scenes=(bench --scene cloth2500,cloth4900 --integrator semi-euler --threads 1)
+bench=("${scenes[@]}" --backend serial,openmp --rounds 6)
+
+# rounds FOLDER: the rounds of every row of FOLDER/timings.csv, in one line
+rounds() { awk -F, 'NR > 1 { printf "%s ", $10 }' "$1/timings.csv"; }
+
+# whole FOLDER: every file of a result folder is whole: all lines of a CSV file have as many fields, JSON is closed
+whole() {
+  local file
+  for file in "$1"/*.csv; do
+    awk -F, -v file="$file" 'NR == 1 { n = NF } NF != n { print file ": line " NR " is cut off"; bad = 1 } END { exit bad || NR == 0 }' \
+      "$file" || fail "$file is not whole"
+  done
+  for file in "$1"/*.json; do
+    [ "$(tail -c 2 "$file")" = '}' ] || fail "$file is not whole"
+  done
+}
+
+# start_and_signal SIGNAL WAIT_FOR_FILE COMMAND...: runs mssim, signals it once the file is there; sets $status
+start_and_signal() {
+  local signal=$1 file=$2 i
+  shift 2
+  # Shells start what runs in the background with SIGINT ignored; env puts it back.
+  env --default-signal=INT "$mssim" "$@" >out 2>err </dev/null &
+  local process=$!
+  for ((i = 0; i < 600; ++i)); do
+    if [ -e "$file" ] || ! kill -0 "$process" 2>/dev/null; then break; fi
+    sleep 0.1
+  done
+  kill -"$signal" "$process" 2>/dev/null || fail "mssim ended before it could be interrupted: $(cat err)"
+  status=0
+  wait "$process" || status=$?
+}
+
+# SIGINT: what is measured stands in whole files and on stdout, and the exit status says it.
+start_and_signal INT int/timings.csv "${bench[@]}" --out int
+[ "$status" -eq 130 ] || fail "SIGINT gives exit status $status"
+grep -q 'results so far are in int; --resume goes on' err || fail "SIGINT: $(cat err)"
+grep -q '^cloth2500 .*serial' out || fail "after SIGINT nothing is printed"
+whole int
+case $(rounds int) in
+  '6 6 6 6 ') fail "SIGINT came too late to be tested" ;;
+esac
+# first_sample: as it was measured; whether it is an outlier is known when there are more
+first_sample() { grep '^cloth2500,serial,semi-euler,1,' int/samples.csv | cut -d, -f1-6; }
+before=$(first_sample)
+
+# --resume keeps that and measures the rest; a finished folder is left as it is.
+"$mssim" "${bench[@]}" --out int --resume >out 2>err || fail "--resume exits with $?: $(cat err)"
+[ "$(rounds int)" = '6 6 6 6 ' ] || fail "after --resume the rows have the rounds $(rounds int)"
+grep -A 1 '"earlier_starts_utc": \[' int/provenance.json | grep '"20' >/dev/null || fail "the provenance does not tell of the first run"
+[ "$(first_sample)" = "$before" ] || fail "--resume has lost a sample"
+[ "$(grep -c '^cloth2500,serial,' int/samples.csv)" -eq 6 ] || fail "cloth2500 has not six samples"
+whole int
+cp int/samples.csv kept
+"$mssim" "${bench[@]}" --out int --resume >out 2>err || fail "--resume of a finished folder exits with $?"
+cmp -s kept int/samples.csv || fail "--resume measured a finished folder again"
+grep -q '^cloth4900 .*openmp' out || fail "--resume of a finished folder prints no table"
+
+# Results are neither replaced nor mixed unawares.
+expect 2 'int holds results already: give another --out, --resume .*or --overwrite' "${bench[@]}" --out int
+cmp -s kept int/samples.csv || fail "a refused bench has changed the folder"
+"$mssim" "${scenes[@]}" --backend serial --rounds 6 --out int --resume >out 2>err && fail "other backends are mixed"
+grep -q 'other backends or integrators of cloth2500' err || fail "other backends: $(cat err)"
+cp -r int moved
+sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8/' moved/provenance.json
+expect 2 'cannot go on in moved: the CPU was Another CPU .*; the number of threads was 8 and is 1; choose another' \
+  "${bench[@]}" --out moved --resume
+expect 2 'resume' bench --scene cloth2500 --resume
+expect 2 'cannot go on in int: it has results of cloth2500, which this command leaves out; choose another' \
+  bench --scene cloth4900 --integrator semi-euler --threads 1 --backend serial,openmp --rounds 6 --out int --resume
+"$mssim" "${scenes[@]}" --backend opencl --rounds 2 --memory copy --out copied >out 2>err || fail "opencl: $(cat err)"
+cp copied/timings.csv kept.csv
+"$mssim" "${scenes[@]}" --backend opencl --rounds 3 --out copied --resume >out 2>err && fail "other devices are mixed"
+grep -q 'cannot go on in copied: the device of opencl was .* (copied memory) and is ' err || fail "other devices: $(cat err)"
+cmp -s kept.csv copied/timings.csv || fail "a refused --resume has changed the rows"
+expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
+"$mssim" bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite >out 2>err ||
+  fail "--overwrite exits with $?: $(cat err)"
+[ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"
+[ "$(wc -l <int/samples.csv)" -eq 2 ] || fail "--overwrite left samples"
+
+# Tables of what scenes are count as results, and what is replaced leaves nothing of what was there.
+"$mssim" bench --suite table2 --out tables >out 2>err || fail "table2: $(cat err)"
+expect 2 'tables holds results already' bench --scene cloth2500 --out tables
+expect 2 'cannot go on in tables: it has results of box-large, box-medium, .*, torus-small, which this command leaves out' bench --scene cloth2500 --out tables --resume
+"$mssim" bench --scene jeans1k --backend openmp --rounds 1 --out tables --overwrite >out 2>err || fail "--overwrite of tables: $(cat err)"
+[ ! -e tables/table2.md ] && [ -s tables/figure6.md ] || fail "--overwrite leaves $(ls tables)"
+
+# Two files of one name would share their rows.
+mkdir one two
+cp "$2/scenes/cloth2500.json" one/mine.json
+sed 's/"rows": 50/"rows": 40/' one/mine.json >two/mine.json
+expect 2 'two scenes called mine, one/mine.json and two/mine.json; name one of them, or rename a file' \
+  bench --scene one/mine.json,two/mine.json
+
+# kill -9 at any moment.
+for delay in 0.3 0.7 1.1 1.6; do
+  "$mssim" "${bench[@]}" --out killed --resume >/dev/null 2>err &
+  process=$!
+  sleep "$delay"
+  kill -9 "$process" 2>/dev/null || true
+  wait "$process" 2>/dev/null || true
+  [ ! -e killed/timings.csv ] || whole killed
+done
+"$mssim" "${bench[@]}" --out killed --resume >out 2>err || fail "--resume after kill -9 exits with $?: $(cat err)"
+[ "$(rounds killed)" = '6 6 6 6 ' ] || fail "after kill -9 and --resume the rows have the rounds $(rounds killed)"
+[ "$(cut -d, -f1-4 killed/samples.csv | sort | uniq -d | wc -l)" -eq 0 ] || fail "a sample stands twice"
+whole killed
+
+# A second bench into the same folder.
+"$mssim" "${scenes[@]}" --backend serial --rounds 1000 --out shared >/dev/null 2>err &
+process=$!
+for ((i = 0; i < 300; ++i)); do
+  if [ -e shared/provenance.json ]; then break; fi
+  sleep 0.1
+done
+expect 4 'another mssim is writing into shared' "${bench[@]}" --out shared --resume
+kill -TERM "$process"
+status=0
+wait "$process" || status=$?
+[ "$status" -eq 143 ] || fail "SIGTERM gives exit status $status"
+
+# A reader of stdout that goes away loses nothing of the folder; a closed stdout is an error.
+"$mssim" bench --scene cloth2500 --backend serial,openmp --integrator semi-euler --threads 1 --rounds 1 --out piped 2>err | head -n 1 >out || true
+[ "$(rounds piped)" = '1 1 ' ] || fail "a closed pipe costs results"
+whole piped
+status=0
+"$mssim" list scenes >&- 2>err || status=$?
+[ "$status" -eq 4 ] || fail "a closed stdout gives exit status $status"
+grep -q 'standard output could not be written' err || fail "a closed stdout: $(cat err)"
+
+# A disk that is full, as a limit on the size of files: the sentence names the file, and no part of one is left.
+status=0
+(
+  trap '' XFSZ
+  ulimit -f 8
+  exec "$mssim" "${bench[@]}" --out full >out 2>err
+) || status=$?
+[ "$status" -eq 4 ] || fail "a full disk gives exit status $status"
+grep -q 'cannot write full/' err || fail "a full disk: $(cat err)"
+[ -z "$(find full -name '*.part')" ] || fail "a full disk leaves a half-written file"
+whole full
+[ -n "$(rounds full)" ] || fail "a full disk costs what was measured before"
+
+# SIGINT while a simulation is traced: the frames so far are in whole files.
+start_and_signal INT fall.h5.part run --scene cloth2500 --threads 1 --duration 100 --trace fall.h5 --energy-curve fall.csv
+[ "$status" -eq 130 ] || fail "SIGINT in a run gives exit status $status: $(cat err)"
+[ -s fall.h5 ] && [ ! -e fall.h5.part ] || fail "SIGINT loses a trace"
+[ "$(wc -l <fall.csv)" -ge 2 ] || fail "SIGINT loses the energies"
+h5dump -d /particles/cloth/position/step fall.h5 >frames || fail "the trace cannot be read"
+
+# The same while a garment is dressed.
+start_and_signal INT dress.h5.part run --scene jeans16k --backend serial --trace dress.h5 --energy-curve dress.csv
+[ "$status" -eq 130 ] || fail "SIGINT while dressing gives exit status $status: $(cat err)"
+[ -s dress.h5 ] && [ -s dress.xdmf ] && [ ! -e dress.h5.part ] || fail "SIGINT loses the trace of a dressing"
+h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"
+frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)
+[ "$frames" -ge 1 ] && [ "$(grep -c '^[0-9]' dress.csv)" -eq "$frames" ] || fail "$frames frames, energies: $(cat dress.csv)"
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

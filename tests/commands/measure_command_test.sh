@@ -1,0 +1,169 @@
+#!/bin/bash
+# mssim measure at the command line: what it finds, the scenes that it writes, and what it refuses. Arguments: mssim, the
+# source folder.
+set -euo pipefail
+mssim=$1
+source=$2
+. "$source/tests/support/command_line.sh"
+scenes=$source/scenes
+
+# A person of closed tubes through ellipses: trunk with head, legs, feet and arms. "neck" leaves the top open, "waist" cuts
+# the trunk off and leaves it open.
+person() {
+  /usr/bin/python3 - "$@" <<'PYTHON'
+import math, sys
+unit, axes, cut = float(sys.argv[1]), sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else ""
+lines, count = [], 0
+
+
+def tube(sections, open_top=False):
+    """Sections: height, x, z, half width, half depth."""
+    global count
+    n = 24
+    for y, x, z, a, b in sections:
+        for j in range(n):
+            angle = 2 * math.pi * j / n
+            p = {"x": x + a * math.cos(angle), "y": y, "z": z + b * math.sin(angle)}
+            named = {"+": 1, "-": -1}
+            lines.append("v " + " ".join(f"{named[s] * p[c] / unit:.6g}" for s, c in zip(axes[::2], axes[1::2])))
+    for y, x, z, _, _ in (sections[0], sections[-1]):
+        p = {"x": x, "y": y, "z": z}
+        named = {"+": 1, "-": -1}
+        lines.append("v " + " ".join(f"{named[s] * p[c] / unit:.6g}" for s, c in zip(axes[::2], axes[1::2])))
+    at = lambda ring, j: count + ring * n + j % n + 1
+    for ring in range(len(sections) - 1):
+        for j in range(n):
+            lines.append(f"f {at(ring, j)} {at(ring + 1, j)} {at(ring + 1, j + 1)} {at(ring, j + 1)}")
+    low, high = count + len(sections) * n + 1, count + len(sections) * n + 2
+    for j in range(n):
+        lines.append(f"f {low} {at(0, j)} {at(0, j + 1)}")
+        if not open_top:
+            lines.append(f"f {high} {at(len(sections) - 1, j + 1)} {at(len(sections) - 1, j)}")
+    count += len(sections) * n + 2
+
+
+trunk = [(0.77, 0, -0.01, 0.09, 0.03), (0.79, 0, -0.01, 0.155, 0.075), (0.82, 0, -0.01, 0.172, 0.105),
+         (0.86, 0, -0.01, 0.181, 0.130), (0.95, 0, 0, 0.160, 0.120), (1.04, 0, 0, 0.132, 0.103),
+         (1.15, 0, 0, 0.144, 0.108), (1.28, 0, 0, 0.166, 0.119), (1.38, 0, 0, 0.150, 0.080),
+         (1.44, 0, 0, 0.062, 0.060), (1.53, 0, 0, 0.062, 0.060), (1.60, 0, 0.01, 0.075, 0.095),
+         (1.68, 0, 0.01, 0.060, 0.080)]
+cuts = {"neck": 1.5, "waist": 1.1}
+tube([s for s in trunk if s[0] < cuts.get(cut, 2)], cut in cuts)
+for side in (1, -1):
+    leg = [(0.05, 0.125, 0, 0.037, 0.040), (0.09, 0.125, 0, 0.036, 0.040), (0.32, 0.113, -0.01, 0.054, 0.060),
+           (0.46, 0.107, 0, 0.057, 0.061), (0.62, 0.099, 0, 0.076, 0.080), (0.76, 0.094, 0, 0.088, 0.090),
+           (0.84, 0.080, 0, 0.060, 0.060)]
+    tube([(y, side * x, z, a, b) for y, x, z, a, b in leg])
+    tube([(0, side * 0.13, 0.05, 0.042, 0.11), (0.05, side * 0.13, 0.05, 0.040, 0.10), (0.07, side * 0.125, 0, 0.03, 0.04)])
+    if not cut:
+        tube([(0.72, side * 0.30, 0.02, 0.03, 0.05), (0.85, side * 0.275, 0.01, 0.03, 0.035),
+              (1.10, side * 0.235, 0, 0.042, 0.045), (1.36, side * 0.16, 0, 0.045, 0.045)])
+print("\ufeff# a person\nmtllib a.mtl\no body\nusemtl skin\ns 1\nTexture a b\n" + "\n".join(lines))
+PYTHON
+}
+# of_listing FILE MEASURE: its value in a CSV listing
+of_listing() { awk -F, -v name="$2" '$1 == name { print $2 }' "$1"; }
+near() { awk -v a="$1" -v b="$2" -v d="$3" 'BEGIN { exit !(a - b <= d && b - a <= d) }'; }
+# measure STATUS ARGUMENTS...: stdout in $work/out, stderr in $work/err
+measure() {
+  local wanted=$1 status=0
+  shift
+  timeout 60 "$mssim" measure "$@" >"$work/out" 2>"$work/err" </dev/null || status=$?
+  [ "$status" -eq "$wanted" ] || fail "measure $*: exit status $status instead of $wanted: $(cat "$work/err")"
+}
+says() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\": $(cat "$work/err")"; }
+
+# What is found, in another unit, with z up, facing -y; and in the formats.
+person 1 +x+y+z >"$work/person.obj"
+person 0.001 +x-z+y >"$work/scan.obj"
+measure 0 "$work/scan.obj" --format csv
+! grep -q 'not certain' "$work/err" || fail "a person is not certain: $(cat "$work/err")"
+says 'garments ignore what the body has beside trunk and legs'
+[ "$(of_listing "$work/out" unit) $(of_listing "$work/out" up) $(of_listing "$work/out" facing)" = "0.001 z -y" ] ||
+  fail "the stance of a scan: $(cat "$work/out")"
+for measure in height:1.68:.001 waist_height:1.04:.02 waist_girth:.74:.02 hip_height:.86:.02 hip_girth:.98:.02 \
+  crotch_height:.77:.01 knee_girth:.37:.02 ankle_girth:.24:.02; do
+  IFS=: read -r name expected within <<<"$measure"
+  near "$(of_listing "$work/out" "$name")" "$expected" "$within" || fail "$name: $(cat "$work/out")"
+done
+measure 0 "$work/scan.obj" --format json
+/usr/bin/python3 -c 'import json, sys; rows = json.load(sys.stdin); assert any(r["measure"] == "hip_girth" and r["unit"] == "m" for r in rows)' \
+  <"$work/out" || fail "the JSON of a body"
+measure 0 jeans4k
+grep -q '^hip_girth  *0.98 ' "$work/out" || fail "the mannequin of a scene: $(cat "$work/out")"
+
+# What is given beats what is found.
+measure 0 "$work/scan.obj" --unit mm --up z --facing -y --format csv
+[ "$(of_listing "$work/out" facing)" = -y ] || fail "a facing that is given"
+measure 0 "$work/person.obj" --facing=-z --format csv
+[ "$(of_listing "$work/out" facing)" = -z ] || fail "a facing that is given wrongly"
+measure 0 "$work/person.obj" --unit 0.5 --format csv
+[ "$(of_listing "$work/out" unit)" = 0.5 ] || fail "a unit in metres"
+says 'not certain of unit: the body is 0.84 m high in the unit given'
+
+# The scene that is written names the body from where it stands, is valid, and dresses it.
+mkdir "$work/scenes"
+measure 0 "$work/scan.obj" --scene "$work/scenes/my.json"
+says "wrote $work/scenes/my.json; mssim run --scene"
+grep -q '"file": "../scan.obj"' "$work/scenes/my.json" || fail "the path of the body: $(cat "$work/scenes/my.json")"
+/usr/bin/python3 -c 'import json, jsonschema, sys
+jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(json.load(open(sys.argv[2])))' \
+  "$scenes/scene.schema.json" "$work/scenes/my.json" || fail "the scene is not valid by the schema"
+status=0
+(cd "$work/scenes" && timeout 120 "$mssim" run --scene my.json >"$work/out" 2>"$work/err") || status=$?
+[ "$status" -eq 0 ] || fail "the body is not dressed: $status $(cat "$work/err" "$work/out")"
+
+# Nothing is replaced unasked, and nothing is written where something is wrong.
+echo mine >"$work/mine.json"
+expect 2 'is there already: give another --scene, or --overwrite' measure "$work/scan.obj" --scene "$work/mine.json"
+[ "$(cat "$work/mine.json")" = mine ] || fail "a scene was replaced unasked"
+measure 0 "$work/scan.obj" --scene "$work/mine.json" --overwrite
+grep -q surface_file "$work/mine.json" || fail "--overwrite does not replace"
+expect 2 'give a file that ends in .json' measure "$work/scan.obj" --scene "$work/scan.obj" --overwrite
+measure 4 "$work/scan.obj" --scene "$work/none/my.json"
+says 'cannot write'
+expect 2 'b.obj is missing' measure "$work/b.obj"
+expect 2 'no scene is named' measure jeans4
+expect 2 'cloth2500 is a scene without a body to dress' measure cloth2500
+expect 2 'leave out --unit' measure jeans4k --unit mm
+expect 2 '--unit is "mile": give m, cm, mm, inch, foot, or the metres' measure "$work/scan.obj" --unit mile
+expect 2 'cannot look along z' measure "$work/scan.obj" --up z --facing +z
+
+# Openings: a neck is closed, a waist is not.
+person 0.01 +x+y+z neck >"$work/neck.obj"
+person 0.01 +x+y+z waist >"$work/waist.obj"
+measure 2 "$work/neck.obj" --scene "$work/neck.json"
+says 'it is open at 1 place: close it where it was made, or give --close-holes'
+grep -q '^opening_1 .*24 edges around (.*, open' "$work/out" || fail "the opening: $(cat "$work/out")"
+[ ! -e "$work/neck.json" ] || fail "a scene of an open body is written"
+measure 0 "$work/neck.obj" --close-holes --scene "$work/neck.json"
+grep -q '^opening_1 .*24 edges around (.*, closed' "$work/out" || fail "the closed opening: $(cat "$work/out")"
+grep -q '"close_holes_m": 0.2' "$work/neck.json" || fail "the scene does not close the hole: $(cat "$work/neck.json")"
+measure 2 "$work/waist.obj" --close-holes --unit cm
+says 'the opening of 24 edges around (.* is 0.2[0-9]* m across, and at most 0.2 m are closed'
+
+# Scenes whose body is not as they say name the field.
+wrong() {
+  sed "$2" "$work/scenes/my.json" >"$work/scenes/$1.json"
+  status=0
+  timeout 60 "$mssim" run --scene "$work/scenes/$1.json" >"$work/out" 2>"$work/err" </dev/null || status=$?
+  [ "$status" -eq 2 ] || fail "a scene with $2: exit status $status"
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "a scene with $2: $(cat "$work/err")"
+}
+wrong metres 's/"unit_m": 0.001/"unit_m": 1/'
+says '/garment/surface_file/unit_m is 1, which makes the body 16.* m high: give .*, 0.001 where that is a person in mm'
+wrong lying 's/"up": "z"/"up": "y"/'
+says '/garment/surface_file/facing is "-y", the axis along which the body stands upright'
+wrong sideways 's/"facing": "-y"/"facing": "+x"/'
+says '/garment/surface_file has no leg on either side of x = 0'
+wrong high 's/"waist_height_m": [0-9.]*/"waist_height_m": 1.7/'
+says '/garment/jeans/waist_height_m is 1.7, and the body ends at the height 1.68 m'
+wrong low 's/"hem_height_m": [0-9.]*/"hem_height_m": 1/'
+says "the knee's height, knee_height_m, which lies above the hem's"
+wrong hip 's/"hip_height_m": [0-9.]*/"hip_height_m": 0.7/'
+says "hip_height_m, which lies above the crotch's"
+sed 's/"file": [^,]*/"file": "..\/neck.obj"/; s/"unit_m": 0.001/"unit_m": 0.01/; s/"up": "z"/"up": "y"/; s/"facing": "-y"/"facing": "+z"/' \
+  "$work/scenes/my.json" >"$work/scenes/open.json"
+expect 2 'it has 1 opening of 24 edges around .* or give "close_holes_m"' run --scene "$work/scenes/open.json"
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

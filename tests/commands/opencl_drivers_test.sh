@@ -1,0 +1,130 @@
+#!/usr/bin/env bash
+# OpenCL drivers that offer nothing, end the process that asks them, or cannot write their cache. $1: mssim, $2: the
+# source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+fakes=$(cd "${mssim%/*}/../fake_opencl" && pwd)
+cd "$work"
+mkdir tmp
+export TMPDIR=$work/tmp
+
+pocl=$(grep -ls pocl /etc/OpenCL/vendors/*.icd | head -n 1 || true)
+if [ -z "$pocl" ]; then
+  echo "skipped: needs PoCL among the registered drivers"
+  exit 77
+fi
+
+# drivers NAME...: only these are registered; a fake, a missing one, or pocl
+drivers() {
+  rm -rf vendors
+  mkdir vendors
+  for name in "$@"; do
+    if [ "$name" = pocl ]; then cp "$pocl" vendors/pocl.icd; else echo "$fakes/$name.so" >"vendors/$name.icd"; fi
+  done
+  export OCL_ICD_VENDORS=$work/vendors
+}
+
+# devices COUNT PATTERN: so many are listed, and stderr is one line that matches, or nothing
+devices() {
+  "$mssim" list devices --format csv >out 2>err || fail "list devices exits with $?"
+  echo "list devices: $(cat err)"
+  local found
+  found=$(awk 'NR > 1' out | wc -l)
+  [ "$found" -eq "$1" ] || fail "$found devices instead of $1"
+  if [ -z "$2" ]; then
+    [ ! -s err ] || fail "stderr is not empty: $(cat err)"
+  else
+    [ "$(wc -l <err)" -eq 1 ] || fail "stderr has not one line: $(cat err)"
+    grep -q -- "^mssim: $2" err || fail "stderr does not say \"$2\": $(cat err)"
+  fi
+  [ -z "$(ls tmp)" ] || fail "left in TMPDIR: $(ls tmp)"
+}
+
+# No driver, or none that offers anything.
+drivers
+devices 0 'there is no OpenCL device here; Debian.s pocl-opencl-icd makes the processor one$'
+drivers missing
+devices 0 'the OpenCL driver .*/missing.so cannot be loaded, or offers nothing (.*/missing.icd registers it)$'
+drivers deviceless_driver
+devices 0 'the OpenCL driver "A fake driver" offers no device$'
+expect 3 'the OpenCL driver "A fake driver" offers no device$' run --scene cloth2500 --backend opencl
+drivers deviceless_driver pocl
+devices 1 'the OpenCL driver "A fake driver" offers no device$'
+
+# One that ends whoever asks it.
+drivers aborting_driver
+end='the OpenCL driver .*/aborting_driver.so ended with signal 6 when asked for devices: Not enough memory to run on this device\.'
+devices 0 "$end\$"
+expect 3 "$end\$" run --scene cloth2500 --backend opencl --duration 0.01
+"$mssim" list backends --format csv >out 2>err || fail "list backends exits with $?"
+[ "$(grep -c "^\(opencl\|hybrid\),.*,false,\"\?$end" out)" -eq 2 ] || fail "list backends: $(cat out err)"
+"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1 --out results >out 2>err ||
+  fail "a bench beside a driver that ends it exits with $?: $(cat err)"
+[ "$(column_of results/timings.csv verified | grep -c true)" -eq 3 ] || fail "not three rows: $(cat results/timings.csv)"
+[ "$(grep -c "unavailable: $end" results/timings.csv)" -eq 2 ] || fail "not two rows without a device: $(cat results/timings.csv)"
+drivers aborting_device_driver
+devices 0 'the OpenCL driver .*/aborting_device_driver.so ended with signal 6 when asked for devices$'
+drivers aborting_driver pocl
+devices 1 "$end\$"
+OCL_ICD_VENDORS=$work/vendors/aborting_driver.icd devices 0 "$end\$"
+OCL_ICD_VENDORS=$fakes/aborting_driver.so devices 0 "$end\$"
+"$mssim" run --scene cloth2500 --backend opencl --duration 0.01 >out 2>err || fail "run beside a driver that ends it exits with $?"
+grep -q "^mssim: $end\$" err || fail "run does not name the driver that it left out: $(cat err)"
+
+# Nobody asks who needs no device.
+drivers aborting_driver
+export FAKE_OPENCL_LOADED=$work/loaded
+"$mssim" list backends >out 2>err
+[ -e loaded ] || fail "the fake driver leaves no trace"
+rm loaded
+"$mssim" list scenes >out 2>err
+"$mssim" bench --scene cloth2500 --backend serial,openmp --integrator semi-euler --rounds 2 --out few >out 2>err || fail "a bench exits with $?"
+"$mssim" run --scene cloth2500 --backend openmp --duration 0.01 --trace fall.h5 >out 2>err || fail "a run exits with $?"
+[ ! -e loaded ] || fail "drivers are asked by commands that need no device"
+unset FAKE_OPENCL_LOADED
+
+# What was verified beside a device counts for those of its backends that need none.
+drivers pocl
+scene=(bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1)
+"$mssim" "${scene[@]}" --backend serial,opencl --out both >out 2>err || fail "a bench exits with $?: $(cat err)"
+"$mssim" "${scene[@]}" --backend serial --verified both --out part >out 2>err || fail "a bench of some of it exits with $?: $(cat err)"
+
+# PoCL's cache. The user's own that cannot be written is named; no other is taken in its place.
+drivers pocl
+cache='the OpenCL driver "Portable Computing Language" offers no device: its cache /dev/null/mine cannot be written (Not a directory); set POCL_CACHE_DIR to a folder that can be, or unset it$'
+POCL_CACHE_DIR=/dev/null/mine devices 0 "$cache"
+POCL_CACHE_DIR=/dev/null/mine expect 3 "$cache" run --scene cloth2500 --backend hybrid
+unset POCL_CACHE_DIR XDG_CACHE_HOME
+# Where PoCL would take a folder that cannot be written: mssim's own beside it, or a temporary one.
+mkdir -p home/.cache xdg
+echo "a file" >home/.cache/pocl
+echo "a file" >xdg/pocl
+HOME=$work/home devices 1 ''
+[ -d home/.cache/mssim/pocl ] || fail "no cache below HOME"
+HOME=/dev/null XDG_CACHE_HOME=$work/xdg devices 1 ''
+[ -d xdg/mssim/pocl ] || fail "no cache below XDG_CACHE_HOME"
+costs="PoCL's cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), so that every run compiles its kernels anew; set POCL_CACHE_DIR to a folder that can be\$"
+HOME=/dev/null devices 1 "$costs"
+HOME=/dev/null TMPDIR=/dev/null devices 0 'the OpenCL driver "Portable Computing Language" offers no device: its cache /dev/null/.cache/pocl/kcache cannot be written (Not a directory), and mssim cannot make a temporary folder in /dev/null (Not a directory); set TMPDIR'
+env -u HOME "$mssim" list devices --format csv >out 2>err || fail "list devices without HOME exits with $?"
+[ "$(wc -l <out)" -eq 2 ] || fail "no device without HOME: $(cat out err)"
+POCL_CACHE_DIR='' HOME=$work/home2 devices 1 ''
+HOME=/dev/null "$mssim" run --scene cloth2500 --backend opencl --duration 0.01 >out 2>err || fail "run exits with $?: $(cat err)"
+grep -q "^mssim: $costs" err || fail "run does not say that kernels are compiled anew: $(cat err)"
+[ -z "$(ls tmp)" ] || fail "run leaves $(ls tmp)"
+
+# Also where a signal ends it.
+HOME=/dev/null "$mssim" bench --scene cloth2500 --backend opencl --integrator semi-euler --threads 1 --rounds 100000 >out 2>err &
+bench=$!
+for ((try = 0; try < 600; ++try)); do
+  sleep 0.1
+  [ -n "$(find tmp -name '*.so' 2>/dev/null)" ] && break
+done
+kill -TERM $bench
+status=0
+wait $bench || status=$?
+[ "$status" -eq 143 ] || fail "an interrupted bench exits with $status: $(cat err)"
+[ -z "$(ls tmp)" ] || fail "an interrupted bench leaves $(ls tmp)"
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

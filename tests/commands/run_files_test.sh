@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# What mssim run writes: one writer a file, no file over another, everything that was recorded kept.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+source=$2
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+fall=(run --scene cloth2500 --threads 1)
+
+# frames TRACE: how many frames it has
+frames() { h5dump -H -d /particles/cloth/position/step "$1" | sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p'; }
+
+# A second run into files that are being written: told so, and the first one's are whole.
+env --default-signal=INT "$mssim" "${fall[@]}" --duration 10000 --fps 5 --trace tw.h5 --energy-curve tw.csv >out 2>err &
+process=$!
+for ((i = 0; i < 300; ++i)); do
+  if [ -s tw.csv.part ] && [ -e tw.h5.part ]; then break; fi
+  sleep 0.1
+done
+expect 4 'another mssim is writing tw.h5; wait until it has ended, or choose another file name' \
+  "${fall[@]}" --duration 0.01 --trace tw.h5
+expect 4 'another mssim is writing tw.csv; wait until' "${fall[@]}" --duration 0.01 --energy-curve tw.csv
+expect 4 'another mssim is writing ./tw.csv' "${fall[@]}" --duration 0.01 --trace other.h5 --energy-curve ./tw.csv
+[ ! -e other.h5.part ] || fail "a refused run leaves a file"
+sleep 0.5
+kill -INT "$process"
+status=0
+wait "$process" || status=$?
+[ "$status" -eq 130 ] || fail "the first run gives exit status $status"
+[ "$(frames tw.h5)" -ge 2 ] || fail "the trace of the first run is broken"
+[ "$(frames tw.h5)" -eq "$(grep -c '^[0-9]' tw.csv)" ] || fail "the trace and the curve of the first run differ"
+
+# One name for two files.
+expect 2 '--trace and --energy-curve are the same file, ./x.h5; give each a name of its own' \
+  "${fall[@]}" --trace ./x.h5 --energy-curve x.h5
+expect 2 'the XDMF beside --trace and --energy-curve are the same file' "${fall[@]}" --trace x.h5 --energy-curve x.xdmf
+cp "$source/scenes/cloth2500.json" mine.json
+expect 2 '--energy-curve and a file of the scene are the same file' run --scene ./mine.json --energy-curve mine.json
+cmp -s mine.json "$source/scenes/cloth2500.json" || fail "a scene was overwritten"
+[ -z "$(find . -name 'x.*')" ] || fail "a refused run leaves a file"
+
+# A disk that is full: the trace and the energies of its frames are kept.
+status=0
+(
+  trap '' XFSZ
+  ulimit -f 2000
+  exec "$mssim" "${fall[@]}" --duration 10 --trace full.h5 --energy-curve full.csv >out 2>err
+) || status=$?
+[ "$status" -eq 4 ] || fail "a full disk gives exit status $status: $(cat err)"
+grep -q 'cannot write full.h5: .*full.h5.part keeps the frames .*; full.csv.part keeps the energies written before: ' err ||
+  fail "a full disk: $(cat err)"
+kept=$(frames full.h5.part)
+[ "$kept" -ge 1 ] && [ "$(grep -c '^[0-9]' full.csv.part)" -ge "$kept" ] || fail "$kept frames, energies: $(cat full.csv.part)"
+[ ! -e full.h5 ] && [ ! -e full.csv ] || fail "a full disk leaves files under their names"
+
+# Double precision is stored as such; springs stand with what a strain is computed from.
+"$mssim" "${fall[@]}" --backend serial --precision double --duration 0.01 --fps 200 --trace double.h5 >out
+h5dump -H -d /particles/cloth/position/value double.h5 | grep H5T_IEEE_F64LE >/dev/null || fail "double is stored as single"
+grep -q 'NumberType="Float" Precision="8".*/xdmf/position/' double.xdmf || fail "the XDMF of double precision: $(head -n 9 double.xdmf)"
+"$mssim" "${fall[@]}" --duration 0.01 --fps 200 --trace single.h5 >out
+h5dump -H -d /particles/cloth/position/value single.h5 | grep H5T_IEEE_F32LE >/dev/null || fail "single is stored as double"
+for number in rest_length stiffness damping; do
+  h5dump -H -d "/parameters/springs/$number" single.h5 | grep 'SIMPLE { ( 14502 ) ' >/dev/null || fail "no $number a spring"
+done
+
+# On a terminal a run says how far it is, and takes the line away; elsewhere it says nothing.
+script -qec "'$mssim' run --scene cloth2500 --threads 1 --duration 1" /dev/null </dev/null >terminal
+grep -q 'cloth2500: step [0-9]* of 20000, about 0:[0-9][0-9] left' terminal || fail "no progress: $(head -c 500 terminal)"
+script -qec "'$mssim' run --scene jeans1k --threads 1" /dev/null </dev/null >terminal
+grep -q 'jeans1k: draping, [0-9.]* s simulated of at most 4' terminal || fail "no progress of a dressing"
+"$mssim" "${fall[@]}" --duration 0.1 >out 2>err
+[ ! -s err ] || fail "a run that is no terminal's writes to stderr: $(cat err)"
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

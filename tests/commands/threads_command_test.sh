@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# --threads binds a processor that is an OpenCL device, too; what cannot keep to it is marked. $1: mssim, $2: the source
+# folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+if [ "$("$mssim" list devices --format csv | awk -F, 'NR == 2 { print ($3 == "cpu" && $6 > 1) }')" != 1 ]; then
+  echo "skipped: needs a processor with several compute units as the first OpenCL device"
+  exit 77
+fi
+
+bench=(bench --scene cloth2500 --integrator semi-euler --rounds 3 --threads 1)
+
+# columns FILE: backend, threads and note of every row
+columns() { paste -d: <(column_of "$1" backend) <(column_of "$1" threads) <(column_of "$1" note); }
+
+"$mssim" "${bench[@]}" --backend serial,opencl,hybrid --out one >out 2>err || fail "a bench on one thread exits with $?"
+[ "$(columns one/timings.csv)" = $'serial:1:\nopencl:1:\nhybrid:1:' ] || fail "threads: $(columns one/timings.csv)"
+[ "$(grep -Ec '^cloth2500 .* (serial|opencl|hybrid) +1 ' out)" -eq 3 ] || fail "the table shows no threads: $(cat out)"
+! grep -q '(!)' out one/table1.md || fail "a row on one processor is marked"
+! grep -q 'speed-ups' out err one/table1.md || fail "speed-ups are said to be missing: $(cat out err)"
+"$mssim" run --scene cloth2500 --backend opencl --threads 1 --duration 0.01 >out 2>err || fail "run exits with $?"
+[ ! -s err ] || fail "run says $(cat err)"
+[ "$(awk 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "threads") c = NF - i } NR == 2 { print $(NF - c) }' out)" -eq 1 ] ||
+  fail "run shows no threads: $(cat out)"
+
+# A driver that cannot divide its device.
+export OPENCL_LAYERS=${mssim%/*}/../fake_opencl/undividable_layer.so
+"$mssim" "${bench[@]}" --backend serial,openmp,opencl,hybrid --out whole >out 2>err ||
+  fail "a bench on an undivided device exits with $?"
+units=$(column_of whole/timings.csv threads | sed -n 3p)
+[ "$units" -gt 1 ] || fail "the device was divided"
+[ "$(column_of whole/timings.csv threads | tr '\n' ' ')" = "1 1 $units $units " ] || fail "threads: $(columns whole/timings.csv)"
+[ "$(columns whole/timings.csv | grep -Ec "^(opencl|hybrid):$units:on $units processors instead of 1: the driver of .* cannot divide it")" -eq 2 ] ||
+  fail "notes: $(columns whole/timings.csv)"
+[ "$(grep -Ec "^cloth2500 .* (opencl|hybrid) +$units \(!\) " out)" -eq 2 ] || fail "the table marks no rows: $(cat out)"
+legend="(!) on more processors than the 1 asked for, since its device cannot be divided: hybrid ($units), opencl ($units)"
+grep -qxF "$legend" out || fail "the table does not say what the mark means: $(cat out)"
+grep -qxF "$legend." whole/table1.md || fail "table1.md does not say what the mark means: $(cat whole/table1.md)"
+[ "$(grep -Ec '^\| `(opencl|hybrid)`.*\*\* \(!\)' whole/table1.md)" -eq 2 ] || fail "table1.md marks no rows: $(cat whole/table1.md)"
+"$mssim" run --scene cloth2500 --backend opencl --threads 1 --duration 0.01 >out 2>err || fail "run exits with $?"
+grep -q "^mssim: opencl runs on $units processors instead of 1: the driver of .* cannot divide it$" err || fail "run says: $(cat err)"
+unset OPENCL_LAYERS
+
+# Without serial there is nothing to be faster than: said before the measurement and below the table, not among CSV.
+missing='speed-ups are missing, since serial is not among the backends; add it: --backend serial,openmp'
+"$mssim" "${bench[@]}" --backend openmp >out 2>err || fail "a bench of openmp exits with $?"
+[ "$(grep -cxF "mssim: $missing" err)" -eq 1 ] || fail "stderr does not say why there are no speed-ups: $(cat err)"
+[ "$(grep -cxF "$missing" out)" -eq 1 ] || fail "stdout does not say why there are no speed-ups: $(cat out)"
+for format in csv json; do
+  "$mssim" "${bench[@]}" --backend openmp --format $format >out 2>err || fail "a bench of openmp exits with $?"
+  grep -qxF "mssim: $missing" err || fail "$format: stderr does not say why there are no speed-ups: $(cat err)"
+  ! grep -q 'speed-ups' out || fail "$format: $(cat out)"
+done
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# What is typed wrong at the command line is named in one sentence, with the nearest word that is right and the page that helps.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+
+# page ARGUMENTS...: mssim must print $work/page and end well
+page() {
+  "$mssim" "$@" >"$work/page" 2>"$work/err" || fail "mssim $* exits with $?"
+  [ ! -s "$work/err" ] || fail "mssim $*: $(cat "$work/err")"
+}
+
+# Commands.
+status=0
+"$mssim" >"$work/out" 2>"$work/alone" || status=$?
+[ "$status" -eq 2 ] && [ ! -s "$work/out" ] && grep -q '^Usage: mssim COMMAND' "$work/alone" || fail "mssim alone: $status $(cat "$work/alone")"
+page --help
+cp "$work/page" "$work/help"
+cmp "$work/help" "$work/alone" || fail "mssim alone shows another page than --help"
+for command in bench run check compare measure list help; do grep -q "^  $command  *[A-Z]" "$work/help" || fail "--help does not name $command"; done
+page help
+cmp "$work/page" "$work/help" || fail "mssim help shows another page than --help"
+for command in bench run check compare measure list help; do
+  page "$command" --help
+  cp "$work/page" "$work/help"
+  page help "$command"
+  cmp "$work/page" "$work/help" || fail "mssim help $command shows another page than mssim $command --help"
+  [ "$(awk 'length > 80' "$work/page" | wc -l)" -eq 0 ] || fail "mssim help $command has lines longer than 80 characters"
+done
+page -V
+grep -q '^mssim [0-9.]* (' "$work/page" || fail "-V: $(cat "$work/page")"
+cp "$work/page" "$work/version"
+page --version
+cmp "$work/page" "$work/version" || fail "-V and --version differ"
+expect 2 'unknown command "frobnicate": known are bench, run, check, compare, measure, list and help; see mssim --help' frobnicate
+expect 2 'unknown command "bnech" (did you mean bench?): known are ' bnech --scene cloth2500
+expect 2 'unknown command "rnu" (did you mean run?): known are ' help rnu
+
+# Options.
+expect 2 'mssim bench has no option "--thread" (did you mean --threads?); see mssim bench --help' bench --scene cloth2500 --thread 2
+expect 2 'mssim run has no option "--sceen" (did you mean --scene?); see mssim run --help' run --sceen cloth2500
+expect 2 'mssim run has no option "-scene" (did you mean --scene?)' run -scene cloth2500
+expect 2 'mssim run has no option "--fsp" (did you mean --fps?)' run --scene cloth2500 --fsp=30
+expect 2 'mssim has no option "--verison" (did you mean --version?); see mssim --help' --verison
+expect 2 'mssim compare has no option "--frobnicate"; see mssim compare --help' compare a b --frobnicate
+expect 2 '^mssim: --scene NAME|FILE is missing; see mssim run --help$' run
+expect 2 '^mssim: --scene needs a value: give --scene NAME|FILE; see mssim run --help$' run --scene
+expect 2 '^mssim: --scene is given 2 times: give it once;' run --scene cloth2500 --scene cloth4900
+expect 2 '^mssim: --dry-run takes no value: leave that out;' bench --scene cloth2500 --dry-run=perhaps
+expect 2 '^mssim: WHAT is missing: give what to list: scenes, ' list
+expect 2 '^mssim: "twice" is one word too many for mssim list: ' list scenes twice
+expect 2 '^mssim: --resume does not go with --overwrite: leave out one of them;' bench --scene cloth2500 --resume --overwrite
+
+# Values.
+expect 2 '^mssim: --threads: "x" is not a whole number from 1 to 4096; see mssim bench --help$' bench --scene cloth2500 --threads x
+expect 2 '^mssim: --rounds: "1.5" is not a whole number from 1 to ' bench --scene cloth2500 --rounds 1.5
+expect 2 '^mssim: --time-budget: "0" is not a number from 1 to 86400;' compare --ab a b --scene cloth2500 --time-budget 0
+expect 2 '^mssim: --duration: "-1" is not a positive number;' run --scene cloth2500 --duration -1
+expect 2 '^mssim: --format: unknown value "tabel" (did you mean table?): known are csv, json and table;' list scenes --format tabel
+expect 2 '^mssim: WHAT: unknown word "scnes" (did you mean scenes?): known are ' list scnes
+expect 2 '^mssim: --precision: unknown precision "half": known are single and double;' run --scene cloth2500 --precision half
+expect 2 '^mssim: --suite: unknown suite "all": known are table1, .* and tables;' bench --suite all
+"$mssim" bench --suite tables --dry-run >"$work/out" 2>"$work/err" || fail "--suite tables: $(cat "$work/err")"
+[ "$(grep -c '^\(cloth\|bodies\)[0-9]' "$work/out")" -eq 12 ] || fail "--suite tables is not the tables: $(cat "$work/out")"
+"$mssim" list scenes --format JSON >"$work/out" 2>&1 || fail "capital letters: $(cat "$work/out")"
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# mssim bench --verified: a process that only samples what an earlier one has verified, and calls nothing verified that was
+# not.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+
+cp "$2/scenes/cloth2500.json" "$work/mine.json"
+asked=(bench --scene "$work/mine.json" --backend openmp --integrator semi-euler --threads 1)
+"$mssim" "${asked[@]}" --rounds 1 --out "$work/verified" >/dev/null 2>&1
+only() { column_of "$work/$1/timings.csv" "$2"; }
+error=$(only verified position_error)
+
+"$mssim" "${asked[@]}" --rounds 3 --verified "$work/verified" --out "$work/sampled" >/dev/null 2>&1
+[ "$(only sampled verified)" = true ] || fail "what was verified is not"
+[ "$(only sampled position_error)" = "$error" ] || fail "the position error is another"
+[ "$(only sampled rounds)" = 3 ] || fail "there are not three samples"
+[ "$(only sampled note)" = "verified by an earlier process" ] || fail "the row does not say who has verified it"
+[ -z "$(only sampled roofline_fraction)" ] || fail "peaks are measured"
+# A row that was sampled so is as good as the one it rests on.
+"$mssim" "${asked[@]}" --rounds 1 --verified "$work/sampled/timings.csv" >/dev/null 2>&1 || fail "samples cannot be gone on with"
+
+# What is not the same is refused, and nothing is written.
+refuse() { # PATTERN OPTIONS...
+  local pattern=$1
+  shift
+  expect 2 "$pattern" "${asked[@]}" --out "$work/no" --verified "$@"
+  [ ! -e "$work/no" ] || fail "something was written"
+}
+refuse 'there is no .*missing: give a folder' "$work/missing"
+asked[-1]=2
+refuse 'the number of threads was 1 and is 2' "$work/verified"
+asked[-1]=1
+refuse '--memory was shared and is copy' "$work/verified" --memory copy
+refuse 'has no row of .*, openmp, rk4' "$work/verified" --integrator rk4
+refuse 'has no row of .*, serial, semi-euler' "$work/verified" --backend openmp,serial
+refuse 'it has no scene cloth4900' "$work/verified" --scene cloth4900
+sed 's/"rows": 50/"rows": 49/' "$2/scenes/cloth2500.json" >"$work/mine.json"
+if cmp -s "$work/mine.json" "$2/scenes/cloth2500.json"; then fail "the scene is not another"; fi
+refuse 'the hash of scene .* was' "$work/verified"
+cp "$2/scenes/cloth2500.json" "$work/mine.json"
+# doctored FILE SED: the folder with one of its files changed
+doctored() {
+  rm -rf "$work/doctored"
+  cp -r "$work/verified" "$work/doctored"
+  sed -i "$2" "$work/doctored/$1"
+  if cmp -s "$work/doctored/$1" "$work/verified/$1"; then fail "$1 is not changed"; fi
+}
+doctored provenance.json 's/\("program_fnv1a_64": "\)..../\10000/'
+refuse 'it was written by another program' "$work/doctored"
+doctored provenance.json '/program_fnv1a_64/d'
+refuse 'it was written by another program' "$work/doctored"
+
+# A row that was not verified is not sampled and not verified.
+for wrong in 's/,true,ok,/,false,ok,/' 's/,true,ok,/,false,failed: too far,/'; do
+  doctored timings.csv "$wrong"
+  status=0
+  rm -rf "$work/wrong"
+  "$mssim" "${asked[@]}" --verified "$work/doctored" --out "$work/wrong" >/dev/null 2>&1 || status=$?
+  [ "$status" -eq 1 ] || fail "exit status $status instead of 1 for what was not verified"
+  [ "$(only wrong verified)" = false ] || fail "what was not verified is"
+  [ -z "$(only wrong ms_per_step)" ] || fail "what was not verified is timed"
+done
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -1,0 +1,198 @@
+#include "garment/body/body_profile.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "garment/body/mannequin.h"
+#include "mesh/sphere_shape.h"
+#include "mesh/surface_file.h"
+#include "tests/support/mesh_fixture.h"
+#include "text/decimal.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// An upright elliptic cylinder with flat ends, its axis at x.
+Surface cylinder(double x, double half_width, double half_depth, double low, double high) {
+  constexpr std::uint32_t n = 1000;
+  Surface surface;
+  for (std::uint32_t j = 0; j < n; ++j)
+    for (const double y : {low, high}) {
+      const double angle = 2 * std::numbers::pi * j / n;
+      surface.points.push_back({x + half_width * std::cos(angle), y, half_depth * std::sin(angle)});
+    }
+  surface.points.push_back({x, low, 0});
+  surface.points.push_back({x, high, 0});
+  for (std::uint32_t j = 0; j < n; ++j) {
+    const std::uint32_t a = 2 * j, b = 2 * ((j + 1) % n);
+    surface.triangles.push_back({a, a + 1, b});
+    surface.triangles.push_back({b, a + 1, b + 1});
+    surface.triangles.push_back({2 * n, a, b});
+    surface.triangles.push_back({2 * n + 1, b + 1, a + 1});
+  }
+  return surface;
+}
+
+/// The exact perimeter of an ellipse of which `a` is the longer half axis.
+double exact_perimeter(double a, double b) {
+  return 4 * a * std::comp_ellint_2(std::sqrt(1 - b * b / (a * a)));
+}
+
+/// Half a ring standing on its two ends: an inner radius of 0.8, an outer one of 1.2.
+Surface arch(std::uint32_t cells) {
+  Surface surface = surface_of(BoxShape{{1, 0.4, 0.3}, {cells, 1, 1}});
+  for (Vec3d& point : surface.points) {
+    const double angle = std::numbers::pi * point.x;
+    const double radius = 1 + point.y;
+    point = {radius * std::sin(angle), radius * std::cos(angle), point.z};
+  }
+  return surface;
+}
+
+std::string complaint(const std::function<void()>& body) { return mesh_error_of(body); }
+
+TEST(BodyProfile, ASphereHasTheCirclesOfItsHeights) {
+  const BodyProfile profile(surface_of(SphereShape{0.5, 60}));
+  EXPECT_NEAR(profile.highest(), 0.5, 1e-3);
+  EXPECT_NEAR(profile.lowest(), -0.5, 1e-3);
+  for (const double y : {-0.4, -0.123, 0.0, 0.3, 0.45}) {
+    const double radius = std::sqrt(0.25 - y * y);
+    EXPECT_NEAR(profile.hull_girth(y), 2 * std::numbers::pi * radius, 2e-3 * radius) << y;
+    EXPECT_NEAR(profile.front(y), radius, 1e-3) << y;
+    EXPECT_NEAR(profile.back(y), -radius, 1e-3) << y;
+    EXPECT_NEAR(profile.half_width(y), radius, 1e-3) << y;
+  }
+}
+
+TEST(BodyProfile, AnEllipticCylinderHasTheGirthOfItsEllipse) {
+  const BodyProfile profile(cylinder(0.05, 0.3, 0.2, 0.5, 1.5));
+  const double girth = exact_perimeter(0.3, 0.2);
+  // The ends are part of the surface.
+  for (const double y : {0.5, 0.777, 1.5}) {
+    EXPECT_NEAR(profile.hull_girth(y), girth, 1e-5 * girth) << y;
+    EXPECT_NEAR(profile.front(y), 0.2, 1e-9) << y;
+    EXPECT_NEAR(profile.back(y), -0.2, 1e-9) << y;
+    EXPECT_NEAR(profile.half_width(y), 0.35, 1e-9) << y;
+  }
+}
+
+TEST(BodyProfile, TwoCylindersAreTwoLegs) {
+  const BodyProfile profile(both(cylinder(-0.3, 0.1, 0.1, 0, 1), cylinder(0.4, 0.1, 0.1, 0, 1)));
+  const double circle = 0.2 * std::numbers::pi;
+  EXPECT_NEAR(profile.leg_girth(0.5, -1), circle, 1e-5);
+  EXPECT_NEAR(profile.leg_girth(0.5, 1), circle, 1e-5);
+  // A string around both: half a circle at either end, and the distance of the axes twice.
+  EXPECT_NEAR(profile.hull_girth(0.5), circle + 2 * 0.7, 1e-5);
+  EXPECT_NEAR(profile.half_width(0.5), 0.5, 1e-9);
+  EXPECT_THAT(complaint([&] { profile.crotch_height(); }),
+              AllOf(StartsWith("body: its section never falls apart"), HasSubstr("a leg on either side")));
+}
+
+TEST(BodyProfile, TheTwoLegsAreTakenApart) {
+  const BodyProfile profile(both(cylinder(-0.3, 0.1, 0.1, 0, 1), cylinder(0.4, 0.2, 0.1, 0, 1)));
+  EXPECT_NEAR(profile.leg_girth(0.5, -1), 0.2 * std::numbers::pi, 1e-5);
+  EXPECT_NEAR(profile.leg_girth(0.5, 1), exact_perimeter(0.2, 0.1), 1e-5);
+}
+
+TEST(BodyProfile, TheCrotchIsWhereTheSectionFallsApart) {
+  // With an even number of cells a point of the arch stands at x = 0, with an odd one the middle of a chord.
+  const double half_cell = std::numbers::pi / 2 / 9;
+  EXPECT_NEAR(BodyProfile(arch(10)).crotch_height(), 0.8, 1e-12);
+  EXPECT_NEAR(BodyProfile(arch(9)).crotch_height(), 0.8 * std::cos(half_cell), 1e-6);
+
+  const Surface legs = both(cylinder(-0.2, 0.1, 0.1, 0, 0.9), cylinder(0.2, 0.1, 0.1, 0, 0.9));
+  const Surface trunk = cylinder(0, 0.35, 0.2, 0.8, 1.4);
+  EXPECT_NEAR(BodyProfile(both(legs, trunk)).crotch_height(), 0.8, 1e-12);
+  const Surface plate = cylinder(0, 0.5, 0.5, -0.1, 0.02);
+  const BodyProfile statue(both(both(legs, trunk), plate), "statue");
+  EXPECT_NEAR(statue.crotch_height(), 0.8, 1e-12);
+  EXPECT_NEAR(statue.leg_girth(0.5, -1), 0.2 * std::numbers::pi, 1e-5);
+  EXPECT_THAT(complaint([&] { statue.leg_girth(0.01, 1); }),
+              StartsWith("statue: its legs are not apart at x = 0 at the height 0.01 m"));
+  EXPECT_THAT(complaint([&] { statue.leg_girth(0.85, 1); }), HasSubstr("give a height outside 0.8 to 1.4 m"));
+}
+
+TEST(BodyProfile, WhatIsNotThereIsNamed) {
+  const BodyProfile high(both(cylinder(0.3, 0.1, 0.1, 0, 1), cylinder(-0.3, 0.1, 0.1, 2, 3)), "scan");
+  EXPECT_THAT(complaint([&] { high.hull_girth(3.5); }),
+              StartsWith("scan: there is no section at the height 3.5 m; give a height from 0 to 3 m"));
+  EXPECT_THAT(complaint([&] { high.front(-0.1); }), HasSubstr("no section at the height -0.1 m"));
+  EXPECT_THAT(complaint([&] { high.back(std::nan("")); }), HasSubstr("no section at the height"));
+  EXPECT_THAT(complaint([&] { high.half_width(1.5); }),
+              HasSubstr("a gap between its parts at the height 1.5 m"));
+  EXPECT_THAT(complaint([&] { high.leg_girth(0.5, -1); }), HasSubstr("no leg at x < 0 at the height 0.5 m"));
+  EXPECT_THAT(complaint([&] { high.leg_girth(2.5, 1); }), HasSubstr("no leg at x > 0"));
+  const BodyProfile sphere(surface_of(SphereShape{0.5, 7}));
+  EXPECT_THAT(complaint([&] { sphere.crotch_height(); }), HasSubstr("never falls apart"));
+
+  Surface open = cylinder(0, 1, 1, 0, 1);
+  open.triangles.pop_back();
+  EXPECT_THAT(complaint([&] { BodyProfile(open, "scan"); }), AllOf(StartsWith("scan: "), HasSubstr("hole")));
+}
+
+/// The surface as OBJ: every two triangles that follow each other and share an edge as one polygon, the
+/// points in a random order.
+std::string shuffled_quads(const Surface& surface) {
+  std::vector<std::uint32_t> order(surface.points.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::mt19937 random(7);
+  std::shuffle(order.begin(), order.end(), random);
+  std::vector<std::size_t> number(order.size());
+  std::string text;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Vec3d& point = surface.points[order[i]];
+    number[order[i]] = i + 1;
+    text += "v " + decimal(point.x) + " " + decimal(point.y) + " " + decimal(point.z) + "\n";
+  }
+  for (std::size_t t = 0; t < surface.triangles.size(); t += 2) {
+    const auto& first = surface.triangles[t];
+    const auto& second = surface.triangles[t + 1];
+    const auto has = [](const auto& triangle, std::uint32_t p) {
+      return std::find(triangle.begin(), triangle.end(), p) != triangle.end();
+    };
+    const std::uint32_t other =
+        *std::find_if(second.begin(), second.end(), [&](std::uint32_t p) { return !has(first, p); });
+    text += "f";
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      text += " " + std::to_string(number[first[corner]]);
+      if (has(second, first[corner]) && has(second, first[(corner + 1) % 3]))
+        text += " " + std::to_string(number[other]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST(BodyProfile, QuadsInAnotherOrderMakeTheSameProfile) {
+  const Surface body = mannequin({}, {48});
+  const Surface read = parse_obj("body.obj", shuffled_quads(body));
+  ASSERT_EQ(read.points.size(), body.points.size());
+  ASSERT_EQ(read.triangles.size(), body.triangles.size());
+  EXPECT_NE(read.triangles, body.triangles);
+  const BodyProfile expected(body);
+  const BodyProfile profile(read);
+  EXPECT_EQ(profile.lowest(), expected.lowest());
+  EXPECT_EQ(profile.highest(), expected.highest());
+  EXPECT_NEAR(profile.crotch_height(), expected.crotch_height(), 1e-9);
+  // At these heights the points stand in rings; elsewhere a quad may be cut along its other diagonal.
+  for (const double y : {0.09, 0.46, 0.76})
+    EXPECT_NEAR(profile.leg_girth(y, 1), expected.leg_girth(y, 1), 1e-9);
+  for (const double y : {0.86, 1.04, 1.28}) EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), 1e-9);
+  for (double y = 0.01; y < 1.4; y += 0.0371) {
+    EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), 2e-3 * expected.hull_girth(y)) << y;
+    EXPECT_NEAR(profile.front(y), expected.front(y), 1e-3) << y;
+    EXPECT_NEAR(profile.back(y), expected.back(y), 1e-3) << y;
+    EXPECT_NEAR(profile.half_width(y), expected.half_width(y), 1e-3) << y;
+  }
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,221 @@
+// How a garment fits, on garments whose fit is known.
+#include "garment/fitting/fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "garment/fitting/fit_bounds.h"
+#include "tests/support/garment_system.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+FitBody nobody_around(const Vec3d& middle) {
+  return {[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
+          [middle](const Vec3d& point) {
+            return Vec3d{middle.x, point.y, middle.z};
+          }};
+}
+
+/// A tube of two half ones of 5 x 9 nodes, sewn to each other at both sides; its radius is 0.1 m. The pattern
+/// has every node at the height where it is.
+System tube() {
+  System system = garment_of({{5, 9, 0.04, {0, 0, 0}}, {5, 9, 0.04, {0, 0, 0}}});
+  Garment& garment = garment_in(system);
+  for (std::uint32_t half = 0; half < 2; ++half)
+    for (std::uint32_t row = 0; row < 5; ++row)
+      for (std::uint32_t column = 0; column < 9; ++column) {
+        const double angle = std::numbers::pi * (half + column / 8.0);
+        system.start.position[garment.panels[half].node(row, column)] = {0.1 * std::cos(angle), row * 0.04,
+                                                                         0.1 * std::sin(angle)};
+      }
+  const auto edge = [&](std::uint32_t half, std::uint32_t column) {
+    std::vector<std::uint32_t> nodes;
+    for (std::uint32_t row = 0; row < 5; ++row) nodes.push_back(garment.panels[half].node(row, column));
+    return nodes;
+  };
+  sew(system, edge(0, 0), edge(1, 8), 0.16);
+  sew(system, edge(0, 8), edge(1, 0), 0.16);
+  return system;
+}
+
+TEST(Fit, CountsRowsThatDoNotGoOnceAroundTheirLimb) {
+  const System system = tube();
+  const Fit around = fit_of(system, system.start.position, nobody_around({0, 0, 0.05}));
+  EXPECT_EQ(around.rows, 5U);
+  EXPECT_EQ(around.rows_astray, 0U);
+  EXPECT_LT(around.largest_gap, 1e-15);
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({0.2, 0, 0})).rows_astray, 5U);
+  // One row is drawn aside.
+  std::vector<Vec3d> position = system.start.position;
+  for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
+    for (std::uint32_t column = 0; column < panel.columns; ++column) position[panel.node(2, column)].x += 0.3;
+  EXPECT_EQ(fit_of(system, position, nobody_around({0, 0, 0})).rows_astray, 1U);
+}
+
+TEST(Fit, TellsHowFarUpperEdgesAndMeetingSeamsHangFromThePattern) {
+  System system = tube();
+  Garment& garment = garment_in(system);
+  // A third seam meets the first at the lowest node of the first panel's left edge.
+  garment.seams.emplace_back("third");
+  garment.joints.push_back({garment.panels[0].node(0, 0), garment.panels[1].node(0, 7), 0, 0, 0.01, 1, 2});
+  std::vector<Vec3d> position = system.start.position;
+  for (Vec3d& node : position) node.y += 0.005;
+  position[garment.panels[0].node(0, 0)].y -= 0.025;
+  const Fit fit = fit_of(system, position, nobody_around({}));
+  EXPECT_NEAR(fit.upper_edge_rise, 0.005, 1e-12);
+  EXPECT_NEAR(fit.meeting_rise, -0.02, 1e-12);
+}
+
+TEST(Fit, MeasuresGapsElongationsAndDepths) {
+  System system = garment_of({{2, 3, 0.01, {0, 0, 0}}});
+  Garment& garment = garment_in(system);
+  garment.seams = {"cut"};
+  garment.joints.push_back({0, 1, 2, 0.25, 0.01, 1, 0});
+  std::vector<Vec3d> position = system.start.position;
+  for (Vec3d& node : position) node = 1.03 * node;
+  // The body is what lies under z = 0.002 and left of x = 0.005; cloth is at z = 0.
+  const FitBody body{[](std::span<const Vec3d> points) {
+                       std::vector<double> depths;
+                       for (const Vec3d& point : points)
+                         depths.push_back(point.x < 0.005 ? std::max(0.0, 0.002 - point.z) : 0);
+                       return depths;
+                     },
+                     [](const Vec3d& point) { return point; }};
+  const Fit fit = fit_of(system, position, body);
+  EXPECT_NEAR(fit.largest_gap, 1.03 * 0.0125, 1e-9);
+  for (const double elongation :
+       {fit.elongation_50, fit.elongation_99, fit.elongation_999, fit.elongation_max})
+    EXPECT_NEAR(elongation, 0.03, 1e-6);
+  EXPECT_EQ(fit.nodes_inside, 2U);
+  EXPECT_DOUBLE_EQ(fit.deepest_node, 0.002);
+  // No node is inside, but the middle of what is between them.
+  const std::vector<Vec3d> spanned{{-0.01, 0, 0},    {0.03, 0, 0},    {0.06, 0, 0},
+                                   {-0.01, 0.01, 0}, {0.03, 0.01, 0}, {0.06, 0.01, 0}};
+  const FitBody post{[](std::span<const Vec3d> points) {
+                       std::vector<double> depths;
+                       for (const Vec3d& point : points)
+                         depths.push_back(std::max(0.0, 0.004 - std::abs(point.x)));
+                       return depths;
+                     },
+                     [](const Vec3d& point) { return point; }};
+  const Fit around_post = fit_of(system, spanned, post);
+  EXPECT_EQ(around_post.nodes_inside, 0U);
+  EXPECT_EQ(around_post.deepest_node, 0);
+  EXPECT_NEAR(around_post.deepest_face_sample, 0.004, 1e-12);  // x = 0 is a quarter of the way
+}
+
+TEST(Fit, TakesTheLayerWhoseUpperEdgesAreFarthestOff) {
+  System system = garment_of({{2, 3, 0.1, {0, 0, 0}}, {2, 3, 0.1, {0, 0, 0.1}}});
+  std::vector<Vec3d> position = system.start.position;
+  for (std::size_t node = 0; node < 12; ++node) position[node].y += node < 6 ? 0.005 : -0.012;
+  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.0035, 1e-6);
+  std::get<Garment>(system.topology).panels[1].layer = 1;
+  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.012, 1e-6);
+  std::get<Garment>(system.topology).panels[0].layer = 2;
+  EXPECT_NEAR(fit_of(system, position, nobody_around({})).upper_edge_rise, -0.012, 1e-6);
+}
+
+TEST(Fit, CountsWhereLayersCross) {
+  // A square metre at z = 0 and a sheet in the plane x = 0.6 from (y, z) = (0.3, -1) to (2.3, 1): the sheet's
+  // lower side runs through the square, and the square's upper side and diagonal through the sheet.
+  System system = garment_of({{2, 2, 1, {0, 0, 0}}, {2, 2, 2, {0.6, 0.3, -1}, {0, 0, 1}}});
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 0U) << "in one layer";
+  std::get<Garment>(system.topology).panels[1].layer = 1;
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 3U);
+  for (std::size_t node = 4; node < 8; ++node) system.start.position[node].x += 0.5;
+  EXPECT_EQ(fit_of(system, system.start.position, nobody_around({})).crossings, 0U) << "beside it";
+}
+
+TEST(Fit, SamplesBothTrianglesOfEveryCell) {
+  const System system = garment_of({{3, 2, 1, {0, 0, 0}}});
+  std::vector<Vec3d> position = system.start.position;
+  position[3].z = 4;  // the corner far from the first cell's first
+  const std::vector<Vec3d> samples = face_samples(std::get<Garment>(system.topology).panels[0], position);
+  ASSERT_EQ(samples.size(), 2U * 25);
+  EXPECT_EQ(samples[0], (Vec3d{0, 0, 0}));
+  EXPECT_EQ(samples[24], (Vec3d{1, 1, 4}));
+  // In the plane x + y <= 1 the first triangle is flat; beyond it the second rises to the far corner.
+  for (std::size_t i = 0; i < 25; ++i)
+    EXPECT_NEAR(samples[i].z, std::max(0.0, 4 * (samples[i].x + samples[i].y - 1)), 1e-12) << i;
+}
+
+TEST(FitBounds, StandBesideTheNumbersInTheirUnits) {
+  const std::vector<FitCheck> checks = fit_checks({.largest_gap = 0.0005, .elongation_99 = 0.07}, {});
+  const auto find = [&](const std::string& name) {
+    return *std::ranges::find(checks, name, &FitCheck::name);
+  };
+  EXPECT_DOUBLE_EQ(find("largest_gap_mm").value, 0.5);
+  EXPECT_DOUBLE_EQ(find("largest_gap_mm").bound.value(), 1);
+  EXPECT_TRUE(find("largest_gap_mm").within.value());
+  EXPECT_DOUBLE_EQ(find("elongation_99").bound.value(), 0.06);
+  EXPECT_FALSE(find("elongation_99").within.value());
+  EXPECT_FALSE(find("elongation_max").bound);
+  EXPECT_EQ(find("elongation_max").shown_bound, "");
+  EXPECT_EQ(find("largest_gap_mm").shown_bound, "1");
+  EXPECT_EQ(find("upper_edge_rise_mm").shown_bound, "±20");
+  EXPECT_EQ(find("crotch_rise_mm").shown_bound, "±30");
+  EXPECT_FALSE(find("elongation_max").within);
+}
+
+TEST(FitBounds, TellSlidingDownFromBeingPushedUp) {
+  DressingResult result;
+  result.seamed_at = 100;
+  result.settled = true;
+  EXPECT_THAT(misfits(result, {.upper_edge_rise = 0.021}, {}),
+              ElementsAre(StartsWith("the garment was pushed up: ")));
+  EXPECT_THAT(misfits(result, {.meeting_rise = -0.031}, {}),
+              ElementsAre(StartsWith("the crotch hangs low: ")));
+}
+
+TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
+  DressingResult result;
+  result.seamed_at = 100;
+  result.settled = true;
+  Fit fit;
+  fit.rows = 3;
+  EXPECT_THAT(misfits(result, fit, {}), testing::IsEmpty());
+  fit = {.largest_gap = 0.0011,
+         .nodes_inside = 1,
+         .deepest_node = 0.0012,
+         .deepest_face_sample = 0.002,
+         .upper_edge_rise = -0.021,
+         .meeting_rise = 0.031,
+         .rows = 3,
+         .rows_astray = 1,
+         .elongation_50 = 0,
+         .elongation_99 = 0.061,
+         .elongation_999 = std::numeric_limits<double>::quiet_NaN(),
+         .elongation_max = 1,
+         .crossings = 4};
+  EXPECT_THAT(
+      misfits({}, fit, {}),
+      ElementsAre(HasSubstr("seams did not close"), HasSubstr("did not come to rest"),
+                  HasSubstr("gap of a seam is 1.1 mm, beyond 1 mm"),
+                  HasSubstr("node inside the body is 1.2 mm"),
+                  AllOf(StartsWith("the body comes through: "),
+                        HasSubstr("face inside the body is 2 mm, beyond 1 mm"),
+                        HasSubstr("; try a larger skin_m or more nodes")),
+                  HasSubstr("99 % stay below is 6.1 %, beyond 6 %"), HasSubstr("99.9 % stay below is nan %"),
+                  AllOf(StartsWith("the garment slid down: "), HasSubstr("worn is -21 mm, beyond ±20 mm"),
+                        HasSubstr("; try a lower waist (waist_height_m)")),
+                  AllOf(StartsWith("the crotch was drawn up: "),
+                        HasSubstr("seams meet from where that is worn is 31 mm, beyond ±30 mm")),
+                  HasSubstr("rows that do not go once around their limb is 1, beyond 0"),
+                  HasSubstr("layers of the cloth cross is 4, beyond 0")));
+}
+
+}  // namespace
+}  // namespace mssim

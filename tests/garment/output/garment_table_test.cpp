@@ -1,0 +1,175 @@
+#include "garment/output/garment_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "garment/output/garment_csv.h"
+#include "tests/support/result_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+
+ResultRow dressed_row(const std::string& scene, std::uint64_t nodes, const std::string& backend, double ms,
+                      std::optional<double> speedup) {
+  ResultRow row = measured_row(backend, ms, speedup);
+  row.scene = scene;
+  row.nodes = nodes;
+  row.springs_published.reset();
+  row.gigabytes_per_second = row.roofline_fraction = row.paper_ms = std::nullopt;
+  row.dressing = {.iterations = 2000,
+                  .seamed_at = 420,
+                  .settled = true,
+                  .simulated_s = 0.54,
+                  .wall_s = 2e3 * ms,
+                  .fit = {{"largest_gap_mm", 0.25, true}, {"nodes_inside", 0, {}}, {"rows_astray", 0, true}}};
+  return row;
+}
+
+ResultRow row_without_time(const std::string& scene, std::uint64_t nodes, const std::string& backend,
+                           const std::string& status) {
+  ResultRow row = failed_row(backend, status);
+  row.scene = scene;
+  row.nodes = nodes;
+  return row;
+}
+
+/// Larger first, as a user may name them; a cloth; what cannot; and one that does not fit.
+std::vector<ResultRow> garment_rows() {
+  std::vector<ResultRow> rows{dressed_row("large", 4000, "serial", 2, 1.0),
+                              dressed_row("large", 4000, "openmp", 0.5, 4.0),
+                              row_without_time("large", 4000, "hybrid", "unsupported: no | garments"),
+                              measured_row("serial", 0.1, 1.0),
+                              dressed_row("small", 1000, "serial", 0.25, 1.0),
+                              dressed_row("small", 1000, "openmp", 0.125, 2.0),
+                              row_without_time("small", 1000, "hybrid", "unsupported: no | garments")};
+  ResultRow& misfit = rows[5];
+  misfit = row_without_time("small", 1000, "openmp", "failed: dressed, the garment did not come to rest");
+  misfit.dressing = {
+      .iterations = 8000,
+      .seamed_at = std::nullopt,
+      .settled = false,
+      .simulated_s = 4,
+      .wall_s = 0.75,
+      .fit = {{"largest_gap_mm", std::nullopt, false}, {"nodes_inside", 3, {}}, {"rows_astray", 1, false}}};
+  return rows;
+}
+
+TEST(GarmentCsv, HasALineForEveryRowOfADressedSceneAndNoOther) {
+  EXPECT_EQ(
+      garment_csv(garment_rows()),
+      "scene,nodes,backend,device,threads,integrator,dt_s,ms_per_iteration,ms_per_iteration_low,"
+      "ms_per_iteration_high,ns_per_iteration_and_vertex,speedup_vs_serial,dressing_iterations,seamed_at,"
+      "settled,simulated_s,dressing_s,dressing_ms_per_iteration,verified,status,largest_gap_mm,"
+      "largest_gap_mm_within,nodes_inside,rows_astray,rows_astray_within\n"
+      "large,4000,serial,cpu,2,semi-euler,5e-04,2,1,4,500,1,2000,420,true,0.54,4000,2000,true,ok,0.25,"
+      "true,0,0,true\n"
+      "large,4000,openmp,cpu,2,semi-euler,5e-04,0.5,0.25,1,125,4,2000,420,true,0.54,1000,500,true,ok,0.25,"
+      "true,0,0,true\n"
+      "large,4000,hybrid,cpu,2,semi-euler,5e-04,,,,,,,,,,,,false,unsupported: no | garments,,,,,\n"
+      "small,1000,serial,cpu,2,semi-euler,5e-04,0.25,0.125,0.5,250,1,2000,420,true,0.54,500,250,true,ok,"
+      "0.25,true,0,0,true\n"
+      "small,1000,openmp,cpu,2,semi-euler,5e-04,,,,,,8000,,false,4,0.75,0.09375,false,"
+      "\"failed: dressed, the garment did not come to rest\",,false,3,1,false\n"
+      "small,1000,hybrid,cpu,2,semi-euler,5e-04,,,,,,,,,,,,false,unsupported: no | garments,,,,,\n");
+}
+
+TEST(GarmentCsv, IsEmptyWhereNothingWasDressed) {
+  EXPECT_EQ(garment_csv(table_rows()), "");
+  EXPECT_TRUE(garment_tables()(table_rows(), made_up_provenance()).empty());
+}
+
+TEST(GarmentCsv, ReadsBackAsItWas) {
+  const std::vector<ResultRow> rows = garment_rows();
+  std::vector<ResultRow> read = rows;
+  for (ResultRow& row : read) row.dressing.reset();
+  read_dressings(CsvTable("garment.csv", garment_csv(rows)), read);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(read[i].dressing.has_value(), rows[i].dressing.has_value()) << i;
+    if (!rows[i].dressing) continue;
+    const DressingRecord &now = *read[i].dressing, &before = *rows[i].dressing;
+    EXPECT_EQ(now.iterations, before.iterations);
+    EXPECT_EQ(now.seamed_at, before.seamed_at);
+    EXPECT_EQ(now.settled, before.settled);
+    EXPECT_EQ(now.simulated_s, before.simulated_s);
+    EXPECT_EQ(now.wall_s, before.wall_s);
+    ASSERT_EQ(now.fit.size(), before.fit.size());
+    for (std::size_t n = 0; n < now.fit.size(); ++n) {
+      EXPECT_EQ(now.fit[n].name, before.fit[n].name);
+      EXPECT_EQ(now.fit[n].value, before.fit[n].value);
+      EXPECT_EQ(now.fit[n].within, before.fit[n].within);
+    }
+  }
+  EXPECT_EQ(garment_csv(read), garment_csv(rows));
+}
+
+TEST(GarmentCsv, SaysWhatCannotBeRead) {
+  std::string csv = garment_csv(garment_rows());
+  std::vector<ResultRow> rows = garment_rows();
+  const auto complaint = [&](const std::string& from, const std::string& to) {
+    std::string changed = csv;
+    changed.replace(changed.find(from), from.size(), to);
+    try {
+      read_dressings(CsvTable("garment.csv", changed), rows);
+    } catch (const CsvError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no complaint");
+  };
+  EXPECT_THAT(complaint(",2000,420,true,", ",2000,420,maybe,"),
+              HasSubstr("garment.csv, line 2, column settled: \"maybe\" is neither true nor false"));
+  EXPECT_THAT(complaint(",2000,420,true,", ",-1,420,true,"), HasSubstr("column dressing_iterations"));
+  EXPECT_THAT(complaint("seamed_at", "sewn_at"), HasSubstr("sewn_at"));
+  EXPECT_THAT(complaint(",0.25,true,0,", ",wide,true,0,"), HasSubstr("column largest_gap_mm: \"wide\""));
+}
+
+ResultTable table_of(const std::vector<ResultRow>& rows) {
+  const std::vector<ResultTable> tables = garment_tables()(rows, made_up_provenance());
+  EXPECT_EQ(tables.size(), 1U);
+  EXPECT_EQ(tables.front().name, "figure6");
+  return tables.front();
+}
+
+TEST(GarmentTable, IsLaidOutAsTheFigure) {
+  const std::string markdown = table_of(garment_rows()).markdown;
+  EXPECT_THAT(markdown, HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads"));
+  EXPECT_THAT(markdown, HasSubstr("| milliseconds an iteration | small<br>1,000 | large<br>4,000 |\n"
+                                  "|---|---:|---:|\n"
+                                  "| without: `serial` | **0.250** | **2.00** |\n"
+                                  "| with: `openmp` | failed | **0.500** (4.00×) |\n"));
+  EXPECT_THAT(markdown, HasSubstr("| nanoseconds | small<br>1,000 | large<br>4,000 |\n"
+                                  "|---|---:|---:|\n"
+                                  "| without: `serial` | 250 | 500 |\n"
+                                  "| with: `openmp` | – | 125 |\n"));
+  EXPECT_THAT(markdown, HasSubstr("| without: `serial` | 500 s<br>2,000 | 4000 s<br>2,000 |\n"
+                                  "| with: `openmp` | 0.750 s<br>8,000 | 1000 s<br>2,000 |\n"));
+  EXPECT_THAT(markdown,
+              HasSubstr("## Rows without a time\n\n"
+                        "- `hybrid`, `semi-euler`: unsupported: no \\| garments (`large`, `small`)\n"
+                        "- `openmp`, `semi-euler`: failed: dressed, the garment did not come to "
+                        "rest (`small`)\n"));
+  EXPECT_EQ(markdown.find("cloth2500"), std::string::npos);
+}
+
+TEST(GarmentTable, AsCsvHasALineAQuantity) {
+  EXPECT_EQ(table_of(garment_rows()).csv,
+            "backend,integrator,parallel,quantity,small,large\n"
+            ",,,vertices,1000,4000\n"
+            "serial,semi-euler,without,ms_per_iteration,0.25,2\n"
+            "serial,semi-euler,without,speedup_vs_serial,1,1\n"
+            "serial,semi-euler,without,ns_per_iteration_and_vertex,250,500\n"
+            "serial,semi-euler,without,dressing_s,500,4000\n"
+            "serial,semi-euler,without,dressing_iterations,2000,2000\n"
+            "openmp,semi-euler,with,ms_per_iteration,,0.5\n"
+            "openmp,semi-euler,with,speedup_vs_serial,,4\n"
+            "openmp,semi-euler,with,ns_per_iteration_and_vertex,,125\n"
+            "openmp,semi-euler,with,dressing_s,0.75,1000\n"
+            "openmp,semi-euler,with,dressing_iterations,8000,2000\n");
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,269 @@
+#include "garment/pattern/jeans.h"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "model/grid_patch.h"
+#include "tests/support/jeans_body.h"
+#include "tests/support/mesh_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr std::array hips{0.88, 0.98, 1.15};
+constexpr std::array<std::uint32_t, 6> node_counts{1'000, 2'000, 4'000, 8'000, 16'000, 64'000};
+
+/// x at which a curve that rises all the way passes a height.
+double x_at(const Curve& curve, double y) {
+  const auto& points = curve.points();
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (points[i].y >= y) {
+      const double share = (y - points[i - 1].y) / (points[i].y - points[i - 1].y);
+      return points[i - 1].x + share * (points[i].x - points[i - 1].x);
+    }
+  return points.back().x;
+}
+
+/// The largest angle between two successive chords, rad.
+double sharpest_turn(const Curve& curve) {
+  double sharpest = 0;
+  const auto& points = curve.points();
+  for (std::size_t i = 2; i < points.size(); ++i) {
+    const Vec3d before = points[i - 1] - points[i - 2], after = points[i] - points[i - 1];
+    sharpest = std::max(sharpest, std::abs(std::atan2(cross(before, after).z, dot(before, after))));
+  }
+  return sharpest;
+}
+
+GarmentBuild build_for(const JeansBody& body, std::uint32_t nodes, const PanelCloth& cloth = {}) {
+  return build_garment(jeans_pattern(body.measures(), nodes, cloth, body.leg_axis()), body.depths());
+}
+
+TEST(JeansDraft, SeamsFitTogether) {
+  for (const double hip : hips) {
+    const JeansDraft draft = draft_jeans(JeansBody{hip}.measures());
+    EXPECT_NEAR(draft.front.inseam.length(), draft.back.inseam.length(), 1e-4) << hip;
+    EXPECT_NEAR(draft.front.outer.length() / draft.back.outer.length(), 1, 0.01) << hip;
+    EXPECT_NEAR(draft.front.hem.length(), 0.36 / 2 - 0.01, 1e-15);
+    EXPECT_NEAR(draft.back.hem.length(), 0.36 / 2 + 0.01, 1e-15);
+  }
+}
+
+TEST(JeansDraft, WaistAndHipAreTheBodysWithOffsetAndEase) {
+  for (const double hip : hips) {
+    const JeansBody body{hip};
+    const JeansMeasures measures = body.measures();
+    const JeansDraft draft = draft_jeans(measures);
+    const double offset = 2 * std::numbers::pi * measures.body_offset;
+    EXPECT_NEAR(2 * (draft.front.waist.length() + draft.back.waist.length()),
+                body.girth(measures.waist_height) + offset + measures.waist_ease, 1e-4);
+    // Between waist and hip the side is the smooth curve that comes nearest.
+    for (double y = 0.861; y < 0.99; y += 0.01) {
+      double width = 0;
+      for (const JeansOutline* half : {&draft.front, &draft.back})
+        width += x_at(half->centre, y) - x_at(half->outer, y);
+      const double share = (y - measures.hip_height) / (measures.waist_height - measures.hip_height);
+      EXPECT_NEAR(2 * width, body.girth(y) + offset + share * measures.waist_ease, 0.015)
+          << hip << " at " << y;
+    }
+  }
+}
+
+TEST(JeansDraft, TheSideIsSmoothFromKneeToWaist) {
+  for (const double hip : hips)
+    for (const JeansOutline& half :
+         {draft_jeans(JeansBody{hip}.measures()).front, draft_jeans(JeansBody{hip}.measures()).back}) {
+      EXPECT_LT(sharpest_turn(half.outer), 0.02) << hip;
+      EXPECT_LT(sharpest_turn(half.inseam), 0.02) << hip;
+      EXPECT_LT(sharpest_turn(half.centre), 0.05) << hip;
+    }
+}
+
+TEST(JeansDraft, EaseMakesTheJeansWiderByItsAmount) {
+  const JeansBody body;
+  JeansMeasures wide = body.measures();
+  wide.hip_ease += 0.06;
+  const auto hip_of = [](const JeansDraft& draft) {
+    double width = 0;
+    for (const JeansOutline* half : {&draft.front, &draft.back})
+      width += x_at(half->centre, 0.86) - x_at(half->outer, 0.86);
+    return 2 * width;
+  };
+  // The centre seam's slant is the waist's, and takes its part of it.
+  EXPECT_NEAR(hip_of(draft_jeans(wide)) - hip_of(draft_jeans(body.measures())), 0.06, 0.001);
+}
+
+TEST(JeansDraft, BadMeasuresAreRefused) {
+  const auto complaint = [](auto change) {
+    JeansMeasures measures = JeansBody{}.measures();
+    change(measures);
+    return mesh_error_of([&] { draft_jeans(measures); });
+  };
+  EXPECT_THAT(complaint([](JeansMeasures& m) { m.girth = nullptr; }),
+              StartsWith("jeans: the body's girth is missing"));
+  EXPECT_THAT(complaint([](JeansMeasures& m) { m.girth = [](double) { return -1.0; }; }),
+              AllOf(StartsWith("jeans: the body's girth at the height 0.86 m is -1 m"),
+                    HasSubstr("from 0.2 to 5 m")));
+  EXPECT_EQ(
+      complaint([](JeansMeasures& m) { m.knee_height = 0.08; }),
+      "jeans: the knee's height, knee_height_m, which lies above the hem's, is 0.08 m; give a length from "
+      "0.1 to 2 m");
+  EXPECT_THAT(complaint([](JeansMeasures& m) { m.waist_height = 0.86; }),
+              StartsWith("jeans: the waist's height"));
+  EXPECT_THAT(complaint([](JeansMeasures& m) { m.crotch_height = 0.5; }),
+              StartsWith("jeans: the crotch line's height"));
+  EXPECT_THAT(complaint([](JeansMeasures& m) { m.hem = std::nan(""); }),
+              StartsWith("jeans: the jeans' circumference at the hem, hem_m, is nan"));
+}
+
+TEST(JeansGrid, TheNumberOfNodesIsMetWithCellsAboutSquare) {
+  for (const double hip : hips) {
+    const JeansDraft draft = draft_jeans(JeansBody{hip}.measures());
+    for (const std::uint32_t nodes : node_counts) {
+      const JeansGrid grid = jeans_grid(draft, nodes);
+      EXPECT_NEAR(grid.nodes(), nodes, 0.03 * nodes);
+      const double height = draft.front.outer.length() / (grid.rows - 1);
+      const double knee = 0.5 * (0.42 / 2 - 0.01 + draft.front.waist.length()) / (grid.front_columns - 1);
+      EXPECT_NEAR(height / knee, 1, 0.3) << hip << " " << nodes;
+      EXPECT_GT(grid.back_columns, grid.front_columns);
+    }
+  }
+  EXPECT_THAT(mesh_error_of([] { jeans_grid(draft_jeans(JeansBody{}.measures()), 299); }),
+              HasSubstr("to have 299 nodes; give a number from 300"));
+}
+
+TEST(Jeans, CellsFoldForNoHipAndNoNumberOfNodes) {
+  for (const double hip : hips)
+    for (const std::uint32_t nodes : node_counts) {
+      const GarmentBuild build = build_for(JeansBody{hip}, nodes);  // throws where a cell folds
+      EXPECT_NEAR(static_cast<double>(build.flat.size()), nodes, 0.03 * nodes);
+    }
+}
+
+TEST(Jeans, PanelsAndSeamsAreNamedByTheWearersSides) {
+  const GarmentBuild build = build_for(JeansBody{}, 1'000);
+  std::vector<std::string> names;
+  for (const GarmentPanel& panel : build.garment.panels) {
+    names.push_back(panel.name);
+    Vec3d sum{};
+    for (std::uint32_t i = 0; i < panel.nodes(); ++i) sum += build.placed[panel.first_node + i];
+    EXPECT_EQ(sum.x > 0, panel.name.ends_with("left")) << panel.name;
+    EXPECT_EQ(sum.z > 0, panel.name.starts_with("front")) << panel.name;
+  }
+  EXPECT_THAT(names, ElementsAre("front left", "back left", "front right", "back right"));
+  EXPECT_THAT(build.garment.seams, ElementsAre("outer left", "outer right", "inner left", "inner right",
+                                               "centre front", "centre back"));
+}
+
+TEST(Jeans, EverythingBelongsToTheSameNodes) {
+  PanelCloth cloth;
+  cloth.waistband.height = 0.035;
+  const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
+  std::size_t nodes = 0, springs = 0;
+  for (const GarmentPanel& panel : build.garment.panels) {
+    EXPECT_EQ(panel.first_node, nodes);
+    nodes += panel.nodes();
+    springs += count_springs(panel.rows, panel.columns);
+  }
+  EXPECT_EQ(build.flat.size(), nodes);
+  EXPECT_EQ(build.placed.size(), nodes);
+  EXPECT_EQ(build.node_mass.size(), nodes);
+  EXPECT_EQ(build.springs.size(), springs);
+  EXPECT_EQ(build.materials.size(), 4U * 4);
+  for (const Spring& spring : build.springs) {
+    ASSERT_LT(spring.second, nodes);
+    ASSERT_LT(spring.kind, build.materials.size());
+    EXPECT_NEAR(spring.rest_length, length(build.flat[spring.first] - build.flat[spring.second]), 1e-7);
+  }
+  for (const double mass : build.node_mass) EXPECT_GT(mass, 0);
+}
+
+TEST(Jeans, LeftAndRightAreMirrorImages) {
+  const GarmentBuild build = build_for(JeansBody{}, 1'000);
+  for (const std::size_t p : {0U, 1U}) {
+    const GarmentPanel &left = build.garment.panels[p], &right = build.garment.panels[p + 2];
+    for (std::uint32_t row = 0; row < left.rows; ++row)
+      for (std::uint32_t column = 0; column < left.columns; ++column) {
+        const Vec3d& a = build.placed[left.node(row, column)];
+        const Vec3d& b = build.placed[right.node(row, right.columns - 1 - column)];
+        EXPECT_LT(length(a - Vec3d{-b.x, b.y, b.z}), 5e-6);
+      }
+  }
+}
+
+TEST(Jeans, SeamsJoinNodeToNodeAndMeetInTheCrotchPoint) {
+  const GarmentBuild build = build_for(JeansBody{}, 4'000);
+  const JeansDraft draft = draft_jeans(JeansBody{}.measures());
+  const std::array<double, 6> wanted{draft.front.outer.length(),  draft.front.outer.length(),
+                                     draft.front.inseam.length(), draft.front.inseam.length(),
+                                     draft.front.centre.length(), draft.back.centre.length()};
+  std::array<double, 6> lengths{};
+  for (const Joint& joint : build.garment.joints) {
+    EXPECT_EQ(joint.edge_first, joint.edge_second);
+    lengths.at(joint.seam) += joint.length;
+    // They start at about the same height.
+    EXPECT_NEAR(build.placed[joint.node].y, build.placed[joint.edge_first].y, 0.03);
+  }
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(lengths.at(i), wanted.at(i), 1e-9) << i;
+  // The inner seam's last joint is a centre seam's first one on both sides.
+  const auto ends = [&](std::uint32_t seam, bool last) {
+    std::vector<Joint> joints;
+    for (const Joint& joint : build.garment.joints)
+      if (joint.seam == seam) joints.push_back(joint);
+    return last ? joints.back() : joints.front();
+  };
+  EXPECT_EQ(ends(2, true).node, ends(4, false).node);
+  EXPECT_EQ(ends(2, true).edge_first, ends(5, false).node);
+  EXPECT_EQ(ends(3, true).node, ends(4, false).edge_first);
+  EXPECT_EQ(ends(3, true).edge_first, ends(5, false).edge_first);
+}
+
+TEST(Jeans, TheWaistbandsJointsPullHarder) {
+  PanelCloth cloth;
+  cloth.waistband.height = 0.035;
+  const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
+  const GarmentPanel& panel = build.garment.panels[0];
+  std::size_t strong = 0;
+  for (const Joint& joint : build.garment.joints) {
+    if (joint.strength == 1) continue;
+    EXPECT_EQ(joint.strength, 4);
+    EXPECT_GE((joint.node % panel.nodes()) / panel.columns + 4, joint.node < panel.nodes() ? panel.rows : 0);
+    ++strong;
+  }
+  EXPECT_EQ(strong % 4, 0U);
+  EXPECT_GE(strong, 8U);
+}
+
+TEST(Jeans, AllNodesStartOutsideTheBody) {
+  for (const double hip : hips) {
+    const JeansBody body{hip};
+    for (const Vec3d& node : build_for(body, 4'000).placed)
+      EXPECT_FALSE(body.holds(node)) << hip << ": " << node.x << " " << node.y << " " << node.z;
+  }
+}
+
+TEST(GarmentBuild, TwoPanelsOfOneNameAreRefused) {
+  const JeansBody body;
+  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  pattern.panels[2].piece.name = "front left";
+  EXPECT_EQ(mesh_error_of([&] { build_garment(pattern, body.depths()); }),
+            "front left: two panels have this name; rename one of them");
+}
+
+TEST(GarmentBuild, BadClothIsNamedByItsPanel) {
+  const JeansBody body;
+  GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
+  pattern.panels[1].cloth.area_density = -1;
+  EXPECT_THAT(mesh_error_of([&] { build_garment(pattern, body.depths()); }),
+              StartsWith("back left: the cloth's area"));
+}
+
+}  // namespace
+}  // namespace mssim

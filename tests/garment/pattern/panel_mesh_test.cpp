@@ -1,0 +1,137 @@
+#include "garment/pattern/panel_mesh.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/support/mesh_fixture.h"
+#include "tests/support/rectangle_piece.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Nodes are rounded to micrometres.
+constexpr double rounding = 0.5e-6 * 1.001;
+
+void expect_node(const PanelMesh& mesh, std::size_t row, std::size_t column, double x, double y) {
+  const Vec3d& node = mesh.nodes[mesh.node(row, column)];
+  EXPECT_NEAR(node.x, x, rounding) << "row " << row << ", column " << column;
+  EXPECT_NEAR(node.y, y, rounding) << "row " << row << ", column " << column;
+  EXPECT_EQ(node.z, 0);
+}
+
+std::string complaint(const PatternPiece& piece, const PanelGrid& grid = {4, 4}) {
+  return mesh_error_of([&] { mesh_panel(piece, grid); });
+}
+
+TEST(PanelMesh, ARectangleIsTheRegularGrid) {
+  const PanelMesh mesh = mesh_panel(rectangle_piece("p", 0.7, 0.9, 0.1, -0.2), {10, 8});
+  ASSERT_EQ(mesh.nodes.size(), 80U);
+  for (std::size_t row = 0; row < 10; ++row)
+    for (std::size_t column = 0; column < 8; ++column)
+      expect_node(mesh, row, column, 0.1 + 0.1 * static_cast<double>(column),
+                  -0.2 + 0.1 * static_cast<double>(row));
+}
+
+TEST(PanelMesh, ATrapezoidIsTheBilinearBlendOfItsCorners) {
+  const Vec3d a{0, 0, 0}, b{1, 0, 0}, c{0.25, 0.5, 0}, d{0.75, 0.5, 0};
+  const PanelMesh mesh =
+      mesh_panel({"p", Curve({a, b}), Curve({c, d}), Curve({a, c}), Curve({b, d})}, {5, 9});
+  for (std::size_t row = 0; row < 5; ++row)
+    for (std::size_t column = 0; column < 9; ++column) {
+      const double u = static_cast<double>(column) / 8, v = static_cast<double>(row) / 4;
+      expect_node(mesh, row, column, 0.25 * v + u * (1 - 0.5 * v), 0.5 * v);
+    }
+}
+
+TEST(PanelMesh, ABentBoundaryFadesLinearlyTowardsTheOppositeOne) {
+  PatternPiece piece = rectangle_piece("p", 1, 1);
+  piece.bottom = Curve({{0, 0, 0}, {0.5, -0.3, 0}, {1, 0, 0}});
+  const PanelMesh mesh = mesh_panel(piece, {5, 5});
+  for (std::size_t row = 0; row < 5; ++row) {
+    const double v = static_cast<double>(row) / 4;
+    expect_node(mesh, row, 2, 0.5, v - (1 - v) * 0.3);
+    expect_node(mesh, row, 1, 0.25, v - (1 - v) * 0.15);
+  }
+}
+
+TEST(PanelMesh, GridLinesEndWhereTheyAreTold) {
+  const PanelMesh mesh = mesh_panel(rectangle_piece("p", 1, 1), {6, 4, {{2, 0.5, 0.6}}, {{1, 0.1, 0.2}}});
+  expect_node(mesh, 2, 0, 0, 0.5);
+  expect_node(mesh, 2, 3, 1, 0.6);
+  expect_node(mesh, 1, 0, 0, 0.25);
+  expect_node(mesh, 5 - 1, 3, 1, 0.6 + 2.0 / 3 * 0.4);
+  expect_node(mesh, 0, 1, 0.1, 0);
+  expect_node(mesh, 5, 1, 0.2, 1);
+  EXPECT_THAT(mesh.arcs_on(PanelEdge::left),
+              testing::ElementsAre(0, 0.25, 0.5, testing::DoubleEq(0.5 + 0.5 / 3),
+                                   testing::DoubleEq(0.5 + 1.0 / 3), 1));
+}
+
+TEST(PanelMesh, AnEdgesNodesStandInTheOrderOfItsBoundary) {
+  const PanelMesh mesh = mesh_panel(rectangle_piece("p", 1, 1), {3, 4});
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::bottom), testing::ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::top), testing::ElementsAre(8, 9, 10, 11));
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::left), testing::ElementsAre(0, 4, 8));
+  EXPECT_THAT(mesh.edge_nodes(PanelEdge::right), testing::ElementsAre(3, 7, 11));
+}
+
+TEST(PanelMesh, CornersMustMeetToATenthOfAMillimetre) {
+  PatternPiece piece = rectangle_piece("front", 1, 1);
+  piece.top = Curve({{0.00009, 1, 0}, {1, 1, 0}});
+  EXPECT_EQ(complaint(piece), "");
+  piece.top = Curve({{0, 1, 0}, {1.00011, 1, 0}});
+  EXPECT_EQ(complaint(piece),
+            "front: at the top right corner the top boundary ends at (1.00011, 1, 0) and the right one at "
+            "(1, 1, 0); "
+            "let them meet to a tenth of a millimetre");
+}
+
+TEST(PanelMesh, BoundariesThatMeetElsewhereAreRefused) {
+  PatternPiece crossing = rectangle_piece("front", 1, 1);
+  crossing.left = Curve({{0, 0, 0}, {1.2, 0.5, 0}, {0, 1, 0}});
+  EXPECT_THAT(complaint(crossing), AllOf(StartsWith("front: the right and the left boundary meet near ("),
+                                         HasSubstr("draw them so that they neither cross nor touch")));
+  PatternPiece looped = rectangle_piece("front", 1, 1);
+  looped.top = Curve({{0, 1, 0}, {0.6, 1.2, 0}, {0.6, 1.4, 0}, {0.4, 1.4, 0}, {0.4, 1.2, 0}, {1, 1, 0}});
+  EXPECT_THAT(complaint(looped), StartsWith("front: the top boundary meets itself near ("));
+  PatternPiece touching = rectangle_piece("front", 1, 1);
+  touching.bottom = Curve({{0, 0, 0}, {0.5, 1, 0}, {1, 0, 0}});
+  EXPECT_THAT(complaint(touching), HasSubstr("the bottom and the top boundary meet"));
+}
+
+TEST(PanelMesh, CellsThatFoldOverAreRefused) {
+  // Where the lower boundary runs along the sides of its pocket it makes no way to the right, and the left
+  // one, which stands far in, leaves the columns no room at half the height.
+  PatternPiece piece = rectangle_piece("front", 1, 1);
+  piece.left = Curve({{0, 0, 0}, {0.9, 0.45, 0}, {0.9, 0.55, 0}, {0, 1, 0}});
+  piece.bottom = Curve({{0, 0, 0}, {0.4, 0, 0}, {0.4, -2, 0}, {0.6, -2, 0}, {0.6, 0, 0}, {1, 0, 0}});
+  EXPECT_THAT(complaint(piece, {30, 30}),
+              AllOf(StartsWith("front: the cell of row "), HasSubstr(" folds over at ("),
+                    HasSubstr("straighten the boundaries there or let the grid lines")));
+}
+
+TEST(PanelMesh, APieceDrawnFromBehindFoldsOver) {
+  const Vec3d a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{1, 1, 0};
+  const PatternPiece piece{"front", Curve({b, a}), Curve({d, c}), Curve({b, d}), Curve({a, c})};
+  EXPECT_THAT(complaint(piece), HasSubstr("row 0 and column 0 folds over at (1, 0, 0)"));
+}
+
+TEST(PanelMesh, BadGridsAreRefused) {
+  const PatternPiece piece = rectangle_piece("front", 1, 1);
+  EXPECT_EQ(complaint(piece, {1, 4}), "front: it is to have 1 rows of nodes; give a number from 2 to 10000");
+  EXPECT_EQ(complaint(piece, {4, 1}),
+            "front: it is to have 1 columns of nodes; give a number from 2 to 10000");
+  EXPECT_THAT(
+      complaint(piece, {4, 4, {{3, 0.5, 0.5}}}),
+      AllOf(StartsWith("front: row 3 is to end at the fractions 0.5 and 0.5"), HasSubstr("from 1 to 2")));
+  EXPECT_THAT(complaint(piece, {9, 4, {{2, 0.5, 0.5}, {3, 0.6, 0.4}}}), StartsWith("front: row 3 is to end"));
+  EXPECT_THAT(complaint(piece, {4, 9, {}, {{2, 0.5, 1}}}), StartsWith("front: column 2 is to end"));
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,282 @@
+// What one step of Algorithm 1 does, on systems whose answer is known.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "backends/backends.h"
+#include "garment/fitting/dress.h"
+#include "garment/fitting/fit.h"
+#include "garment/stepping/correction_order.h"
+#include "garment/stepping/openmp_dressing.h"
+#include "garment/stepping/serial_dressing.h"
+#include "integrators/integrators.h"
+#include "tests/support/dressing_systems.h"
+#include "tests/support/largest_distance.h"
+
+namespace mssim {
+namespace {
+
+constexpr double dt_s = 1.5e-4;  // 0.55 of the limit 2 / sqrt(2 sum k / m)
+const Integrator& semi_euler = *find_integrator("semi-euler");
+
+const FitBody nobody{[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
+                     [](const Vec3d& point) { return point; }};
+
+TEST(Dresses, SaysWhichBackendsTakeAGarment) {
+  const System system = two_squares();
+  for (const BackendInfo& backend : mssim::backends()) {
+    bool refused = false;
+    try {
+      make_backend(backend, system, semi_euler, dt_s, {.threads = 1});
+    } catch (const Unsupported&) {
+      refused = true;
+    } catch (const Unavailable&) {
+      continue;  // without a device nobody knows
+    }
+    EXPECT_EQ(dresses(backend), !refused) << backend.name;
+    EXPECT_THROW(backend.make(system, semi_euler, dt_s, {.threads = 1}), Unsupported) << backend.name;
+  }
+}
+
+TEST(Dressing, ClosesTheSeamOfTwoSquaresInFreeSpace) {
+  const System system = two_squares();
+  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  EXPECT_EQ(backend->progress().open_joints, 10U);
+  const DressingResult result =
+      dress(*backend, system, dt_s, {}, [](const State&, std::int64_t) { return true; });
+  ASSERT_TRUE(result.seamed_at);
+  EXPECT_TRUE(result.settled);
+  EXPECT_EQ(backend->progress().open_joints, 0U);
+  const Fit fit = fit_of(system, result.state.position, nobody);
+  EXPECT_LT(fit.largest_gap, 1e-4);
+  EXPECT_LT(fit.elongation_max, 0.01);
+  // The squares pull each other: what is not damped away moves nobody's centre.
+  Vec3d before, after;
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    before += system.start.position[i];
+    after += result.state.position[i];
+  }
+  EXPECT_LT(length(after - before) / static_cast<double>(system.nodes()), 1e-5);
+}
+
+TEST(Dressing, LeavesASeamOpenWithoutForce) {
+  System system = two_squares();
+  garment_in(system).dressing.seam_force = 0;
+  garment_in(system).dressing.longest_seaming_s = 100;
+  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  const DressingResult result =
+      dress(*backend, system, dt_s, {.longest_s = 1}, [](const State&, std::int64_t) { return true; });
+  EXPECT_FALSE(result.seamed_at);
+  EXPECT_FALSE(result.settled);
+  EXPECT_GT(fit_of(system, result.state.position, nobody).largest_gap, 0.029);
+}
+
+TEST(Dressing, PullsAJointWithItsShareOfTheSeamsForceAndNotWithGravity) {
+  System system = two_squares();
+  system.gravity = 9.81;
+  const auto backend = make_reference_dressing(system, semi_euler, dt_s);
+  backend->step(1);
+  const State state = backend->state();
+  const Garment& garment = garment_in(system);
+  // At rest, nothing but the joints pulls: v = dt F / m, F = 4 N/m * 0.01 m of seam.
+  const double mass = 0.4 * 1e-4;
+  for (const Joint& joint : garment.joints) {
+    const Vec3d gap = system.start.position[joint.edge_first] - system.start.position[joint.node];
+    const Vec3d expected = dt_s * 0.04 / mass / length(gap) * gap;
+    // The start is rounded to single precision, which strains the springs by 1e-7.
+    EXPECT_LT(length(state.velocity[joint.node] - expected), 1e-3 * length(expected));
+    EXPECT_LT(length(state.velocity[joint.edge_first] + expected), 1e-3 * length(expected));
+  }
+  EXPECT_LT(length(state.velocity[garment.panels[0].node(3, 3)]), 1e-4);
+}
+
+TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
+  System system = two_squares();
+  system.gravity = 9.81;
+  system.floor.height = -0.02;
+  garment_in(system).dressing.seam_force = 0;
+  garment_in(system).dressing.seaming_damping = 0;
+  for (const double share : {0.0, 0.5}) {
+    garment_in(system).dressing.seaming_gravity = share;
+    const auto single = make_serial_dressing(system, semi_euler, dt_s);
+    const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 2);
+    for (Backend* backend : std::initializer_list<Backend*>{single.get(), vectors.get()}) {
+      backend->step(100);
+      // Semi-implicit Euler falls dt^2 g n (n + 1) / 2.
+      EXPECT_NEAR(backend->state().position[0].y, -share * 9.81 * dt_s * dt_s * 100 * 101 / 2, 1e-6);
+      backend->step(1000);
+      const State state = backend->state();
+      const auto lowest = std::ranges::min(state.position, {}, &Vec3d::y).y;
+      // Free, a half of gravity would take them 67 mm down by now.
+      EXPECT_GE(lowest, share > 0 ? -0.02 : -1e-5);
+      EXPECT_LT(lowest, share > 0 ? -1e-3 : 1e-5);
+    }
+  }
+}
+
+TEST(Dressing, SewsAJointToAPointOfAnEdge) {
+  // A strip of two rows against one edge of a coarser strip.
+  System system = garment_of({{2, 3, 0.01, {0, 0.02, 0}}, {2, 2, 0.02, {0, 0, 0}, {1, 0, 0}, {0, -1, 0}}});
+  Garment& garment = garment_in(system);
+  garment.seams = {"strip"};
+  for (std::uint32_t column = 0; column < 3; ++column)
+    garment.joints.push_back(
+        {column, garment.panels[1].node(0, 0), garment.panels[1].node(0, 1), column * 0.5, 0.02 / 3, 1, 0});
+  system.viscous_damping = 16;
+  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  const DressingResult result =
+      dress(*backend, system, dt_s, {}, [](const State&, std::int64_t) { return true; });
+  EXPECT_LT(fit_of(system, result.state.position, nobody).largest_gap, 1e-4);
+}
+
+/// A sheet hung by its upper edge, of a soft cloth, its lowest row sixty times as heavy as the others.
+System heavy_hem(VelocityCorrection correction) {
+  System system = garment_of({{12, 8, 0.01, {0, 0, 0}}});
+  for (std::uint32_t column = 0; column < 8; ++column) {
+    system.node_mass[column] *= 60;
+    system.pins.push_back(garment_in(system).panels[0].node(11, column));
+  }
+  system.materials = {{20, 0}, {6, 0}, {0.8, 0}};
+  system.gravity = 9.81;
+  system.viscous_damping = 16;
+  garment_in(system).dressing.correction = correction;
+  return system;
+}
+
+double largest_elongation(VelocityCorrection correction) {
+  const System system = heavy_hem(correction);
+  const double step_s = 2e-4;
+  const auto backend = make_serial_dressing(system, semi_euler, step_s);
+  const DressingResult result =
+      dress(*backend, system, step_s, {}, [](const State&, std::int64_t) { return true; });
+  EXPECT_TRUE(result.settled);
+  return fit_of(system, result.state.position, nobody).elongation_max;
+}
+
+TEST(Dressing, LeavesOfAHeavyHemsElongationWhatTheCorrectionAllows) {
+  // A node of the hem weighs 60 * 0.4 kg/m^2 * (1 cm)^2 * g = 24 mN, which strains a spring of 20 N/m and 1
+  // cm by 12 %; shear and bending springs help a little. Taking away what lengthens a spring that is too long
+  // only slows it down: it creeps to where it would hang anyway.
+  const double none = largest_elongation(VelocityCorrection::none);
+  const double published = largest_elongation(VelocityCorrection::published);
+  const double bounded = largest_elongation(VelocityCorrection::bounded);
+  EXPECT_NEAR(none, 0.11, 0.01);
+  EXPECT_NEAR(published, 0.11, 0.01);
+  EXPECT_LT(bounded, 0.065);
+  RecordProperty("none", std::to_string(none));
+  RecordProperty("published", std::to_string(published));
+  RecordProperty("bounded", std::to_string(bounded));
+}
+
+TEST(Dressing, CorrectsAlongRowsColumnsAndDiagonals) {
+  const System system = garment_of({{3, 4, 0.01, {0, 0, 0}}, {2, 2, 0.01, {1, 0, 0}}});
+  const auto order = correction_order(std::get<Garment>(system.topology), system.springs);
+  // Structural 2rc - r - c and shear 2(r-1)(c-1) of 3 x 4 and of 2 x 2, each once.
+  EXPECT_EQ(order.size(), 17U + 12 + 4 + 2);
+  auto sorted = order;
+  std::ranges::sort(sorted);
+  EXPECT_TRUE(std::ranges::adjacent_find(sorted) == sorted.end());
+  const Spring& second = system.springs[order[1]];
+  EXPECT_EQ(second.first, 1U);
+  EXPECT_EQ(second.second, 2U);
+}
+
+TEST(Dressing, InVectorsIsTheReferenceButForRounding) {
+  for (const std::string_view instruction_set : dressing_instruction_sets()) {
+    System system = two_squares();
+    system.gravity = 9.81;
+    const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 1, instruction_set);
+    const auto reference = make_reference_dressing(system, semi_euler, dt_s);
+    vectors->step(400);
+    reference->step(400);
+    EXPECT_EQ(vectors->progress().draping, reference->progress().draping);
+    EXPECT_LT(largest_distance(vectors->state().position, reference->state().position), 1e-5)
+        << instruction_set;
+  }
+}
+
+TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
+  const System system = stretched_sheets();
+  const auto run = [&](int threads) {
+    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, threads);
+    backend->step(2000);
+    EXPECT_TRUE(backend->progress().draping);
+    return backend->state();
+  };
+  const State one = run(1);
+  EXPECT_GT(fit_of(system, one.position, nobody).elongation_max, 0.05) << "nothing is corrected";
+  for (const int threads : {2, 3, 5, 8}) {
+    const State several = run(threads);
+    EXPECT_EQ(several.position, one.position) << threads;
+    EXPECT_EQ(several.velocity, one.velocity) << threads;
+  }
+}
+
+TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
+  const System system = stretched_sheets();
+  const auto one = make_openmp_dressing(system, semi_euler, dt_s, 1);
+  const auto limited = make_openmp_dressing(system, semi_euler, dt_s, 3);
+  one->step(500);
+  limited->step(250);
+  const int levels = omp_get_max_active_levels();
+  omp_set_max_active_levels(1);
+#pragma omp parallel num_threads(2)
+#pragma omp single
+  limited->step(250);  // in a team of one, as OMP_THREAD_LIMIT may have it
+  omp_set_max_active_levels(levels);
+  EXPECT_EQ(limited->state().position, one->state().position);
+  EXPECT_EQ(limited->state().velocity, one->state().velocity);
+}
+
+TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
+  for (const VelocityCorrection correction :
+       {VelocityCorrection::none, VelocityCorrection::published, VelocityCorrection::bounded}) {
+    System system = stretched_sheets();
+    garment_in(system).dressing.correction = correction;
+    const auto reference = make_reference_dressing(system, semi_euler, dt_s);
+    reference->step(1200);
+    State stretched = reference->state();
+    stretched.draped = false;
+    round_to_single(stretched);
+    const auto soon_after = [&](Backend& backend) {
+      backend.set_state(stretched);
+      backend.step(20);
+      return backend.state().position;
+    };
+    const std::vector<Vec3d> exact = soon_after(*reference);
+    EXPECT_GT(largest_distance(exact, stretched.position), 1e-3);
+    const auto single = make_serial_dressing(system, semi_euler, dt_s);
+    const std::vector<Vec3d> expected = soon_after(*single);
+    // A spring that rounding puts on the other side of the threshold is corrected a step earlier or later.
+    EXPECT_LT(largest_distance(expected, exact), 2e-5) << static_cast<int>(correction);
+    for (const std::string_view instruction_set : dressing_instruction_sets()) {
+      const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 2, instruction_set);
+      EXPECT_LT(largest_distance(soon_after(*vectors), expected), 3e-7)
+          << instruction_set << " " << static_cast<int>(correction);
+    }
+  }
+}
+
+TEST(Dressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
+  const System system = stretched_sheets();
+  expect_goes_on_when_draped(*make_serial_dressing(system, semi_euler, dt_s), system);
+  expect_goes_on_when_draped(*make_openmp_dressing(system, semi_euler, dt_s, 2), system);
+}
+
+TEST(Dressing, InSinglePrecisionIsTheReferenceButForRounding) {
+  System system = two_squares();
+  system.gravity = 9.81;
+  const auto single = make_serial_dressing(system, semi_euler, dt_s);
+  const auto reference = make_reference_dressing(system, semi_euler, dt_s);
+  single->step(400);
+  reference->step(400);
+  EXPECT_EQ(single->progress().draping, reference->progress().draping);
+  EXPECT_LT(largest_distance(single->state().position, reference->state().position), 1e-5);
+}
+
+}  // namespace
+}  // namespace mssim

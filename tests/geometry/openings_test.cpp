@@ -1,0 +1,140 @@
+#include "geometry/openings.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "garment/body/mannequin.h"
+#include "mesh/sphere_shape.h"
+#include "tests/support/mesh_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A sphere of radius 1 without the triangles that lie wholly above `height`, on one of the two sides.
+Surface open_sphere(double height, double sign = 1) {
+  Surface surface = surface_of(SphereShape{1, 12});
+  std::erase_if(surface.triangles, [&](const auto& triangle) {
+    return std::ranges::all_of(triangle,
+                               [&](std::uint32_t p) { return sign * surface.points[p].y > height; });
+  });
+  // Points of no triangle go, as a file's reader would have it.
+  Surface used;
+  std::vector<std::uint32_t> number(surface.points.size(), UINT32_MAX);
+  for (auto& triangle : surface.triangles)
+    for (std::uint32_t& point : triangle) {
+      if (number[point] == UINT32_MAX) {
+        number[point] = static_cast<std::uint32_t>(used.points.size());
+        used.points.push_back(surface.points[point]);
+      }
+      point = number[point];
+    }
+  used.triangles = surface.triangles;
+  return used;
+}
+
+TEST(Openings, AClosedSurfaceHasNone) {
+  EXPECT_THAT(openings_of(mannequin({}, {16})), IsEmpty());
+  Surface body = unit_cube();
+  EXPECT_THAT(close_openings(body, 1), IsEmpty());
+  EXPECT_EQ(body.triangles, unit_cube().triangles);
+}
+
+TEST(Openings, AreMeasuredAndTheLargestComesFirst) {
+  Surface surface = both(open_sphere(0.95), open_sphere(0.8, -1));
+  const std::vector<Opening> openings = openings_of(surface);
+  ASSERT_EQ(openings.size(), 2U);
+  EXPECT_TRUE(openings[0].is_ring);
+  EXPECT_GT(openings[0].edges(), openings[1].edges());
+  EXPECT_NEAR(openings[0].centre.x, 0, 0.02);
+  EXPECT_NEAR(openings[0].centre.y, -0.78, 0.06);
+  EXPECT_NEAR(openings[0].size, 2 * 0.65, 0.15);
+  EXPECT_NEAR(openings[1].centre.y, 0.92, 0.04);
+}
+
+TEST(Openings, ThatAreClosedLeaveASurfaceThatEnclosesTheVolume) {
+  Surface surface = open_sphere(0.95);
+  const double whole = volume_of(surface_of(SphereShape{1, 12}));
+  EXPECT_EQ(close_openings(surface, 1).size(), 1U);
+  EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "sphere"); }), "");
+  EXPECT_THAT(openings_of(surface), IsEmpty());
+  EXPECT_LT(volume_of(surface), whole);
+  EXPECT_GT(volume_of(surface), 0.98 * whole);
+}
+
+TEST(Openings, AMissingTriangleIsPutBack) {
+  const Surface whole = surface_of(SphereShape{1, 4});
+  Surface surface = whole;
+  surface.triangles.pop_back();
+  EXPECT_EQ(close_openings(surface, 1).front().edges(), 3U);
+  EXPECT_EQ(surface.points, whole.points);
+  EXPECT_NEAR(volume_of(surface), volume_of(whole), 1e-12);
+  EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "sphere"); }), "");
+}
+
+TEST(Openings, ThatTouchInAPointAreToldApart) {
+  // Two opposite triangles of the four that meet in the middle of a side of the cube.
+  Surface cube = surface_of(BoxShape{{1, 1, 1}, {2, 2, 2}});
+  const auto middle = std::ranges::find_if(
+      cube.points, [](const Vec3d& p) { return std::abs(p.x) < 1e-9 && std::abs(p.z) < 1e-9 && p.y > 0.4; });
+  const auto top = static_cast<std::uint32_t>(middle - cube.points.begin());
+  std::vector<std::size_t> around;
+  for (std::size_t t = 0; t < cube.triangles.size(); ++t)
+    if (std::ranges::find(cube.triangles[t], top) != cube.triangles[t].end()) around.push_back(t);
+  ASSERT_GE(around.size(), 4U);
+  const auto share_an_edge = [&](std::size_t a, std::size_t b) {
+    return std::ranges::count_if(cube.triangles[a], [&](std::uint32_t p) {
+             return std::ranges::find(cube.triangles[b], p) != cube.triangles[b].end();
+           }) == 2;
+  };
+  const auto other = std::find_if(around.begin() + 1, around.end(),
+                                  [&](std::size_t t) { return !share_an_edge(around[0], t); });
+  ASSERT_NE(other, around.end());
+  cube.triangles.erase(cube.triangles.begin() + static_cast<std::ptrdiff_t>(*other));
+  cube.triangles.erase(cube.triangles.begin() + static_cast<std::ptrdiff_t>(around[0]));
+  const std::vector<Opening> openings = close_openings(cube, 2);
+  ASSERT_EQ(openings.size(), 2U);
+  for (const Opening& opening : openings) EXPECT_EQ(opening.edges(), 3U);
+  EXPECT_EQ(mesh_error_of([&] { validate_surface(cube, "cube"); }), "");
+  EXPECT_NEAR(volume_of(cube), 1, 1e-12);
+}
+
+TEST(Openings, LargeOnesAreRefusedAndNothingIsFilled) {
+  Surface surface = open_sphere(0.5);
+  const std::size_t before = surface.triangles.size();
+  EXPECT_THAT(
+      mesh_error_of([&] { close_openings(surface, 0.2); }),
+      AllOf(StartsWith("the opening of "), HasSubstr(" edges around ("), HasSubstr(" is 1.7"),
+            HasSubstr(" m across, and at most 0.2 m are closed; close it where the surface was made")));
+  EXPECT_EQ(surface.triangles.size(), before);
+}
+
+TEST(Openings, TrianglesThatDisagreeMakeNoRing) {
+  Surface surface = open_sphere(0.95);
+  const Opening ring = openings_of(surface).front();
+  for (auto& triangle : surface.triangles)
+    if (std::ranges::find(triangle, ring.points[0]) != triangle.end() &&
+        std::ranges::find(triangle, ring.points[1]) != triangle.end())
+      std::swap(triangle[1], triangle[2]);
+  EXPECT_FALSE(openings_of(surface).front().is_ring && openings_of(surface).back().is_ring);
+  EXPECT_THAT(mesh_error_of([&] { close_openings(surface, 1); }), HasSubstr("goes round no hole"));
+}
+
+TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {
+  Surface triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  EXPECT_EQ(close_openings(triangle, 2).size(), 1U);
+  EXPECT_THAT(mesh_error_of([&] { validate_surface(triangle, "it"); }), HasSubstr("volume"));
+  Surface point{{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
+  EXPECT_THAT(close_openings(point, 1), IsEmpty());
+  Surface nothing;
+  EXPECT_THAT(close_openings(nothing, 1), IsEmpty());
+}
+
+}  // namespace
+}  // namespace mssim

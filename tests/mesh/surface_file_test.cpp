@@ -1,0 +1,250 @@
+#include "mesh/surface_file.h"
+
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cmath>
+
+#include "geometry/geometry.h"
+#include "mesh/surface_mesh.h"
+#include "tests/support/mesh_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+const std::string obj_points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+const std::string obj_tetrahedron = obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+TEST(ObjFile, PointsAndTrianglesAreRead) {
+  const Surface surface = parse_obj("a.obj", obj_tetrahedron);
+  EXPECT_EQ(surface.points.size(), 4U);
+  EXPECT_NEAR(volume_of(surface), 1.0 / 6, 1e-15);
+  EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "a.obj"); }), "");
+}
+
+TEST(ObjFile, AllFormsOfCornersAndLinesAreRead) {
+  const Surface surface = parse_obj(
+      "a.obj",
+      "# cube side\r\nmtllib a.mtl\r\no a\r\nv 0 0 0 1.0\r\nv 1 0 0 .5 .5 .5\r\nvt 0 0\r\nvn 0 0 1\r\nv 1 1 "
+      "0\r\n"
+      "g g1\r\nusemtl m\r\ns off\r\nv 0 1 0\r\nf 1/1/1 2//1 3/1 -1 # quad\r\nf -4//-1 -3/-1/-1 5\r\nv 2 2 2");
+  EXPECT_THAT(surface.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 1, 4}));
+  EXPECT_EQ(surface.points[4], (Vec3d{2, 2, 2}));
+}
+
+TEST(ObjFile, LinesThatAreNoGeometryAreLeftOut) {
+  const Surface plain = parse_obj("a.obj", obj_tetrahedron);
+  const Surface surface = parse_obj(
+      "a.obj",
+      "# a scan\nmtllib a.mtl\no body\ncstype bezier\ncurv2 1 2 \\\n3 4\ntrace_obj a\nTexture 1 2\n" +
+          obj_points +
+          "vt 0 0 0\nvn nan nan nan\nvp 1\ng a b\ns 1\nusemtl skin\nlod 2\n"
+          "p 1\nl 1 2 \xe9\nf 1 3 2\nf 1 2 4\ncall more.obj\nf 2 3 4\nf 1 4 3\nend\n");
+  EXPECT_EQ(surface.points, plain.points);
+  EXPECT_EQ(surface.triangles, plain.triangles);
+}
+
+TEST(ObjFile, AByteOrderMarkIsLeftOut) {
+  const std::string mark = "\xef\xbb\xbf";
+  EXPECT_EQ(parse_obj("a.obj", mark + obj_tetrahedron).triangles.size(), 4U);
+  EXPECT_THAT(mesh_error_of([&] { parse_obj("a.obj", mark + "v 0 0 o\n"); }),
+              StartsWith("a.obj, line 1: z is \"o\""));
+  EXPECT_THAT(mesh_error_of([&] { parse_obj("a.obj", obj_points + "f 1 2 " + mark + "3\n"); }),
+              HasSubstr("cannot be read"))
+      << "elsewhere it is no mark";
+}
+
+TEST(ObjFile, PointsAtOnePlaceBecomeOne) {
+  const Surface surface = parse_obj("a.obj", obj_points + "v -0 0 0\nf 5 3 2\nf 1 2 4\n");
+  EXPECT_THAT(surface.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+struct BrokenText {
+  const char* text;
+  const char* begin;
+  const char* about;
+};
+
+void PrintTo(const BrokenText& file, std::ostream* out) { *out << file.about; }
+
+class BrokenObjFile : public testing::TestWithParam<BrokenText> {};
+
+TEST_P(BrokenObjFile, IsRefusedWithPlaceAndValue) {
+  const std::string message = mesh_error_of([] { parse_obj("a.obj", GetParam().text); });
+  EXPECT_THAT(message, AllOf(StartsWith(GetParam().begin), HasSubstr(GetParam().about)));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Obj, BrokenObjFile,
+    testing::Values(BrokenText{"", "a.obj, line ", "without an f line"},
+                    BrokenText{"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "a.obj, line 3: ", "without an f line"},
+                    BrokenText{"v 0 0 0\nv 1 0\n", "a.obj, line 2: ", "z is missing"},
+                    BrokenText{"v 0 0 zero\n", "a.obj, line 1: ", "z is \"zero\""},
+                    BrokenText{"v 0 0 inf\n", "a.obj, line 1: ", "z is \"inf\""},
+                    // It had an infinite volume.
+                    BrokenText{"v 0 0 1e150\n", "a.obj, line 1: ", "give a number from -1e9 to 1e9"},
+                    BrokenText{"v 0 0 0\nf 1 1\n", "a.obj, line 2: ", "the face has 2 corners"},
+                    BrokenText{"v 0 0 0\nf\n", "a.obj, line 2: ", "the face has 0 corners"},
+                    BrokenText{"v 0 0 0\nf 1 1 2\n", "a.obj, line 2: ", "vertex 2 of 1"},
+                    BrokenText{"v 0 0 0\nf 1 1 0\n", "a.obj, line 2: ", "\"0\" of a face names no vertex"},
+                    BrokenText{"v 0 0 0\nf 1 1 -2\n", "a.obj, line 2: ", "\"-2\" of a face names no vertex"},
+                    BrokenText{"v 0 0 0\nf 1 1 1/2/3/4\n", "a.obj, line 2: ", "\"1/2/3/4\""},
+                    BrokenText{"v 0 0 0\nf 1 1 1/\n", "a.obj, line 2: ", "\"1/\""},
+                    BrokenText{"v 0 0 0\nf 1 1 1//\n", "a.obj, line 2: ", "\"1//\""},
+                    BrokenText{"v 0 0 0\nf 1 1 x\n", "a.obj, line 2: ", "\"x\" of a face cannot be read"},
+                    BrokenText{"v 0 0 0\nf 1 1 99999999999999999999\n", "a.obj, line 2: ", "cannot be read"},
+                    BrokenText{"v 0 0 0\nf 1 1 \\\n1\n", "a.obj, line 2: ", "backslash"},
+                    BrokenText{"v 0 0 \\\n0\n", "a.obj, line 1: ", "backslash"},
+                    BrokenText{"PK\x03\x04\n", "a.obj, line 1: ", "without an f line; give an OBJ file"},
+                    // Bytes that are not UTF-8 went into the message where char has no sign (arm64).
+                    BrokenText{"v 0 0 \xff\n", "a.obj, line 1: ", "z is \"\xef\xbf\xbd\""}));
+
+/// An ASCII STL file of the tetrahedron above.
+std::string ascii_stl() {
+  const Surface surface = parse_obj("a.obj", obj_tetrahedron);
+  std::string text = "solid a tetrahedron\n";
+  for (const Triangle& triangle : surface.triangles) {
+    text += " facet normal nan 0 0\n  outer loop\n";
+    for (const std::uint32_t point : triangle) {
+      const Vec3d& p = surface.points[point];
+      text +=
+          "   vertex " + std::to_string(p.x) + ' ' + std::to_string(p.y) + ' ' + std::to_string(p.z) + '\n';
+    }
+    text += "  endloop\n endfacet\n";
+  }
+  return text + "endsolid a\n";
+}
+
+void append_little_endian(std::string& bytes, std::uint32_t number) {
+  for (int i = 0; i < 4; ++i, number >>= 8) bytes += static_cast<char>(number & 255);
+}
+
+/// A binary one; its first bytes mislead, as those of real files do.
+std::string binary_stl(float first_x = 0) {
+  const Surface surface = parse_obj("a.obj", obj_tetrahedron);
+  std::string bytes = "solid but binary";
+  bytes.resize(80, ' ');
+  append_little_endian(bytes, static_cast<std::uint32_t>(surface.triangles.size()));
+  for (const Triangle& triangle : surface.triangles) {
+    bytes.append(12, '\0');
+    for (const std::uint32_t point : triangle) {
+      const Vec3d& p = surface.points[point];
+      for (const double x : {p.x, p.y, p.z})
+        append_little_endian(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(x)));
+    }
+    bytes.append(2, '\0');
+  }
+  bytes.replace(96, 4, "");
+  std::string x;
+  append_little_endian(x, std::bit_cast<std::uint32_t>(first_x));
+  return bytes.insert(96, x);
+}
+
+TEST(StlFile, AsciiAndBinaryGiveTheSameSurface) {
+  for (const std::string& content : {ascii_stl(), binary_stl()}) {
+    const Surface surface = parse_stl("a.stl", content);
+    EXPECT_EQ(surface.points.size(), 4U);
+    EXPECT_NEAR(volume_of(surface), 1.0 / 6, 1e-15);
+    EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "a.stl"); }), "");
+  }
+}
+
+TEST(StlFile, KeywordsMayBeInCapitalsAndLinesEndInCrLf) {
+  std::string text;
+  for (const char c : ascii_stl()) {
+    if (c == '\n') text += '\r';
+    text += static_cast<char>(std::toupper(c));
+  }
+  EXPECT_EQ(parse_stl("a.stl", text).triangles.size(), 4U);
+}
+
+TEST(StlFile, AByteOrderMarkIsLeftOut) {
+  EXPECT_EQ(parse_stl("a.stl", "\xef\xbb\xbf" + ascii_stl()).triangles.size(), 4U);
+}
+
+TEST(StlFile, CutOffAnywhereIsRefused) {
+  for (const std::string& content : {ascii_stl(), binary_stl()})
+    for (std::size_t bytes = 0; bytes + sizeof "endsolid a" < content.size(); bytes += 7)
+      EXPECT_THAT(mesh_error_of([&] { parse_stl("a.stl", content.substr(0, bytes)); }), StartsWith("a.stl"))
+          << bytes << " bytes";
+}
+
+TEST(StlFile, BrokenBinaryNamesTheByte) {
+  const auto complaint = [](const std::string& content) {
+    return mesh_error_of([&] { parse_stl("a.stl", content); });
+  };
+  EXPECT_THAT(complaint(binary_stl(NAN)), StartsWith("a.stl, byte 96: a corner is at (nan, 0, 0)"));
+  EXPECT_THAT(complaint(binary_stl(-2e9F)), HasSubstr("for each axis give a number from -1e9 to 1e9"));
+  EXPECT_THAT(complaint(binary_stl() + "more"),
+              StartsWith("a.stl, byte 80: the file promises 4 triangles in 284 bytes, and has 288"));
+  std::string absurd = binary_stl();
+  absurd.replace(80, 4, "\xff\xff\xff\xff");
+  EXPECT_THAT(complaint(absurd), HasSubstr("promises 4294967295 triangles"));
+  EXPECT_THAT(complaint(binary_stl().substr(0, 80) + std::string(4, '\0')), HasSubstr("has no triangles"));
+  EXPECT_THAT(complaint(std::string(10, '\0')), HasSubstr("has 10 bytes"));
+  EXPECT_THAT(complaint(""), HasSubstr("is empty"));
+}
+
+class BrokenStlFile : public testing::TestWithParam<BrokenText> {};
+
+TEST_P(BrokenStlFile, IsRefusedWithPlaceAndValue) {
+  const std::string message = mesh_error_of([] { parse_stl("a.stl", GetParam().text); });
+  EXPECT_THAT(message, AllOf(StartsWith(GetParam().begin), HasSubstr(GetParam().about)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ascii, BrokenStlFile,
+    testing::Values(BrokenText{"hello\n", "a.stl, line 1: ", "\"hello\" where \"solid\" is due"},
+                    BrokenText{"solid a\nendsolid a\n", "a.stl, line 2: ", "no facets"},
+                    BrokenText{"solid a\nfacet\nouter\n", "a.stl, line 3: ", "where \"outer loop\" is due"},
+                    BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0\n", "a.stl, line 4: ", "z is missing"},
+                    BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 o\n", "a.stl, line 4: ", "z is \"o\""},
+                    BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 0\nendloop\n",
+                               "a.stl, line 5: ", "where \"vertex\" is due"}));
+
+using SurfaceFile = MeshTest;
+
+TEST_F(SurfaceFile, IsReadByItsExtension) {
+  put("a.OBJ", obj_tetrahedron);
+  put("a.stl", binary_stl());
+  put("a.ply", "");
+  EXPECT_EQ(read_surface(folder() / "a.OBJ").triangles.size(), 4U);
+  EXPECT_EQ(read_surface(folder() / "a.stl").triangles.size(), 4U);
+  EXPECT_THAT(mesh_error_of([&] { read_surface(folder() / "a.ply"); }),
+              HasSubstr("ends in neither .obj nor .stl"));
+  EXPECT_THAT(mesh_error_of([&] { read_surface(folder() / "b.obj"); }), HasSubstr("b.obj is missing"));
+}
+
+TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {
+  put("a.obj", obj_tetrahedron);
+  const TetMesh coarse = surface_mesh({folder() / "a.obj", 0.001, 0});
+  EXPECT_NEAR(volume_of(coarse), 1e-9 / 6, 1e-18);
+  const TetMesh fine = surface_mesh({folder() / "a.obj", 0.001, 2e-12});
+  for (const auto& [a, b, c, d] : fine.tetrahedra)
+    EXPECT_LE(six_volumes(fine.nodes[a], fine.nodes[b], fine.nodes[c], fine.nodes[d]), 6 * 2e-12);
+  EXPECT_NEAR(volume_of(fine), 1e-9 / 6, 1e-18);
+}
+
+TEST_F(SurfaceFile, ThatEnclosesNoBodyIsNamed) {
+  put("open.obj", obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
+  EXPECT_THAT(mesh_error_of([&] { surface_mesh({folder() / "open.obj"}); }),
+              HasSubstr("open.obj: the edge from "));
+  put("a.obj", obj_tetrahedron);
+  const auto complaint = [&](double unit_m, double largest_volume_m3) {
+    return mesh_error_of([&] { surface_mesh({folder() / "a.obj", unit_m, largest_volume_m3}); });
+  };
+  EXPECT_THAT(complaint(0, 0), HasSubstr("a unit of the file is 0 m"));
+  EXPECT_THAT(complaint(1, -1), HasSubstr("largest volume of a tetrahedron is -1 m^3"));
+  EXPECT_THAT(complaint(1, 1e-12), HasSubstr("more than ten million"));
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,164 @@
+#include "mesh/tetgen_files.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/support/mesh_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Two tetrahedra that share a face.
+const std::string good_nodes = "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n";
+const std::string good_tetrahedra = "2 4 0\n0 0 1 2 3\n1 1 2 3 4\n";
+
+TetMesh parse(const std::string& nodes, const std::string& tetrahedra) {
+  return parse_tetgen_files({"a.node", nodes}, {"a.ele", tetrahedra});
+}
+
+void expect_good(const TetMesh& mesh) {
+  ASSERT_EQ(mesh.nodes.size(), 5U);
+  EXPECT_EQ(mesh.nodes[4], (Vec3d{1, 1, 1}));
+  EXPECT_THAT(mesh.tetrahedra, ElementsAre(Tetrahedron{0, 1, 2, 3}, Tetrahedron{1, 2, 3, 4}));
+}
+
+TEST(TetgenFiles, AreReadNumberedFromZero) { expect_good(parse(good_nodes, good_tetrahedra)); }
+
+TEST(TetgenFiles, AreReadNumberedFromOneWithCommentsAttributesAndMarkers) {
+  expect_good(parse(
+      "# made by hand\r\n\r\n  5 3 2 1 # header\r\n1 0 0 0 .5 6 1\r\n 2\t1 0 0 .5 6 1\r\n3 0 1 0 .5 6 1\r\n"
+      "4 0 0 1e0 .5 6 -1\r\n# between\r\n5 +1 1.0 1 .5 6 1",
+      "2 4 1\n1 1 2 3 4 7\n\n2 2 3 4 5 7 # last\n# Generated\n"));
+}
+
+TEST(TetgenFiles, AMirroredMeshIsTurned) {
+  const TetMesh mesh = parse(good_nodes, "2 4 0\n0 0 1 3 2\n1 1 2 4 3\n");
+  EXPECT_THAT(mesh.tetrahedra, ElementsAre(Tetrahedron{0, 1, 2, 3}, Tetrahedron{1, 2, 3, 4}));
+}
+
+TEST(TetgenFiles, ReadBackAsTheyWereWritten) {
+  TetMesh mesh = parse(good_nodes, good_tetrahedra);
+  mesh.nodes[4] = {1.0 / 3, 1 + 1e-15, 1.23456789e-10};
+  const TetMesh again = parse(node_text(mesh.nodes), ele_text(mesh.tetrahedra));
+  EXPECT_EQ(again.nodes, mesh.nodes);
+  EXPECT_EQ(again.tetrahedra, mesh.tetrahedra);
+}
+
+struct BrokenFile {
+  const char* nodes;  ///< nullptr: the good ones
+  const char* tetrahedra;
+  const char* begin;  ///< of the message
+  const char* about;  ///< in it
+};
+
+void PrintTo(const BrokenFile& file, std::ostream* out) { *out << file.about; }
+
+class BrokenTetgenFile : public testing::TestWithParam<BrokenFile> {};
+
+TEST_P(BrokenTetgenFile, IsRefusedWithPlaceAndValue) {
+  const BrokenFile& file = GetParam();
+  const std::string message = mesh_error_of([&] {
+    parse(file.nodes ? file.nodes : good_nodes, file.tetrahedra ? file.tetrahedra : good_tetrahedra);
+  });
+  EXPECT_THAT(message, AllOf(StartsWith(file.begin), HasSubstr(file.about)));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+#define FOUR_NODES "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n"
+#define FIVE_NODES "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n"
+
+INSTANTIATE_TEST_SUITE_P(
+    Nodes, BrokenTetgenFile,
+    testing::Values(
+        BrokenFile{"", nullptr, "a.node, line ", "the file ends before the number of nodes"},
+        BrokenFile{"# only this\n", nullptr, "a.node, line 1: ", "truncated"},
+        BrokenFile{"five 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is \"five\""},
+        BrokenFile{"\x01\x7f\xff\n", nullptr, "a.node, line 1: ", "is \"\\u0001\\u007f\xef\xbf\xbd\""},
+        BrokenFile{"0 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is 0"},
+        BrokenFile{"-5 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is -5"},
+        BrokenFile{"99999999999999999999 3 0 0\n", nullptr, "a.node, line 1: ", "99999999999999999999"},
+        BrokenFile{"9000000000000000000 3 0 0\n0 0 0 0\n", nullptr,
+                   "a.node, line 1: ", "more than a file of 34 bytes"},
+        BrokenFile{"1 2 0 0\n", nullptr, "a.node, line 1: ", "the dimension is 2"},
+        BrokenFile{"1 3 -1 0\n", nullptr, "a.node, line 1: ", "attributes is -1"},
+        // Found by fuzzing: such a number overflowed when the others were added to it.
+        BrokenFile{"1 3 9223372036854775807 0\n", nullptr,
+                   "a.node, line 1: ", "attributes is 9223372036854775807; give one from 0 to 1000"},
+        BrokenFile{"1 3 0 1001\n", nullptr, "a.node, line 1: ", "boundary markers is 1001"},
+        BrokenFile{FOUR_NODES, nullptr, "a.node, line 4: ", "the file ends before node 4 of 4"},
+        BrokenFile{FOUR_NODES "3 0 0", nullptr, "a.node, line 5: ", "there are 3 numbers"},
+        BrokenFile{FOUR_NODES "3 0 0 0 0", nullptr, "a.node, line 5: ", "there are 5 numbers"},
+        BrokenFile{FOUR_NODES "3 0 0 x", nullptr, "a.node, line 5: ", "z is \"x\""},
+        BrokenFile{FOUR_NODES "3 0 nan 1", nullptr, "a.node, line 5: ", "y is \"nan\""},
+        BrokenFile{FOUR_NODES "3 1e999 0 1", nullptr, "a.node, line 5: ", "x is \"1e999\""},
+        BrokenFile{FOUR_NODES "3 -2e9 0 1", nullptr,
+                   "a.node, line 5: ", "x is \"-2e9\"; give a number from -1e9 to 1e9"},
+        BrokenFile{FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 stands where node 3 is due"},
+        BrokenFile{FOUR_NODES "3 0 0 1\n4 1 1 1", nullptr, "a.node, line 6: ", "goes on after the 4 nodes"},
+        BrokenFile{"1 3 0 0\n7 0 0 0\n", nullptr, "a.node, line 2: ", "the first node has the number 7"},
+        BrokenFile{FIVE_NODES "4 0 0 1\n", nullptr, "a.node, line 6: ", "another node stands at (0, 0, 1)"},
+        BrokenFile{nullptr, "1 4 0\n0 0 1 2 3\n", "a.node, line 6: ", "no tetrahedron has this node"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Tetrahedra, BrokenTetgenFile,
+    testing::Values(
+        BrokenFile{nullptr, "", "a.ele, line ", "the file ends before the number of tetrahedra"},
+        BrokenFile{nullptr, "0 4 0\n", "a.ele, line 1: ", "the number of tetrahedra is 0"},
+        BrokenFile{nullptr, "4000000000 4 0\n0 0 1 2 3\n", "a.ele, line 1: ", "more than a file of 25 bytes"},
+        BrokenFile{nullptr, "2 10 0\n", "a.ele, line 1: ", "give linear tetrahedra"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n", "a.ele, line 2: ", "before tetrahedron 2 of 2"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3", "a.ele, line 3: ", "there are 4 numbers"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4.5",
+                   "a.ele, line 3: ", "is \"4.5\"; give a whole number"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 5\n",
+                   "a.ele, line 3: ", "node 5 is none of the nodes 0 to 4"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 -1\n", "a.ele, line 3: ", "node -1 is none of"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 4 3\n", "a.ele, line 3: ", "volume is -0.33333"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 2\n1 1 2 3 4\n", "a.ele, line 2: ", "it is flat"},
+        BrokenFile{nullptr, "3 4 0\n0 0 1 2 3\n1 1 2 3 4\n2 0 1 2 3\n",
+                   "a.ele, line 4: ", "shares a face with two"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4\nmore",
+                   "a.ele, line 4: ", "goes on after the 2 tetrahedra"}));
+
+TEST(TetgenFiles, OfOneEndlessLineAreRefusedBeforeItIsSplitIntoWords) {
+  std::string words = "5 3 0 0\n0";
+  while (words.size() <= 9 + (std::size_t{1} << 20)) words += " 1";
+  EXPECT_THAT(mesh_error_of([&] { parse(words, good_tetrahedra); }),
+              AllOf(StartsWith("a.node, line 2: it has "), HasSubstr("break the file into lines")));
+}
+
+TEST_F(MeshTest, TetgenFilesThatAreMissingOrFoldersAreNamed) {
+  put("a.node", good_nodes);
+  const auto complaint = [&](const std::string& ele) {
+    return mesh_error_of([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
+  };
+  EXPECT_THAT(complaint("b.ele"), HasSubstr("b.ele is missing"));
+  std::filesystem::create_directory(folder() / "c.ele");
+  EXPECT_THAT(complaint("c.ele"), HasSubstr("c.ele is not a regular file"));
+  put("d.ele", good_tetrahedra);
+  expect_good(read_tetgen_files(folder() / "a.node", folder() / "d.ele"));
+}
+
+TEST(TetMesh, OfTwoTetrahedraIsCountedRight) {
+  const TetMesh mesh = parse(good_nodes, good_tetrahedra);
+  using Edge = std::array<std::uint32_t, 2>;
+  EXPECT_THAT(edges_of(mesh), ElementsAre(Edge{0, 1}, Edge{0, 2}, Edge{0, 3}, Edge{1, 2}, Edge{1, 3},
+                                          Edge{1, 4}, Edge{2, 3}, Edge{2, 4}, Edge{3, 4}));
+  EXPECT_EQ(euler_characteristic(mesh), 1);
+  EXPECT_DOUBLE_EQ(volume_of(mesh), 1.0 / 6 + 1.0 / 3);
+}
+
+TEST(TetMesh, TheSmallestDihedralAngleIsTheKnownOne) {
+  const TetMesh regular = parse("4 3\n0 1 1 1\n1 1 -1 -1\n2 -1 1 -1\n3 -1 -1 1\n", "1 4\n0 0 1 3 2\n");
+  EXPECT_NEAR(smallest_dihedral_angle(regular), 70.528779, 1e-6);
+  // At the edges of its large face a corner of a cube has the angle whose cosine is 1 / sqrt(3).
+  const TetMesh corner = parse("4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "1 4\n0 0 1 2 3\n");
+  EXPECT_NEAR(smallest_dihedral_angle(corner), 54.735610, 1e-6);
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,238 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "output/folders/provenance_file.h"
+#include "output/folders/result_folder.h"
+#include "output/tables/benchmark_json.h"
+#include "output/tables/csv.h"
+#include "output/tables/paper_table.h"
+#include "output/tables/published.h"
+#include "output/tables/timings_csv.h"
+#include "platform/write_error.h"
+#include "tests/support/result_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Lt;
+using testing::SizeIs;
+
+class ResultFiles : public TemporaryFolderTest {};
+
+TEST_F(ResultFiles, TimingsHaveTheDocumentedColumnsAndQuoteWhatNeedsIt) {
+  const std::vector<ResultRow> rows{measured_row("serial", 0.125, 1.0),
+                                    failed_row("opencl", "unavailable: no device \"fast, big\"\nhere")};
+  EXPECT_EQ(
+      timings_csv(rows),
+      "scene,nodes,springs_unique,springs_published,backend,device,threads,integrator,dt_s,rounds,"
+      "ms_per_step,ms_per_step_low,ms_per_step_high,ms_per_step_min,springs_per_second,"
+      "gigabytes_per_second,roofline_fraction,speedup_vs_serial,paper_ms,position_error,energy_drift,"
+      "verified,status,note,warm_up_trials,outliers\n"
+      "cloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,116016000,1.5,"
+      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0\n"
+      "cloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
+      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0\n");
+}
+
+TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
+  std::vector<ResultRow> rows{measured_row("serial", 1.0 / 3, 1.0), measured_row("openmp", 0.1, M_PI),
+                              failed_row("opencl", "failed: \"x\", at\r\nstep 3")};
+  rows[1].samples_ms = {0.1, 1.0 / 7, std::numeric_limits<double>::denorm_min()};
+  ResultFolder(folder(), made_up_provenance(), paper_tables(legend, published_tables())).write(rows);
+  const std::vector<ResultRow> back = read_results(folder());
+  ASSERT_EQ(back.size(), rows.size());
+  EXPECT_EQ(timings_csv(back), timings_csv(rows));
+  EXPECT_EQ(samples_csv(back), samples_csv(rows));
+  EXPECT_EQ(back[0].ms_per_step, 1.0 / 3);
+  EXPECT_EQ(back[1].speedup_vs_serial, M_PI);
+  EXPECT_EQ(back[1].samples_ms, rows[1].samples_ms);
+  EXPECT_EQ(back[1].sample_steps, rows[1].sample_steps);
+  EXPECT_TRUE(back[1].verified);
+  EXPECT_EQ(back[2].status, rows[2].status);
+  EXPECT_EQ(back[2].ms_per_step, std::nullopt);
+}
+
+TEST_F(ResultFiles, SamplesAreListedRoundByRound) {
+  EXPECT_EQ(samples_csv(std::vector{measured_row("serial", 0.5, 1.0)}),
+            "scene,backend,integrator,round,steps,ms_per_step,outlier\n"
+            "cloth2500,serial,semi-euler,1,10,1,\n"
+            "cloth2500,serial,semi-euler,2,20,0.25,\n"
+            "cloth2500,serial,semi-euler,3,30,0.5,\n");
+  ResultRow row = measured_row("serial", 0.5, 1.0);
+  row.samples_ms = {1, 1, 1.125, 1.25, 1.25, 1.75, 1, 9};
+  row.sample_steps.assign(8, 7);
+  const std::string text = samples_csv(std::vector{row});
+  EXPECT_THAT(text, HasSubstr(",5,7,1.25,\n"));
+  EXPECT_THAT(text, HasSubstr(",8,7,9,extreme\n"));
+}
+
+TEST_F(ResultFiles, TimingsAllowFurtherColumnsBehindTheirs) {
+  std::istringstream lines(timings_csv(std::vector{measured_row("serial", 0.5, 1.0)}));
+  std::string header, row;
+  std::getline(lines, header);
+  std::getline(lines, row);
+  const auto back = read_timings(put("timings.csv", header + ",joules\r\n" + row + ",3\r\n"));
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back[0].status, "ok");
+}
+
+TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
+  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  std::istringstream lines(timings_csv(rows));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    for (int columns = 0; columns < 2; ++columns) line.resize(line.rfind(','));
+    text += line + '\n';
+  }
+  EXPECT_THAT(text, HasSubstr("status,note\n"));
+  const auto back = read_timings(put("timings.csv", text));
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back[0].ms_per_step, 0.5);
+  EXPECT_EQ(back[0].warm_up_trials, 0);
+}
+
+TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
+  const std::string good = timings_csv(std::vector{measured_row("serial", 0.5, 1.0)});
+  const auto complaint = [&](const std::string& text) -> std::string {
+    try {
+      read_timings(put("timings.csv", text));
+    } catch (const CsvError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.rfind(from), from.size(), to);
+  };
+  EXPECT_EQ(complaint(good), "accepted");
+  EXPECT_THAT(complaint(with("19.475", "fast")), HasSubstr("timings.csv, line 2, column paper_ms: \"fast\""));
+  EXPECT_THAT(complaint(with("19.475", "nan")), HasSubstr("column paper_ms: \"nan\""));
+  EXPECT_THAT(complaint(with("2500,14502", "-1,14502")), HasSubstr("column nodes: \"-1\""));
+  EXPECT_THAT(complaint(with("true", "yes")), HasSubstr("column verified: \"yes\""));
+  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 25 fields where the header has 26"));
+  EXPECT_THAT(complaint(with("ok", "\"ok")), HasSubstr("line 2: a quoted field does not end"));
+  EXPECT_THAT(complaint(with("roofline_fraction", "roof")), HasSubstr("column 17 is \"roof\""));
+  EXPECT_THAT(complaint(""), HasSubstr("column 1 is missing"));
+  EXPECT_THROW(read_timings(folder() / "missing.csv"), CsvError);
+  EXPECT_THROW(read_timings(folder()), CsvError);
+  // Found by fuzzing: whatever stood in the file went into the message.
+  EXPECT_THAT(complaint(with("19.475", "\x1b[31m" + std::string(100'000, 'x'))),
+              AllOf(HasSubstr("column paper_ms: \"\\u001b[31mxxx"), SizeIs(Lt(300U))));
+  EXPECT_THAT(complaint(with("roofline_fraction", "\xff\x7f" + std::string(100'000, 'x'))),
+              AllOf(HasSubstr("is \"\xef\xbf\xbd\\u007fxxx"), SizeIs(Lt(300U))));
+}
+
+TEST_F(ResultFiles, WithoutAnEndAreRefusedAndNotRead) {
+  EXPECT_THROW(read_timings("/dev/zero"), CsvError);
+  const fs::path pipe = folder() / "pipe.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(read_timings(pipe), CsvError);
+  const fs::path huge = put("huge.csv", "");
+  fs::resize_file(huge, largest_csv_bytes + 1);  // without its blocks
+  EXPECT_THROW(read_timings(huge), CsvError);
+}
+
+TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
+  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  rows[0].samples_ms.clear();
+  rows[0].sample_steps.clear();
+  const fs::path file = put("samples.csv",
+                            "scene,backend,integrator,round,steps,ms_per_step\n"
+                            "cloth2500,serial,semi-euler,2,10,1\n");
+  EXPECT_THROW(read_samples(file, rows), CsvError);
+}
+
+TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
+  const ResultFolder results(folder() / "new/out", made_up_provenance(),
+                             paper_tables(legend, published_tables()));
+  results.begin();
+  EXPECT_EQ(nlohmann::json::parse(text_of(folder() / "new/out/provenance.json")),
+            to_json(made_up_provenance()));
+  EXPECT_TRUE(read_results(folder() / "new/out").empty());
+  std::vector<ResultRow> rows;
+  for (const ResultRow& row : table_rows()) {
+    rows.push_back(row);
+    results.write(rows);
+    EXPECT_EQ(text_of(folder() / "new/out/timings.csv"), timings_csv(rows));
+    EXPECT_EQ(text_of(folder() / "new/out/samples.csv"), samples_csv(rows));
+    EXPECT_EQ(nlohmann::ordered_json::parse(text_of(folder() / "new/out/benchmark.json")),
+              benchmark_json(rows, made_up_provenance()));
+    const PaperTable table =
+        paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
+    EXPECT_EQ(text_of(folder() / "new/out/table1.csv"), table.csv);
+    EXPECT_EQ(text_of(folder() / "new/out/table1.md"), table.markdown);
+  }
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder() / "new/out"))
+    names.push_back(entry.path().filename().string());
+  EXPECT_THAT(names, testing::UnorderedElementsAre("timings.csv", "samples.csv", "benchmark.json",
+                                                   "provenance.json", "table1.csv", "table1.md"));
+}
+
+TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
+  const ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+  std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  results.write(rows);
+  const std::string before = text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json");
+  rows.push_back(measured_row("openmp", 0.25, 2.0));
+  rows[1].energy_drift = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(results.write(rows), std::invalid_argument);
+  rows[1].energy_drift = 0;
+  rows[1].samples_ms[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(results.write(rows), std::invalid_argument);
+  EXPECT_EQ(text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json"), before);
+}
+
+TEST_F(ResultFiles, AreWrittenByOneAtATime) {
+  const auto open = [&] {
+    return ResultFolder(folder() / "out", made_up_provenance(), paper_tables(legend, published_tables()));
+  };
+  {
+    ResultFolder first = open();
+    const ResultFolder moved = std::move(first);
+    try {
+      open();
+      ADD_FAILURE() << "a second one was let in";
+    } catch (const WriteError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("another mssim is writing into " + (folder() / "out").string()));
+    }
+  }
+  EXPECT_FALSE(open().has_rows());
+}
+
+TEST_F(ResultFiles, AreClearedOfAnEarlierRunsRows) {
+  const ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+  put("notes.txt", "mine");
+  results.write(std::vector{measured_row("serial", 0.5, 1.0)});
+  EXPECT_TRUE(results.has_rows());
+  results.clear();
+  EXPECT_FALSE(results.has_rows());
+  EXPECT_FALSE(fs::exists(folder() / "samples.csv"));
+  EXPECT_EQ(text_of(folder() / "notes.txt"), "mine");
+}
+
+TEST_F(ResultFiles, CannotGoWhereAFileIs) {
+  put("taken", "a file");
+  EXPECT_THROW(
+      ResultFolder(folder() / "taken", made_up_provenance(), paper_tables(legend, published_tables())),
+      WriteError);
+  EXPECT_EQ(text_of(folder() / "taken"), "a file");
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,173 @@
+#include "output/tables/paper_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "output/tables/csv.h"
+#include "output/tables/published.h"
+#include "platform/data_folder.h"
+#include "tests/support/result_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Published, TimesEqualTheDataFileEverywhere) {
+  const PublishedTable table = PublishedTable(published_table_kinds[0]);
+  std::ifstream file(data_folder() / "published/hong2016_table1.csv");
+  std::string line;
+  std::getline(file, line);
+  int times = 0;
+  while (std::getline(file, line)) {
+    std::vector<std::string> fields;
+    std::istringstream parts(line);
+    for (std::string field; std::getline(parts, field, ',');) fields.push_back(field);
+    ASSERT_EQ(fields.size(), 5U);
+    EXPECT_EQ(table.ms(fields[0], fields[1], std::stoull(fields[2]), std::stoull(fields[3])),
+              std::stod(fields[4]))
+        << line;
+    ++times;
+  }
+  EXPECT_EQ(times, 3 * 3 * 6);
+}
+
+TEST(Published, TimesExistOnlyForWhatThePaperMeasured) {
+  const PublishedTable table = PublishedTable(published_table_kinds[0]);
+  EXPECT_EQ(table.ms("rk4", "gpu+multi-thread-cpu", 2500, 29004), std::nullopt);
+  EXPECT_EQ(table.ms("rk4-frozen", "gpu", 2500, 29004), std::nullopt);
+  EXPECT_EQ(table.ms("rk4", "gpu", 2501, 29004), std::nullopt);
+  EXPECT_EQ(table.ms("rk4", "gpu", 2500, 29000), std::nullopt);  // 2500 nodes, but another shape
+  EXPECT_TRUE(table.has_scene(350000, 4188004));
+  EXPECT_FALSE(table.has_scene(2500, 29000));
+}
+
+TEST(Published, TableOfBodiesReadsToo) {
+  const PublishedTable table(published_table_kinds[1]);
+  EXPECT_EQ(table.ms("semi-euler", "gpu+multi-thread-cpu", 38233, 759330), 127.45);
+}
+
+TEST(PaperTable, AsCsvHasPublishedAndMeasuredUnderOneAnother) {
+  const PaperTable table =
+      paper_table(table_rows(), legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
+  EXPECT_FALSE(table.empty);
+  EXPECT_EQ(table.csv,
+            "integrator,configuration,backend,quantity,cloth2500,cloth350k\n"
+            ",,,nodes,2500,350000\n"
+            ",,,springs_published,29004,4188004\n"
+            "semi-euler,cpu-only,serial,published_ms,19.475,2733.484\n"
+            "semi-euler,cpu-only,serial,measured_ms,0.1,1.5\n"
+            "semi-euler,cpu-only,serial,published_speedup,1,1\n"
+            "semi-euler,cpu-only,serial,measured_speedup,1,1\n"
+            "semi-euler,cpu-only,serial,status,ok,ok\n"
+            "semi-euler,multi-thread-cpu,openmp,published_ms,6.6,586.35\n"
+            "semi-euler,multi-thread-cpu,openmp,measured_ms,0.0125,\n"
+            "semi-euler,multi-thread-cpu,openmp,published_speedup," +
+                csv_number(19.475 / 6.6) + "," + csv_number(2733.484 / 586.35) +
+                "\n"
+                "semi-euler,multi-thread-cpu,openmp,measured_speedup,8,\n"
+                "semi-euler,multi-thread-cpu,openmp,status,ok,\n"
+                "semi-euler,gpu,opencl,published_ms,1.827,115.015\n"
+                "semi-euler,gpu,opencl,measured_ms,,\n"
+                "semi-euler,gpu,opencl,published_speedup," +
+                csv_number(19.475 / 1.827) + "," + csv_number(2733.484 / 115.015) +
+                "\n"
+                "semi-euler,gpu,opencl,measured_speedup,,\n"
+                "semi-euler,gpu,opencl,status,failed: step 3 | node 7 is not finite,\n"
+                "semi-euler,gpu+multi-thread-cpu,hybrid,published_ms,,\n"
+                "semi-euler,gpu+multi-thread-cpu,hybrid,measured_ms,0.05,\n"
+                "semi-euler,gpu+multi-thread-cpu,hybrid,published_speedup,,\n"
+                "semi-euler,gpu+multi-thread-cpu,hybrid,measured_speedup,2,\n"
+                "semi-euler,gpu+multi-thread-cpu,hybrid,status,ok,\n");
+}
+
+TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
+  const std::string text =
+      paper_table(table_rows(), legend, PublishedTable(published_table_kinds[0]), made_up_provenance())
+          .markdown;
+  EXPECT_THAT(text,
+              HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads; device Some device; mssim "
+                        "0.1.0, commit 0123456789ab with uncommitted changes; 2026-01-31T12:00:00Z."));
+  EXPECT_THAT(text, HasSubstr("## semi-euler: 1 force evaluation a step, beside the published semi-euler\n"
+                              "\n"
+                              "| nodes<br>springs | 2,500<br>29,004 | 350,000<br>4,188,004 |\n"
+                              "|---|---:|---:|\n"
+                              "| CPU only, *published* | 19.475 | 2733.484 |\n"
+                              "| `serial`, **measured** | **0.100** | **1.50** |\n"
+                              "| Multi-thread CPU, *published* | 6.6 (2.95×) | 586.35 (4.66×) |\n"
+                              "| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"
+                              "| GPU, *published* | 1.827 (10.7×) | 115.015 (23.8×) |\n"
+                              "| `opencl`, **measured** | failed | – |\n"
+                              "| GPU + multi-thread CPU, *not published* | – | – |\n"
+                              "| `hybrid`, **measured** | **0.0500** (2.00×) | – |\n"));
+  EXPECT_THAT(text,
+              HasSubstr("- `opencl`, `semi-euler`: failed: step 3 \\| node 7 is not finite (`cloth2500`)\n"));
+  EXPECT_THAT(text, HasSubstr("Inferred from those times, not stated in the paper"));
+  EXPECT_THAT(text, Not(HasSubstr("my-own")));
+}
+
+TEST(PaperTable, ShowsNoTimeThatWasNotVerified) {
+  std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
+  rows[0].verified = false;
+  const PaperTable table =
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
+  EXPECT_THAT(table.markdown, HasSubstr("| `openmp`, **measured** | failed |"));
+  EXPECT_THAT(table.csv, Not(HasSubstr("0.0125")));
+}
+
+TEST(PaperTable, MarksTimesOnMoreProcessorsThanWereAskedFor) {
+  Provenance provenance = made_up_provenance();
+  std::vector<ResultRow> rows = table_rows();
+  for (ResultRow& row : rows) row.threads = row.backend == "hybrid" ? 2 : 1;
+  const auto text = [&] {
+    return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), provenance).markdown;
+  };
+  EXPECT_THAT(text(), Not(HasSubstr("(!)")));
+  provenance.threads = 1;
+  EXPECT_THAT(text(), HasSubstr("| `hybrid`, **measured** | **0.0500** (!) (2.00×) | – |\n"));
+  EXPECT_THAT(text(), HasSubstr("| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"));
+  EXPECT_THAT(text(), HasSubstr("\n(!) on more processors than the 1 asked for, since its device cannot be "
+                                "divided: hybrid (2).\n"));
+}
+
+TEST(PaperTable, SaysWhyThereAreNoSpeedUps) {
+  const auto text = [](const std::vector<ResultRow>& rows) {
+    return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).markdown;
+  };
+  EXPECT_THAT(text({measured_row("openmp", 0.0125, std::nullopt), measured_row("hybrid", 1, std::nullopt)}),
+              HasSubstr("\nspeed-ups are missing, since serial is not among the backends; add it: --backend "
+                        "serial,openmp,hybrid.\n"));
+  EXPECT_THAT(text(table_rows()), Not(HasSubstr("missing")));
+}
+
+TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
+  std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
+  rows[0].integrator = "rk4-frozen";
+  const PaperTable table =
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
+  EXPECT_THAT(table.csv, HasSubstr("rk4-frozen,multi-thread-cpu,openmp,published_ms,7.94\n"));
+  EXPECT_THAT(table.markdown,
+              HasSubstr("## rk4-frozen: 1 force evaluation a step, beside the published rk4\n"));
+  EXPECT_THAT(table.markdown, Not(HasSubstr("--integrator all")));
+  rows[0].integrator = "rk4";
+  const std::string real =
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).markdown;
+  EXPECT_THAT(real, HasSubstr("## rk4: 4 force evaluations a step, beside the published rk4\n"));
+  EXPECT_THAT(real, HasSubstr("--integrator all"));
+}
+
+TEST(PaperTable, OfOtherScenesIsEmpty) {
+  std::vector<ResultRow> rows{measured_row("serial", 1, 1.0)};
+  rows[0].springs_published = 29000;
+  EXPECT_TRUE(
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).empty);
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,53 @@
+#include "output/tables/structure_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "output/tables/published_bodies.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(PublishedBodies, AreNineWhoseSpringsCanBeDividedByThree) {
+  const std::vector<PublishedBody> bodies = published_bodies();
+  EXPECT_EQ(bodies.size(), 9U);
+  for (const PublishedBody& body : bodies) EXPECT_EQ(body.springs % 3, 0U) << body.scene();
+  EXPECT_EQ(bodies.front().scene(), "box-small");
+  EXPECT_EQ(bodies.front().springs, 12921U);
+}
+
+const std::vector<StructureRow> rows{{"box-small", 700, 4307, 12921, 3256, 4.25},
+                                     {"torus-large", 1977, 13012, 39036, 10000, 1.5},
+                                     {"my-own", 4, 6, 18, 1, 70.5}};
+
+TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
+  EXPECT_EQ(structure_table(rows, {}).csv,
+            "scene,nodes,springs_unique,springs_published,tetrahedra,smallest_dihedral_angle_deg,paper_nodes,"
+            "paper_springs,same_as_paper\n"
+            "box-small,700,4307,12921,3256,4.25,700,12921,true\n"
+            "torus-large,1977,13012,39036,10000,1.5,1977,39033,false\n"
+            "my-own,4,6,18,1,70.5,,,\n");
+}
+
+TEST(StructureTable, AsMarkdownShowsOnlyThePapersBodiesAndSaysWhichDiffer) {
+  const std::string markdown = structure_table(rows, {}).markdown;
+  EXPECT_THAT(
+      markdown,
+      HasSubstr("| box | small | 700 | **700** | 12,921 | **12,921** | 4,307 | 3,256 | 4.25° | yes |"));
+  EXPECT_THAT(
+      markdown,
+      HasSubstr(
+          "| torus | large | 1,977 | **1,977** | 39,033 | **39,036** | 13,012 | 10,000 | 1.50° | **no** |"));
+  EXPECT_THAT(markdown, HasSubstr("three times the unique edges, by inference"));
+  EXPECT_THAT(markdown, Not(HasSubstr("my-own")));
+}
+
+}  // namespace
+}  // namespace mssim

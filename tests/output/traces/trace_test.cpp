@@ -1,0 +1,151 @@
+#include <array>
+#include <utility>
+
+#include "output/traces/xdmf.h"
+#include "tests/support/trace_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// All bytes of a string, or an array of strings, in an attribute; checks that their length is fixed.
+std::string text_attribute(hid_t file, const std::string& object, const std::string& name) {
+  const Hdf5Attribute attribute(H5Aopen_by_name(file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                                "opening " + name);
+  const Hdf5Type type(H5Aget_type(attribute.get()), "type");
+  EXPECT_EQ(H5Tis_variable_str(type.get()), 0) << name;
+  const Hdf5Space space(H5Aget_space(attribute.get()), "space");
+  const auto count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get()));
+  std::string text(count * H5Tget_size(type.get()), '\0');
+  checked(H5Aread(attribute.get(), type.get(), text.data()), "reading " + name);
+  return text;
+}
+
+TEST_F(Trace, GivesBackWhatWasWritten) {
+  constexpr int more_than_a_chunk_of_numbers = 300;
+  write(more_than_a_chunk_of_numbers);
+  expect_frames(file(), system_, more_than_a_chunk_of_numbers);
+  EXPECT_FALSE(std::filesystem::exists(part()));
+}
+
+TEST_F(Trace, SaysWhatItIsAndHowItCameAbout) {
+  write(1);
+  const Hdf5File h5 = open(file());
+  const Hdf5Attribute version(H5Aopen_by_name(h5.get(), "/h5md", "version", H5P_DEFAULT, H5P_DEFAULT),
+                              "version");
+  std::array<int, 2> numbers{};
+  H5Aread(version.get(), H5T_NATIVE_INT, numbers.data());
+  EXPECT_EQ(numbers, (std::array<int, 2>{1, 1}));
+  EXPECT_EQ(text_attribute(h5.get(), "/h5md/author", "name"), "Ada");
+  EXPECT_EQ(text_attribute(h5.get(), "/h5md/creator", "name"), "mssim");
+  EXPECT_EQ(text_attribute(h5.get(), "/h5md/creator", "version"), "1.2.3");
+  EXPECT_EQ(text_attribute(h5.get(), "/particles/cloth/box", "boundary"), "nonenonenone");
+  EXPECT_EQ(text_attribute(h5.get(), "/parameters", "backend"), "openmp");
+  EXPECT_EQ(text_attribute(h5.get(), "/parameters", "integrator"), "rk4");
+  EXPECT_EQ(text_attribute(h5.get(), "/parameters/units", "velocity"), "m s-1");
+
+  std::string scene(header().scene_json.size(), '\0');
+  const Hdf5Dataset text(H5Dopen2(h5.get(), "/parameters/scene", H5P_DEFAULT), "scene");
+  const Hdf5Type type(H5Dget_type(text.get()), "type");
+  ASSERT_EQ(H5Tget_size(type.get()), scene.size());
+  H5Dread(text.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, scene.data());
+  EXPECT_EQ(scene, header().scene_json);
+}
+
+TEST_F(Trace, ListsEachSpringOnceAndTellsWhoseTheyAre) {
+  write(0);
+  const Hdf5File h5 = open(file());
+  const auto ends = read<std::uint32_t>(h5.get(), "/connectivity/springs", H5T_NATIVE_UINT32);
+  ASSERT_EQ(ends.size(), 2 * count_springs(rows, columns));
+  for (std::size_t s = 0; s < system_.springs.size(); ++s) {
+    EXPECT_EQ(ends[2 * s], system_.springs[s].first);
+    EXPECT_EQ(ends[2 * s + 1], system_.springs[s].second);
+  }
+  const Hdf5Attribute group(
+      H5Aopen_by_name(h5.get(), "/connectivity/springs", "particles_group", H5P_DEFAULT, H5P_DEFAULT),
+      "particles_group");
+  hobj_ref_t reference{};
+  H5Aread(group.get(), H5T_STD_REF_OBJ, &reference);
+  std::array<char, 64> name{};
+  H5Rget_name(h5.get(), H5R_OBJECT, &reference, name.data(), name.size());
+  EXPECT_STREQ(name.data(), "/particles/cloth");
+  EXPECT_EQ(read<double>(h5.get(), "/particles/cloth/mass", H5T_NATIVE_DOUBLE), system_.node_mass);
+}
+
+TEST_F(Trace, SharesStepAndTimeByHardLinks) {
+  write(2);
+  const Hdf5File h5 = open(file());
+  const auto address = [&](const std::string& path) {
+    H5O_info_t info{};
+    checked(H5Oget_info_by_name(h5.get(), path.c_str(), &info, H5P_DEFAULT), path);
+    return info.addr;
+  };
+  for (const std::string name : {"/step", "/time"})
+    for (const std::string element :
+         {"/particles/cloth/velocity", "/observables/kinetic_energy", "/observables/elastic_energy",
+          "/observables/gravitational_energy", "/observables/total_energy"})
+      EXPECT_EQ(address(element + name), address("/particles/cloth/position" + name)) << element << name;
+}
+
+// MDAnalysis refuses units that it does not know, and H5MD's thermodynamics module means energies per
+// particle.
+TEST_F(Trace, HasNoUnitAttributesAndNoModules) {
+  write(1);
+  const Hdf5File h5 = open(file());
+  for (const char* path : {"/particles/cloth/position/value", "/particles/cloth/velocity/value",
+                           "/particles/cloth/position/time"})
+    EXPECT_EQ(H5Aexists_by_name(h5.get(), path, "unit", H5P_DEFAULT), 0) << path;
+  EXPECT_EQ(H5Lexists(h5.get(), "/h5md/modules", H5P_DEFAULT), 0);
+}
+
+TEST_F(Trace, ShowsEveryFrameToXdmfReadersEvenAfterItIsRenamed) {
+  write(3);
+  const std::string xdmf = text_of(folder() / "run.xdmf");
+  const auto renamed = folder() / "renamed.h5";
+  std::filesystem::rename(file(), renamed);
+  const Hdf5File h5 = open(renamed);
+  for (int frame = 0; frame < 3; ++frame) {
+    const State state = state_at(system_, frame);
+    for (const auto& [vector, values] :
+         {std::pair{"position", state.position}, std::pair{"velocity", state.velocity}}) {
+      const std::string path =
+          xdmf_dataset(vector, xdmf_mesh_of(system_, {}).parts.front(), static_cast<std::size_t>(frame));
+      EXPECT_EQ(shape_of(h5.get(), path), (std::vector<hsize_t>{1, rows, columns, 3}));
+      EXPECT_EQ(read<float>(h5.get(), path, H5T_NATIVE_FLOAT), in_single_precision(values)) << path;
+      EXPECT_THAT(xdmf, HasSubstr(">run.h5:" + path + "<"));
+    }
+  }
+  EXPECT_THAT(xdmf, AllOf(HasSubstr("<Time Value=\"0.2\"/>"), HasSubstr("Dimensions=\"1 4 5\""),
+                          Not(HasSubstr("000003"))));
+}
+
+TEST_F(Trace, RefusesStatesOfAnotherSizeAndStepsThatDoNotIncrease) {
+  H5mdTrace trace(file(), system_, header());
+  write_frame(trace, system_, 1);
+  EXPECT_THROW(write_frame(trace, system_, 1), std::invalid_argument);
+  EXPECT_THROW(trace.write_frame(20, 0.2, State{}, {}), std::invalid_argument);
+  write_frame(trace, system_, 2);
+  trace.close();
+}
+
+TEST_F(Trace, IsAsSmallAsItsNumbersAllow) {
+  const System large = small_cloth(50, 50);
+  H5mdTrace trace(file(), large, header());
+  State level = large.start;  // level and at rest: there is nothing to store
+  trace.write_frame(0, 0, level, {});
+  trace.close();
+  const Hdf5File h5 = open(file());
+  const Hdf5Dataset position(H5Dopen2(h5.get(), "/particles/cloth/position/value", H5P_DEFAULT), "position");
+  EXPECT_LT(H5Dget_storage_size(position.get()), 1000U);
+  const Hdf5Properties properties(H5Dget_create_plist(position.get()), "properties");
+  std::array<hsize_t, 3> chunk{};
+  H5Pget_chunk(properties.get(), 3, chunk.data());
+  EXPECT_EQ(chunk, (std::array<hsize_t, 3>{1, 2500, 3}));
+  EXPECT_EQ(H5Pget_nfilters(properties.get()), 3);
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,108 @@
+#include "platform/atomic_file.h"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "platform/write_error.h"
+#include "tests/support/output_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class AtomicFileTest : public TemporaryFolderTest {};
+
+TEST_F(AtomicFileTest, ReplacesTheOldTextAndLeavesNothingElse) {
+  const auto file = folder() / "rows.csv";
+  write_file_atomically(file, "old, and longer than the new one\n");
+  write_file_atomically(file, "new\n");
+  EXPECT_EQ(text_of(file), "new\n");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
+}
+
+TEST_F(AtomicFileTest, WritesIntoTheWorkingFolderToo) {
+  EXPECT_EQ(exit_of_child([&] {
+              std::filesystem::current_path(folder());
+              write_file_atomically("rows.csv", "text");
+              return 0;
+            }),
+            0);
+  EXPECT_EQ(text_of(folder() / "rows.csv"), "text");
+}
+
+TEST_F(AtomicFileTest, NamesFileReasonAndRemedyWhenTheFolderIsMissing) {
+  const auto file = folder() / "missing" / "rows.csv";
+  EXPECT_THAT([&] { write_file_atomically(file, "text"); },
+              ThrowsMessage<WriteError>(AllOf(HasSubstr("cannot write " + file.string()),
+                                              HasSubstr("No such file or directory"),
+                                              HasSubstr("create its folder"))));
+}
+
+TEST_F(AtomicFileTest, RefusesToReplaceFoldersAndDevices) {
+  EXPECT_THAT([&] { write_file_atomically(folder(), "text"); },
+              ThrowsMessage<WriteError>(HasSubstr("is a folder; choose another file name")));
+  EXPECT_THAT([] { write_file_atomically("/dev/null", "text"); },
+              ThrowsMessage<WriteError>(HasSubstr("not a regular file")));
+}
+
+TEST_F(AtomicFileTest, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
+  const auto file = folder() / "rows.csv";
+  write_file_atomically(file, "old\n");
+  EXPECT_EQ(exit_of_child([&] {
+              std::signal(SIGXFSZ, SIG_IGN);
+              const rlimit limit{1000, 1000};
+              ::setrlimit(RLIMIT_FSIZE, &limit);
+              EXPECT_THAT([&] { write_file_atomically(file, std::string(5000, 'x')); },
+                          ThrowsMessage<WriteError>(HasSubstr("File too large")));
+              return testing::Test::HasFailure() ? 1 : 0;
+            }),
+            0);
+  EXPECT_EQ(text_of(file), "old\n");
+  EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
+}
+
+TEST_F(AtomicFileTest, HasOneWriterAtATime) {
+  const auto file = folder() / "rows.csv";
+  const auto writes_too = [&] { write_file_atomically(file, "second"); };
+  {
+    AtomicFile first(file);
+    first.append("first");
+    const auto refused =
+        ThrowsMessage<WriteError>(HasSubstr("another mssim is writing " + file.string() + "; wait until"));
+    EXPECT_THAT(writes_too, refused);
+    EXPECT_EQ(exit_of_child([&] {
+                EXPECT_THAT(writes_too, refused);
+                return testing::Test::HasFailure() ? 1 : 0;
+              }),
+              0);
+    EXPECT_EQ(text_of(temporary_of(file)), "first") << "who is refused has changed nothing";
+    first.move_into_place();
+    writes_too();
+  }
+  EXPECT_EQ(text_of(file), "second");
+  EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
+}
+
+TEST_F(AtomicFileTest, IsKeptOrRemovedWhenItsWriterGivesUp) {
+  const auto file = folder() / "rows.csv";
+  {
+    AtomicFile given_up(file);
+    given_up.append("lost");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder()));
+  {
+    AtomicFile kept(file);
+    kept.append("kept");
+    kept.keep();
+  }
+  EXPECT_EQ(text_of(temporary_of(file)), "kept");
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,141 @@
+#!/bin/bash
+# The data flows one way: which room of src/ may include which others. Arguments: mssim (unused), the source folder.
+set -euo pipefail
+
+# The rule. A room is a folder with files of its own; a row names one and the rooms that it may include beside itself,
+# all of which stand above it. `mssim` are the headers that the build generates; files in src/ itself are rooms of their own.
+rule='
+mssim
+kernels
+text
+statistics
+platform              text
+geometry              text
+laws                  kernels geometry
+integrators           geometry laws
+
+garment/contact       kernels text geometry laws
+garment               geometry garment/contact
+model                 geometry laws garment
+mesh                  text platform geometry model
+garment/body          text geometry
+garment/pattern       text geometry garment garment/body model
+garment/layers        text geometry garment
+
+scene/fields          text geometry model
+garment/spec          text geometry garment mesh garment/body garment/pattern scene/fields
+scene/spec            platform geometry model mesh scene/fields garment/spec
+garment/scene         text geometry garment/contact model mesh garment/body garment/pattern garment/layers scene/fields scene/spec
+scene                 text platform geometry model mesh scene/fields scene/spec garment/scene
+
+backends/interface    kernels integrators model
+backends/vectors      laws integrators
+backends/threads
+backends/layouts      integrators model backends/interface backends/vectors
+backends/devices      text platform integrators backends/interface
+backends/spring_list  integrators model backends/interface
+backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts
+backends/opencl       kernels integrators model backends/interface backends/layouts backends/devices
+backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices backends/opencl
+garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
+backends              backends/interface backends/devices backends/spring_list backends/openmp backends/opencl backends/hybrid garment/stepping
+backends/accumulation model backends/interface backends/threads backends/spring_list backends
+garment/fitting       statistics laws model garment/layers garment/stepping
+
+bench/machine         mssim text platform
+bench/results         text statistics bench/machine
+bench/roofline        integrators model
+bench/verification    text integrators model backends/interface backends/spring_list
+bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
+garment/bench         text statistics integrators backends/interface garment/stepping bench/verification bench/job
+bench                 text garment/stepping bench/roofline bench/verification bench/job garment/bench
+
+output/hdf5
+output/tables         text statistics platform bench/machine bench/results
+garment/output        garment bench/results output/hdf5 output/tables
+output/traces         text platform geometry model output/hdf5 garment/output
+output/folders        text platform bench/machine bench/results output/tables garment/output
+
+commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting garment/scene scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders
+commands/run          platform model scene garment/scene garment/stepping garment/fitting backends/spring_list backends bench/verification output/tables output/traces commands/shared
+commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/shared
+commands/list         text geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/shared commands/bench
+commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/shared commands/bench
+commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/shared commands/run commands/bench
+commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/shared
+commands/help         text commands/shared
+commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/folders commands/shared commands/run commands/bench commands/list commands/compare commands/check commands/measure commands/help
+main.cpp              commands/shared
+ask_opencl.cpp
+'
+
+# offences ROOT: prints FILE:LINE: what is wrong with each include under ROOT/src and ROOT/kernels that breaks the rule, and
+# with each row of the rule that names a room which does not stand above it.
+offences() {
+  (cd "$1" && find src kernels -type f | sort | xargs grep -HnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]') |
+    awk -v rule="$rule" '
+      function room_of(path) {
+        sub(/^src\//, "", path)
+        if (path ~ /\//) sub(/\/[^\/]*$/, "", path)
+        return path
+      }
+      BEGIN {
+        rows = split(rule, row, "\n")
+        for (r = 1; r <= rows; ++r) {
+          words = split(row[r], word, " ")
+          if (!words) continue
+          for (w = 2; w <= words; ++w) {
+            if (!(word[w] in known)) print "the rule: " word[1] " names " word[w] ", which does not stand above it"
+            may[word[1], word[w]] = 1
+          }
+          known[word[1]] = may[word[1], word[1]] = 1
+        }
+      }
+      {
+        split($0, part, ":")
+        place = part[1] ":" part[2]
+        from = room_of(part[1])
+        match($0, /include[ \t]*[<"][^>"]*/)
+        header = substr($0, RSTART, RLENGTH)
+        quoted = header ~ /"/
+        sub(/^include[ \t]*[<"]/, "", header)
+        to = room_of(header)
+        if (!(from in known))
+          print place ": " from " has no row in the include rule"
+        else if (!(to in known) && quoted)
+          print place ": \"" header "\" is neither written from src/ on nor a library header in <>"
+        else if ((to in known) && !((from, to) in may))
+          print place ": " from " may not include " header
+      }'
+}
+
+# The check finds what it is there for.
+made_up=$(mktemp -d)
+trap 'rm -rf "$made_up"' EXIT
+mkdir -p "$made_up"/src/{model,output/tables,commands/run,gadgets,bench/machine} "$made_up/kernels"
+printf '#include <vector>\n#include "model/b.h"\n  #  include "scene/spec/scene_spec.h"\n#include <backends/backends.h>\n' \
+  >"$made_up/src/model/a.h"
+printf '#include "bench/results/result.h"\n#include "bench/job/plan.h"\n#include "../bench/plan.h"\n' \
+  >"$made_up/src/output/tables/a.cpp"
+printf '#include "mssim/version.h"\n#include <hwy/highway.h>\n' >"$made_up/src/bench/machine/a.cpp"
+printf '#include "scene/scene_file.h"\n#include "commands/bench/bench_plan.h"\n' >"$made_up/src/commands/run/a.cpp"
+printf '#include <vector>\n' >"$made_up/src/gadgets/a.h"
+printf '#include "model/system.h"\n' >"$made_up/kernels/a.h"
+printf '#include "commands/shared/command.h"\n' >"$made_up/src/main.cpp"
+expected='kernels/a.h:1: kernels may not include model/system.h
+src/commands/run/a.cpp:2: commands/run may not include commands/bench/bench_plan.h
+src/gadgets/a.h:1: gadgets has no row in the include rule
+src/model/a.h:3: model may not include scene/spec/scene_spec.h
+src/model/a.h:4: model may not include backends/backends.h
+src/output/tables/a.cpp:2: output/tables may not include bench/job/plan.h
+src/output/tables/a.cpp:3: "../bench/plan.h" is neither written from src/ on nor a library header in <>'
+if ! diff <(printf '%s\n' "$expected") <(offences "$made_up"); then
+  echo "The check does not find the made-up offences (< expected, > found)." >&2
+  exit 1
+fi
+
+found=$(offences "$2")
+if [[ $found ]]; then
+  printf '%s\n' "$found" "The rule stands in tests/project/include_rule_test.sh." >&2
+  exit 1
+fi

@@ -1,0 +1,307 @@
+// Scenes of tetrahedral bodies: the committed ones are the paper's, and files of others are read or refused.
+#include "scene/bodies.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "geometry/geometry.h"
+#include "mesh/tet_mesh.h"
+#include "mesh/tetgen_files.h"
+#include "output/tables/csv.h"
+#include "output/tables/published_bodies.h"
+#include "scene/body_shapes.h"
+#include "scene/fields/scene_error.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "tests/support/scene_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<SceneSpec> body_scenes() {
+  std::vector<SceneSpec> scenes;
+  for (const std::string& name : scene_names())
+    if (SceneSpec spec = find_scene(name); kind_of(spec).name == "bodies") scenes.push_back(std::move(spec));
+  return scenes;
+}
+
+/// The nodes of one body of a system.
+struct BodyNodes {
+  std::size_t first, count;
+};
+std::vector<BodyNodes> bodies_in(const SceneSpec& spec) {
+  std::vector<BodyNodes> bodies;
+  std::size_t first = 0;
+  for (const BodySpec& body : std::get<BodiesSpec>(spec.body).list) {
+    SceneSpec alone = spec;
+    std::get<BodiesSpec>(alone.body).list = {body};
+    bodies.push_back({first, counts_of(alone).nodes});
+    first += bodies.back().count;
+  }
+  return bodies;
+}
+
+TEST(BodyScenes, OfOneBodyHaveExactlyThePublishedCounts) {
+  for (const PublishedBody& body : published_bodies()) {
+    const SceneCounts counts = counts_of(find_scene(body.scene()));
+    EXPECT_EQ(counts.nodes, body.nodes) << body.scene();
+    EXPECT_EQ(counts.springs_published, body.springs) << body.scene();
+    EXPECT_EQ(3 * counts.springs_unique, body.springs) << body.scene();
+  }
+}
+
+TEST(BodyScenes, OfSeveralBodiesHaveExactlyThePublishedCounts) {
+  std::set<std::tuple<std::uint64_t, std::uint64_t>> published, ours;
+  const CsvTable table(source_file("results/published/hong2016_table3.csv"));
+  for (std::size_t record = 0; record < table.size(); ++record)
+    published.emplace(table.count(record, 2), table.count(record, 3));
+  for (const SceneSpec& spec : body_scenes())
+    if (std::get<BodiesSpec>(spec.body).list.size() > 1) {
+      const SceneCounts counts = counts_of(spec);
+      ours.emplace(counts.nodes, counts.springs_published.value());
+      EXPECT_EQ(spec.name, "bodies" + std::to_string(counts.nodes));
+    }
+  EXPECT_EQ(published.size(), 6U);
+  EXPECT_EQ(ours, published);
+}
+
+TEST(LeastCounts, AreTheNodesOfAMeshBeforeItIsMadeAndNoMoreThanItsSprings) {
+  for (const SceneSpec& spec : body_scenes()) {
+    SceneCounts least;
+    for (const BodySpec& body : std::get<BodiesSpec>(spec.body).list) {
+      const SceneCounts counts = least_counts(body.shape, spec.file.parent_path());
+      least.nodes += counts.nodes;
+      least.springs_unique += counts.springs_unique;
+    }
+    const SceneCounts counts = counts_of(spec);
+    EXPECT_EQ(least.nodes, counts.nodes) << spec.name;
+    EXPECT_LE(least.springs_unique, counts.springs_unique) << spec.name;
+    EXPECT_GT(4 * least.springs_unique, counts.springs_unique) << spec.name;
+  }
+}
+
+TEST(BodyScenes, AreBuiltAsStatedAndCounted) {
+  for (const SceneSpec& spec : body_scenes()) {
+    const SceneCounts counts = counts_of(spec);
+    const auto stated = stated_counts(spec);
+    ASSERT_TRUE(stated) << spec.name;
+    EXPECT_EQ(stated->nodes, counts.nodes) << spec.name;
+    EXPECT_EQ(stated->springs_unique, counts.springs_unique) << spec.name;
+    const System system = build_system(spec);
+    EXPECT_EQ(system.nodes(), counts.nodes) << spec.name;
+    EXPECT_EQ(system.springs.size(), counts.springs_unique) << spec.name;
+    EXPECT_EQ(system.node_mass.size(), counts.nodes) << spec.name;
+    for (const Spring& spring : system.springs) {
+      const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
+      ASSERT_NEAR(length(d), static_cast<double>(spring.rest_length), 1e-6) << spec.name;
+    }
+  }
+}
+
+TEST(BodyScenes, StartApartAboveTheFloorAndEachInAWayOfItsOwn) {
+  for (const SceneSpec& spec : body_scenes()) {
+    const System system = build_system(spec);
+    const auto& list = std::get<BodiesSpec>(spec.body).list;
+    const std::vector<BodyNodes> bodies = bodies_in(spec);
+    std::vector<double> radius, drop;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      double farthest = 0, lowest = 1e9;
+      for (std::size_t node = bodies[i].first; node < bodies[i].first + bodies[i].count; ++node) {
+        farthest = std::max(farthest, length(system.start.position[node] - list[i].centre_m));
+        lowest = std::min(lowest, system.start.position[node].y);
+        EXPECT_GT(length(system.start.velocity[node]), 0) << spec.name << " node " << node;
+      }
+      radius.push_back(farthest);
+      drop.push_back(lowest - spec.floor.height);
+      EXPECT_GT(drop[i], 0.02) << spec.name << " body " << i;
+      for (std::size_t j = 0; j < i; ++j) {
+        EXPECT_GT(length(list[i].centre_m - list[j].centre_m), radius[i] + radius[j] + 0.05)
+            << spec.name << ": bodies " << i << " and " << j << " are near each other";
+        EXPECT_GT(std::abs(drop[i] - drop[j]), 1e-3) << spec.name << ' ' << i << ' ' << j;
+        EXPECT_GT(length(list[i].spin_rad_per_s - list[j].spin_rad_per_s), 0.1)
+            << spec.name << ' ' << i << ' ' << j;
+      }
+    }
+  }
+}
+
+/// A tetrahedron with legs of 3 cm in a folder of its own, and a scene of it.
+class BodiesFile : public TemporaryFolderTest {
+ protected:
+  BodiesFile() {
+    put("one.node", node_text({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}}));
+    put("one.ele", ele_text({{0, 1, 2, 3}}));
+  }
+
+  std::filesystem::path scene(const std::string& text) const { return put("scene.json", text); }
+  static std::string error_of(const std::filesystem::path& file) {
+    try {
+      build_system(load_scene(file));
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    ADD_FAILURE() << "accepted:\n" << text_of(file);
+    return "";
+  }
+
+  const std::string good_ = R"({
+  "kind": "bodies", "description": "one tetrahedron", "dt_s": 1e-4, "gravity_m_per_s2": 9.81,
+  "viscous_damping_per_s": 0, "floor": {"height_m": 0, "restitution": 0.5, "friction": 0.4},
+  "bodies": {
+    "density_kg_per_m3": 1000,
+    "springs": {"stiffness_n_per_m": 100, "damping_n_s_per_m": 0.1},
+    "list": [{
+      "shape": "tetgen",
+      "tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01},
+      "centre_m": [1, 2, 3],
+      "turn": {"axis": [0, 0, 0.5], "angle_deg": 90},
+      "velocity_m_per_s": [0.5, 0, 0],
+      "spin_rad_per_s": [0, 2, 0],
+      "swell_per_s": 3
+    }]
+  }
+})";
+};
+
+TEST_F(BodiesFile, BuildsABodyThatIsTurnedFliesSpinsAndSwells) {
+  const SceneSpec spec = load_scene(scene(good_));
+  const System system = build_system(spec);
+  ASSERT_EQ(system.nodes(), 4U);
+  EXPECT_EQ(system.springs.size(), 6U);
+  ASSERT_TRUE(std::holds_alternative<TetrahedralMesh>(system.topology));
+  EXPECT_EQ(std::get<TetrahedralMesh>(system.topology).tetrahedra.size(), 1U);
+  // The centre of the four is at 0.75 cm in each direction; node 1 lies at (2.25, -0.75, -0.75) cm from it,
+  // and a quarter turn about z makes (0.75, 2.25, -0.75) cm of that.
+  const Vec3d r{0.0075, 0.0225, -0.0075};
+  const Vec3d x = system.start.position[1] - Vec3d{1, 2, 3};
+  EXPECT_NEAR(length(x - r), 0, 1e-6);
+  // v = (0.5, 0, 0) + (0, 2, 0) x r + 3 r
+  const Vec3d v{0.5 + 2 * r.z + 3 * r.x, 3 * r.y, -2 * r.x + 3 * r.z};
+  EXPECT_NEAR(length(system.start.velocity[1] - v), 0, 1e-6);
+  for (const double mass : system.node_mass) EXPECT_NEAR(mass, 1000 * 27e-6 / 6 / 4, 1e-12);
+  std::multiset<float> lengths;
+  for (const Spring& spring : system.springs) lengths.insert(spring.rest_length);
+  EXPECT_EQ(lengths.count(0.03F), 3U);
+  EXPECT_NEAR(*lengths.rbegin(), 0.03 * std::sqrt(2), 1e-8);
+  EXPECT_FALSE(stated_counts(spec));
+  EXPECT_EQ(counts_of(spec).springs_published, 18U);
+}
+
+TEST_F(BodiesFile, MayStateItsSizeWhichIsComparedNotBelieved) {
+  const std::string stated =
+      with_change(good_, R"("unit_m": 0.01)", R"("unit_m": 0.01, "expected": {"nodes": 5, "springs": 7})");
+  const SceneSpec spec = load_scene(scene(stated));
+  ASSERT_TRUE(stated_counts(spec));
+  EXPECT_EQ(stated_counts(spec)->springs_unique, 7U);
+  EXPECT_EQ(counts_of(spec).springs_unique, 6U);
+}
+
+TEST_F(BodiesFile, TakesTheShapeOfAnotherScene) {
+  const std::string other =
+      with_change(with_change(good_, "\"tetgen\",", "\"scene\","),
+                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
+                  R"("scene": {"name": "box-small"})");
+  EXPECT_EQ(counts_of(load_scene(scene(other))).nodes, counts_of(find_scene("box-small")).nodes);
+}
+
+TEST_F(BodiesFile, FillsASurfaceWithTetrahedra) {
+  put("cube.obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+      "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::string text =
+      with_change(with_change(good_, "\"tetgen\",", "\"surface\","),
+                  R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
+                  R"("surface": {"file": "cube.obj", "unit_m": 0.1, "largest_tetrahedron_m3": 2e-6})");
+  const System system = build_system(load_scene(scene(text)));
+  const auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
+  EXPECT_GE(tetrahedra.size(), 500U);
+  EXPECT_NEAR(volume_of({system.start.position, tetrahedra}), 1e-3, 1e-7);
+}
+
+struct BadBodies {
+  const char *old_part, *new_part, *place, *problem;
+};
+std::ostream& operator<<(std::ostream& stream, const BadBodies& bad) { return stream << bad.new_part; }
+
+class BadBodiesFile : public BodiesFile, public testing::WithParamInterface<BadBodies> {};
+
+TEST_P(BadBodiesFile, IsRefusedInOneSentenceWithItsPlace) {
+  const auto& [old_part, new_part, place, problem] = GetParam();
+  const std::filesystem::path file = scene(with_change(good_, old_part, new_part));
+  EXPECT_THAT(error_of(file),
+              AllOf(HasSubstr(file.string()), HasSubstr(place), HasSubstr(problem), Not(HasSubstr("\n"))));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, BadBodiesFile,
+    testing::Values(BadBodies{"\"tetgen\",", "\"tetrahedron\",", "/bodies/list/0/shape",
+                              "is the text \"tetrahedron\": give the text box"},
+                    BadBodies{"\"tetgen\",", "\"box\",", "/bodies/list/0/tetgen", "is not a known key"},
+                    BadBodies{"\"tetgen\": {", "\"box\": {", "/bodies/list/0/box", "is not a known key"},
+                    BadBodies{"\"shape\": \"tetgen\",", "", "/bodies/list/0/shape", "is missing"},
+                    BadBodies{"[1, 2, 3]", "[1, 2]", "/bodies/list/0/centre_m",
+                              "is a list: give a list of three numbers"},
+                    BadBodies{"[1, 2, 3]", "[1, 2, 3, 4]", "/bodies/list/0/centre_m", "three numbers"},
+                    BadBodies{"[1, 2, 3]", "[1, \"2\", 3]", "/bodies/list/0/centre_m/1",
+                              "is the text \"2\": give a number"},
+                    BadBodies{"[1, 2, 3]", "[1, 2e7, 3]", "/bodies/list/0/centre_m/1", "is 20000000.0"},
+                    BadBodies{"[1, 2, 3]", "{}", "/bodies/list/0/centre_m", "is an object"},
+                    BadBodies{"[1, 2, 3]", "[1, 0.005, 3]", "/bodies/list/0/centre_m/1",
+                              "not above the floor at 0: raise it"},
+                    BadBodies{"[1, 2, 3]", "[-1e6, 2, 3]", "/bodies/list/0/centre_m",
+                              "start at one place in single precision"},
+                    BadBodies{"\"unit_m\": 0.01", "\"unit_m\": 1e-12", "/bodies/list/0",
+                              "has a spring of 3e-12 m: springs are from 1e-07 to 1000000 m long"},
+                    BadBodies{"\"unit_m\": 0.01", "\"unit_m\": 1e6", "/bodies/list/0",
+                              "has a spring of 3000000 m"},
+                    BadBodies{"[0, 0, 0.5]", "[0, 0, 0]", "/bodies/list/0/turn/axis", "has no direction"},
+                    BadBodies{"[{\n", "[{}, {\n", "/bodies/list/0/shape", "is missing"},
+                    BadBodies{"[{\n", "[5, {\n", "/bodies/list/0", "is 5: give an object"},
+                    BadBodies{"\"swell_per_s\": 3", "\"swel_per_s\": 3", "/bodies/list/0/swel_per_s",
+                              "did you mean \"swell_per_s\"?"},
+                    BadBodies{"\"one.node\"", "\"two.node\"", "/bodies/list/0", "two.node"},
+                    // The name of a file may hold what a terminal would obey.
+                    BadBodies{"\"one.node\"", "\"two\\u007f\\u009b31m.node\"", "/bodies/list/0",
+                              "two\\u007f\\u009b31m.node is missing"},
+                    BadBodies{"\"one.ele\"", "\"one.node\"", "/bodies/list/0", "one.node"},
+                    BadBodies{"\"density_kg_per_m3\": 1000", "\"density_kg_per_m3\": 0",
+                              "/bodies/density_kg_per_m3", "is 0"}));
+
+TEST_F(BodiesFile, WithoutAListIsRefused) {
+  const std::size_t begin = good_.find("[{"), end = good_.find("}]");
+  std::string text = good_;
+  text.replace(begin, end + 2 - begin, "[]");
+  EXPECT_THAT(error_of(scene(text)),
+              AllOf(HasSubstr("/bodies/list has 0 elements: give a list"), HasSubstr("1 to 10000")));
+  text = good_;
+  text.replace(begin, end + 2 - begin, "7");
+  EXPECT_THAT(error_of(scene(text)), HasSubstr("/bodies/list is 7: give a list"));
+}
+
+TEST_F(BodiesFile, CannotTakeTheShapeOfAnythingElse) {
+  const auto with_name = [&](const std::string& name) {
+    return scene(with_change(with_change(good_, "\"tetgen\",", "\"scene\","),
+                             R"("tetgen": {"node_file": "one.node", "ele_file": "one.ele", "unit_m": 0.01})",
+                             R"("scene": {"name": ")" + name + "\"}"));
+  };
+  EXPECT_THAT(error_of(with_name("cloth2500")), HasSubstr("cloth2500\" has no bodies"));
+  EXPECT_THAT(error_of(with_name("bodies4737")), HasSubstr("takes its shape from another scene"));
+  EXPECT_THAT(error_of(with_name("box-smal")),
+              AllOf(HasSubstr("/bodies/list/0 has no mesh"), HasSubstr("did you mean \"box-small\"")));
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,227 @@
+#include "scene/cloth.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "platform/data_folder.h"
+#include "scene/fields/scene_error.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "scene/spec/memory.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/scene_files.h"
+
+namespace mssim {
+namespace {
+
+using Size = std::pair<std::uint64_t, std::uint64_t>;  // nodes, published springs
+
+std::set<Size> published_sizes() {
+  std::ifstream file(data_folder() / "published/hong2016_table1.csv");
+  std::set<Size> sizes;
+  std::string line;
+  std::getline(file, line);  // integrator,configuration,nodes,springs,ms_per_step
+  while (std::getline(file, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
+    std::string integrator, configuration;
+    Size size;
+    words >> integrator >> configuration >> size.first >> size.second;
+    sizes.insert(size);
+  }
+  return sizes;
+}
+
+std::vector<SceneSpec> cloth_scenes() {
+  std::vector<SceneSpec> scenes;
+  for (const std::string& name : scene_names())
+    if (SceneSpec spec = find_scene(name); kind_of(spec).name == "cloth") scenes.push_back(std::move(spec));
+  return scenes;
+}
+
+/// Those that a test may build: the others take gigabytes, and differ in rows and columns alone.
+std::vector<SceneSpec> cloth_scenes_to_build() {
+  constexpr std::uint64_t most_nodes = 1'000'000;
+  std::vector<SceneSpec> scenes = cloth_scenes();
+  std::erase_if(scenes, [](const SceneSpec& spec) { return counts_of(spec).nodes > most_nodes; });
+  return scenes;
+}
+
+TEST(ClothScenes, HaveExactlyTheNodesAndSpringsOfTheSixPublishedOnesAndThreeAreLarger) {
+  std::set<Size> ours, larger;
+  for (const SceneSpec& spec : cloth_scenes()) {
+    const SceneCounts counts = counts_of(spec);
+    EXPECT_EQ(counts.springs_published, 2 * counts.springs_unique);
+    (counts.nodes < 1'000'000 ? ours : larger).emplace(counts.nodes, counts.springs_published.value());
+  }
+  EXPECT_EQ(ours.size(), 6U);
+  EXPECT_EQ(ours, published_sizes());
+  EXPECT_EQ(larger,
+            (std::set<Size>{{1'000'000, 11'980'004}, {4'000'000, 47'960'004}, {16'000'000, 191'920'004}}));
+}
+
+TEST(ClothScenes, ThatAreLargerThanTheLargestPublishedOneDifferFromItInRowsAndColumnsAlone) {
+  const SceneSpec published = find_scene("cloth350k");
+  int larger = 0;
+  for (SceneSpec spec : cloth_scenes()) {
+    if (counts_of(spec).nodes <= counts_of(published).nodes) continue;
+    ++larger;
+    ClothSpec& cloth = std::get<ClothSpec>(spec.body);
+    const ClothSpec& smaller = std::get<ClothSpec>(published.body);
+    EXPECT_EQ(spec.dt_s, published.dt_s) << spec.name;
+    EXPECT_EQ(cloth.spacing_m, smaller.spacing_m) << spec.name;
+    EXPECT_EQ(cloth.areal_density_kg_per_m2, smaller.areal_density_kg_per_m2) << spec.name;
+    EXPECT_EQ(cloth.ceiling_height_m, smaller.ceiling_height_m) << spec.name;
+    EXPECT_EQ(cloth.ripple.speed_m_per_s, smaller.ripple.speed_m_per_s) << spec.name;
+    EXPECT_EQ(cloth.ripple.height_m, smaller.ripple.height_m) << spec.name;
+    EXPECT_EQ(cloth.ripple.wavelength_m, smaller.ripple.wavelength_m) << spec.name;
+    for (std::size_t kind = 0; kind < cloth.springs.size(); ++kind) {
+      EXPECT_EQ(cloth.springs[kind].stiffness, smaller.springs[kind].stiffness) << spec.name;
+      EXPECT_EQ(cloth.springs[kind].damping, smaller.springs[kind].damping) << spec.name;
+    }
+  }
+  EXPECT_EQ(larger, 3);
+}
+
+TEST(ClothScenes, AreBuiltWithAsManyNodesAndSpringsAsCounted) {
+  for (const SceneSpec& spec : cloth_scenes_to_build()) {
+    const std::string& name = spec.name;
+    const SceneCounts counts = counts_of(spec);
+    const System system = build_system(spec);
+    EXPECT_EQ(system.nodes(), counts.nodes) << name;
+    EXPECT_EQ(system.springs.size(), counts.springs_unique) << name;
+  }
+}
+
+TEST(ClothScenes, StartInMotionAndStrainedByAFewPercentAtMost) {
+  for (const SceneSpec& spec : cloth_scenes_to_build()) {
+    const std::string& name = spec.name;
+    const System system = build_system(spec);
+    std::set<std::uint32_t> pins(system.pins.begin(), system.pins.end());
+    EXPECT_GT(pins.size(), 1U) << name;
+    double slowest = 1;
+    for (std::uint32_t node = 0; node < system.nodes(); ++node) {
+      const Vec3d& v = system.start.velocity[node];
+      if (pins.contains(node))
+        EXPECT_EQ(v, Vec3d{}) << name << ' ' << node;
+      else
+        slowest = std::min(slowest, std::sqrt(dot(v, v)));
+    }
+    EXPECT_GT(slowest, 1e-3) << name;
+    std::array<double, 3> largest{};
+    for (const Spring& spring : system.springs) {
+      const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
+      largest[spring.kind] = std::max(
+          largest[spring.kind], std::abs(std::sqrt(dot(d, d)) / static_cast<double>(spring.rest_length) - 1));
+    }
+    for (const double strain : largest) {
+      EXPECT_GT(strain, 0.005) << name;
+      EXPECT_LT(strain, 0.03) << name;
+    }
+  }
+}
+
+TEST(BuildCloth, PlacesTheNodesRowByRowUnderTheCeiling) {
+  SceneSpec spec = cloth_spec(3, 5);
+  ClothSpec& cloth = std::get<ClothSpec>(spec.body);
+  cloth.ripple = {0, 0.1, 0};
+  const System system = build_cloth(spec);
+  ASSERT_EQ(system.nodes(), 15U);
+  EXPECT_EQ(system.start.position[0], (Vec3d{0, 1, 0}));
+  EXPECT_EQ(system.start.position[4], (Vec3d{4 * 0.01, 1, 0}));
+  EXPECT_EQ(system.start.position[2 * 5 + 1], (Vec3d{0.01, 1, 2 * 0.01}));
+  for (const Vec3d& v : system.start.velocity) EXPECT_EQ(v, Vec3d{});
+  for (const Spring& spring : system.springs) {
+    const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
+    EXPECT_NEAR(std::sqrt(dot(d, d)), spring.rest_length, 1e-9);
+  }
+}
+
+TEST(BuildCloth, TakesOverThePhysics) {
+  const SceneSpec spec = cloth_spec(4, 4);
+  const System system = build_cloth(spec);
+  for (const double mass : system.node_mass) EXPECT_DOUBLE_EQ(mass, 2e-5);
+  EXPECT_EQ(system.gravity, spec.gravity_m_per_s2);
+  EXPECT_EQ(system.viscous_damping, spec.viscous_damping_per_s);
+  EXPECT_EQ(system.floor.friction, spec.floor.friction);
+  ASSERT_EQ(system.materials.size(), 3U);
+  EXPECT_EQ(system.materials[shear].stiffness, 60);
+  EXPECT_EQ(system.materials[bending].damping, 0.0004);
+}
+
+TEST(BuildCloth, PinsEverySoManyColumnsAndTheLastOfOneRow) {
+  SceneSpec spec = cloth_spec(3, 12);
+  std::get<ClothSpec>(spec.body).pins = ClothPins{1, 5};
+  const System system = build_cloth(spec);
+  EXPECT_THAT(system.pins, testing::ElementsAre(12, 17, 22, 23));
+  for (const std::uint32_t pin : system.pins)
+    EXPECT_EQ(system.start.position[pin], (Vec3d{(pin - 12) * 0.01, 1, 0.01}));
+  std::get<ClothSpec>(spec.body).pins.reset();
+  EXPECT_THAT(build_cloth(spec).pins, testing::IsEmpty());
+}
+
+TEST(BuildCloth, IsTheSameEveryTime) {
+  const System one = build_system(cloth_spec(20, 30)), other = build_system(cloth_spec(20, 30));
+  EXPECT_EQ(one.start.position, other.start.position);
+  EXPECT_EQ(one.start.velocity, other.start.velocity);
+}
+
+std::string refusal(const SceneSpec& spec) {
+  try {
+    build_system(spec);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "built";
+}
+
+TEST(BuildCloth, RefusesAClothGreaterThanTheMemoryWithBothNumbers) {
+  SceneSpec spec = cloth_spec(65'000, 65'000);
+  spec.file = "huge.json";
+  // 4.225e9 nodes of 288 bytes and 25.35e9 springs of 16 bytes
+  EXPECT_THAT(refusal(spec),
+              testing::MatchesRegex(
+                  "huge.json: /cloth has 4225000000 nodes and 25349350002 springs and needs at least "
+                  "1622.* GB of memory, but .* GB are available: make the scene smaller"));
+}
+
+TEST(BuildCloth, ObeysTheAddressSpaceLimit) {
+  const SceneSpec spec = cloth_spec(1000, 1000);  // 384 MB
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  rlimit tight = before;
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  tight.rlim_cur = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (std::uint64_t{200} << 20);
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &tight), 0);
+  rlimit set{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &set), 0);
+  if (set.rlim_cur != tight.rlim_cur)
+    GTEST_SKIP() << "this system limits no address space; qemu-user does not";
+  const std::string error = refusal(spec);
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  EXPECT_THAT(error,
+              testing::MatchesRegex(".*needs at least 0.38 GB of memory, but 0.2[01] GB are available.*"));
+  EXPECT_EQ(refusal(spec), "built");
+}
+
+TEST(MemoryNeeded, IsAtLeastWhatTheSystemTakes) {
+  const System system = build_system(cloth_spec(40, 50));
+  EXPECT_GT(memory_needed(system.nodes(), system.springs.size()),
+            system.springs.size() * sizeof(Spring) + 2 * system.nodes() * sizeof(Vec3d));
+}
+
+}  // namespace
+}  // namespace mssim

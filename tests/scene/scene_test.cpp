@@ -1,0 +1,334 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/fields/json_document.h"
+#include "scene/fields/scene_error.h"
+#include "scene/scene_file.h"
+#include "tests/support/scene_files.h"
+#include "text/nearest_name.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class SceneFile : public TemporaryFolderTest {
+ protected:
+  std::filesystem::path write(std::string_view text) const { return put(file().filename(), text); }
+  std::filesystem::path file() const { return folder() / "bad.json"; }
+
+  static std::string error_of(const std::filesystem::path& path) {
+    try {
+      load_scene(path);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    ADD_FAILURE() << path << " was accepted";
+    return {};
+  }
+};
+
+const std::string good = text_of(source_file("scenes/cloth2500.json"));
+
+TEST_F(SceneFile, GivesEveryFieldItsValue) {
+  const SceneSpec spec = load_scene(source_file("scenes/cloth2500.json"));
+  EXPECT_EQ(spec.name, "cloth2500");
+  EXPECT_EQ(spec.source, good);
+  EXPECT_THAT(spec.description, StartsWith("Cotton, 50 x 50 nodes"));
+  ASSERT_TRUE(spec.dt_s);
+  EXPECT_EQ(*spec.dt_s, 5e-5);
+  EXPECT_EQ(spec.gravity_m_per_s2, 9.81);
+  EXPECT_EQ(spec.viscous_damping_per_s, 0.1);
+  EXPECT_EQ(spec.floor.height, 0);
+  EXPECT_EQ(spec.floor.restitution, 0.3);
+  EXPECT_EQ(spec.floor.friction, 0.4);
+  const ClothSpec& cloth = std::get<ClothSpec>(spec.body);
+  EXPECT_EQ(cloth.rows, 50U);
+  EXPECT_EQ(cloth.columns, 50U);
+  EXPECT_EQ(cloth.spacing_m, 0.01);
+  EXPECT_EQ(cloth.areal_density_kg_per_m2, 0.2);
+  EXPECT_EQ(cloth.ceiling_height_m, 0.441);
+  ASSERT_TRUE(cloth.pins);
+  EXPECT_EQ(cloth.pins->row, 0U);
+  EXPECT_EQ(cloth.pins->every_columns, 10U);
+  EXPECT_EQ(cloth.ripple.height_m, 0.0005);
+  EXPECT_EQ(cloth.ripple.wavelength_m, 0.09);
+  EXPECT_EQ(cloth.ripple.speed_m_per_s, 0.2);
+  EXPECT_EQ(cloth.springs[structural].stiffness, 200);
+  EXPECT_EQ(cloth.springs[structural].damping, 0.01);
+  EXPECT_EQ(cloth.springs[shear].stiffness, 60);
+  EXPECT_EQ(cloth.springs[shear].damping, 0.003);
+  EXPECT_EQ(cloth.springs[bending].stiffness, 8);
+  EXPECT_EQ(cloth.springs[bending].damping, 0.0004);
+}
+
+TEST_F(SceneFile, LeavesAnAutomaticDtEmpty) {
+  EXPECT_FALSE(load_scene(write(with_change(good, "5e-5", "\"auto\""))).dt_s);
+}
+
+TEST_F(SceneFile, MayLeaveOutPinsAndSchema) {
+  std::string text = with_change(good, R"("pins": {"row": 0, "every_columns": 10},)", "");
+  text = with_change(text, R"("$schema": "scene.schema.json",)", "");
+  EXPECT_FALSE(std::get<ClothSpec>(load_scene(write(text)).body).pins);
+}
+
+TEST_F(SceneFile, TakesWholeNumbersInAnyNotation) {
+  EXPECT_EQ(
+      std::get<ClothSpec>(load_scene(write(with_change(good, "\"rows\": 50", "\"rows\": 5e1"))).body).rows,
+      50U);
+}
+
+/// A change to a good scene, and what its error names: place, value, remedy.
+struct BadScene {
+  const char *old_part, *new_part;
+  const char *place, *value, *remedy;
+};
+
+std::ostream& operator<<(std::ostream& stream, const BadScene& scene) {
+  return stream << std::string_view(scene.new_part).substr(0, 60);
+}
+
+class BadSceneFile : public SceneFile, public testing::WithParamInterface<BadScene> {};
+
+TEST_P(BadSceneFile, IsRefusedInOneSentenceWithFilePlaceValueAndRemedy) {
+  const BadScene& bad = GetParam();
+  const std::string error = error_of(write(with_change(good, bad.old_part, bad.new_part)));
+  EXPECT_THAT(error, StartsWith(file().string() + ": "));
+  EXPECT_THAT(error, AllOf(HasSubstr(bad.place), HasSubstr(bad.value), HasSubstr(bad.remedy),
+                           Not(HasSubstr("\n")), Not(HasSubstr("[json.exception"))));
+  EXPECT_LT(error.size(), 700U);
+}
+
+const char* const rows = "\"rows\": 50";
+const char* const dt = "\"dt_s\": 5e-5";
+const std::string nested_lists = "\"rows\": " + std::string(100'000, '[');
+const std::string nested_objects = [] {
+  std::string text = "\"rows\": ";
+  for (int i = 0; i < 100'000; ++i) text += "{\"a\":";
+  return text;
+}();
+const std::string long_words(201, 'x');
+const std::string long_key = '"' + std::string(1'000'000, 'x') + R"(": 1, "rows": 50)";
+
+INSTANTIATE_TEST_SUITE_P(
+    Numbers, BadSceneFile,
+    testing::Values(
+        BadScene{rows, "\"rows\": -3", "/cloth/rows", "is -3", "give an integer from 2 to 1000000"},
+        BadScene{rows, "\"rows\": 1", "/cloth/rows", "is 1:", "give an integer from 2 to 1000000"},
+        BadScene{rows, "\"rows\": 50.5", "/cloth/rows", "is 50.5", "give an integer"},
+        BadScene{rows, "\"rows\": 1000001", "/cloth/rows", "is 1000001", "to 1000000"},
+        BadScene{rows, "\"rows\": 99999999999999999999", "/cloth/rows", "is 1e+20", "give an integer"},
+        BadScene{rows, "\"rows\": 4294967346", "/cloth/rows", "is 4294967346", "give an integer"},
+        BadScene{dt, "\"dt_s\": 0", "/dt_s", "is 0", "a number above 0 and up to 1, or \"auto\""},
+        BadScene{dt, "\"dt_s\": -1e-4", "/dt_s", "is -0.0001", "a number above 0"},
+        BadScene{dt, "\"dt_s\": 1.5", "/dt_s", "is 1.5", "up to 1"},
+        BadScene{dt, "\"dt_s\": 1e999", "/dt_s", "is 1e999", "overflows to infinity: give a finite number"},
+        BadScene{dt, "\"dt_s\": -1e999", "/dt_s", "is -1e999", "give a finite number"},
+        BadScene{dt, "\"dt_s\": NaN", "/dt_s, line 5, column", "last read: '\"dt_s\": N'",
+                 "expected an object, a number"},
+        BadScene{dt, "\"dt_s\": Infinity", "/dt_s, line 5, column", "last read: '\"dt_s\": I'", "a number"},
+        BadScene{"9.81", "-9.81", "/gravity_m_per_s2", "is -9.81", "from 0 to 1000"},
+        BadScene{"\"restitution\": 0.3", "\"restitution\": 1.01", "/floor/restitution", "is 1.01",
+                 "from 0 to 1"},
+        BadScene{"200", "0", "/cloth/springs/structural/stiffness_n_per_m", "is 0", "above 0"},
+        BadScene{"0.003", "-0.003", "/cloth/springs/shear/damping_n_s_per_m", "is -0.003", "from 0"},
+        BadScene{"\"spacing_m\": 0.01", "\"spacing_m\": 0", "/cloth/spacing_m", "is 0",
+                 "from 1e-06 to 100"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Types, BadSceneFile,
+    testing::Values(
+        BadScene{rows, "\"rows\": \"fifty\"", "/cloth/rows", "is the text \"fifty\"", "give an integer"},
+        BadScene{rows, "\"rows\": true", "/cloth/rows", "is true", "give an integer"},
+        BadScene{rows, "\"rows\": null", "/cloth/rows", "is null", "give an integer"},
+        BadScene{rows, "\"rows\": [50]", "/cloth/rows", "is a list", "give an integer"},
+        BadScene{dt, "\"dt_s\": \"atuo\"", "/dt_s", "is the text \"atuo\"", "or \"auto\""},
+        BadScene{dt, "\"dt_s\": {}", "/dt_s", "is an object", "a number"},
+        BadScene{"\"height_m\": 0,", "\"height_m\": \"0\",", "/floor/height_m", "is the text \"0\"",
+                 "a number"},
+        BadScene{R"({"row": 0, "every_columns": 10})", "7", "/cloth/pins", "is 7", "give an object, { ... }"},
+        BadScene{"\"cloth\",", "5,", "/kind", "is 5", "give the text cloth, bodies or garment"},
+        BadScene{"\"cloth\",", "\"clot\",", "/kind", "is the text \"clot\"",
+                 "give the text cloth, bodies or garment"},
+        BadScene{"Cotton", "Cot\\nton", "/description", "is the text \"Cot\\nton", "one line of text"},
+        BadScene{"Cotton", long_words.c_str(), "/description", "is the text \"xxx",
+                 "at most 200 characters"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, BadSceneFile,
+    testing::Values(
+        BadScene{"\"rows\"", "\"row\"", "/cloth/row ", "value is 50", "did you mean \"rows\"?"},
+        BadScene{"\"rows\"", "\"Rows\"", "/cloth/Rows ", "value is 50", "did you mean \"rows\"?"},
+        BadScene{"\"kind\"", "\"knid\"", "/knid ", "value is the text \"cloth\"", "did you mean \"kind\"?"},
+        BadScene{rows, "\"rows\": 50, \"density\": [1]", "/cloth/density ", "value is a list",
+                 "known here are rows, columns, spacing_m, areal_density_kg_per_m2, ceiling_height_m, pins, "
+                 "ripple and "
+                 "springs"},
+        BadScene{rows, "\"rows\": 50, \"a/b~c\\n\": 1", "/cloth/a~1b~0c\\n ", "value is 1", "known here are"},
+        BadScene{rows, long_key.c_str(), "/cloth/xxx", "value is 1", "known here are"},
+        BadScene{"\"rows\": 50,", "", "/cloth/rows", "is missing", "add it as an integer from 2 to 1000000"},
+        BadScene{"\"kind\": \"cloth\",", "", "/kind", "is missing",
+                 "add it as the text cloth, bodies or garment"},
+        BadScene{"\"every_columns\": 10", "\"row\": 0", "/cloth/pins/row", "is given twice",
+                 "keep one of the two"},
+        BadScene{rows, "\"rows\": 50, \"rows\": 60", "/cloth/rows", "is given twice",
+                 "keep one of the two"}));
+
+INSTANTIATE_TEST_SUITE_P(Syntax, BadSceneFile,
+                         testing::Values(BadScene{"\"rows\": 50,", "\"rows\": 50",
+                                                  "/cloth/rows, line 11, column 13",
+                                                  "unexpected string literal", "expected ',' or '}'"},
+                                         BadScene{"\"rows\"", "rows", "/cloth, line 10, column 5",
+                                                  "last read: ", "expected string literal"},
+                                         BadScene{"\"rows\":", "\"rows\"", "/cloth/rows, line 10, column",
+                                                  "unexpected number literal", "expected ':'"},
+                                         BadScene{"\"kind\"", "// the kind\n\"kind\"", "line 3, column",
+                                                  "last read: ", "correct the file there"},
+                                         BadScene{"Cotton", "Cot\xfften", "/description, line 4, column",
+                                                  "ill-formed UTF-8", "correct the file there"},
+                                         BadScene{rows, nested_lists.c_str(), "/cloth/rows/0/0/0",
+                                                  "deeper than 32 levels", "remove the surplus"},
+                                         BadScene{rows, nested_objects.c_str(), "/cloth/rows/a/a/a",
+                                                  "deeper than 32 levels", "remove the surplus"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    FieldsTogether, BadSceneFile,
+    testing::Values(BadScene{"\"row\": 0", "\"row\": 50", "/cloth/pins/row", "is 50",
+                             "numbered from 0 to 49: name one of them"},
+                    BadScene{"0.441", "0.0004", "/cloth/ceiling_height_m", "is 0.0004",
+                             "raise it or lower /floor/height_m"},
+                    BadScene{"0.0005", "0.0095", "/cloth/ripple/height_m", "is 0.0095", "give at most 0.009"},
+                    BadScene{"\"height_m\": 0.0005, \"wavelength_m\": 0.09",
+                             "\"height_m\": 0.011, \"wavelength_m\": 0.9", "/cloth/ripple/height_m",
+                             "is 0.011", "give at most 0.01 or take /cloth/pins away"},
+                    BadScene{"\"rows\": 50,\n    \"columns\": 50", "\"rows\": 65536,\n    \"columns\": 65536",
+                             "/cloth/rows", "is 65536, which with 65536 columns makes 4294967296 nodes",
+                             "at or below 4294967295"}));
+
+TEST_F(SceneFile, ThatIsMissingIsNamed) {
+  EXPECT_THAT(error_of(folder() / "none.json"),
+              AllOf(StartsWith((folder() / "none.json").string()), HasSubstr("no such file"),
+                    HasSubstr("check the path")));
+}
+
+TEST_F(SceneFile, ThatIsAFolderOrAPipeIsRefusedAtOnce) {
+  EXPECT_THAT(error_of(folder()), HasSubstr("is not a regular file: give"));
+  ASSERT_EQ(mkfifo(file().c_str(), 0600), 0);
+  EXPECT_THAT(error_of(file()), HasSubstr("is not a regular file: give"));
+}
+
+TEST_F(SceneFile, ThatCannotBeReadIsNamedWithTheReason) {
+  EXPECT_THAT(error_of("/proc/self/mem"),
+              AllOf(HasSubstr("/proc/self/mem: cannot be read (Input/output error)")));
+  if (geteuid() == 0) return;  // root reads everything
+  std::filesystem::permissions(write(good), std::filesystem::perms::none);
+  EXPECT_THAT(error_of(file()), HasSubstr("cannot be opened (Permission denied): check its permissions"));
+}
+
+TEST_F(SceneFile, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(load_scene(write("\xef\xbb\xbf" + good)).description, load_scene(write(good)).description);
+}
+
+TEST_F(SceneFile, ThatIsEmptyOrBlankIsRefused) {
+  EXPECT_THAT(error_of(write("")), HasSubstr("is empty: give a scene file"));
+  EXPECT_THAT(error_of(write(" \n")),
+              AllOf(HasSubstr("line 2"), HasSubstr("unexpected end of input; expected")));
+}
+
+TEST_F(SceneFile, ThatIsTooLongIsNotReadToItsEnd) {
+  EXPECT_THAT(error_of(write('"' + std::string(largest_json_bytes, 'x') + '"')),
+              AllOf(HasSubstr("is longer than 16 MiB"), HasSubstr("give a scene file")));
+}
+
+TEST_F(SceneFile, WhoseTopLevelIsNoObjectIsRefused) {
+  EXPECT_THAT(error_of(write("[1]")), HasSubstr("the top level is a list: give an object"));
+}
+
+TEST_F(SceneFile, CutShortAnywhereIsRefusedWithoutACrash) {
+  const std::size_t end = good.rfind('}');
+  for (std::size_t length = 1; length <= end; ++length)
+    EXPECT_THAT(error_of(write(good.substr(0, length))), HasSubstr("malformed JSON")) << length;
+}
+
+TEST(SceneNames, AreTheCommittedOnesByKindAndSize) {
+  EXPECT_THAT(
+      scene_names(),
+      testing::ElementsAre("cloth2500", "cloth4900", "cloth10k", "cloth40k", "cloth200k", "cloth350k",
+                           "cloth1m", "cloth4m", "cloth16m", "torus-small", "box-small", "sphere-small",
+                           "torus-medium", "box-medium", "sphere-medium", "torus-large", "box-large",
+                           "sphere-large", "bodies3858", "bodies4737", "bodies7282", "bodies10223",
+                           "bodies20587", "bodies38233", "jeans1k", "jeans2k", "skirt", "jeans4k",
+                           "jeans4k-hip88", "jeans4k-hip115", "outfit", "jeans8k", "jeans16k", "jeans64k"));
+}
+
+TEST(FindScene, FindsByNameAndByPath) {
+  EXPECT_EQ(find_scene("cloth10k").name, "cloth10k");
+  EXPECT_EQ(find_scene(source_file("scenes/cloth10k.json").string()).source, find_scene("cloth10k").source);
+}
+
+TEST(FindScene, ListsTheKnownNamesForAnUnknownOne) {
+  for (const auto& [name, hint] :
+       std::vector<std::pair<std::string, std::string>>{{"cloth35k", "did you mean \"cloth350k\""},
+                                                        {"CLOTH2500", "did you mean \"cloth2500\""},
+                                                        {"teapot", "no scene is named \"teapot\": give"},
+                                                        {"", "no scene is named \"\""},
+                                                        {"scene.schema", "no scene is named"},
+                                                        {"..", "no scene is named"}}) {
+    try {
+      find_scene(name);
+      ADD_FAILURE() << name << " was found";
+    } catch (const SceneError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr(hint), HasSubstr("a name: cloth2500, cloth4900, "),
+                                      EndsWith("jeans16k or jeans64k")));
+    }
+  }
+}
+
+TEST_F(SceneFile, OfMegabytesIsRefusedInSecondsNotHours) {
+  // The parser used to go through the whole list after each of its elements.
+  std::string text = "[";
+  for (int i = 0; i < 500'000; ++i) text += "{},";
+  EXPECT_THAT(error_of(write(text + "0]")), HasSubstr("the top level is a list: give an object"));
+}
+
+TEST(NearestName, CountsInsertionsDeletionsReplacementsAndSwaps) {
+  const std::vector<std::string_view> names{"rows", "columns", "spacing_m"};
+  EXPECT_EQ(nearest_name("rosw", names), "rows");
+  EXPECT_EQ(nearest_name("column", names), "columns");
+  EXPECT_EQ(nearest_name("spacing", names), "spacing_m");
+  EXPECT_EQ(nearest_name("colums", names), "columns");
+  EXPECT_EQ(nearest_name("gravity", names), "");
+  EXPECT_EQ(nearest_name("", names), "");
+}
+
+TEST(UnknownName, IsComplainedOfWithTheNearestAndTheKnown) {
+  const std::vector<std::string_view> names{"serial", "openmp", "opencl"};
+  EXPECT_EQ(unknown_name("backend", "openpm", names),
+            "unknown backend \"openpm\" (did you mean openmp?): known are serial, openmp and opencl");
+  EXPECT_EQ(unknown_name("backend", "cuda\n", names),
+            "unknown backend \"cuda\\n\": known are serial, openmp and opencl");
+}
+
+TEST(Printable, KeepsMessagesOnOneLineAndShort) {
+  EXPECT_EQ(printable("a\nb\"c\\d"), "a\\nb\"c\\d");
+  EXPECT_EQ(printable("\xc3\xa4\xc3\xa4", 3), "\xc3\xa4...");
+  EXPECT_EQ(printable(std::string(100, 'x'), 10), "xxxxxxxxxx...");
+  EXPECT_EQ(printable("\x1b[31m\x7f\xc2\x9b\xc2\xa0"), "\\u001b[31m\\u007f\\u009b\xc2\xa0");
+  EXPECT_EQ(printable("a\xff\xc2"), "a\xef\xbf\xbd\xef\xbf\xbd");  // the replacement character
+}
+
+}  // namespace
+}  // namespace mssim

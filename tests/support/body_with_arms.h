@@ -1,0 +1,202 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "garment/body/body_measures.h"
+#include "garment/body/ellipse_tube.h"
+#include "geometry/monotone_curve.h"
+#include "tests/support/isosurface.h"
+
+namespace mssim {
+
+/// A person as a scanner sees one: one closed surface with head, arms and feet, of about the reference
+/// body's measures and 1.70 m tall.
+struct PersonForm {
+  std::size_t triangles = 12'000;  ///< 1,600 or more, even
+  bool arms = true;
+  /// Between an arm and the vertical. At 12 there are 6 cm between hand and thigh, at 4 they touch.
+  double arm_angle_degrees = 12;
+  double arm_forward_degrees = 0;  ///< how far the arms are held before the body
+};
+
+/// How a file says where the person stands.
+struct PersonPose {
+  double unit_m = 1;        ///< metres in one unit of the file
+  double size = 1;          ///< factor on all of the person's lengths
+  double turn_degrees = 0;  ///< about the upright axis, from facing +z towards +x
+  Vec3d shift{};            ///< m, after the turn
+  bool z_up = false;        ///< (x, y, z) becomes (x, -z, y): who faced +z faces -y
+};
+
+/// An upright tube through elliptic sections, from below upwards, as a DistanceField.
+class EllipticTube {
+ public:
+  explicit EllipticTube(const std::vector<EllipseSection>& sections)
+      : low_(sections.front().height),
+        high_(sections.back().height),
+        x_(curve(sections, [](const EllipseSection& s) { return (s.x_min + s.x_max) / 2; })),
+        z_(curve(sections, [](const EllipseSection& s) { return (s.z_min + s.z_max) / 2; })),
+        half_width_(curve(sections, [](const EllipseSection& s) { return s.half_width(); })),
+        half_depth_(curve(sections, [](const EllipseSection& s) { return s.half_depth(); })) {}
+
+  double operator()(const Vec3d& p) const {
+    const double y = std::clamp(p.y, low_, high_);
+    const double width = half_width_(y), depth = half_depth_(y);
+    const double x = (p.x - x_(y)) / width, z = (p.z - z_(y)) / depth;
+    const double first = std::hypot(x, z), second = std::hypot(x / width, z / depth);
+    const double beside = second > 0 ? first * (first - 1) / second : -std::min(width, depth);
+    const double beyond = std::abs(p.y - y);
+    return beyond > 0 ? std::hypot(std::max(beside, 0.0), beyond) : beside;
+  }
+
+ private:
+  static MonotoneCurve curve(const std::vector<EllipseSection>& sections,
+                             double (*value)(const EllipseSection&)) {
+    std::vector<double> heights, values;
+    for (const EllipseSection& section : sections) {
+      heights.push_back(section.height);
+      values.push_back(value(section));
+    }
+    return {heights, values};
+  }
+
+  double low_, high_;
+  MonotoneCurve x_, z_, half_width_, half_depth_;
+};
+
+/// A person in formulas, as a DistanceField: smooth unions of tubes, cones and ellipsoids.
+class Person {
+ public:
+  explicit Person(const PersonForm& form) : arms_(form.arms), torso_(torso_sections()), leg_(leg_sections()) {
+    const double aside = form.arm_angle_degrees * std::numbers::pi / 180;
+    const double before = form.arm_forward_degrees * std::numbers::pi / 180;
+    along_arm_ = {std::sin(aside), -std::cos(aside) * std::cos(before), std::cos(aside) * std::sin(before)};
+  }
+
+  double operator()(const Vec3d& at) const {
+    const Vec3d p{std::abs(at.x), at.y, at.z};
+    double body = joined(torso_(p), leg_(p), 0.03);
+    body = joined(body, ellipsoid(p, {0, 1.585, 0.015}, {0.075, 0.115, 0.095}), 0.03);
+    body = joined(body, ellipsoid(p, {0.135, 0.035, 0.055}, {0.042, 0.038, 0.12}), 0.02);
+    // Rounded at the shoulder; a hand beside the hip stays apart.
+    const double rounding = std::clamp(0.1 * (p.y - 1.0), 0.004, 0.03);
+    return arms_ ? joined(body, arm(p), rounding) : body;
+  }
+
+ private:
+  static std::vector<EllipseSection> torso_sections() {
+    const BodyMeasures m;
+    const EllipseSection hip = section_of_girth(m.hip.height, m.hip.girth, m.hip_aspect, 0, -0.006);
+    // Up from the crotch, wide early and deep late, as on the mannequin.
+    const auto seat = [&](double share, double width, double depth) {
+      const double z = -0.006 * share;
+      return EllipseSection{m.crotch_height + share * (m.hip.height - m.crotch_height), width * hip.x_min,
+                            width * hip.x_max, z - depth * hip.half_depth(), z + depth * hip.half_depth()};
+    };
+    return {seat(0, 0.45, 0.30),
+            seat(0.05, 0.70, 0.43),
+            seat(0.12, 0.83, 0.55),
+            seat(0.25, 0.94, 0.70),
+            seat(0.5, 0.985, 0.88),
+            hip,
+            section_of_girth(0.95, 0.88, 0.75, 0, -0.002),
+            section_of_girth(m.waist.height, m.waist.girth, 0.78, 0, 0.005),
+            section_of_girth(1.15, 0.80, 0.75, 0, 0.004),
+            section_of_girth(m.bust.height, m.bust.girth, 0.72, 0, 0.006),
+            section_of_girth(1.34, 0.92, 0.56, 0, 0),
+            section_of_girth(1.385, 0.84, 0.40, 0, -0.010),
+            section_of_girth(1.415, 0.55, 0.60, 0, -0.012),
+            section_of_girth(1.445, 0.38, 0.92, 0, -0.006),
+            section_of_girth(1.56, 0.34, 1.0, 0, 0.004)};
+  }
+
+  static std::vector<EllipseSection> leg_sections() {
+    const BodyMeasures m;
+    const double thigh_axis = m.thigh_gap / 2 + m.thigh.girth / ellipse_perimeter(1, thigh_aspect);
+    const auto section = [&](double height, double girth, double aspect, double z) {
+      const double share = (m.thigh.height - height) / (m.thigh.height - m.ankle.height);
+      return section_of_girth(height, girth, aspect, thigh_axis + share * (m.stance / 2 - thigh_axis), z);
+    };
+    return {section(0.03, 0.25, 1.2, 0), section(m.ankle.height, m.ankle.girth, 1.15, -0.002),
+            section(0.16, 0.25, 1.05, -0.006), section(0.32, 0.36, 1.05, -0.012),
+            section(m.knee.height, m.knee.girth, 1.05, 0), section(0.62, 0.49, 1.05, 0),
+            section(m.thigh.height, m.thigh.girth, thigh_aspect, -0.003),
+            // From here on within the torso.
+            EllipseSection{0.80, 0.02, 0.166, -0.090, 0.075},
+            EllipseSection{0.87, 0.03, 0.140, -0.070, 0.060}};
+  }
+
+  /// The smooth union of two bodies (Quilez's polynomial): rounded where they are nearer than `width`.
+  static double joined(double a, double b, double width) {
+    const double overlap = std::max(width - std::abs(a - b), 0.0) / width;
+    return std::min(a, b) - overlap * overlap * width / 4;
+  }
+
+  static double ellipsoid(const Vec3d& p, const Vec3d& middle, const Vec3d& half) {
+    const Vec3d d = p - middle;
+    const double first = length(Vec3d{d.x / half.x, d.y / half.y, d.z / half.z});
+    const double second =
+        length(Vec3d{d.x / (half.x * half.x), d.y / (half.y * half.y), d.z / (half.z * half.z)});
+    return second > 0 ? first * (first - 1) / second : -std::min({half.x, half.y, half.z});
+  }
+
+  /// About a cone, with a ball at either end.
+  static double cone(const Vec3d& p, const Vec3d& from, double radius, const Vec3d& to, double end_radius) {
+    const Vec3d along = to - from;
+    const double share = std::clamp(dot(p - from, along) / dot(along, along), 0.0, 1.0);
+    return length(p - from - share * along) - (radius + share * (end_radius - radius));
+  }
+
+  double arm(const Vec3d& p) const {
+    const Vec3d shoulder{0.172, 1.345, -0.008};
+    const Vec3d elbow = shoulder + 0.28 * along_arm_, wrist = shoulder + 0.53 * along_arm_;
+    const double limb =
+        joined(cone(p, shoulder, 0.052, elbow, 0.041), cone(p, elbow, 0.041, wrist, 0.028), 0.02);
+    // The hand is flat and looks to the thigh.
+    const Vec3d aside{-along_arm_.y / std::hypot(along_arm_.x, along_arm_.y),
+                      along_arm_.x / std::hypot(along_arm_.x, along_arm_.y), 0};
+    const Vec3d d = p - (wrist + 0.085 * along_arm_);
+    const Vec3d in_hand{dot(d, aside), dot(d, along_arm_), dot(d, cross(aside, along_arm_))};
+    return joined(limb, ellipsoid(in_hand, {}, {0.024, 0.095, 0.043}), 0.02);
+  }
+
+  bool arms_;
+  EllipticTube torso_, leg_;
+  Vec3d along_arm_;  ///< of length 1, of the arm at x > 0, from the shoulder
+};
+
+/// The person standing on the floor y = 0, looking to +z, left and right of x = 0, m. Takes about as many
+/// microseconds as ten times the triangles, or a second of a debug build.
+inline Surface body_with_arms(const PersonForm& form = {}) {
+  const DistanceField field = Person(form);
+  // A cube that the surface passes through makes about eight triangles.
+  const double cell = std::min(0.024, std::sqrt(1.8 * 8 / (1.2 * static_cast<double>(form.triangles))));
+  const auto cells = [&](double extent) { return static_cast<std::uint32_t>(std::ceil(extent / cell)); };
+  // x = 0 is a plane of corners: the legs never grow together there.
+  const std::uint32_t aside = cells(0.95), behind = cells(0.25), before = cells(0.65);
+  const FieldBox box{
+      {-cell * aside, -2.3 * cell, -cell * behind}, cell, {2 * aside, cells(1.72) + 4, behind + before}};
+  Surface surface = Decimation(isosurface(field, box), field).down_to(form.triangles);
+  const double lowest = std::ranges::min(surface.points, {}, &Vec3d::y).y;
+  for (Vec3d& point : surface.points) point.y -= lowest;
+  return surface;
+}
+
+/// As a scanner's file would have it.
+inline Surface posed(Surface surface, const PersonPose& pose) {
+  const double turn = pose.turn_degrees * std::numbers::pi / 180;
+  for (Vec3d& point : surface.points) {
+    point = {std::cos(turn) * point.x + std::sin(turn) * point.z, point.y,
+             std::cos(turn) * point.z - std::sin(turn) * point.x};
+    point = pose.size * point + pose.shift;
+    if (pose.z_up) point = {point.x, -point.z, point.y};
+    point = 1 / pose.unit_m * point;
+  }
+  return surface;
+}
+
+}  // namespace mssim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "backends/backends.h"
+#include "commands/shared/fit_body.h"
+#include "garment/fitting/fit_bounds.h"
+#include "garment/stepping/dressing_backend.h"
+#include "integrators/integrators.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "tests/support/scene_files.h"
+
+namespace mssim {
+
+/// A garment scene that may be changed before it is dressed.
+struct DressingCase {
+  SceneSpec spec;
+  System system;
+
+  explicit DressingCase(const std::string& scene) : DressingCase(find_scene(scene)) {}
+  explicit DressingCase(SceneSpec scene) : spec(std::move(scene)), system(build_system(spec)) {}
+
+  Garment& garment() { return std::get<Garment>(system.topology); }
+  double dt_s() const { return spec.dt_s.value(); }
+};
+
+struct Dressed {
+  DressingResult result;
+  Fit fit;
+  std::vector<std::string> found;  ///< out of bounds
+};
+
+/// Dresses it by a backend and measures the fit on the body's own mesh.
+inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {},
+                       std::string_view backend_name = "serial") {
+  const auto backend = make_dressing_backend(*find_backend(backend_name), of.system,
+                                             *find_integrator("semi-euler"), of.dt_s(), {});
+  Dressed dressed;
+  dressed.result =
+      dress(*backend, of.system, of.dt_s(), rule, [](const State&, std::int64_t) { return true; });
+  dressed.fit = fit_of(of.system, dressed.result.state.position, fit_body(of.spec));
+  dressed.found = misfits(dressed.result, dressed.fit, {});
+  return dressed;
+}
+
+}  // namespace mssim

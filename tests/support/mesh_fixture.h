@@ -1,0 +1,75 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh_error.h"
+#include "mesh/box_shape.h"
+#include "tests/support/temporary_folder.h"
+
+namespace mssim {
+
+/// A test whose mesh cache lies in a folder of its own, and which may change the variables that find programs
+/// and folders: they are put back.
+class MeshTest : public TemporaryFolderTest {
+ protected:
+  MeshTest() {
+    for (const char* name : variables)
+      before_.push_back(::getenv(name) ? std::optional<std::string>(::getenv(name)) : std::nullopt);
+    ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1);
+  }
+  ~MeshTest() override {
+    for (std::size_t i = 0; i < variables.size(); ++i)
+      if (before_[i])
+        ::setenv(variables[i], before_[i]->c_str(), 1);
+      else
+        ::unsetenv(variables[i]);
+  }
+  std::filesystem::path cache() const { return folder() / "cache" / "mssim" / "meshes"; }
+
+  /// Puts a program named tetgen that runs this shell script before all others.
+  void install_tetgen(const std::string& script) const {
+    const std::filesystem::path program = put("programs/tetgen", "#!/bin/sh\n" + script);
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    ::setenv("PATH", (program.parent_path().string() + ":" + ::getenv("PATH")).c_str(), 1);
+  }
+
+ private:
+  static constexpr std::array variables{"HOME", "PATH", "TMPDIR", "XDG_CACHE_HOME"};
+  std::vector<std::optional<std::string>> before_;
+};
+
+/// What a MeshError that `body` throws says, or "" when it throws none.
+inline std::string mesh_error_of(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const MeshError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A cube with sides of 1 m and one cell, its lowest corner at `corner`.
+inline Surface unit_cube(const Vec3d& corner = {}) {
+  Surface cube = surface_of(BoxShape{{1, 1, 1}, {1, 1, 1}});
+  for (Vec3d& point : cube.points) point += corner + Vec3d{0.5, 0.5, 0.5};
+  return cube;
+}
+
+/// Both surfaces as one.
+inline Surface both(Surface first, const Surface& second) {
+  const auto offset = static_cast<std::uint32_t>(first.points.size());
+  first.points.insert(first.points.end(), second.points.begin(), second.points.end());
+  for (const auto& [a, b, c] : second.triangles)
+    first.triangles.push_back({a + offset, b + offset, c + offset});
+  return first;
+}
+
+}  // namespace mssim

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/machine/provenance.h"
+#include "bench/results/result.h"
+#include "output/tables/paper_table.h"
+
+namespace mssim {
+
+/// A row with a number in every column and three samples.
+inline ResultRow measured_row(const std::string& backend, double ms, std::optional<double> speedup) {
+  ResultRow row;
+  row.scene = "cloth2500";
+  row.nodes = 2500;
+  row.springs_unique = 14502;
+  row.springs_published = 29004;
+  row.backend = backend;
+  row.device = "cpu";
+  row.threads = 2;
+  row.integrator = "semi-euler";
+  row.dt_s = 0.0005;
+  row.rounds = 3;
+  row.ms_per_step = ms;
+  row.ms_per_step_low = ms / 2;
+  row.ms_per_step_high = 2 * ms;
+  row.ms_per_step_min = ms / 2;
+  row.springs_per_second = 14502 / (ms * 1e-3);
+  row.gigabytes_per_second = 1.5;
+  row.roofline_fraction = 0.25;
+  row.speedup_vs_serial = speedup;
+  row.paper_ms = 19.475;
+  row.position_error = 1e-5;
+  row.energy_drift = -2e-7;
+  row.verified = true;
+  row.warm_up_trials = 4;
+  row.samples_ms = {2 * ms, ms / 2, ms};
+  row.sample_steps = {10, 20, 30};
+  return row;
+}
+
+/// A row that nothing was measured for.
+inline ResultRow failed_row(const std::string& backend, const std::string& status) {
+  ResultRow row = measured_row(backend, 1, std::nullopt);
+  row.ms_per_step = row.ms_per_step_low = row.ms_per_step_high = row.ms_per_step_min = std::nullopt;
+  row.springs_per_second = row.gigabytes_per_second = row.roofline_fraction = std::nullopt;
+  row.paper_ms = row.position_error = row.energy_drift = std::nullopt;
+  row.samples_ms.clear();
+  row.sample_steps.clear();
+  row.rounds = 0;
+  row.verified = false;
+  row.status = status;
+  return row;
+}
+
+inline Provenance made_up_provenance() {
+  Provenance provenance;
+  provenance.build = {"0.1.0", "0123456789abcdef0123456789abcdef01234567", true, "GNU 12", "-O3", "Release"};
+  provenance.machine.cpu_model = "A Processor";
+  provenance.machine.logical_cpus = 2;
+  provenance.machine.cpu_mhz = 2999.6;
+  provenance.machine.caches = {{1, "Data", 49152, 2, 1}};
+  provenance.machine.load_average = {0.5, 0.25, 0.125};
+  provenance.threads = 2;
+  provenance.command_line = {"mssim", "bench"};
+  provenance.started_utc = "2026-01-31T12:00:00Z";
+  return provenance;
+}
+
+inline const PaperLegend legend{
+    {{"serial", "cpu-only"},
+     {"threads-mutex", "multi-thread-cpu"},
+     {"openmp", "multi-thread-cpu"},
+     {"opencl", "gpu"},
+     {"hybrid", "gpu+multi-thread-cpu"}},
+    {{"semi-euler", "semi-euler", 1}, {"rk4", "rk4", 4}, {"rk4-frozen", "rk4", 1}}};
+
+/// Rows of two published scenes and of one that is not.
+inline std::vector<ResultRow> table_rows() {
+  std::vector<ResultRow> rows{measured_row("serial", 0.1, 1.0), measured_row("openmp", 0.0125, 8.0),
+                              measured_row("hybrid", 0.05, 2.0),
+                              failed_row("opencl", "failed: step 3 | node 7 is not finite")};
+  rows[2].device = "Some device";
+  rows.push_back(measured_row("serial", 1.5, 1.0));
+  rows.back().scene = "cloth350k";
+  rows.back().nodes = 350000;
+  rows.back().springs_published = 4188004;
+  rows.push_back(measured_row("serial", 3, 1.0));
+  rows.back().scene = "my-own";
+  rows.back().nodes = 2501;
+  return rows;
+}
+
+}  // namespace mssim
