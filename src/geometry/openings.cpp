@@ -1,6 +1,8 @@
 #include "geometry/openings.h"
 
 #include <algorithm>
+#include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -64,6 +66,39 @@ void fill(Surface& surface, const Opening& opening) {
     surface.triangles.push_back({ring[(i + 1) % ring.size()], ring[i], middle});
 }
 
+/// Edges between two points, the lower number first.
+using Edges = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// As `fill` does, but without a middle as long as a corner of the ring may be cut off: where the surface has
+/// no such edge yet, and the triangle looks the way the opening does.
+void span(Surface& surface, Opening opening, Edges& edges) {
+  std::vector<std::uint32_t>& ring = opening.points;
+  const auto point = [&](std::size_t i) { return ring[i % ring.size()]; };
+  const auto at = [&](std::size_t i) -> const Vec3d& { return surface.points[point(i)]; };
+  const auto normal = [&](const Vec3d& middle, std::size_t i) {
+    return cross(at(i + 1) - middle, at(i) - middle);
+  };
+  Vec3d facing;
+  for (std::size_t i = 0; i < ring.size(); ++i) facing += normal(opening.centre, i);
+  while (ring.size() > 3) {
+    std::size_t first = 0;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const double new_edge = length(at(i + 2) - at(i));
+      if (new_edge >= shortest || !(dot(normal(at(i + 2), i), facing) > 0)) continue;
+      if (edges.contains(std::minmax(ring[i], point(i + 2)))) continue;
+      shortest = new_edge;
+      first = i;
+    }
+    if (shortest == std::numeric_limits<double>::infinity()) break;
+    surface.triangles.push_back({point(first + 2), point(first + 1), ring[first]});
+    edges.insert(std::minmax(ring[first], point(first + 2)));
+    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>((first + 1) % ring.size()));
+  }
+  measure(surface, opening);
+  fill(surface, opening);
+}
+
 [[noreturn]] void refuse(const Opening& opening, const std::string& problem) {
   throw MeshError("the opening of " + std::to_string(opening.edges()) + " edges around " +
                   place(opening.centre) + problem);
@@ -115,6 +150,17 @@ std::vector<Opening> close_openings(Surface& surface, double largest) {
   }
   for (const Opening& opening : openings) fill(surface, opening);
   return openings;
+}
+
+void span_openings(Surface& surface) {
+  const std::vector<Opening> openings = openings_of(surface);
+  std::vector<bool> on_ring(surface.points.size());
+  for (const Opening& opening : openings)
+    for (const std::uint32_t point : opening.points) on_ring[point] = true;
+  Edges edges;
+  for (const SurfaceSide& side : sides_by_edge(surface))
+    if (on_ring[side.low] && on_ring[side.high]) edges.emplace(side.low, side.high);
+  for (const Opening& opening : openings) span(surface, opening, edges);
 }
 
 }  // namespace mssim

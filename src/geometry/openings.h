@@ -25,4 +25,9 @@ std::vector<Opening> openings_of(const Surface& surface);
 /// one whose edges make no ring.
 std::vector<Opening> close_openings(Surface& surface, double largest);
 
+/// Fills all openings of a part of a closed surface with triangles between the points of their rings, cutting
+/// off the corner with the shortest new edge each time. The patch then follows a ring round a body, where a
+/// fan's middle would lie deep within it or before it.
+void span_openings(Surface& surface);
+
 }  // namespace mssim

@@ -68,6 +68,34 @@ TEST(Openings, ThatAreClosedLeaveASurfaceThatEnclosesTheVolume) {
   EXPECT_GT(volume_of(surface), 0.98 * whole);
 }
 
+TEST(Openings, ThatAreSpannedGetNoNewPointsAndFollowTheirRing) {
+  // A strip from nearly pole to pole: a fan's middle lies deep within the sphere.
+  Surface surface = surface_of(SphereShape{1, 12});
+  const double whole = volume_of(surface);
+  std::erase_if(surface.triangles, [&](const auto& triangle) {
+    return std::ranges::all_of(triangle, [&](std::uint32_t corner) {
+      const Vec3d& p = surface.points[corner];
+      return p.z > 0 && std::abs(p.x) < 0.35 && std::abs(p.y) < 0.85;
+    });
+  });
+  ASSERT_EQ(openings_of(surface).size(), 1U);
+  Surface spanned = surface, with_middle = surface;
+  span_openings(spanned);
+  close_openings(with_middle, 2);
+  EXPECT_EQ(spanned.points, surface.points);
+  EXPECT_EQ(spanned.triangles.size(), surface.triangles.size() + openings_of(surface).front().edges() - 2);
+  EXPECT_THAT(openings_of(spanned), IsEmpty());
+  EXPECT_LT(whole - volume_of(spanned), 0.5 * (whole - volume_of(with_middle)));
+}
+
+TEST(Openings, AreNotSpannedByAnEdgeThatTheSurfaceHas) {
+  // A roof whose short ridge would also be the shortest edge across what is open below it.
+  Surface roof{{{-0.2, 0, 0}, {0.2, 0, 0}, {0, -0.3, 1}, {0, -0.3, -1}}, {{0, 2, 1}, {0, 1, 3}}};
+  span_openings(roof);
+  EXPECT_EQ(mesh_error_of([&] { validate_surface(roof, "roof"); }), "");
+  EXPECT_EQ(roof.triangles.size(), 4U);
+}
+
 TEST(Openings, AMissingTriangleIsPutBack) {
   const Surface whole = surface_of(SphereShape{1, 4});
   Surface surface = whole;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "garment/body/part_rim.h"
 #include "garment/body/section_loops.h"
 #include "garment/body/section_necks.h"
 #include "geometry/openings.h"
@@ -276,8 +277,13 @@ TrunkAndLegs trunk_and_legs(const Surface& surface) {
     found.surface = surface;
     return found;
   }
-  found.surface = part_of(surface, staying(surface, levels));
-  close_openings(found.surface, std::numeric_limits<double>::infinity());
+  std::vector<bool> stays = staying(surface, levels);
+  if (found.touched) leave_out_rim(surface, stays);
+  found.surface = part_of(surface, stays);
+  if (found.touched)
+    span_openings(found.surface);
+  else
+    close_openings(found.surface, std::numeric_limits<double>::infinity());
   return found;
 }
 

@@ -85,6 +85,14 @@ TEST_F(DressedPerson, OfFewTrianglesIsDressedWithinAllBounds) {
               IsEmpty());
 }
 
+TEST_F(DressedPerson, WhoseHandsRestAgainstTheHipsIsDressedWithinAllBounds) {
+  for (const PersonForm& form : {PersonForm{.triangles = 1'600, .arm_angle_degrees = 6},
+                                 PersonForm{.triangles = 6'000, .arm_angle_degrees = 4},
+                                 PersonForm{.triangles = 12'000, .arm_angle_degrees = 5}})
+    EXPECT_THAT(dressed(DressingCase(scene_for("jeans4k", form)), {}, "openmp").found, IsEmpty())
+        << form.triangles << " triangles, " << form.arm_angle_degrees << " degrees";
+}
+
 TEST_F(DressedPerson, IsSaidToHaveArmsThatTheGarmentIgnores) {
   const SceneSpec spec = scene_for("jeans1k", {.triangles = 1'600});
   EXPECT_THAT(
