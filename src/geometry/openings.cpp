@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "geometry/surface_sides.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -100,8 +100,8 @@ void span(Surface& surface, Opening opening, Edges& edges) {
 }
 
 [[noreturn]] void refuse(const Opening& opening, const std::string& problem) {
-  throw MeshError("the opening of " + std::to_string(opening.edges()) + " edges around " +
-                  place(opening.centre) + problem);
+  throw InputError("the opening of " + std::to_string(opening.edges()) + " edges around " +
+                   place(opening.centre) + problem);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct Opening {
 std::vector<Opening> openings_of(const Surface& surface);
 
 /// Fills the openings that are not larger than `largest`, m, with a fan of triangles
-/// each, and returns them. Throws MeshError, which says where and how large it is, for a larger one and for
+/// each, and returns them. Throws InputError, which says where and how large it is, for a larger one and for
 /// one whose edges make no ring.
 std::vector<Opening> close_openings(Surface& surface, double largest);
 

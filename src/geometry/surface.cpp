@@ -5,9 +5,9 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "geometry/surface_sides.h"
 #include "text/counted.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -27,7 +27,9 @@ class Check {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw MeshError(std::string(name_) + ": " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(std::string(name_) + ": " + what);
+  }
 
   /// Files number points and triangles in their own ways, so messages give coordinates.
   std::string at(std::uint32_t point) const { return place(surface_.points[point]); }

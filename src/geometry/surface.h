@@ -15,7 +15,7 @@ struct Surface {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Throws MeshError, which begins with `name`, unless the surface encloses a volume as far as that can be
+/// Throws InputError, which begins with `name`, unless the surface encloses a volume as far as that can be
 /// seen from how its triangles join: finite points, all of them used, indices in range, no triangle without
 /// area, every edge in exactly two triangles that run along it in opposite directions, positive volume.
 /// Several separate closed parts are allowed. Triangles that cross each other are found later, by TetGen.

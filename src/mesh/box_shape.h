@@ -19,7 +19,7 @@ struct BoxShape {
 /// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
 std::uint64_t surface_point_count(const BoxShape& box);
 
-/// The surface with so many points. Throws MeshError for a size that is not
+/// The surface with so many points. Throws InputError for a size that is not
 /// positive or for less than one cell.
 Surface surface_of(const BoxShape& box);
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -84,8 +84,8 @@ class Lattice {
 
 void require_between(double value, double low, double high, const std::string& what) {
   if (!(value >= low && value <= high))
-    throw MeshError("the " + what + " of interior points is " + decimal(value) + "; give a number from " +
-                    decimal(low) + " to " + decimal(high));
+    throw InputError("the " + what + " of interior points is " + decimal(value) + "; give a number from " +
+                     decimal(low) + " to " + decimal(high));
 }
 
 }  // namespace
@@ -93,8 +93,8 @@ void require_between(double value, double low, double high, const std::string& w
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space) {
   constexpr std::uint32_t most = 1000000;
   if (parameters.count > most)
-    throw MeshError("the count of interior points is " + std::to_string(parameters.count) +
-                    "; give at most " + std::to_string(most));
+    throw InputError("the count of interior points is " + std::to_string(parameters.count) +
+                     "; give at most " + std::to_string(most));
   require_between(parameters.jitter, 0, 0.5, "jitter");
   require_between(parameters.margin, 0, 1, "margin");
   if (parameters.count == 0) return {};
@@ -114,9 +114,9 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
   }
   std::vector<LatticePoint> chosen = points_at(enough);
   if (chosen.size() < parameters.count)
-    throw MeshError(std::to_string(parameters.count) + " interior points do not fit into a volume of " +
-                    shown(space.volume) + " m^3 at a margin of " + decimal(parameters.margin) +
-                    " spacings from its surface; give fewer points or a smaller margin");
+    throw InputError(std::to_string(parameters.count) + " interior points do not fit into a volume of " +
+                     shown(space.volume) + " m^3 at a margin of " + decimal(parameters.margin) +
+                     " spacings from its surface; give fewer points or a smaller margin");
   // The few too many lie at the surface, where they are missed least.
   std::stable_sort(chosen.begin(), chosen.end(),
                    [](const LatticePoint& a, const LatticePoint& b) { return a.depth > b.depth; });

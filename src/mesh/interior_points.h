@@ -30,7 +30,7 @@ struct InteriorSpace {
 /// Exactly `count` points, rounded to micrometres. The spacing (the cube root of the volume for each point)
 /// is the largest at which so many points of the lattice lie inside, at least the margin deep; it follows
 /// from volume and count. Needs no libm but roots and no std distribution, so that every platform places the
-/// same points. Throws MeshError for parameters out of range and for more points than fit.
+/// same points. Throws InputError for parameters out of range and for more points than fit.
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space);
 
 }  // namespace mssim

@@ -6,10 +6,10 @@
 #include <fstream>
 #include <string>
 
-#include "geometry/mesh_error.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
 #include "text/fnv1a.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -48,7 +48,7 @@ std::optional<TetMesh> read_entry(const fs::path& file) {
     const std::string tetrahedra = text.substr(header + node_bytes);
     if (!text.starts_with(header_of(nodes, tetrahedra))) return std::nullopt;
     return parse_tetgen_files({file.string(), nodes}, {file.string(), tetrahedra});
-  } catch (const MeshError&) {
+  } catch (const InputError&) {
     return std::nullopt;
   }
 }

@@ -5,11 +5,11 @@
 
 namespace mssim {
 
-/// Throws MeshError unless `metres`, which is `what`, is between a tenth of a millimetre and a kilometre:
+/// Throws InputError unless `metres`, which is `what`, is between a tenth of a millimetre and a kilometre:
 /// coordinates are rounded to micrometres.
 void require_length(double metres, std::string_view what);
 
-/// Throws MeshError unless `cells`, which are `what`, are from `smallest` to 1,000.
+/// Throws InputError unless `cells`, which are `what`, are from `smallest` to 1,000.
 void require_cells(std::uint32_t cells, std::uint32_t smallest, std::string_view what);
 
 }  // namespace mssim

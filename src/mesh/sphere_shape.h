@@ -18,7 +18,7 @@ struct SphereShape {
 /// Points of the surface: 10 frequency^2 + 2.
 std::uint64_t surface_point_count(const SphereShape& sphere);
 
-/// The surface with so many points. Throws MeshError for a radius or a frequency that is not
+/// The surface with so many points. Throws InputError for a radius or a frequency that is not
 /// positive.
 Surface surface_of(const SphereShape& sphere);
 

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
 #include "mesh/text_lines.h"
 #include "text/counted.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -36,10 +36,10 @@ Surface parse_binary(const std::string& name, std::string_view content) {
   const std::size_t count = number_at(content, bytes_before_count);
   const std::size_t due = bytes_before_triangles + count * bytes_of_triangle;
   if (content.size() != due)
-    throw MeshError(name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
-                    counted(count, "triangle") + " in " + std::to_string(due) + " bytes, and has " +
-                    std::to_string(content.size()) + "; it is truncated or no STL file");
-  if (count == 0) throw MeshError(name + ": the file has no triangles; give a surface");
+    throw InputError(name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
+                     counted(count, "triangle") + " in " + std::to_string(due) + " bytes, and has " +
+                     std::to_string(content.size()) + "; it is truncated or no STL file");
+  if (count == 0) throw InputError(name + ": the file has no triangles; give a surface");
   Surface surface;
   PointMerger merger(surface);
   surface.triangles.reserve(count);
@@ -50,8 +50,8 @@ Surface parse_binary(const std::string& name, std::string_view content) {
           bytes_before_triangles + t * bytes_of_triangle + (corner + 1) * bytes_of_vector;
       const Vec3d point = vector_at(content, byte);
       if (!is_coordinate(point.x) || !is_coordinate(point.y) || !is_coordinate(point.z))
-        throw MeshError(name + ", byte " + std::to_string(byte) + ": a corner is at " + place(point) +
-                        "; for each axis " + std::string(coordinate_wanted));
+        throw InputError(name + ", byte " + std::to_string(byte) + ": a corner is at " + place(point) +
+                         "; for each axis " + std::string(coordinate_wanted));
       triangle[corner] = merger.add(point);
     }
     surface.triangles.push_back(triangle);
@@ -128,11 +128,11 @@ bool is_binary(std::string_view content) {
 }  // namespace
 
 Surface parse_stl(const std::string& name, std::string_view content) {
-  if (content.empty()) throw MeshError(name + " is empty; give a surface");
+  if (content.empty()) throw InputError(name + " is empty; give a surface");
   if (!is_binary(content)) return AsciiReader(name, content).read();
   if (content.size() < bytes_before_triangles)
-    throw MeshError(name + " has " + counted(content.size(), "byte") +
-                    ", and a binary STL file at least 84; it is truncated or no STL file");
+    throw InputError(name + " has " + counted(content.size(), "byte") +
+                     ", and a binary STL file at least 84; it is truncated or no STL file");
   return parse_binary(name, content);
 }
 

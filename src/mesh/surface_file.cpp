@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "geometry/mesh_error.h"
 #include "mesh/text_lines.h"
+#include "text/input_error.h"
 
 namespace mssim {
 
@@ -13,7 +13,7 @@ Surface read_surface(const std::filesystem::path& file) {
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (extension == ".obj") return parse_obj(file.string(), read_text(file));
   if (extension == ".stl") return parse_stl(file.string(), read_text(file));
-  throw MeshError(file.string() + " ends in neither .obj nor .stl; give a surface in one of those formats");
+  throw InputError(file.string() + " ends in neither .obj nor .stl; give a surface in one of those formats");
 }
 
 }  // namespace mssim

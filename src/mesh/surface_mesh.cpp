@@ -8,10 +8,10 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "mesh/surface_file.h"
 #include "mesh/tetgen.h"
 #include "mesh/tetrahedralise.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -35,10 +35,10 @@ std::string volume_switch(double largest_volume_m3) {
 TetMesh surface_mesh(const SurfaceBody& body) {
   const std::string name = body.file.string();
   if (!(body.unit_m > 0) || !std::isfinite(body.unit_m))
-    throw MeshError(name + ": a unit of the file is " + decimal(body.unit_m) + " m; give a positive number");
+    throw InputError(name + ": a unit of the file is " + decimal(body.unit_m) + " m; give a positive number");
   if (!(body.largest_volume_m3 >= 0) || !std::isfinite(body.largest_volume_m3))
-    throw MeshError(name + ": the largest volume of a tetrahedron is " + decimal(body.largest_volume_m3) +
-                    " m^3; give a positive number, or 0 for no limit");
+    throw InputError(name + ": the largest volume of a tetrahedron is " + decimal(body.largest_volume_m3) +
+                     " m^3; give a positive number, or 0 for no limit");
 
   Surface surface = read_surface(body.file);
   for (Vec3d& point : surface.points) point = body.unit_m * point;
@@ -47,9 +47,9 @@ TetMesh surface_mesh(const SurfaceBody& body) {
   constexpr double most_tetrahedra = 1e7;
   constexpr double tetrahedra_a_node = 7;  // of a fine mesh, a little fewer
   if (body.largest_volume_m3 > 0 && volume_of(surface) / body.largest_volume_m3 > most_tetrahedra)
-    throw MeshError(name + ": tetrahedra of at most " + decimal(body.largest_volume_m3) +
-                    " m^3 in a body of " + shown(volume_of(surface)) +
-                    " m^3 would be more than ten million; give a larger volume");
+    throw InputError(name + ": tetrahedra of at most " + decimal(body.largest_volume_m3) +
+                     " m^3 in a body of " + shown(volume_of(surface)) +
+                     " m^3 would be more than ten million; give a larger volume");
   const double tetrahedra =
       body.largest_volume_m3 > 0 ? volume_of(surface) / body.largest_volume_m3 : 0;  // at least
   const auto nodes = std::max(std::uint64_t{surface.points.size()},
@@ -58,8 +58,8 @@ TetMesh surface_mesh(const SurfaceBody& body) {
     require_meshable(nodes);
     return tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3),
                           nodes - surface.points.size());
-  } catch (const MeshError& error) {
-    throw MeshError(name + ": " + error.what());
+  } catch (const InputError& error) {
+    throw InputError(name + ": " + error.what());
   }
 }
 

@@ -14,7 +14,7 @@ struct SurfaceBody {
 };
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
-/// shaped and small enough; the shape stays. From the cache when it was made before. Throws MeshError, which
+/// shaped and small enough; the shape stays. From the cache when it was made before. Throws InputError, which
 /// names the file, for one that cannot be read or encloses no body, and for numbers out of range;
 /// MissingProgram when TetGen is needed and not installed.
 TetMesh surface_mesh(const SurfaceBody& body);

@@ -9,12 +9,12 @@
 #include <stdexcept>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
 #include "platform/available_memory.h"
 #include "platform/child_process.h"
 #include "platform/temporary_folder.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -70,8 +70,8 @@ class Run {
   TetMesh parsed(const std::string& node_file, const std::string& ele_file) const {
     try {
       return parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
-    } catch (const MeshError& error) {
-      throw MeshError("what " + program_.executable.string() + " made cannot be used: " + error.what());
+    } catch (const InputError& error) {
+      throw InputError("what " + program_.executable.string() + " made cannot be used: " + error.what());
     }
   }
 
@@ -81,12 +81,12 @@ class Run {
 
   [[noreturn]] void fail(const ChildResult& ended) const {
     if (ended.signal == SIGXCPU || ended.signal == SIGKILL)
-      throw MeshError(
+      throw InputError(
           "TetGen was stopped after " + std::to_string(cpu_seconds) +
           " s of processor time or for want of memory; give a surface of fewer triangles or a larger "
           "largest volume");
     const std::string search = tetgen("-d").output;
-    if (const auto crossing = crossing_triangles(search)) throw MeshError(*crossing);
+    if (const auto crossing = crossing_triangles(search)) throw InputError(*crossing);
     std::string how = "without writing a mesh";
     if (ended.signal != 0)
       how = "with signal " + std::to_string(ended.signal);
@@ -94,11 +94,11 @@ class Run {
       how = "with exit code " + std::to_string(ended.exit_code);
     const std::string ending = "TetGen " + program_.version + " ended " + how + last_words(ended.output);
     if (search.find("No faces are intersecting") == std::string::npos)
-      throw MeshError(ending + " and does not say whether triangles cross; make sure that " +
-                      program_.executable.string() + " is TetGen, or change the surface");
-    throw MeshError(ending +
-                    " though it finds no triangles that cross; change the surface or the points inside a "
-                    "little");
+      throw InputError(ending + " and does not say whether triangles cross; make sure that " +
+                       program_.executable.string() + " is TetGen, or change the surface");
+    throw InputError(ending +
+                     " though it finds no triangles that cross; change the surface or the points inside a "
+                     "little");
   }
 
   static std::string last_words(const std::string& output) {
@@ -132,7 +132,7 @@ class Run {
     const double filled = volume_of(mesh);
     constexpr double rounding = 1e-6;
     if (std::abs(filled - enclosed) > rounding * enclosed)
-      throw MeshError(
+      throw InputError(
           "the surface encloses " + shown(enclosed) + " m^3 but TetGen filled " + shown(filled) +
           " m^3: a closed part lies inside another one; remove the inner part, since bodies are solid");
   }
@@ -147,17 +147,17 @@ class Run {
 
 void require_meshable(std::uint64_t points) {
   if (points > most_points)
-    throw MeshError("its mesh would have " + std::to_string(points) +
-                    " points or more, with which TetGen takes longer than the " +
-                    std::to_string(cpu_seconds) +
-                    " s of processor time that it is given; make it of at most " +
-                    std::to_string(most_points) + ", with fewer cells, triangles or points");
+    throw InputError("its mesh would have " + std::to_string(points) +
+                     " points or more, with which TetGen takes longer than the " +
+                     std::to_string(cpu_seconds) +
+                     " s of processor time that it is given; make it of at most " +
+                     std::to_string(most_points) + ", with fewer cells, triangles or points");
 }
 
 void require_meshing_memory(std::uint64_t points) {
   if (const auto shortage = memory_shortage(points * bytes_a_point))
-    throw MeshError("TetGen makes its mesh of " + std::to_string(points) + " points or more, which " +
-                    *shortage + "; close other programs, or give fewer cells, triangles or points");
+    throw InputError("TetGen makes its mesh of " + std::to_string(points) + " points or more, which " +
+                     *shortage + "; close other programs, or give fewer cells, triangles or points");
 }
 
 TetMesh run_tetgen(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior,

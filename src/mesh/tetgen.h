@@ -10,15 +10,15 @@
 
 namespace mssim {
 
-/// Throws MeshError for more points than TetGen meshes in the processor time that it is given.
+/// Throws InputError for more points than TetGen meshes in the processor time that it is given.
 void require_meshable(std::uint64_t points);
 
-/// Throws MeshError where TetGen needs more memory than there is for a mesh of so many points.
+/// Throws InputError where TetGen needs more memory than there is for a mesh of so many points.
 void require_meshing_memory(std::uint64_t points);
 
 /// Has TetGen fill a surface with tetrahedra. `switches` are TetGen's, beginning "-p"; `interior` points
 /// become nodes (the switch i is added for them). Runs it as a process in a folder of its own. Throws
-/// MeshError when TetGen cannot fill the surface: triangles cross each other (both are named), one closed
+/// InputError when TetGen cannot fill the surface: triangles cross each other (both are named), one closed
 /// part lies inside another, it crashes or runs out of time; std::runtime_error when it cannot be run.
 TetMesh run_tetgen(const TetgenProgram& program, const Surface& surface, const std::vector<Vec3d>& interior,
                    const std::string& switches);

@@ -18,7 +18,7 @@ struct NamedText {
 /// Reads a mesh from TetGen's .node and .ele files, numbered from 0 or 1; attributes and boundary markers are
 /// left out. The mesh is valid: finite coordinates, every node in a tetrahedron and at a place of its own,
 /// positive volumes (when all are negative the mesh is mirrored and its tetrahedra are turned), no face in
-/// three tetrahedra. Throws MeshError that names file, line and value.
+/// three tetrahedra. Throws InputError that names file, line and value.
 TetMesh parse_tetgen_files(const NamedText& node_file, const NamedText& ele_file);
 
 /// The same from files.

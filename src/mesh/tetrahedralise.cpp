@@ -1,10 +1,10 @@
 #include "mesh/tetrahedralise.h"
 
-#include "geometry/mesh_error.h"
 #include "mesh/mesh_cache.h"
 #include "mesh/tetgen.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/tetgen_program.h"
+#include "platform/missing_program.h"
 #include "text/fnv1a.h"
 
 namespace mssim {

@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -27,17 +27,17 @@ bool parse_number(std::string_view word, Number& value) {
 std::string read_text(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
-    throw MeshError(file.string() +
-                    (std::filesystem::exists(file, error) ? " is not a regular file" : " is missing") +
-                    "; name the file of a mesh");
+    throw InputError(file.string() +
+                     (std::filesystem::exists(file, error) ? " is not a regular file" : " is missing") +
+                     "; name the file of a mesh");
   // The texts of ten million tetrahedra take half of this.
   constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 30;
   if (const std::uintmax_t bytes = std::filesystem::file_size(file, error); !error && bytes > most_bytes)
-    throw MeshError(file.string() + " has " + std::to_string(bytes) + " bytes and at most " +
-                    std::to_string(most_bytes) + " are read; give a smaller mesh");
+    throw InputError(file.string() + " has " + std::to_string(bytes) + " bytes and at most " +
+                     std::to_string(most_bytes) + " are read; give a smaller mesh");
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw MeshError(file.string() + " cannot be read; check its permissions");
+  if (!in) throw InputError(file.string() + " cannot be read; check its permissions");
   return text;
 }
 
@@ -100,7 +100,7 @@ std::int64_t TextLines::integer(std::size_t index, std::string_view what) const 
 }
 
 void TextLines::fail_at(std::size_t line, const std::string& what) const {
-  throw MeshError(file_ + ", line " + std::to_string(std::max<std::size_t>(line, 1)) + ": " + what);
+  throw InputError(file_ + ", line " + std::to_string(std::max<std::size_t>(line, 1)) + ": " + what);
 }
 
 std::string_view TextLines::word(std::size_t index, std::string_view what) const {

@@ -9,11 +9,11 @@
 
 namespace mssim {
 
-/// The whole content of a file. Throws MeshError with one sentence when it cannot be read.
+/// The whole content of a file. Throws InputError with one sentence when it cannot be read.
 std::string read_text(const std::filesystem::path& file);
 
 /// Goes through the lines of a mesh file, split into words, and turns words into numbers. Every error is a
-/// MeshError that begins "FILE, line N: ".
+/// InputError that begins "FILE, line N: ".
 class TextLines {
  public:
   /// `text` must outlive this; what follows `comment` on a line is left out, and so is a byte-order mark of

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "mesh/shape_checks.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -17,12 +17,12 @@ void require_ring(const TorusShape& torus) {
   require_cells(torus.cells_around, 4, "a torus's cells around");
   require_cells(torus.cells_across, 3, "a torus's cells across");
   if (torus.cells_around % 2 != 0)
-    throw MeshError("a torus's cells around are " + std::to_string(torus.cells_around) +
-                    ", an odd number; every other circle is turned by half a cell, so give an even one");
+    throw InputError("a torus's cells around are " + std::to_string(torus.cells_around) +
+                     ", an odd number; every other circle is turned by half a cell, so give an even one");
   if (torus.minor_radius_m >= torus.major_radius_m)
-    throw MeshError("a torus's minor radius of " + decimal(torus.minor_radius_m) +
-                    " m leaves no hole in a ring of " + decimal(torus.major_radius_m) +
-                    " m; give one less than the major radius");
+    throw InputError("a torus's minor radius of " + decimal(torus.minor_radius_m) +
+                     " m leaves no hole in a ring of " + decimal(torus.major_radius_m) +
+                     " m; give one less than the major radius");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct TorusShape {
 /// Points of the surface: cells_around x cells_across.
 std::uint64_t surface_point_count(const TorusShape& torus);
 
-/// The surface with so many points. Throws MeshError for radii that make no ring, for an
+/// The surface with so many points. Throws InputError for radii that make no ring, for an
 /// odd number of cells around, and for fewer than 4 around or 3 across.
 Surface surface_of(const TorusShape& torus);
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "platform/available_memory.h"
 #include "scene/body_shapes.h"
 #include "scene/fields/json_document.h"
 #include "scene/fields/material_fields.h"
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"
+#include "text/input_error.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -63,7 +63,7 @@ class MeshedShapes {
     MeshedShape meshed;
     try {
       meshed.mesh = mesh_of(shape, spec_.file.parent_path());
-    } catch (const MeshError& error) {
+    } catch (const InputError& error) {
       refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
     } catch (const SceneError& error) {  // of another scene whose shape it takes
       refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));

@@ -22,7 +22,7 @@ std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem:
 SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder);
 
 /// The mesh of the shape, m, wherever its origin is. `folder` is the scene file's. Throws SceneError when the
-/// shape is that of a scene that cannot be used, MeshError and MissingProgram.
+/// shape is that of a scene that cannot be used, InputError and MissingProgram.
 TetMesh mesh_of(const BodyShape& shape, const std::filesystem::path& folder);
 
 }  // namespace mssim

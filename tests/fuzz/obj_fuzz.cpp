@@ -1,14 +1,14 @@
 // Surfaces in OBJ files.
 
 #include "fuzz_checks.h"
-#include "geometry/mesh_error.h"
 #include "mesh/surface_file.h"
 #include "surface_checks.h"
+#include "text/input_error.h"
 
 namespace mssim {
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto surface = unless_refused<MeshError>([&] { return parse_obj("fuzz.obj", text_of(data, size)); });
+  const auto surface = unless_refused<InputError>([&] { return parse_obj("fuzz.obj", text_of(data, size)); });
   if (surface) check_surface(*surface);
   return 0;
 }

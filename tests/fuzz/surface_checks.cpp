@@ -9,10 +9,10 @@
 
 #include "fuzz_checks.h"
 #include "garment/body/stance_guess.h"
-#include "geometry/mesh_error.h"
 #include "geometry/openings.h"
 #include "mesh/surface_file.h"
 #include "text/decimal.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -49,16 +49,16 @@ void check_surface(const Surface& surface) {
   require(again.points == surface.points && again.triangles == surface.triangles,
           "written surfaces read back");
 
-  unless_refused<MeshError>([&] { return guess_stance(surface, {}); });
+  unless_refused<InputError>([&] { return guess_stance(surface, {}); });
   const std::size_t openings = openings_of(surface).size();
-  unless_refused<MeshError>([&] {
+  unless_refused<InputError>([&] {
     Surface filled = surface;
     require(close_openings(filled, HUGE_VAL).size() == openings, "all openings are closed");
     require(openings_of(filled).empty(), "no closed opening leaves another");
     return true;
   });
 
-  const auto closed = unless_refused<MeshError>([&] {
+  const auto closed = unless_refused<InputError>([&] {
     validate_surface(surface, "surface");
     return true;
   });

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "fuzz_checks.h"
-#include "geometry/mesh_error.h"
 #include "mesh/tetgen_files.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -33,7 +33,7 @@ void check(const TetMesh& mesh) {
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto [nodes, tetrahedra] = two_texts(text_of(data, size));
-  const auto mesh = unless_refused<MeshError>([&, node_text = nodes, ele_text = tetrahedra] {
+  const auto mesh = unless_refused<InputError>([&, node_text = nodes, ele_text = tetrahedra] {
     return parse_tetgen_files({"fuzz.node", node_text}, {"fuzz.ele", ele_text});
   });
   if (mesh) check(*mesh);

@@ -62,7 +62,7 @@ TEST(Openings, ThatAreClosedLeaveASurfaceThatEnclosesTheVolume) {
   Surface surface = open_sphere(0.95);
   const double whole = volume_of(surface_of(SphereShape{1, 12}));
   EXPECT_EQ(close_openings(surface, 1).size(), 1U);
-  EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "sphere"); }), "");
+  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "sphere"); }), "");
   EXPECT_THAT(openings_of(surface), IsEmpty());
   EXPECT_LT(volume_of(surface), whole);
   EXPECT_GT(volume_of(surface), 0.98 * whole);
@@ -92,7 +92,7 @@ TEST(Openings, AreNotSpannedByAnEdgeThatTheSurfaceHas) {
   // A roof whose short ridge would also be the shortest edge across what is open below it.
   Surface roof{{{-0.2, 0, 0}, {0.2, 0, 0}, {0, -0.3, 1}, {0, -0.3, -1}}, {{0, 2, 1}, {0, 1, 3}}};
   span_openings(roof);
-  EXPECT_EQ(mesh_error_of([&] { validate_surface(roof, "roof"); }), "");
+  EXPECT_EQ(input_error_of([&] { validate_surface(roof, "roof"); }), "");
   EXPECT_EQ(roof.triangles.size(), 4U);
 }
 
@@ -103,7 +103,7 @@ TEST(Openings, AMissingTriangleIsPutBack) {
   EXPECT_EQ(close_openings(surface, 1).front().edges(), 3U);
   EXPECT_EQ(surface.points, whole.points);
   EXPECT_NEAR(volume_of(surface), volume_of(whole), 1e-12);
-  EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "sphere"); }), "");
+  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "sphere"); }), "");
 }
 
 TEST(Openings, ThatTouchInAPointAreToldApart) {
@@ -129,7 +129,7 @@ TEST(Openings, ThatTouchInAPointAreToldApart) {
   const std::vector<Opening> openings = close_openings(cube, 2);
   ASSERT_EQ(openings.size(), 2U);
   for (const Opening& opening : openings) EXPECT_EQ(opening.edges(), 3U);
-  EXPECT_EQ(mesh_error_of([&] { validate_surface(cube, "cube"); }), "");
+  EXPECT_EQ(input_error_of([&] { validate_surface(cube, "cube"); }), "");
   EXPECT_NEAR(volume_of(cube), 1, 1e-12);
 }
 
@@ -137,7 +137,7 @@ TEST(Openings, LargeOnesAreRefusedAndNothingIsFilled) {
   Surface surface = open_sphere(0.5);
   const std::size_t before = surface.triangles.size();
   EXPECT_THAT(
-      mesh_error_of([&] { close_openings(surface, 0.2); }),
+      input_error_of([&] { close_openings(surface, 0.2); }),
       AllOf(StartsWith("the opening of "), HasSubstr(" edges around ("), HasSubstr(" is 1.7"),
             HasSubstr(" m across, and at most 0.2 m are closed; close it where the surface was made")));
   EXPECT_EQ(surface.triangles.size(), before);
@@ -151,13 +151,13 @@ TEST(Openings, TrianglesThatDisagreeMakeNoRing) {
         std::ranges::find(triangle, ring.points[1]) != triangle.end())
       std::swap(triangle[1], triangle[2]);
   EXPECT_FALSE(openings_of(surface).front().is_ring && openings_of(surface).back().is_ring);
-  EXPECT_THAT(mesh_error_of([&] { close_openings(surface, 1); }), HasSubstr("goes round no hole"));
+  EXPECT_THAT(input_error_of([&] { close_openings(surface, 1); }), HasSubstr("goes round no hole"));
 }
 
 TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {
   Surface triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   EXPECT_EQ(close_openings(triangle, 2).size(), 1U);
-  EXPECT_THAT(mesh_error_of([&] { validate_surface(triangle, "it"); }), HasSubstr("volume"));
+  EXPECT_THAT(input_error_of([&] { validate_surface(triangle, "it"); }), HasSubstr("volume"));
   Surface point{{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
   EXPECT_THAT(close_openings(point, 1), IsEmpty());
   Surface nothing;

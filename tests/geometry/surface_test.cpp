@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 std::string complaint(const Surface& surface) {
-  return mesh_error_of([&] { validate_surface(surface, "cube"); });
+  return input_error_of([&] { validate_surface(surface, "cube"); });
 }
 
 TEST(Surface, ClosedSurfacesAreAccepted) {
@@ -101,7 +101,7 @@ TEST(Surface, CoordinatesAreWholeMicrometres) {
 }
 
 TEST(Surface, ShapesThatCannotBeAreRefused) {
-  const auto complaint_about = [](const auto& shape) { return mesh_error_of([&] { surface_of(shape); }); };
+  const auto complaint_about = [](const auto& shape) { return input_error_of([&] { surface_of(shape); }); };
   EXPECT_THAT(complaint_about(BoxShape{{1, 0, 1}, {1, 1, 1}}),
               HasSubstr("size along y is 0 m; give a length"));
   EXPECT_THAT(complaint_about(BoxShape{{1, 1, std::nan("")}, {1, 1, 1}}), HasSubstr("size along z is nan m"));
@@ -136,7 +136,7 @@ TEST(InteriorPoints, FollowFromTheSeedAlone) {
 
 TEST(InteriorPoints, ParametersOutOfRangeAreRefused) {
   const auto complaint_about = [](const InteriorPoints& interior) {
-    return mesh_error_of([&] { points_of(BoxShape{{1, 1, 1}, {2, 2, 2}}, interior); });
+    return input_error_of([&] { points_of(BoxShape{{1, 1, 1}, {2, 2, 2}}, interior); });
   };
   EXPECT_THAT(complaint_about({2000000, 1, 0, 0.5}), HasSubstr("count of interior points is 2000000"));
   EXPECT_THAT(complaint_about({10, 1, 0.6, 0.5}), HasSubstr("jitter of interior points is 0.6"));

@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(HongEtAl, TableTwoBody, testing::ValuesIn(bodies),
 
 TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
   const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {
-    return mesh_error_of([&] { shape_mesh(shape, interior); });
+    return input_error_of([&] { shape_mesh(shape, interior); });
   };
   EXPECT_THAT(
       complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),

@@ -26,7 +26,7 @@ TEST(ObjFile, PointsAndTrianglesAreRead) {
   const Surface surface = parse_obj("a.obj", obj_tetrahedron);
   EXPECT_EQ(surface.points.size(), 4U);
   EXPECT_NEAR(volume_of(surface), 1.0 / 6, 1e-15);
-  EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "a.obj"); }), "");
+  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "a.obj"); }), "");
 }
 
 TEST(ObjFile, AllFormsOfCornersAndLinesAreRead) {
@@ -54,9 +54,9 @@ TEST(ObjFile, LinesThatAreNoGeometryAreLeftOut) {
 TEST(ObjFile, AByteOrderMarkIsLeftOut) {
   const std::string mark = "\xef\xbb\xbf";
   EXPECT_EQ(parse_obj("a.obj", mark + obj_tetrahedron).triangles.size(), 4U);
-  EXPECT_THAT(mesh_error_of([&] { parse_obj("a.obj", mark + "v 0 0 o\n"); }),
+  EXPECT_THAT(input_error_of([&] { parse_obj("a.obj", mark + "v 0 0 o\n"); }),
               StartsWith("a.obj, line 1: z is \"o\""));
-  EXPECT_THAT(mesh_error_of([&] { parse_obj("a.obj", obj_points + "f 1 2 " + mark + "3\n"); }),
+  EXPECT_THAT(input_error_of([&] { parse_obj("a.obj", obj_points + "f 1 2 " + mark + "3\n"); }),
               HasSubstr("cannot be read"))
       << "elsewhere it is no mark";
 }
@@ -77,7 +77,7 @@ void PrintTo(const BrokenText& file, std::ostream* out) { *out << file.about; }
 class BrokenObjFile : public testing::TestWithParam<BrokenText> {};
 
 TEST_P(BrokenObjFile, IsRefusedWithPlaceAndValue) {
-  const std::string message = mesh_error_of([] { parse_obj("a.obj", GetParam().text); });
+  const std::string message = input_error_of([] { parse_obj("a.obj", GetParam().text); });
   EXPECT_THAT(message, AllOf(StartsWith(GetParam().begin), HasSubstr(GetParam().about)));
   EXPECT_EQ(message.find('\n'), std::string::npos);
 }
@@ -153,7 +153,7 @@ TEST(StlFile, AsciiAndBinaryGiveTheSameSurface) {
     const Surface surface = parse_stl("a.stl", content);
     EXPECT_EQ(surface.points.size(), 4U);
     EXPECT_NEAR(volume_of(surface), 1.0 / 6, 1e-15);
-    EXPECT_EQ(mesh_error_of([&] { validate_surface(surface, "a.stl"); }), "");
+    EXPECT_EQ(input_error_of([&] { validate_surface(surface, "a.stl"); }), "");
   }
 }
 
@@ -173,13 +173,13 @@ TEST(StlFile, AByteOrderMarkIsLeftOut) {
 TEST(StlFile, CutOffAnywhereIsRefused) {
   for (const std::string& content : {ascii_stl(), binary_stl()})
     for (std::size_t bytes = 0; bytes + sizeof "endsolid a" < content.size(); bytes += 7)
-      EXPECT_THAT(mesh_error_of([&] { parse_stl("a.stl", content.substr(0, bytes)); }), StartsWith("a.stl"))
+      EXPECT_THAT(input_error_of([&] { parse_stl("a.stl", content.substr(0, bytes)); }), StartsWith("a.stl"))
           << bytes << " bytes";
 }
 
 TEST(StlFile, BrokenBinaryNamesTheByte) {
   const auto complaint = [](const std::string& content) {
-    return mesh_error_of([&] { parse_stl("a.stl", content); });
+    return input_error_of([&] { parse_stl("a.stl", content); });
   };
   EXPECT_THAT(complaint(binary_stl(NAN)), StartsWith("a.stl, byte 96: a corner is at (nan, 0, 0)"));
   EXPECT_THAT(complaint(binary_stl(-2e9F)), HasSubstr("for each axis give a number from -1e9 to 1e9"));
@@ -196,7 +196,7 @@ TEST(StlFile, BrokenBinaryNamesTheByte) {
 class BrokenStlFile : public testing::TestWithParam<BrokenText> {};
 
 TEST_P(BrokenStlFile, IsRefusedWithPlaceAndValue) {
-  const std::string message = mesh_error_of([] { parse_stl("a.stl", GetParam().text); });
+  const std::string message = input_error_of([] { parse_stl("a.stl", GetParam().text); });
   EXPECT_THAT(message, AllOf(StartsWith(GetParam().begin), HasSubstr(GetParam().about)));
 }
 
@@ -218,9 +218,9 @@ TEST_F(SurfaceFile, IsReadByItsExtension) {
   put("a.ply", "");
   EXPECT_EQ(read_surface(folder() / "a.OBJ").triangles.size(), 4U);
   EXPECT_EQ(read_surface(folder() / "a.stl").triangles.size(), 4U);
-  EXPECT_THAT(mesh_error_of([&] { read_surface(folder() / "a.ply"); }),
+  EXPECT_THAT(input_error_of([&] { read_surface(folder() / "a.ply"); }),
               HasSubstr("ends in neither .obj nor .stl"));
-  EXPECT_THAT(mesh_error_of([&] { read_surface(folder() / "b.obj"); }), HasSubstr("b.obj is missing"));
+  EXPECT_THAT(input_error_of([&] { read_surface(folder() / "b.obj"); }), HasSubstr("b.obj is missing"));
 }
 
 TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {
@@ -235,11 +235,11 @@ TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {
 
 TEST_F(SurfaceFile, ThatEnclosesNoBodyIsNamed) {
   put("open.obj", obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
-  EXPECT_THAT(mesh_error_of([&] { surface_mesh({folder() / "open.obj"}); }),
+  EXPECT_THAT(input_error_of([&] { surface_mesh({folder() / "open.obj"}); }),
               HasSubstr("open.obj: the edge from "));
   put("a.obj", obj_tetrahedron);
   const auto complaint = [&](double unit_m, double largest_volume_m3) {
-    return mesh_error_of([&] { surface_mesh({folder() / "a.obj", unit_m, largest_volume_m3}); });
+    return input_error_of([&] { surface_mesh({folder() / "a.obj", unit_m, largest_volume_m3}); });
   };
   EXPECT_THAT(complaint(0, 0), HasSubstr("a unit of the file is 0 m"));
   EXPECT_THAT(complaint(1, -1), HasSubstr("largest volume of a tetrahedron is -1 m^3"));

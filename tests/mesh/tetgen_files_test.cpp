@@ -61,7 +61,7 @@ class BrokenTetgenFile : public testing::TestWithParam<BrokenFile> {};
 
 TEST_P(BrokenTetgenFile, IsRefusedWithPlaceAndValue) {
   const BrokenFile& file = GetParam();
-  const std::string message = mesh_error_of([&] {
+  const std::string message = input_error_of([&] {
     parse(file.nodes ? file.nodes : good_nodes, file.tetrahedra ? file.tetrahedra : good_tetrahedra);
   });
   EXPECT_THAT(message, AllOf(StartsWith(file.begin), HasSubstr(file.about)));
@@ -127,14 +127,14 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(TetgenFiles, OfOneEndlessLineAreRefusedBeforeItIsSplitIntoWords) {
   std::string words = "5 3 0 0\n0";
   while (words.size() <= 9 + (std::size_t{1} << 20)) words += " 1";
-  EXPECT_THAT(mesh_error_of([&] { parse(words, good_tetrahedra); }),
+  EXPECT_THAT(input_error_of([&] { parse(words, good_tetrahedra); }),
               AllOf(StartsWith("a.node, line 2: it has "), HasSubstr("break the file into lines")));
 }
 
 TEST_F(MeshTest, TetgenFilesThatAreMissingOrFoldersAreNamed) {
   put("a.node", good_nodes);
   const auto complaint = [&](const std::string& ele) {
-    return mesh_error_of([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
+    return input_error_of([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
   };
   EXPECT_THAT(complaint("b.ele"), HasSubstr("b.ele is missing"));
   std::filesystem::create_directory(folder() / "c.ele");

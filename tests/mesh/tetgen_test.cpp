@@ -12,6 +12,7 @@
 #include "mesh/tetrahedralise.h"
 #include "platform/child_process.h"
 #include "platform/interruption.h"
+#include "platform/missing_program.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {
@@ -78,7 +79,7 @@ TEST_F(TetgenTest, SaysWhichItIs) {
 }
 
 std::string complaint_about(const Surface& surface) {
-  return mesh_error_of([&] {
+  return input_error_of([&] {
     validate_surface(surface, "surface");
     tetrahedralise(surface, {}, keep_surface);
   });

@@ -59,7 +59,7 @@ output/folders        text platform bench/machine bench/results output/tables ga
 commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting garment/scene scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders
 commands/run          platform model scene garment/scene garment/stepping garment/fitting backends/spring_list backends bench/verification output/tables output/traces commands/shared
 commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/shared
-commands/list         text geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/shared commands/bench
+commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/shared commands/bench
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/shared commands/bench
 commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/shared commands/run commands/bench
 commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/shared

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/mesh_error.h"
 #include "mesh/box_shape.h"
 #include "tests/support/temporary_folder.h"
+#include "text/input_error.h"
 
 namespace mssim {
 
@@ -46,11 +46,11 @@ class MeshTest : public TemporaryFolderTest {
   std::vector<std::optional<std::string>> before_;
 };
 
-/// What a MeshError that `body` throws says, or "" when it throws none.
-inline std::string mesh_error_of(const std::function<void()>& body) {
+/// What a InputError that `body` throws says, or "" when it throws none.
+inline std::string input_error_of(const std::function<void()>& body) {
   try {
     body();
-  } catch (const MeshError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";

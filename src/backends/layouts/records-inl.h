@@ -12,10 +12,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-struct NodeLanes {
-  Lanes3 x, v;
-};
-
 #if HWY_TARGET == HWY_SCALAR
 
 /// The nodes whose records lie at record(0), record(1) ..., one a lane.

@@ -86,10 +86,6 @@ struct RowConstants {
                            hn::Set(IndexTag(), static_cast<std::uint32_t>(sheet.layout.height)))) {}
 };
 
-struct NodeLanes {
-  Lanes3 x, v;
-};
-
 /// Forces that wait for the rows below while the walk goes down.
 struct Carry {
   Lanes3 below;        ///< on the next row of this column

@@ -61,6 +61,10 @@ HWY_INLINE Mask below(Index index, std::uint32_t limit) {
 struct Lanes3 {
   Lanes x, y, z;
 };
+/// Positions (m) and velocities (m/s), of one node a lane.
+struct NodeLanes {
+  Lanes3 x, v;
+};
 HWY_INLINE Lanes3 load3(const float* from) {
   const std::size_t n = lane_count();
   return {hn::Load(FloatTag(), from), hn::Load(FloatTag(), from + n), hn::Load(FloatTag(), from + 2 * n)};

@@ -9,7 +9,7 @@
 
 #include "backends/interface/backend.h"
 #include "commands/shared/exit_code.h"
-#include "geometry/mesh_error.h"
+#include "platform/missing_program.h"
 #include "text/joined.h"
 
 namespace mssim {

@@ -16,13 +16,13 @@
 #include "garment/body/stance_guess.h"
 #include "garment/pattern/jeans_for_body.h"
 #include "garment/scene/garment_body.h"
-#include "geometry/mesh_error.h"
 #include "mesh/surface_file.h"
 #include "mesh/text_lines.h"
 #include "platform/atomic_file.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
+#include "text/input_error.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -87,7 +87,7 @@ void tell_of_ignored_parts(const BodyProfile& profile) {
   if (!ignored.empty()) std::cerr << "mssim: " << ignored << '\n';
 }
 
-/// Measures the body of a file, printing what is found as far as it goes. Throws MeshError.
+/// Measures the body of a file, printing what is found as far as it goes. Throws InputError.
 MeasuredFile measure_file(const MeasureOptions& options) {
   Surface surface = read_surface(options.body);
   const StanceGuess guess = guess_stance(surface, {unit_given(options.unit), options.up, options.facing});
@@ -105,17 +105,17 @@ MeasuredFile measure_file(const MeasureOptions& options) {
     }
     listing.add_openings(openings, options.close_holes ? "closed" : "open");
     if (!openings.empty() && !options.close_holes)
-      throw MeshError(openings.size() == 1
-                          ? "it is open at 1 place: close it where it was made, or give --close-holes"
-                          : "it is open at " + std::to_string(openings.size()) +
-                                " places: close them where it was made, or give --close-holes");
+      throw InputError(openings.size() == 1
+                           ? "it is open at 1 place: close it where it was made, or give --close-holes"
+                           : "it is open at " + std::to_string(openings.size()) +
+                                 " places: close them where it was made, or give --close-holes");
     BodyProfile profile(surface, options.body);
     tell_of_ignored_parts(profile);
     const BodyLandmarks landmarks = find_landmarks(profile);
     listing.add_measures(profile, landmarks);
     tell(options, listing);
     return {body, std::move(profile), landmarks};
-  } catch (const MeshError&) {
+  } catch (const InputError&) {
     tell(options, listing);
     throw;
   }
@@ -172,7 +172,7 @@ int run_measure(const MeasureOptions& options) {
     if (!options.scene.empty()) require_free(options);
     MeasuredFile found = measure_file(options);
     return options.scene.empty() ? exit_ok : write_scene(options, std::move(found));
-  } catch (const MeshError& error) {
+  } catch (const InputError& error) {
     throw UsageError(printable(options.body, 1000) + " cannot be measured: " + printable(error.what(), 1500));
   }
 }

@@ -7,7 +7,7 @@
 
 #include "garment/body/ellipse_tube.h"
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -19,7 +19,7 @@ struct NamedGirth {
 
 [[noreturn]] void fail(std::string_view measure, double value, std::string_view unit,
                        const std::string& rest) {
-  throw MeshError("the body's " + std::string(measure) + " is " + shown(value) + std::string(unit) + rest);
+  throw InputError("the body's " + std::string(measure) + " is " + shown(value) + std::string(unit) + rest);
 }
 
 void require_between(std::string_view measure, double value, std::string_view unit, double least,

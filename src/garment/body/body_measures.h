@@ -28,8 +28,8 @@ struct BodyMeasures {
   bool operator==(const BodyMeasures&) const = default;
 };
 
-/// Throws MeshError that names measure, value and remedy unless the measures make a body: every number in its
-/// range, the heights in their order and a little apart, thighs not much wider than the hip.
+/// Throws InputError that names measure, value and remedy unless the measures make a body: every number in
+/// its range, the heights in their order and a little apart, thighs not much wider than the hip.
 void check_measures(const BodyMeasures& measures);
 
 /// Depth over width of a thigh: no measure, but what its width follows from.

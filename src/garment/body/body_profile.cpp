@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -112,24 +112,24 @@ std::optional<double> BodyProfile::find_crotch() const {
 
 double BodyProfile::crotch_height() const {
   if (!crotch_)
-    throw MeshError(name_ +
-                    ": its section never falls apart into a left and a right leg at x = 0; give a body that "
-                    "stands upright in y, looks to +z and has a leg on either side of x = 0");
+    throw InputError(name_ +
+                     ": its section never falls apart into a left and a right leg at x = 0; give a body that "
+                     "stands upright in y, looks to +z and has a leg on either side of x = 0");
   return *crotch_;
 }
 
 std::vector<PlanPoint> BodyProfile::section(double y) const {
   if (!(y >= lowest_ && y <= highest_))
-    throw MeshError(name_ + ": there is no section at the height " + shown(y) + " m; give a height from " +
-                    shown(lowest_) + " to " + shown(highest_) + " m");
+    throw InputError(name_ + ": there is no section at the height " + shown(y) + " m; give a height from " +
+                     shown(lowest_) + " to " + shown(highest_) + " m");
   std::vector<PlanPoint> points;
   for (const std::uint32_t t : slices_[slice_of(y)])
     cut(corners_of(body_.surface, t), &Vec3d::y, y, [&](const Vec3d& point) {
       points.push_back({point.x, point.z});
     });
   if (points.empty())
-    throw MeshError(name_ + ": there is a gap between its parts at the height " + shown(y) +
-                    " m; give a height at which there is a part");
+    throw InputError(name_ + ": there is a gap between its parts at the height " + shown(y) +
+                     " m; give a height at which there is a part");
   return points;
 }
 
@@ -138,14 +138,14 @@ double BodyProfile::hull_girth(double y) const { return hull_perimeter(section(y
 std::vector<PlanPoint> BodyProfile::leg_section(double y, int side) const {
   for (const Interval& joined : middle_)
     if (y >= joined.low && y <= joined.high)
-      throw MeshError(name_ + ": its legs are not apart at x = 0 at the height " + shown(y) +
-                      " m; give a height outside " + shown(joined.low) + " to " + shown(joined.high) + " m");
+      throw InputError(name_ + ": its legs are not apart at x = 0 at the height " + shown(y) +
+                       " m; give a height outside " + shown(joined.low) + " to " + shown(joined.high) + " m");
   std::vector<PlanPoint> points = section(y);
   const double sign = side < 0 ? -1 : 1;
   std::erase_if(points, [&](const PlanPoint& point) { return sign * point.x <= 0; });
   if (points.empty())
-    throw MeshError(name_ + ": there is no leg at x " + (side < 0 ? "< 0" : "> 0") + " at the height " +
-                    shown(y) + " m; give a height that this leg reaches");
+    throw InputError(name_ + ": there is no leg at x " + (side < 0 ? "< 0" : "> 0") + " at the height " +
+                     shown(y) + " m; give a height that this leg reaches");
   return points;
 }
 

@@ -17,7 +17,7 @@ namespace mssim {
 /// plane belongs to it.
 class BodyProfile {
  public:
-  /// `name` begins what errors say. Throws MeshError for a surface that is not closed (validate_surface).
+  /// `name` begins what errors say. Throws InputError for a surface that is not closed (validate_surface).
   explicit BodyProfile(const Surface& surface, std::string name = "body");
 
   /// What is measured, and what garments meet.
@@ -28,15 +28,15 @@ class BodyProfile {
   /// Does the section fall apart into two legs below?
   bool has_legs() const { return crotch_.has_value(); }
   /// The height, m, below which the section falls apart into two legs: where the surface's cut with the plane
-  /// x = 0 ends below. Throws MeshError for a surface that does not part there into a left and a right leg.
+  /// x = 0 ends below. Throws InputError for a surface that does not part there into a left and a right leg.
   double crotch_height() const;
 
-  // All of these throw MeshError for a height y, m, at which there is no body.
+  // All of these throw InputError for a height y, m, at which there is no body.
 
   /// The perimeter of the section's convex hull, m: what a tape says.
   double hull_girth(double y) const;
   /// The same of one leg: of the section's part at x < 0 for a negative `side`, else at x > 0. Throws
-  /// MeshError where the section reaches x = 0, as it does above the crotch, and where there is no such leg.
+  /// InputError where the section reaches x = 0, as it does above the crotch, and where there is no such leg.
   double leg_girth(double y, int side) const;
   /// The middle of the leg at x > 0, half way between the outermost points of its section; above the crotch
   /// that of the leg just below it.

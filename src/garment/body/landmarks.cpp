@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -42,7 +42,7 @@ Landmark extreme(const Girth& girth, const Search& search, double crotch, double
 std::optional<double> thicker_leg(const BodyProfile& profile, double y) {
   try {
     return std::max(profile.leg_girth(y, -1), profile.leg_girth(y, 1));
-  } catch (const MeshError&) {
+  } catch (const InputError&) {
     return std::nullopt;
   }
 }

@@ -24,7 +24,7 @@ struct BodyLandmarks {
   Landmark ankle;            ///< the smallest girth between foot and calf
 };
 
-/// Finds them on a body that stands on y = 0. Throws MeshError for one without legs (BodyProfile).
+/// Finds them on a body that stands on y = 0. Throws InputError for one without legs (BodyProfile).
 BodyLandmarks find_landmarks(const BodyProfile& profile);
 
 /// The girth of the thicker leg at a height, m; none where the legs are not apart or one does not reach.

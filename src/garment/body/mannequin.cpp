@@ -7,7 +7,7 @@
 
 #include "garment/body/ellipse_tube.h"
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -139,10 +139,10 @@ class Figure {
       if (share > 0)
         needed = std::max(needed, 2 * (least + section.half_width() - (1 - share) * thigh_axis_) / share);
     }
-    throw MeshError("the body's stance is " + shown(m_.stance) +
-                    " m, and its legs would touch at the height " + shown(nearest->height) +
-                    " m; give a stance of at least " + shown(std::ceil(needed * 1000) / 1000) +
-                    " m or thinner legs");
+    throw InputError("the body's stance is " + shown(m_.stance) +
+                     " m, and its legs would touch at the height " + shown(nearest->height) +
+                     " m; give a stance of at least " + shown(std::ceil(needed * 1000) / 1000) +
+                     " m or thinner legs");
   }
 
   BodyMeasures m_;
@@ -165,8 +165,8 @@ std::vector<EllipseSection> mirrored(std::vector<EllipseSection> sections) {
 Surface mannequin(const BodyMeasures& measures, const MannequinResolution& resolution) {
   const std::uint32_t around = resolution.cells_around;
   if (around < 16 || around > 512 || around % 4 != 0)
-    throw MeshError("the points around a mannequin are " + std::to_string(around) +
-                    "; give a multiple of four from 16 to 512");
+    throw InputError("the points around a mannequin are " + std::to_string(around) +
+                     "; give a multiple of four from 16 to 512");
   const Figure figure(measures);
   const double cell = measures.hip.girth / around;
   const std::uint32_t around_leg = 4 * ((around + 3) / 6);

@@ -19,7 +19,7 @@ struct MannequinResolution {
 /// A dress form with legs and feet: a torso and two legs, each a closed tube of elliptic sections that is
 /// monotone between them; the legs' tops end inside the torso. The girths are the measures' at their heights,
 /// whatever the resolution; from the hip upwards the torso is the whole section. The thighs meet nowhere:
-/// below the crotch's height the body is two legs. Throws MeshError that names measure, value and remedy for
+/// below the crotch's height the body is two legs. Throws InputError that names measure, value and remedy for
 /// measures that make no body (check_measures), for legs that would touch, and for points around that are not
 /// a multiple of four from 16 to 512.
 Surface mannequin(const BodyMeasures& measures, const MannequinResolution& resolution = {});

@@ -9,7 +9,7 @@
 #include "garment/body/length_unit.h"
 #include "geometry/box.h"
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -57,8 +57,9 @@ std::vector<UpAxis> possible_axes(const Surface& body, const GivenStance& given)
   for (const UpAxis up : {UpAxis::y, UpAxis::z})
     if (dot(size, direction_of(up)) >= least) axes.push_back(up);
   if (axes.empty())
-    throw MeshError("it is " + shown(size.x) + " long in x, " + shown(size.y) + " in y and " + shown(size.z) +
-                    " in z, so that it stands upright neither in y nor in z; turn it in the file");
+    throw InputError("it is " + shown(size.x) + " long in x, " + shown(size.y) + " in y and " +
+                     shown(size.z) +
+                     " in z, so that it stands upright neither in y nor in z; turn it in the file");
   return axes;
 }
 
@@ -67,9 +68,9 @@ std::vector<Candidate> candidates(const Surface& body, const GivenStance& given)
   for (const UpAxis up : possible_axes(body, given)) {
     if (given.facing) {
       if (!is_level(*given.facing, up))
-        throw MeshError("it cannot look along " +
-                        std::string(up_axis_names.at(static_cast<std::size_t>(up))) +
-                        ", which is its upright axis; give another facing");
+        throw InputError("it cannot look along " +
+                         std::string(up_axis_names.at(static_cast<std::size_t>(up))) +
+                         ", which is its upright axis; give another facing");
       all.emplace_back(body, up, *given.facing);
       continue;
     }
@@ -158,8 +159,8 @@ double unit_of(double height, const GivenStance& given, std::vector<std::string>
   }
   const auto guess = guess_unit(height);
   if (!guess)
-    throw MeshError("it is " + shown(height) + " high, which is a person of " + shown(shortest_person) +
-                    " to " + shown(tallest_person) + " m in no unit; give the unit with --unit");
+    throw InputError("it is " + shown(height) + " high, which is a person of " + shown(shortest_person) +
+                     " to " + shown(tallest_person) + " m in no unit; give the unit with --unit");
   if (!guess->certain)
     doubts.push_back("unit: in " + std::string(guess->unit.name) + " the body is " +
                      metres(guess->unit.metres) + " high, which is nearest to a person of " +

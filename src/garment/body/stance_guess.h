@@ -26,7 +26,7 @@ struct StanceGuess {
 /// is that in which it is a person's height. Its legs, which stand side by side below, tell the upright axis
 /// and the sideways one, and its toes where it looks. Legs that stand askew have it turned in whole degrees.
 /// It is moved so that the gap between its legs is at x = 0, its feet stand on y = 0 and its middle in depth
-/// is z = 0, to a tenth of a millimetre. Throws MeshError, which says what to give, for a body that is a
+/// is z = 0, to a tenth of a millimetre. Throws InputError, which says what to give, for a body that is a
 /// person in no unit, for one that lies, and for a facing that is given along the upright axis.
 StanceGuess guess_stance(const Surface& body, const GivenStance& given);
 

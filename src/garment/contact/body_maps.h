@@ -54,7 +54,7 @@ std::uint64_t body_maps_bytes(const Surface& surface, const BodyMapSettings& set
 /// Immutable: threads may ask it at the same time.
 class BodyMaps {
  public:
-  /// Throws MeshError unless validate_surface accepts the surface, and like body_maps_bytes.
+  /// Throws InputError unless validate_surface accepts the surface, and like body_maps_bytes.
   explicit BodyMaps(const Surface& surface, const BodyMapSettings& settings = {});
 
   const BodyFrame& frame() const { return frame_; }

@@ -22,7 +22,7 @@ namespace mssim {
 /// Immutable: threads may ask it at the same time.
 class Solid {
  public:
-  /// Throws MeshError, which begins with `name`, unless validate_surface accepts the surface.
+  /// Throws InputError, which begins with `name`, unless validate_surface accepts the surface.
   explicit Solid(const Surface& surface, std::string_view name = "the body");
 
   /// How deep the point (m) lies inside, m: 0 outside all parts, inside one part the distance from that

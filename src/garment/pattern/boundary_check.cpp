@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -23,9 +23,9 @@ struct Segment {
 void require_corner(const PatternPiece& piece, std::string_view corner, const Vec3d& a,
                     std::string_view edge_a, const Vec3d& b, std::string_view edge_b) {
   if (length(a - b) <= corner_tolerance) return;
-  throw MeshError(piece.name + ": at the " + std::string(corner) + " corner the " + std::string(edge_a) +
-                  " boundary ends at " + place(a) + " and the " + std::string(edge_b) + " one at " +
-                  place(b) + "; let them meet to a tenth of a millimetre");
+  throw InputError(piece.name + ": at the " + std::string(corner) + " corner the " + std::string(edge_a) +
+                   " boundary ends at " + place(a) + " and the " + std::string(edge_b) + " one at " +
+                   place(b) + "; let them meet to a tenth of a millimetre");
 }
 
 /// The outline, counter-clockwise. At the corners, where the curves meet only nearly, it takes the first

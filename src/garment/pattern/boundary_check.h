@@ -4,7 +4,7 @@
 
 namespace mssim {
 
-/// Throws MeshError, which names panel, place and remedy, unless the corners of the piece meet to a tenth of
+/// Throws InputError, which names panel, place and remedy, unless the corners of the piece meet to a tenth of
 /// a millimetre and its boundaries neither cross nor touch each other or themselves elsewhere.
 void require_simple_boundary(const PatternPiece& piece);
 

@@ -4,31 +4,33 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "text/counted.h"
+#include "text/input_error.h"
 
 namespace mssim {
 
 Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
   if (points_.size() < 2)
-    throw MeshError("a boundary curve has " + counted(points_.size(), "point") + "; give two or more points");
+    throw InputError("a boundary curve has " + counted(points_.size(), "point") +
+                     "; give two or more points");
   arcs_.reserve(points_.size());
   const auto point = [this](std::size_t i) {
     return "point " + std::to_string(i) + " of a boundary curve, " + place(points_[i]) + ",";
   };
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!is_finite(points_[i]) || points_[i].z != 0)
-      throw MeshError(point(i) + " does not lie in the plane of the pattern; give finite x and y, and z = 0");
+      throw InputError(point(i) +
+                       " does not lie in the plane of the pattern; give finite x and y, and z = 0");
     if (i > 0 && points_[i] == points_[i - 1])
-      throw MeshError(point(i) + " is the same as the one before it; leave one of them out");
+      throw InputError(point(i) + " is the same as the one before it; leave one of them out");
     arcs_.push_back(i == 0 ? 0 : arcs_.back() + mssim::length(points_[i] - points_[i - 1]));
   }
 }
 
 Curve Curve::bezier(std::span<const Vec3d> points) {
   if (points.size() < 4 || points.size() % 3 != 1)
-    throw MeshError("a chain of cubic Bezier segments has " + counted(points.size(), "point") +
-                    "; give 4, 7, 10 or another 3 n + 1 points");
+    throw InputError("a chain of cubic Bezier segments has " + counted(points.size(), "point") +
+                     "; give 4, 7, 10 or another 3 n + 1 points");
   std::vector<Vec3d> polyline{points.front()};
   polyline.reserve(points.size() / 3 * chords + 1);
   for (std::size_t p = 0; p + 3 < points.size(); p += 3)
@@ -56,8 +58,8 @@ Vec3d Curve::at(double fraction) const {
 
 std::pair<Curve, Curve> Curve::split(double fraction) const {
   if (!(fraction > 0 && fraction < 1))
-    throw MeshError("a boundary curve is to be split at " + shown(fraction) +
-                    " of its length; give a fraction between 0 and 1");
+    throw InputError("a boundary curve is to be split at " + shown(fraction) +
+                     " of its length; give a fraction between 0 and 1");
   const Vec3d cut = at(fraction);
   const auto after = points_.begin() + static_cast<std::ptrdiff_t>(point_after(fraction * length()));
   std::vector<Vec3d> before(points_.begin(), after), rest(after, points_.end());

@@ -14,11 +14,11 @@ class Curve {
   /// Chords of one Bezier segment. One that turns by a right angle comes out shorter by 6e-6 of its length.
   static constexpr std::size_t chords = 128;
 
-  /// Throws MeshError unless there are two points or more, all finite, with z = 0, each apart from the next.
+  /// Throws InputError unless there are two points or more, all finite, with z = 0, each apart from the next.
   explicit Curve(std::vector<Vec3d> points);
 
   /// A chain of cubic Bezier segments: end point, two control points, end point, two control points, ..., end
-  /// point, as a polyline of `chords` chords each. Throws MeshError unless there are 3 n + 1 points with n >
+  /// point, as a polyline of `chords` chords each. Throws InputError unless there are 3 n + 1 points with n >
   /// 0.
   static Curve bezier(std::span<const Vec3d> points);
 

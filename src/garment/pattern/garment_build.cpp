@@ -27,7 +27,7 @@ void add_panel(const PatternPanel& panel, const BodyDepth& body, Workshop& works
   Garment& garment = build.garment;
   const std::string& name = panel.piece.name;
   for (const GarmentPanel& other : garment.panels)
-    if (other.name == name) throw MeshError(name + ": two panels have this name; rename one of them");
+    if (other.name == name) throw InputError(name + ": two panels have this name; rename one of them");
   require_cloth(name, panel.cloth);
   const PanelMesh& mesh = workshop.meshes.emplace_back(mesh_panel(panel.piece, panel.grid));
   garment.panels.push_back(
@@ -53,7 +53,7 @@ void add_each(const Parts& parts, PatternError::Part kind, const Add& add) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     try {
       add(parts[i]);
-    } catch (const MeshError& error) {
+    } catch (const InputError& error) {
       throw PatternError(error, kind, i);
     }
   }

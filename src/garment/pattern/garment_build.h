@@ -9,8 +9,8 @@
 #include "garment/pattern/panel_springs.h"
 #include "garment/pattern/placement.h"
 #include "garment/pattern/seams.h"
-#include "geometry/mesh_error.h"
 #include "model/spring.h"
+#include "text/input_error.h"
 
 namespace mssim {
 
@@ -40,10 +40,10 @@ struct GarmentBuild {
 };
 
 /// Thrown for a panel or a seam of a pattern that cannot be used. what() begins with its name.
-struct PatternError : MeshError {
+struct PatternError : InputError {
   enum class Part { panel, seam };
-  PatternError(const MeshError& error, Part part_, std::size_t index_)
-      : MeshError(error),
+  PatternError(const InputError& error, Part part_, std::size_t index_)
+      : InputError(error),
         part(part_),
         index(index_),
         folded(dynamic_cast<const FoldedPiece*>(&error) != nullptr) {}

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -66,8 +66,8 @@ PatternPiece piece_of(const std::string& name, const JeansOutline& outline, bool
 
 JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes) {
   if (nodes < 300 || nodes > 10'000'000)
-    throw MeshError("jeans: they are to have " + std::to_string(nodes) +
-                    " nodes; give a number from 300 to 10000000");
+    throw InputError("jeans: they are to have " + std::to_string(nodes) +
+                     " nodes; give a number from 300 to 10000000");
   const double height = 0.5 * (mean_height(draft.front) + mean_height(draft.back));
   const double front_width = area_of(draft.front) / height, back_width = area_of(draft.back) / height;
   const double inner_share = 0.5 * (crotch_fraction(draft.front) + facing_fraction(draft.front));

@@ -18,7 +18,7 @@ struct JeansGrid {
   std::uint32_t nodes() const { return 2 * rows * (front_columns + back_columns); }
 };
 
-/// Cells about square, and the number of nodes within 3 % of the wanted one. Throws MeshError for less than
+/// Cells about square, and the number of nodes within 3 % of the wanted one. Throws InputError for less than
 /// 300 or more than 10 million nodes.
 JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes);
 
@@ -27,7 +27,7 @@ using LegAxis = std::function<double(double)>;
 
 /// Jeans of four panels ("front left", "back left", "front right", "back right", by the wearer's sides) and
 /// six seams ("outer left", "outer right", "inner left", "inner right", "centre front", "centre back"), of
-/// `cloth`, with about as many nodes as wanted. The wearer looks to +z, its left is +x. Throws MeshError as
+/// `cloth`, with about as many nodes as wanted. The wearer looks to +z, its left is +x. Throws InputError as
 /// draft_jeans and jeans_grid do.
 GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelCloth& cloth,
                              const LegAxis& leg_axis);

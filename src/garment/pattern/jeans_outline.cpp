@@ -6,7 +6,7 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -98,8 +98,8 @@ class Drafting {
     const double ease = (1 - share) * m_.hip_ease + share * m_.waist_ease;
     const double girth = m_.girth(y);
     if (!(girth > 0.2 && girth < 5))
-      throw MeshError("jeans: the body's girth at the height " + shown(y) + " m is " + shown(girth) +
-                      " m; give a body that has one from 0.2 to 5 m there");
+      throw InputError("jeans: the body's girth at the height " + shown(y) + " m is " + shown(girth) +
+                       " m; give a body that has one from 0.2 to 5 m there");
     return 0.25 * (girth + 2 * std::numbers::pi * m_.body_offset + ease) + half_.width;
   }
 
@@ -173,12 +173,12 @@ class Drafting {
 
 void require_between(double value, double least, double most, const std::string& what) {
   if (!(value >= least && value <= most))
-    throw MeshError("jeans: " + what + " is " + shown(value) + " m; give a length from " + shown(least) +
-                    " to " + shown(most) + " m");
+    throw InputError("jeans: " + what + " is " + shown(value) + " m; give a length from " + shown(least) +
+                     " to " + shown(most) + " m");
 }
 
 void require_measures(const JeansMeasures& m) {
-  if (!m.girth) throw MeshError("jeans: the body's girth is missing; give it as a function of the height");
+  if (!m.girth) throw InputError("jeans: the body's girth is missing; give it as a function of the height");
   require_between(m.hem_height, 0, 2, "the hem's height, hem_height_m,");
   const double least = 0.03;  // between two of the heights
   require_between(m.knee_height, m.hem_height + least, 2,
@@ -208,7 +208,7 @@ JeansDraft draft_jeans(const JeansMeasures& measures) {
   double least = -0.03, most = 0.08;  // m: the back inseam shrinks from the one to the other
   const auto back_inseam = [&](double drop) { return back.outline(drop).inseam.length(); };
   if (!(back_inseam(least) > inseam && back_inseam(most) < inseam))
-    throw MeshError(
+    throw InputError(
         "jeans: no crotch point makes the back's inseam as long as the front's of " + shown(inseam) +
         " m; change the heights (hip_height_m, waist_height_m, knee_height_m, hem_height_m) or the widths "
         "(knee_m, hem_m) towards the body's");

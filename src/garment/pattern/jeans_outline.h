@@ -39,7 +39,7 @@ struct JeansDraft {
   JeansOutline front, back;
 };
 
-/// Throws MeshError, which names the measure, its value and the remedy, for heights that are not in order
+/// Throws InputError, which names the measure, its value and the remedy, for heights that are not in order
 /// from hem to waist, lengths out of range, a girth that is no length, and measures whose inseams cannot be
 /// made equal.
 JeansDraft draft_jeans(const JeansMeasures& measures);

@@ -2,7 +2,7 @@
 
 #include "garment/pattern/boundary_check.h"
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -11,8 +11,8 @@ constexpr std::uint32_t most_lines = 10'000;
 
 void require_lines(const PatternPiece& piece, std::uint32_t count, std::string_view what) {
   if (count < 2 || count > most_lines)
-    throw MeshError(piece.name + ": it is to have " + std::to_string(count) + " " + std::string(what) +
-                    " of nodes; give a number from 2 to " + std::to_string(most_lines));
+    throw InputError(piece.name + ": it is to have " + std::to_string(count) + " " + std::string(what) +
+                     " of nodes; give a number from 2 to " + std::to_string(most_lines));
 }
 
 /// Where the grid lines of one direction end.
@@ -36,10 +36,10 @@ LineEnds line_ends(const PatternPiece& piece, std::string_view what, std::uint32
   for (const GridLine& line : given) {
     if (!(line.index > last.index && line.index + 1 < count && line.first > last.first && line.first < 1 &&
           line.second > last.second && line.second < 1))
-      throw MeshError(piece.name + ": " + std::string(what) + " " + std::to_string(line.index) +
-                      " is to end at the fractions " + shown(line.first) + " and " + shown(line.second) +
-                      " of its boundaries; let indices from 1 to " + std::to_string(count - 2) +
-                      " and fractions between 0 and 1 ascend");
+      throw InputError(piece.name + ": " + std::string(what) + " " + std::to_string(line.index) +
+                       " is to end at the fractions " + shown(line.first) + " and " + shown(line.second) +
+                       " of its boundaries; let indices from 1 to " + std::to_string(count - 2) +
+                       " and fractions between 0 and 1 ascend");
     go_on_to(line);
   }
   go_on_to({count - 1, 1, 1});

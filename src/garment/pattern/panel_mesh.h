@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "garment/pattern/curve.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 
@@ -59,12 +59,12 @@ struct PanelMesh {
 };
 
 /// Thrown for boundaries that leave a piece no room for its cells.
-struct FoldedPiece : MeshError {
-  using MeshError::MeshError;
+struct FoldedPiece : InputError {
+  using InputError::InputError;
 };
 
 /// The bilinearly blended patch of Coons ("Surfaces for computer-aided design of space forms", MIT MAC-TR-41,
-/// 1967) between the four boundaries. Cells are convex and go round counter-clockwise. Throws MeshError,
+/// 1967) between the four boundaries. Cells are convex and go round counter-clockwise. Throws InputError,
 /// which begins with the panel's name, for fewer than two rows or columns, corners that do not meet and grid
 /// lines that are out of order, and as FoldedPiece for boundaries that cross and cells that fold over.
 PanelMesh mesh_panel(const PatternPiece& piece, const PanelGrid& grid);

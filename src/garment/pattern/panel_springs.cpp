@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "model/grid_patch.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -29,8 +29,8 @@ void for_each_cell(const PanelMesh& mesh, Visit visit) {
 void require_cloth(const std::string& panel, const PanelCloth& cloth) {
   const auto require = [&](double value, bool zero_too, const char* what) {
     if (!std::isfinite(value) || value < 0 || (value == 0 && !zero_too))
-      throw MeshError(panel + ": " + what + " is " + shown(value) + "; give a number " +
-                      (zero_too ? "not below 0" : "above 0"));
+      throw InputError(panel + ": " + what + " is " + shown(value) + "; give a number " +
+                       (zero_too ? "not below 0" : "above 0"));
   };
   const Waistband& band = cloth.waistband;
   require(cloth.area_density, false, "the cloth's area density");

@@ -34,7 +34,7 @@ struct PanelCloth {
 /// corners, taking the mean of left and right, and the top row in any case. 0 without a waistband.
 std::uint32_t waistband_rows(const PanelMesh& mesh, const Waistband& waistband);
 
-/// Throws MeshError, which names the panel, field and remedy, unless density, stiffnesses and factors are
+/// Throws InputError, which names the panel, field and remedy, unless density, stiffnesses and factors are
 /// positive and finite, and dampings, shares and the waistband's height not negative.
 void require_cloth(const std::string& panel, const PanelCloth& cloth);
 

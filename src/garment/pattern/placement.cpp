@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
+#include "text/input_error.h"
 
 namespace mssim {
 namespace {
@@ -22,8 +22,8 @@ class Profile {
       const double height = std::clamp(start_ + static_cast<double>(i) * step, lowest, highest);
       raw[i] = sign * depth(height);
       if (!std::isfinite(raw[i]))
-        throw MeshError(panel + ": the body has the depth " + shown(raw[i]) + " m at the height " +
-                        shown(height) + " m; give a body that reaches along the whole panel");
+        throw InputError(panel + ": the body has the depth " + shown(raw[i]) + " m at the height " +
+                         shown(height) + " m; give a body that reaches along the whole panel");
     }
     std::vector<double> widest(count);
     over_windows(raw,
@@ -76,9 +76,9 @@ BentPoint bent(double along, double radius, double most_back) {
 std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
                                const PanelPlacement& placement, const BodyDepth& body) {
   if (!(placement.distance > 0 && placement.radius > 0))
-    throw MeshError(panel + ": it is to be placed " + shown(placement.distance) +
-                    " m from the body, bent with a radius of " + shown(placement.radius) +
-                    " m; give positive lengths");
+    throw InputError(panel + ": it is to be placed " + shown(placement.distance) +
+                     " m from the body, bent with a radius of " + shown(placement.radius) +
+                     " m; give positive lengths");
   const auto [lowest, highest] = std::minmax_element(
       mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3d& a, const Vec3d& b) { return a.y < b.y; });
   // Seen from outside, a panel behind the body runs against x.

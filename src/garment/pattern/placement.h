@@ -27,7 +27,7 @@ struct PanelPlacement {
 /// The nodes of a panel in space, m, rounded to micrometres. Its outside looks away from the body. The half
 /// that looks to the plane x = 0 bends by no more than two thirds of the distance and runs straight on from
 /// there, so that it stays before everything that the body has at its height: trunk and other leg are there.
-/// Throws MeshError, which begins with `panel`, where the body has no finite depth and for a distance or
+/// Throws InputError, which begins with `panel`, where the body has no finite depth and for a distance or
 /// radius that is not positive.
 std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
                                const PanelPlacement& placement, const BodyDepth& body);

@@ -30,7 +30,7 @@ struct Seam {
 /// which is a node where one lies within a twentieth of the edge, and at both ends. A stretch ends at the
 /// nodes that are nearest to its ends. The lengths of the joints sum to the length of the finer stretch.
 ///
-/// `panels` and `meshes` belong to each other; `seam_index` becomes Joint::seam. Throws MeshError, which
+/// `panels` and `meshes` belong to each other; `seam_index` becomes Joint::seam. Throws InputError, which
 /// begins with "seam NAME", for an unknown panel, a stretch outside its boundary or with less than two nodes,
 /// one that is sewn to itself, and lengths that differ by more than the tolerance.
 std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> panels,

@@ -9,12 +9,12 @@
 
 #include "garment/body/length_unit.h"
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "geometry/openings.h"
 #include "mesh/surface_file.h"
 #include "scene/fields/json_document.h"
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"
+#include "text/input_error.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -65,13 +65,13 @@ Surface body_from_file(const SceneSpec& spec, const BodyFile& body) {
   Surface surface;
   try {
     surface = stood_up(read_surface(spec.file.parent_path() / body.file), body.stance);
-  } catch (const MeshError& error) {
+  } catch (const InputError& error) {
     refuse(spec.file, section + "/file", "is no body: " + printable(error.what(), 1500));
   }
   if (body.close_holes_m) {
     try {
       close_openings(surface, *body.close_holes_m);
-    } catch (const MeshError& error) {
+    } catch (const InputError& error) {
       refuse(spec.file, section + "/close_holes_m", "closes too little: " + printable(error.what(), 1500));
     }
   } else if (const std::vector<Opening> openings = openings_of(surface); !openings.empty()) {
@@ -124,7 +124,7 @@ Surface body_of_garment(const SceneSpec& spec) {
   const auto& form = std::get<MannequinBody>(garment.body);
   try {
     return mannequin(form.measures, form.resolution);
-  } catch (const MeshError& error) {
+  } catch (const InputError& error) {
     refuse(spec.file, "/garment/body", "is no body: " + printable(error.what(), 1500));
   }
 }
@@ -137,7 +137,7 @@ BodyProfile measured_body(const SceneSpec& spec) {
     if (const auto* file = std::get_if<BodyFile>(&garment.body); file && garment.jeans)
       require_person(spec, *file, profile);
     return profile;
-  } catch (const MeshError& error) {
+  } catch (const InputError& error) {
     refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
   }
 }

@@ -9,9 +9,9 @@
 
 #include "garment/pattern/jeans.h"
 #include "geometry/geometry.h"
-#include "geometry/mesh_error.h"
 #include "scene/fields/json_document.h"
 #include "scene/fields/scene_error.h"
+#include "text/input_error.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -126,7 +126,7 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const BodyProfile& profile, 
   if (garment.jeans) require_body_there(spec, profile);
   try {
     if (garment.jeans) jeans = jeans_for(garment, profile, body_offset);
-  } catch (const MeshError& error) {
+  } catch (const InputError& error) {
     refuse(spec.file, jeans_pointer(garment), "does not fit: " + printable(error.what(), 1500));
   }
   GarmentPattern pattern = jeans;

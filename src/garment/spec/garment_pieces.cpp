@@ -1,8 +1,8 @@
 #include "garment/spec/garment_pieces.h"
 
-#include "geometry/mesh_error.h"
 #include "scene/fields/material_fields.h"
 #include "scene/fields/scene_error.h"
+#include "text/input_error.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -112,7 +112,7 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
     for (std::size_t edge = 0; edge < piece.boundaries.size(); ++edge) {
       try {
         curve_of(piece.boundaries[edge]);
-      } catch (const MeshError& error) {
+      } catch (const InputError& error) {
         refuse(file, place + "/" + std::string(panel_edge_names[edge]),
                "is no boundary: " + printable(error.what(), 1500));
       }

@@ -57,7 +57,7 @@ Surface arch(std::uint32_t cells) {
   return surface;
 }
 
-std::string complaint(const std::function<void()>& body) { return mesh_error_of(body); }
+std::string complaint(const std::function<void()>& body) { return input_error_of(body); }
 
 TEST(BodyProfile, ASphereHasTheCirclesOfItsHeights) {
   const BodyProfile profile(surface_of(SphereShape{0.5, 60}));

@@ -65,7 +65,7 @@ TEST(Landmarks, WhatTheBodyDoesNotShowIsByProportion) {
 }
 
 TEST(Landmarks, NeedLegs) {
-  EXPECT_THAT(mesh_error_of([] {
+  EXPECT_THAT(input_error_of([] {
                 find_landmarks(BodyProfile(unit_cube({-0.5, 0, -0.5})));
               }),
               HasSubstr("never falls apart into a left and a right leg"));

@@ -189,7 +189,7 @@ TEST(Mannequin, MeasuresThatMakeNoBodyAreNamed) {
   const auto complaint = [](const std::function<void(BodyMeasures&)>& spoil) {
     BodyMeasures measures;
     spoil(measures);
-    return mesh_error_of([&] { mannequin(measures); });
+    return input_error_of([&] { mannequin(measures); });
   };
   EXPECT_THAT(complaint([](BodyMeasures& m) { m.waist.girth = 0; }),
               HasSubstr("the body's waist girth is 0 m; give a number from 0.1 to 3 m"));
@@ -224,7 +224,7 @@ TEST(Mannequin, MeasuresThatMakeNoBodyAreNamed) {
 TEST(Mannequin, TheStanceAskedForIsEnough) {
   BodyMeasures measures;
   measures.stance = 0.08;
-  const std::string complaint = mesh_error_of([&] { mannequin(measures); });
+  const std::string complaint = input_error_of([&] { mannequin(measures); });
   EXPECT_THAT(complaint,
               AllOf(HasSubstr("stance is 0.08 m"), HasSubstr("its legs would touch at the height")));
   const std::string before = "give a stance of at least ";
@@ -233,13 +233,13 @@ TEST(Mannequin, TheStanceAskedForIsEnough) {
   measures.stance = needed;
   EXPECT_NO_THROW(mannequin(measures));
   measures.stance = needed - 0.0015;
-  EXPECT_THROW(mannequin(measures), MeshError);
+  EXPECT_THROW(mannequin(measures), InputError);
 }
 
 TEST(Mannequin, PointsAroundAreChecked) {
   for (const std::uint32_t cells_around : {0U, 12U, 50U, 516U})
     EXPECT_THAT(
-        mesh_error_of([&] { mannequin({}, {cells_around}); }),
+        input_error_of([&] { mannequin({}, {cells_around}); }),
         HasSubstr("around a mannequin are " + std::to_string(cells_around) + "; give a multiple of four"));
 }
 

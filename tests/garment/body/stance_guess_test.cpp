@@ -137,17 +137,17 @@ TEST(StanceGuess, WhatIsGivenIsKept) {
 }
 
 TEST(StanceGuess, WhatCannotBeIsRefused) {
-  EXPECT_THAT(mesh_error_of([] {
+  EXPECT_THAT(input_error_of([] {
                 guess_stance(form(), {{}, UpAxis::y, Facing::plus_y});
               }),
               HasSubstr("it cannot look along y, which is its upright axis"));
   Surface lying = form();
   for (Vec3d& point : lying.points) point = {point.y, -point.x, point.z};
-  EXPECT_THAT(mesh_error_of([&] { guess_stance(lying, {}); }),
+  EXPECT_THAT(input_error_of([&] { guess_stance(lying, {}); }),
               HasSubstr("it stands upright neither in y nor in z; turn it"));
   Surface huge = form();
   for (Vec3d& point : huge.points) point = 17.0 * point;
-  EXPECT_THAT(mesh_error_of([&] { guess_stance(huge, {}); }),
+  EXPECT_THAT(input_error_of([&] { guess_stance(huge, {}); }),
               HasSubstr("in no unit; give the unit with --unit"));
   EXPECT_EQ(guess_stance(huge, {0.1, {}, {}}).stance.unit_m, 0.1);
 }

@@ -220,7 +220,7 @@ TEST(Solid, ThreadsDoNotMatter) {
 TEST(Solid, AnOpenSurfaceIsRefused) {
   Surface open = unit_cube();
   open.triangles.pop_back();
-  EXPECT_THAT(mesh_error_of([&] { Solid(open, "mannequin.obj"); }),
+  EXPECT_THAT(input_error_of([&] { Solid(open, "mannequin.obj"); }),
               StartsWith("mannequin.obj: the edge from"));
 }
 

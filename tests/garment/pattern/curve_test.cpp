@@ -84,7 +84,7 @@ TEST(Curve, MirroredItsXIsTurnedRound) {
 }
 
 TEST(Curve, WhatIsNoCurveIsRefused) {
-  const auto complaint = [](std::vector<Vec3d> points) { return mesh_error_of([&] { Curve{points}; }); };
+  const auto complaint = [](std::vector<Vec3d> points) { return input_error_of([&] { Curve{points}; }); };
   EXPECT_THAT(complaint({{0, 0, 0}}), HasSubstr("has 1 point; give two or more points"));
   EXPECT_THAT(
       complaint({{0, 0, 0}, {1, 2, 0}, {1, 2, 0}}),
@@ -92,11 +92,11 @@ TEST(Curve, WhatIsNoCurveIsRefused) {
   EXPECT_THAT(complaint({{0, 0, 0}, {1, 2, 3}}),
               HasSubstr("(1, 2, 3), does not lie in the plane of the pattern"));
   EXPECT_THAT(complaint({{0, 0, 0}, {std::numeric_limits<double>::infinity(), 2, 0}}), HasSubstr("finite"));
-  EXPECT_THAT(mesh_error_of([] {
+  EXPECT_THAT(input_error_of([] {
                 Curve::bezier(std::array{Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{2, 0, 0}});
               }),
               HasSubstr("has 3 points; give 4, 7, 10 or another 3 n + 1 points"));
-  EXPECT_THAT(mesh_error_of([] { parabola().split(1); }),
+  EXPECT_THAT(input_error_of([] { parabola().split(1); }),
               HasSubstr("split at 1 of its length; give a fraction"));
 }
 

@@ -104,7 +104,7 @@ TEST(JeansDraft, BadMeasuresAreRefused) {
   const auto complaint = [](auto change) {
     JeansMeasures measures = JeansBody{}.measures();
     change(measures);
-    return mesh_error_of([&] { draft_jeans(measures); });
+    return input_error_of([&] { draft_jeans(measures); });
   };
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.girth = nullptr; }),
               StartsWith("jeans: the body's girth is missing"));
@@ -135,7 +135,7 @@ TEST(JeansGrid, TheNumberOfNodesIsMetWithCellsAboutSquare) {
       EXPECT_GT(grid.back_columns, grid.front_columns);
     }
   }
-  EXPECT_THAT(mesh_error_of([] { jeans_grid(draft_jeans(JeansBody{}.measures()), 299); }),
+  EXPECT_THAT(input_error_of([] { jeans_grid(draft_jeans(JeansBody{}.measures()), 299); }),
               HasSubstr("to have 299 nodes; give a number from 300"));
 }
 
@@ -253,7 +253,7 @@ TEST(GarmentBuild, TwoPanelsOfOneNameAreRefused) {
   const JeansBody body;
   GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
   pattern.panels[2].piece.name = "front left";
-  EXPECT_EQ(mesh_error_of([&] { build_garment(pattern, body.depths()); }),
+  EXPECT_EQ(input_error_of([&] { build_garment(pattern, body.depths()); }),
             "front left: two panels have this name; rename one of them");
 }
 
@@ -261,7 +261,7 @@ TEST(GarmentBuild, BadClothIsNamedByItsPanel) {
   const JeansBody body;
   GarmentPattern pattern = jeans_pattern(body.measures(), 1'000, {}, body.leg_axis());
   pattern.panels[1].cloth.area_density = -1;
-  EXPECT_THAT(mesh_error_of([&] { build_garment(pattern, body.depths()); }),
+  EXPECT_THAT(input_error_of([&] { build_garment(pattern, body.depths()); }),
               StartsWith("back left: the cloth's area"));
 }
 

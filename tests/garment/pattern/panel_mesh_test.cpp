@@ -25,7 +25,7 @@ void expect_node(const PanelMesh& mesh, std::size_t row, std::size_t column, dou
 }
 
 std::string complaint(const PatternPiece& piece, const PanelGrid& grid = {4, 4}) {
-  return mesh_error_of([&] { mesh_panel(piece, grid); });
+  return input_error_of([&] { mesh_panel(piece, grid); });
 }
 
 TEST(PanelMesh, ARectangleIsTheRegularGrid) {

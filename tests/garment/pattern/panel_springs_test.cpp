@@ -132,7 +132,7 @@ TEST(PanelSprings, BadClothIsRefused) {
   const auto complaint = [](auto change) {
     PanelCloth cloth;
     change(cloth);
-    return mesh_error_of([&] { require_cloth("front", cloth); });
+    return input_error_of([&] { require_cloth("front", cloth); });
   };
   EXPECT_EQ(complaint([](PanelCloth&) {}), "");
   EXPECT_EQ(complaint([](PanelCloth& cloth) { cloth.area_density = 0; }),

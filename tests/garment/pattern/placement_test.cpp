@@ -113,12 +113,12 @@ TEST(Placement, BadPlacementsAreRefused) {
   const BodyDepth short_body{
       [](double y) { return y < 0.7 ? 0.1 : std::numeric_limits<double>::quiet_NaN(); },
       [](double) { return -0.1; }};
-  EXPECT_THAT(mesh_error_of([&] { place_panel("front", mesh, {}, short_body); }),
+  EXPECT_THAT(input_error_of([&] { place_panel("front", mesh, {}, short_body); }),
               AllOf(StartsWith("front: the body has the depth nan m at the height 0.7"),
                     HasSubstr("give a body that reaches along the whole panel")));
   PanelPlacement flat;
   flat.radius = 0;
-  EXPECT_THAT(mesh_error_of([&] { place_panel("front", mesh, flat, depth_of(0.1, -0.1)); }),
+  EXPECT_THAT(input_error_of([&] { place_panel("front", mesh, flat, depth_of(0.1, -0.1)); }),
               AllOf(StartsWith("front: it is to be placed 0.03 m from the body, bent with a radius of 0 m"),
                     HasSubstr("give positive lengths")));
 }

@@ -26,7 +26,7 @@ struct Pair {
 
   std::vector<Joint> join(const Seam& seam) const { return join_seam(seam, panels, meshes, 7); }
   std::string complaint(const Seam& seam) const {
-    return mesh_error_of([&] { join(seam); });
+    return input_error_of([&] { join(seam); });
   }
 };
 
