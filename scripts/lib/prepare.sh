@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# What scripts/mssim, scripts/test and scripts/lint share: packages and builds. Sourced, with `set -euo pipefail`.
-# All that is printed here goes to stderr, and nothing is printed when there is nothing to do.
+# What the scripts share: help, packages and builds. Sourced, with `set -euo pipefail`.
+# Messages go to stderr, and nothing is printed when there is nothing to do.
 
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." >/dev/null && pwd -P)
 
@@ -8,6 +8,16 @@ root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." >/dev/null && pwd -P)
 readonly exit_missing=3
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
+
+# answer_help ARGUMENT...: if one of them is -h or --help, prints the comment at the top of the script, and exits.
+answer_help() {
+  local argument
+  for argument in "$@"; do
+    [[ $argument == -h || $argument == --help ]] || continue
+    awk 'NR > 1 { if (!sub(/^# ?/, "")) exit; print }' "$0"
+    exit 0
+  done
+}
 
 # packages_for KIND...: the names of the packages of these kinds.
 packages_for() {
