@@ -140,8 +140,8 @@ TEST_F(CheckEnergy, ComplainsAboutUsageAndTolerance) {
 TEST_F(CheckEnergy, ComplainsAboutFilesThatAreMissingEmptyOrOfAnotherKind) {
   write_right_trace();
   put("empty", "");
-  expect_complaint("nothing.h5 curve.csv 1", "nothing.h5 is no file");
-  expect_complaint("trace.h5 . 1", ". is no file");
+  expect_complaint("nothing.h5 curve.csv 1", "nothing.h5 is not a file");
+  expect_complaint("trace.h5 . 1", ". is not a file");
   expect_complaint("trace.h5 empty 1", "empty is empty");
   expect_complaint("curve.csv curve.csv 1", "curve.csv holds no readable");
   expect_complaint("trace.h5 trace.xdmf 1", "trace.xdmf has");
