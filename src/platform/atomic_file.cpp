@@ -60,6 +60,12 @@ fs::path temporary_of(const fs::path& file) {
   return temporary;
 }
 
+std::string kept_in_part(const fs::path& file, std::string_view what, std::size_t count) {
+  if (count == 0) return "";
+  return "; " + temporary_of(file).string() + " keeps the " + std::string(what) +
+         " written before: " + std::to_string(count);
+}
+
 void require_replaceable(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return;

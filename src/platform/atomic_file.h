@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "platform/descriptor.h"
@@ -9,6 +11,9 @@ namespace mssim {
 
 /// The name under which `file` is written until it is whole: FILE.part.
 std::filesystem::path temporary_of(const std::filesystem::path& file);
+
+/// For the end of a WriteError's sentence: that FILE.part keeps so many of `what` ("frames"); empty for none.
+std::string kept_in_part(const std::filesystem::path& file, std::string_view what, std::size_t count);
 
 /// Throws WriteError when `file` exists and is not a regular file, so that a rename would replace a folder or
 /// a device.

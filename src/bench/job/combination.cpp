@@ -13,14 +13,10 @@
 #include "statistics/outliers.h"
 #include "statistics/statistics.h"
 #include "text/counted.h"
+#include "text/note.h"
 
 namespace mssim {
 namespace {
-
-void add_to(std::string& note, const std::string& sentence) {
-  if (!note.empty() && !sentence.empty()) note += "; ";
-  note += sentence;
-}
 
 /// Runs the steps of one sample and returns its wall-clock seconds.
 double time_sample(Combination& combination, int steps) {
@@ -75,7 +71,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     }
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
-    add_to(row.note, excess_of(*combination.backend, job.execution.threads));
+    add_to_note(row.note, excess_of(*combination.backend, job.execution.threads));
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
   } catch (const Unavailable& reason) {
@@ -107,7 +103,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   row.energy_drift = found->energy_drift;
   row.dressing = found->dressing;
   row.verified = true;
-  add_to(row.note, "verified by an earlier process");
+  add_to_note(row.note, "verified by an earlier process");
 }
 
 void calibrate(Combination& combination, const SceneJob& job) {

@@ -65,13 +65,8 @@ void RunRecorder::finish() {
 
 std::string RunRecorder::kept() {
   std::string text;
-  const auto add = [&](const std::filesystem::path& name, std::size_t frames, const char* what) {
-    if (frames > 0)
-      text += "; " + temporary_of(name).string() + " keeps the " + what +
-              " written before: " + std::to_string(frames);
-  };
-  if (trace_) add(trace_->name(), trace_->give_up(), "frames");
-  if (curve_) add(curve_->name(), curve_->give_up(), "energies");
+  if (trace_) text += kept_in_part(trace_->name(), "frames", trace_->give_up());
+  if (curve_) text += kept_in_part(curve_->name(), "energies", curve_->give_up());
   return text;
 }
 

@@ -179,10 +179,8 @@ void H5mdTrace::reserve(std::size_t bytes) {
 void H5mdTrace::guard(const std::function<void()>& write) {
   const auto explain = [&](const std::string& message) {
     const std::size_t kept = give_up();
-    if (kept > 0)
-      return message + "; " + temporary_of(name()).string() +
-             " keeps the frames written before: " + std::to_string(kept);
-    return times_s_.empty() ? message : message + "; the frames written before could not be saved";
+    if (kept == 0 && !times_s_.empty()) return message + "; the frames written before could not be saved";
+    return message + kept_in_part(name(), "frames", kept);
   };
   try {
     write();
