@@ -22,18 +22,18 @@ constexpr double garment_error_node = 2 * stretches * sizeof(double);
 
 }  // namespace
 
-std::uint64_t bench_memory_needed(const SceneJob& job, const SceneSize& size) {
+std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize& size) {
   const auto nodes = static_cast<double>(size.nodes);
   double held =  // the System
       nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
   if (size.garment) held += nodes * (garment_states * state_node + garment_error_node);
   double peak = held;
-  for (const Integrator* integrator : job.integrators) {
+  for (const Integrator* integrator : settings.integrators) {
     peak = std::max(peak, held + reference.bytes(*integrator, size.nodes, size.springs, 1) +
                               reference_states * state_node * nodes);
-    for (const BackendInfo* backend : job.backends)
+    for (const BackendInfo* backend : settings.backends)
       held += (size.grid ? backend->grid_memory : backend->mesh_memory)
-                  .bytes(*integrator, size.nodes, size.springs, job.execution.threads);
+                  .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
     peak = std::max(peak, held + verification_states * state_node * nodes);
   }
   return static_cast<std::uint64_t>(peak);

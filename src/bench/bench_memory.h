@@ -15,9 +15,8 @@ struct SceneSize {
 };
 
 /// Bytes that bench_scene takes at its peak for a scene of this size, about: the System; all combinations of
-/// the job, because every round takes a sample of each; and the larger of what the reference and what a
-/// verification needs beside them; of a garment also the states that its reference keeps. Of the job, the
-/// scene's own part is not looked at.
-std::uint64_t bench_memory_needed(const SceneJob& job, const SceneSize& size);
+/// the scene, because every round takes a sample of each; and the larger of what the reference and what a
+/// verification needs beside them; of a garment also the states that its reference keeps.
+std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize& size);
 
 }  // namespace mssim

@@ -47,21 +47,22 @@ double rounds_within(double seconds, const ExpectedTime& time) {
   return std::max(1.0, (seconds - time.preparation) / time.round);
 }
 
-ExpectedTime expected_time(const SceneJob& job, const SceneSize& size) {
+ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size) {
   const auto nodes = static_cast<double>(size.nodes), springs = static_cast<double>(size.springs);
   ExpectedTime time;
   time.preparation = springs * built_spring_s;
-  for (const Integrator* integrator : job.integrators) {
+  for (const Integrator* integrator : settings.integrators) {
     if (size.garment && !dresses(*integrator)) continue;
     const double list_step = list_step_time(*integrator, size);
-    const double verification = job.verified ? 0 : verification_steps * (size.garment ? verified_garment : 1);
-    time.preparation += verification * list_step + (size.garment || job.verified ? 0 : peaks_s);
+    const double verification =
+        settings.verified ? 0 : verification_steps * (size.garment ? verified_garment : 1);
+    time.preparation += verification * list_step + (size.garment || settings.verified ? 0 : peaks_s);
     if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_backends;
-    for (const BackendInfo* backend : job.backends) {
+    for (const BackendInfo* backend : settings.backends) {
       const double step = step_time(*backend, list_step);
-      const double sample = std::max(job.sample_seconds, step) + step + 2 * nodes * moved_node_s;
+      const double sample = std::max(settings.sample_seconds, step) + step + 2 * nodes * moved_node_s;
       time.preparation += verification * step + samples_to_calibrate * sample;
-      if (size.garment && !job.verified) time.preparation += dressing_steps(nodes) * step;
+      if (size.garment && !settings.verified) time.preparation += dressing_steps(nodes) * step;
       time.round += sample;
     }
   }

@@ -20,9 +20,8 @@ ExpectedTime total(std::span<const ExpectedTime> scenes);
 double rounds_within(double seconds, const ExpectedTime& time);
 
 /// The time for a scene of this size, about: by a factor of two either way, because it takes all processors
-/// and backends for alike. A plan is made of it, no result. Of the job, the scene's own part is not looked
-/// at.
-ExpectedTime expected_time(const SceneJob& job, const SceneSize& size);
+/// and backends for alike. A plan is made of it, no result.
+ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size);
 
 /// Seconds that simulating `steps` steps takes a backend, as roughly; dressing a garment takes as many as it
 /// needs, but no more. Building the scene is part of it, writing files is not.

@@ -19,28 +19,34 @@ struct GarmentJob {
   SettlingRule rule = {};
 };
 
-/// What to measure of one scene: every backend with every integrator.
-struct SceneJob {
-  std::string name;
-  const System* system = nullptr;
-  std::optional<std::uint64_t> springs_published = {};
-  std::string note = {};                   ///< for every row
-  std::optional<GarmentJob> garment = {};  ///< of a garment: it is dressed, too, and timed as it hangs draped
-  double dt_s = 0;
+/// How to measure, whatever the scene: every backend with every integrator.
+struct BenchSettings {
   std::vector<const BackendInfo*> backends;
   std::vector<const Integrator*> integrators;
   ExecutionOptions execution;
   int rounds = 0;               ///< at most, with a deadline
   double sample_seconds = 0.1;  ///< what a sample's steps should add up to
-  /// No round begins that would probably not end before it, but for the first.
-  std::optional<std::chrono::steady_clock::time_point> deadline = {};
-  std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
   /// Where an earlier process of the same program has verified every combination: its rows, which tell which
   /// are right. Then samples are taken and nothing else is done.
   std::optional<std::vector<ResultRow>> verified = {};
 };
 
-/// Combinations of a job: integrators outermost.
-inline std::size_t combinations(const SceneJob& job) { return job.integrators.size() * job.backends.size(); }
+/// Combinations of a scene: integrators outermost.
+inline std::size_t combinations(const BenchSettings& settings) {
+  return settings.integrators.size() * settings.backends.size();
+}
+
+/// What to measure of one scene.
+struct SceneJob : BenchSettings {
+  std::string name = {};
+  const System* system = nullptr;
+  std::optional<std::uint64_t> springs_published = {};
+  std::string note = {};                   ///< for every row
+  std::optional<GarmentJob> garment = {};  ///< of a garment: it is dressed, too, and timed as it hangs draped
+  double dt_s = 0;
+  /// No round begins that would probably not end before it, but for the first.
+  std::optional<std::chrono::steady_clock::time_point> deadline = {};
+  std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
+};
 
 }  // namespace mssim

@@ -1,15 +1,28 @@
 #include "commands/bench/bench_plan.h"
 
 #include <algorithm>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 
+#include "commands/bench/suites.h"
+#include "commands/bench/verified_rows.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
+#include "commands/shared/run_provenance.h"
 #include "integrators/integrators.h"
+#include "output/traces/trace_name.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "text/printable.h"
 
 namespace mssim {
 namespace {
 
-std::vector<std::string> timed_scenes_of(const BenchOptions& options) {
+std::vector<std::string> timed_names(const BenchOptions& options) {
   std::vector<std::string> scenes = scenes_of_suite(options.suite, true);
   for (const std::string& scene : options.scenes)
     if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
@@ -39,25 +52,89 @@ std::vector<const Integrator*> integrators_of(const BenchOptions& options,
   return all;
 }
 
+BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison) {
+  BenchSettings settings;
+  settings.backends = backends_of(options, comparison.backends());
+  settings.integrators = integrators_of(options, comparison.integrators);
+  settings.execution = complete(options.execution);
+  settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
+  return settings;
+}
+
+void require_folder_where_needed(const BenchOutput& output) {
+  if (!output.folder.empty()) return;
+  if (output.trace) throw UsageError("--trace writes into the result folder: give --out too");
+  if (output.resume || output.overwrite)
+    throw UsageError(std::string(output.resume ? "--resume" : "--overwrite") +
+                     " needs the folder of an earlier run: give --out too");
+}
+
+/// Scenes by what they were asked for with, each read once.
+class SceneReader {
+ public:
+  std::vector<SceneSpec> read(const std::vector<std::string>& names) {
+    std::vector<SceneSpec> specs;
+    for (const std::string& name : names) {
+      auto found = known_.find(name);
+      if (found == known_.end()) found = known_.emplace(name, find_scene(name)).first;
+      specs.push_back(found->second);
+    }
+    return specs;
+  }
+
+ private:
+  std::map<std::string, SceneSpec> known_;
+};
+
+/// Rows and results are told apart by their scene's name.
+void require_distinct_names(const std::vector<SceneSpec>& scenes) {
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene)
+    for (auto other = scenes.begin(); other != scene; ++other)
+      if (other->name == scene->name)
+        throw UsageError("there are two scenes called " + printable(scene->name) + ", " +
+                         printable(other->file.string()) + " and " + printable(scene->file.string()) +
+                         "; name one of them, or rename a file");
+}
+
+void require_traceable(const SceneSpec& spec) {
+  if (std::holds_alternative<GarmentSpec>(spec.body))
+    throw UsageError("--trace does not go with " + spec.name +
+                     ", which is a garment: what it is verified with is no continuous motion; leave it out");
+  if (const auto problem = trace_name_problem(spec.name + ".h5"))
+    throw UsageError("--trace names traces after their scene, and " + *problem);
+}
+
 }  // namespace
 
 BenchPlan plan_of(const BenchOptions& options) {
   const Comparison& comparison = comparison_of_suite(options.suite);
   BenchPlan plan;
-  plan.job.backends = backends_of(options, comparison.backends());
-  plan.job.integrators = integrators_of(options, comparison.integrators);
-  plan.job.execution = complete(options.execution);
-  plan.job.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
-  plan.timed = timed_scenes_of(options);
-  plan.described = scenes_of_suite(options.suite, false);
-  if (plan.timed.empty() && plan.described.empty())
+  plan.settings = settings_of(options, comparison);
+  plan.time_budget_s = options.time_budget_s;
+  plan.output = options.output;
+  const std::vector<std::string> timed_ones = timed_names(options);
+  const std::vector<std::string> described_ones = scenes_of_suite(options.suite, false);
+  if (timed_ones.empty() && described_ones.empty())
     throw UsageError("there is nothing to measure: name a --scene or a --suite");
-  if (options.trace && options.out.empty())
-    throw UsageError("--trace writes into the result folder: give --out too");
-  if (options.out.empty() && (options.resume || options.overwrite))
-    throw UsageError(std::string(options.resume ? "--resume" : "--overwrite") +
-                     " needs the folder of an earlier run: give --out too");
+  require_folder_where_needed(options.output);
+  plan.published = published_tables();
   plan.tables = comparison.tables();
+
+  SceneReader scenes;
+  plan.described = scenes.read(described_ones);
+  for (const SceneSpec& spec : plan.described) require_memory(spec);
+  std::vector<SceneSpec> timed = scenes.read(timed_ones);
+  if (options.output.trace) std::ranges::for_each(timed, require_traceable);
+  require_distinct_names(timed);
+
+  plan.uses_device = !timed.empty() && std::ranges::any_of(plan.settings.backends, &BackendInfo::uses_device);
+  plan.provenance = run_provenance(plan.settings.execution.threads, plan.uses_device && !options.dry_run);
+  plan.provenance.device_memory = name_of(plan.settings.execution.memory);
+  for (const std::vector<SceneSpec>* specs : {&plan.described, &timed})
+    for (const SceneSpec& spec : *specs) add_scene(plan.provenance, spec.name, spec.source);
+  if (!options.verified.empty())
+    plan.settings.verified = verified_rows(options.verified, plan.provenance, plan.settings, timed);
+  for (SceneSpec& spec : timed) plan.timed.push_back(planned_scene(std::move(spec), plan.settings));
   return plan;
 }
 

@@ -1,47 +1,36 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "bench/job/scene_job.h"
-#include "commands/bench/bench_summary.h"
-#include "commands/bench/suites.h"
+#include "bench/machine/provenance.h"
+#include "commands/bench/bench_options.h"
+#include "commands/bench/planned_scene.h"
+#include "output/tables/published.h"
+#include "output/tables/result_table.h"
+#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-/// What `mssim bench` was asked for.
-struct BenchOptions {
-  std::vector<std::string> scenes;
-  std::string suite;
-  std::vector<std::string> backends;
-  std::vector<std::string> integrators;
-  ExecutionOptions execution;
-  std::optional<int> rounds;  ///< none: the usual number, or as many as the budget allows
-  std::optional<double> time_budget_s;
-  bool dry_run = false;
-  bool trace = false;
-  std::string out;
-  SummaryFormat format = SummaryFormat::table;
-  bool resume = false;
-  bool overwrite = false;
-  std::string verified;  ///< a folder whose rows need not be verified again; empty: none
-};
-
-/// Rounds of a bench that says nothing of them.
-inline constexpr int usual_rounds = 15;
-inline constexpr int most_rounds = 100'000;
-
-/// What it means.
+/// What a bench does: made once, before anything is measured, and only read from then on. Every scene file
+/// has been read, and is not read again.
 struct BenchPlan {
-  std::vector<std::string> timed;      ///< scenes that are measured
-  std::vector<std::string> described;  ///< scenes of which the structure is told
-  SceneJob job;                        ///< for every scene; the scene's own part is empty
+  BenchSettings settings;  ///< of every scene
+  std::optional<double> time_budget_s;
+  std::vector<PlannedScene> timed;   ///< scenes that are measured
+  std::vector<SceneSpec> described;  ///< scenes of which the structure is told
+  bool uses_device = false;          ///< whether a backend that is timed uses an OpenCL device
+  Provenance provenance;             ///< with all these scenes
+  std::vector<PublishedTable> published;
   TableMaker tables;
+  BenchOutput output;
 };
 
-/// Throws UsageError for names that are not known and for nothing to do, and what reading published tables
-/// throws.
+/// Finds all that can be wrong with what was asked for. Asks for OpenCL devices where one will be used, but
+/// for a dry run. Throws UsageError for names that are not known, for nothing to do and for options that do
+/// not go together; SceneError and MissingProgram for scenes that cannot be read, meshed or held; and what
+/// reading published tables and the folder of verified rows throws.
 BenchPlan plan_of(const BenchOptions& options);
 
 }  // namespace mssim

@@ -25,11 +25,12 @@ void BenchRows::replace(const std::string& scene, std::vector<ResultRow> rows) {
               rows_.end());
 }
 
-bool is_finished(const SceneJob& job, const std::string& scene, const std::vector<ResultRow>& earlier) {
+bool is_finished(const BenchSettings& settings, const std::string& scene,
+                 const std::vector<ResultRow>& earlier) {
   if (earlier.empty()) return false;
   std::set<std::pair<std::string, std::string>> asked, measured;
-  for (const Integrator* integrator : job.integrators)
-    for (const BackendInfo* backend : job.backends) asked.emplace(backend->name, integrator->name);
+  for (const Integrator* integrator : settings.integrators)
+    for (const BackendInfo* backend : settings.backends) asked.emplace(backend->name, integrator->name);
   for (const ResultRow& row : earlier) measured.emplace(row.backend, row.integrator);
   if (asked != measured)
     throw UsageError(
@@ -37,7 +38,7 @@ bool is_finished(const SceneJob& job, const std::string& scene, const std::vecto
         " than this command asks for: --resume goes on with the same ones; choose another --out, "
         "or --overwrite to measure anew");
   return std::ranges::all_of(
-      earlier, [&](const ResultRow& row) { return row.status != "ok" || row.rounds >= job.rounds; });
+      earlier, [&](const ResultRow& row) { return row.status != "ok" || row.rounds >= settings.rounds; });
 }
 
 }  // namespace mssim

@@ -22,8 +22,10 @@ class BenchRows {
   std::vector<ResultRow> rows_;
 };
 
-/// Whether an earlier run finished all that the job asks for of its scene. Throws UsageError when it measured
-/// other combinations of it: samples of one row are compared with those of the others round by round.
-bool is_finished(const SceneJob& job, const std::string& scene, const std::vector<ResultRow>& earlier);
+/// Whether an earlier run finished all that the settings ask for of a scene. Throws UsageError when it
+/// measured other combinations of it: samples of one row are compared with those of the others round by
+/// round.
+bool is_finished(const BenchSettings& settings, const std::string& scene,
+                 const std::vector<ResultRow>& earlier);
 
 }  // namespace mssim

@@ -41,17 +41,17 @@ void require_resumable(const std::vector<std::string>& differences, const std::s
                      "; choose another --out, or --overwrite to measure anew");
 }
 
-std::vector<ResultRow> earlier_rows(ResultFolder& folder, const Provenance& now,
-                                    const BenchOptions& options) {
+std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan) {
   if (!folder.has_results()) return {};
-  if (options.resume) {
-    const Provenance earlier = read_provenance(std::filesystem::path(options.out) / "provenance.json");
-    require_same_origin(earlier, now, options.out);
+  const BenchOutput& output = plan.output;
+  if (output.resume) {
+    const Provenance earlier = read_provenance(std::filesystem::path(output.folder) / "provenance.json");
+    require_same_origin(earlier, plan.provenance, output.folder);
     folder.go_on_with(earlier);
-    return folder.has_rows() ? read_run(options.out).rows : std::vector<ResultRow>();
+    return folder.has_rows() ? read_run(output.folder).rows : std::vector<ResultRow>();
   }
-  if (!options.overwrite)
-    throw UsageError(options.out +
+  if (!output.overwrite)
+    throw UsageError(output.folder +
                      " holds results already: give another --out, --resume to go on with them, "
                      "or --overwrite to replace them");
   folder.clear();

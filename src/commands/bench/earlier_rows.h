@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "commands/bench/bench_plan.h"
 #include "output/folders/result_folder.h"
@@ -14,7 +13,7 @@ namespace mssim {
 /// the same machine left, with --overwrite nothing. Throws UsageError where the folder has results and
 /// neither was asked for, or where --resume would mix what is not alike or keep scenes that this command does
 /// not have, and what reading them throws.
-std::vector<ResultRow> earlier_rows(ResultFolder& folder, const Provenance& now, const BenchOptions& options);
+std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan);
 
 /// Throws UsageError where there are sentences that say why --resume cannot go on in the folder.
 void require_resumable(const std::vector<std::string>& differences, const std::string& folder);

@@ -5,7 +5,6 @@
 #include "bench/results/comparability.h"
 #include "commands/bench/measured_run.h"
 #include "commands/shared/exit_code.h"
-#include "scene/scene_file.h"
 #include "text/joined.h"
 
 namespace mssim {
@@ -41,15 +40,15 @@ void require_row(const std::vector<ResultRow>& rows, const std::string& scene, c
 }  // namespace
 
 std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now,
-                                     const BenchPlan& plan) {
+                                     const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
   MeasuredRun earlier = read_run(folder);
   if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
     throw UsageError("--verified cannot rely on " + folder + ": " + joined(all, "; ") +
                      "; leave it out to verify anew");
-  for (const std::string& name : plan.timed)
-    for (const Integrator* integrator : plan.job.integrators)
-      for (const BackendInfo* backend : plan.job.backends)
-        require_row(earlier.rows, find_scene(name).name, *backend, *integrator, folder);
+  for (const SceneSpec& scene : scenes)
+    for (const Integrator* integrator : settings.integrators)
+      for (const BackendInfo* backend : settings.backends)
+        require_row(earlier.rows, scene.name, *backend, *integrator, folder);
   return std::move(earlier.rows);
 }
 

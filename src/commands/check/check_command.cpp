@@ -13,6 +13,7 @@
 #include "commands/shared/exit_code.h"
 #include "commands/shared/prepared_scene.h"
 #include "output/tables/listing.h"
+#include "scene/scene_file.h"
 
 namespace mssim {
 namespace {
@@ -43,7 +44,7 @@ int run(const CheckOptions& options) {
   Listing rows;
   std::string tables;
   for (const std::string& name : options.scenes) {
-    const PreparedScene scene = prepare_scene(name);
+    const PreparedScene scene = prepare_scene(find_scene(name));
     const SceneReport report = report_on(scene);
     for (const std::string& warning : report.warnings)
       std::cerr << "mssim: " << scene.spec.name << ": " << warning << '\n';

@@ -8,8 +8,8 @@
 #include "backends/backends.h"
 #include "bench/bench_memory.h"
 #include "bench/expected_time.h"
-#include "commands/bench/bench_plan.h"
-#include "commands/bench/planned_scenes.h"
+#include "commands/bench/bench_options.h"
+#include "commands/bench/planned_scene.h"
 #include "commands/bench/suites.h"
 #include "commands/run/run_command.h"
 #include "commands/shared/choices.h"
@@ -27,18 +27,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A bench of these backends and integrators, as it is where nothing else is asked for.
-SceneJob usual_job(std::vector<const BackendInfo*> backends, std::vector<const Integrator*> integrators) {
-  SceneJob job;
-  job.backends = std::move(backends);
-  job.integrators = std::move(integrators);
-  job.execution = complete({});
-  job.rounds = usual_rounds;
-  return job;
+BenchSettings usual_settings(std::vector<const BackendInfo*> backends,
+                             std::vector<const Integrator*> integrators) {
+  BenchSettings settings;
+  settings.backends = std::move(backends);
+  settings.integrators = std::move(integrators);
+  settings.execution = complete({});
+  settings.rounds = usual_rounds;
+  return settings;
 }
 
-double seconds_of(const SceneJob& job, const SceneSize& size) {
-  const ExpectedTime time = expected_time(job, size);
-  return time.preparation + job.rounds * time.round;
+double seconds_of(const BenchSettings& settings, const SceneSize& size) {
+  const ExpectedTime time = expected_time(settings, size);
+  return time.preparation + settings.rounds * time.round;
 }
 
 Json scene_row(const PreparedScene& scene) {
@@ -57,14 +58,14 @@ bool can_step(const SceneSize& size, const Integrator& integrator, const Backend
 
 Json combination_row(const PreparedScene& scene, const SceneSize& size, const Integrator& integrator,
                      const BackendInfo& backend, double largest_dt_s) {
-  const SceneJob job = usual_job({&backend}, {&integrator});
+  const BenchSettings settings = usual_settings({&backend}, {&integrator});
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
   return {{"integrator", integrator.name},
           {"largest_stable_dt_s", largest_dt_s},
           {"stable", scene.dt_s <= largest_dt_s},
           {"backend", backend.name},
-          {"memory_bytes", bench_memory_needed(job, size)},
-          {"bench_s", seconds_of(job, size)},
+          {"memory_bytes", bench_memory_needed(settings, size)},
+          {"bench_s", seconds_of(settings, size)},
           {"run_s", expected_run_time(backend, integrator, size, steps)}};
 }
 
@@ -98,8 +99,8 @@ std::optional<std::string> warning_of_dt(const PreparedScene& scene, const ModeB
 
 /// A bench that says nothing of backends and integrators takes them all at once.
 std::optional<std::string> warning_of_memory(const SceneSize& size) {
-  const SceneJob job = usual_job(comparison_of_suite("").backends(), usual_integrators());
-  const auto shortage = memory_shortage(bench_memory_needed(job, size));
+  const BenchSettings settings = usual_settings(comparison_of_suite("").backends(), usual_integrators());
+  const auto shortage = memory_shortage(bench_memory_needed(settings, size));
   if (!shortage) return std::nullopt;
   return "a bench of all backends " + *shortage + ": name fewer with --backend or --integrator";
 }

@@ -7,10 +7,8 @@
 #include <iostream>
 #include <random>
 
-#include "bench/bench_memory.h"
 #include "bench/results/paired_times.h"
 #include "commands/bench/bench_plan.h"
-#include "commands/bench/planned_scenes.h"
 #include "commands/compare/ab_program.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/progress_line.h"
@@ -98,10 +96,10 @@ bool both_fit(const AbOptions& options) {
   bench.backends = options.backends;
   bench.integrators = options.integrators;
   bench.execution.threads = options.threads;
+  bench.dry_run = true;
   try {
-    const BenchPlan plan = plan_of(bench);
-    return std::ranges::all_of(planned_scenes(plan), [&](const PlannedScene& scene) {
-      return bench_memory_needed(plan.job, scene.size) <= available_memory() / 4;
+    return std::ranges::all_of(plan_of(bench).timed, [](const PlannedScene& scene) {
+      return scene.memory_bytes <= available_memory() / 4;
     });
   } catch (const std::exception&) {
     return false;

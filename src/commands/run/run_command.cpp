@@ -26,6 +26,7 @@
 #include "garment/stepping/serial_dressing.h"
 #include "output/tables/listing.h"
 #include "output/traces/trace_name.h"
+#include "scene/scene_file.h"
 
 namespace mssim {
 namespace {
@@ -189,7 +190,7 @@ int run(const RunOptions& options) {
       throw UsageError("--trace: " + *problem);
   const Integrator& integrator = require_integrator(options.integrator);
   require_backend(options.backend);
-  PreparedScene scene = prepare_scene(options.scene);
+  PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;

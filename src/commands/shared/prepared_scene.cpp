@@ -1,11 +1,12 @@
 #include "commands/shared/prepared_scene.h"
 
 #include <iostream>
+#include <utility>
 #include <variant>
 
 #include "garment/scene/garment_body.h"
-#include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
+#include "text/note.h"
 
 namespace mssim {
 namespace {
@@ -25,16 +26,14 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
 
 }  // namespace
 
-PreparedScene prepare_scene(std::string_view name_or_file) {
+PreparedScene prepare_scene(SceneSpec spec) {
   PreparedScene scene;
-  scene.spec = find_scene(name_or_file);
+  scene.spec = std::move(spec);
   scene.system = build_system(scene.spec);
   scene.counts = counts_of(scene.spec, scene.system);
   scene.note = difference(scene.spec, scene.counts);
   if (std::holds_alternative<GarmentSpec>(scene.spec.body))
-    if (const std::string ignored = ignored_parts(measured_body(scene.spec).trunk_and_legs());
-        !ignored.empty())
-      scene.note += (scene.note.empty() ? "" : "; ") + ignored;
+    add_to_note(scene.note, ignored_parts(measured_body(scene.spec).trunk_and_legs()));
   scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
   return scene;
 }

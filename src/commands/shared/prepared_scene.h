@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "integrators/stability.h"
 #include "model/system.h"
@@ -19,8 +18,8 @@ struct PreparedScene {
   std::string note;
 };
 
-/// Reads, checks and builds the scene of that name or file. Throws SceneError and MissingProgram.
-PreparedScene prepare_scene(std::string_view name_or_file);
+/// Builds the scene. Throws SceneError and MissingProgram.
+PreparedScene prepare_scene(SceneSpec spec);
 
 /// The modes of the scene, for the stability limits of its integrators.
 ModeBound mode_bound(const System& system);

@@ -40,19 +40,19 @@ TEST(BenchRows, ReplaceAScenesRowsWhereTheyStand) {
 }
 
 TEST(BenchRows, AreFinishedWhenEachHasItsRoundsOrCannotRun) {
-  SceneJob job;
-  job.rounds = 3;
-  job.backends = {find_backend("serial"), find_backend("opencl")};
-  job.integrators = {find_integrator("semi-euler")};
+  BenchSettings settings;
+  settings.rounds = 3;
+  settings.backends = {find_backend("serial"), find_backend("opencl")};
+  settings.integrators = {find_integrator("semi-euler")};
   std::vector<ResultRow> rows{row("a", "serial"), row("a", "opencl")};
-  EXPECT_FALSE(is_finished(job, "a", {}));
-  EXPECT_TRUE(is_finished(job, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", {}));
+  EXPECT_TRUE(is_finished(settings, "a", rows));
   rows[1].rounds = 2;
-  EXPECT_FALSE(is_finished(job, "a", rows));
+  EXPECT_FALSE(is_finished(settings, "a", rows));
   rows[1].status = "unavailable: no device";
-  EXPECT_TRUE(is_finished(job, "a", rows));
+  EXPECT_TRUE(is_finished(settings, "a", rows));
   rows.pop_back();
-  EXPECT_THROW(is_finished(job, "a", rows), UsageError);
+  EXPECT_THROW(is_finished(settings, "a", rows), UsageError);
 }
 
 }  // namespace

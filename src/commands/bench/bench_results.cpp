@@ -1,0 +1,52 @@
+#include "commands/bench/bench_results.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bench/results/comparability.h"
+#include "commands/bench/earlier_rows.h"
+#include "integrators/integrators.h"
+
+namespace mssim {
+namespace {
+
+std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
+  if (plan.output.folder.empty()) return std::nullopt;
+  return std::make_optional<ResultFolder>(plan.output.folder, plan.provenance, plan.tables);
+}
+
+void add_published_times(std::vector<ResultRow>& rows, const BenchPlan& plan) {
+  for (ResultRow& row : rows) {
+    const BackendInfo& backend = **std::ranges::find(plan.settings.backends, row.backend, &BackendInfo::name);
+    for (const PublishedTable& table : plan.published)
+      if (const auto ms = table.ms(find_integrator(row.integrator)->paper_name, backend.paper_configuration,
+                                   row.nodes, row.springs_published))
+        row.paper_ms = ms;
+  }
+}
+
+}  // namespace
+
+BenchResults::BenchResults(const BenchPlan& plan)
+    : plan_(plan),
+      folder_(folder_of(plan)),
+      rows_(folder_ ? earlier_rows(*folder_, plan) : std::vector<ResultRow>()) {
+  if (folder_) folder_->begin();
+}
+
+void BenchResults::keep(const std::string& scene, std::vector<ResultRow> rows) {
+  require_resumable(differences(of_scene(scene), rows), plan_.output.folder);
+  add_published_times(rows, plan_);
+  rows_.replace(scene, std::move(rows));
+  if (folder_) folder_->write(rows_.all());
+}
+
+void BenchResults::keep(const std::vector<StructureRow>& rows) const {
+  if (folder_) folder_->write(rows);
+}
+
+void BenchResults::keep_for_github() const {
+  if (folder_) folder_->write_for_github(rows_.all());
+}
+
+}  // namespace mssim

@@ -1,0 +1,32 @@
+#include "commands/bench/dry_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "output/tables/listing.h"
+
+namespace mssim {
+
+void tell_plan(const BenchPlan& plan) {
+  const ExpectedTime all = total(times_of(plan.timed));
+  double rounds = plan.settings.rounds;
+  if (plan.time_budget_s) rounds = std::min(rounds, rounds_within(*plan.time_budget_s, all));
+  const auto seconds = [&](const ExpectedTime& time) {
+    return std::lround(std::ceil(time.preparation + rounds * time.round));
+  };
+  Listing listing;
+  for (const PlannedScene& scene : plan.timed)
+    listing.push_back({{"scene", scene.spec.name},
+                       {"nodes", scene.size.nodes},
+                       {"springs_unique", scene.size.springs},
+                       {"combinations", combinations(plan.settings)},
+                       {"rounds", std::lround(rounds)},
+                       {"expected_s", seconds(scene.time)}});
+  for (const SceneSpec& scene : plan.described)
+    std::cout << scene.name << ": nothing is timed, its structure is told\n";
+  if (!listing.empty()) std::cout << to_text(listing, ListingFormat::table);
+  std::cout << "about " << seconds(all) << " s in all\n";
+}
+
+}  // namespace mssim

@@ -1,0 +1,62 @@
+#include "commands/bench/measured_scenes.h"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/bench_scene.h"
+#include "commands/bench/bench_trace.h"
+#include "commands/shared/fit_body.h"
+#include "commands/shared/prepared_scene.h"
+#include "commands/shared/progress_line.h"
+
+namespace mssim {
+namespace {
+
+/// Adds to a job what the scene is. `scene` must outlive it.
+void add_scene(SceneJob& job, const PreparedScene& scene) {
+  job.system = &scene.system;
+  job.springs_published = scene.counts.springs_published;
+  job.note = scene.note;
+  job.dt_s = scene.dt_s;
+  if (is_garment(scene.system)) job.garment.emplace(GarmentJob{.body = fit_body(scene.spec)});
+}
+
+}  // namespace
+
+void measure_scenes(const BenchPlan& plan, TimeBudget& budget, const StopRequest& stop,
+                    BenchResults& results) {
+  ProgressLine progress(plan.timed.size());
+  for (const PlannedScene& planned : plan.timed) {
+    SceneJob job{plan.settings};
+    job.name = planned.spec.name;
+    job.deadline = budget.begin_scene();
+    job.earlier = results.of_scene(job.name);
+    progress.begin_scene(job.name);
+    const bool finished = is_finished(job, job.name, job.earlier);
+    if (finished && !plan.output.trace) continue;
+    const PreparedScene scene = prepare_scene(planned.spec);
+    warn_of_note(scene);
+    add_scene(job, scene);
+    bool first_round = true;
+    const BenchWatch watch{
+        .progress = [&](const std::string& activity, double done) { progress.update(activity, done); },
+        .after_round =
+            [&](const std::vector<ResultRow>& measured) {
+              if (std::exchange(first_round, false)) budget.first_round_done();
+              results.keep(job.name, measured);
+            },
+        .stop = [&] { return stop.requested(); }};
+    if (!finished) {
+      std::vector<ResultRow> measured = bench_scene(job, watch);
+      if (!measured.empty()) results.keep(job.name, std::move(measured));
+    }
+    if (plan.output.trace && !stop.requested())
+      write_bench_traces(job, scene, results.of_scene(job.name),
+                         std::filesystem::path(plan.output.folder) / "traces", plan.output.resume, watch);
+    if (stop.requested()) return;
+  }
+}
+
+}  // namespace mssim

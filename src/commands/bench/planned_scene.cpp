@@ -1,0 +1,30 @@
+#include "commands/bench/planned_scene.h"
+
+#include <utility>
+#include <variant>
+
+#include "scene/scene_kinds.h"
+
+namespace mssim {
+
+SceneSize size_of(const SceneSpec& spec, const SceneCounts& counts) {
+  return {counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body),
+          std::holds_alternative<GarmentSpec>(spec.body)};
+}
+
+PlannedScene planned_scene(SceneSpec spec, const BenchSettings& settings) {
+  const SceneCounts counts = counts_of(spec);
+  const SceneSize size = size_of(spec, counts);
+  const std::uint64_t memory_bytes = bench_memory_needed(settings, size);
+  require_memory(spec, counts, memory_bytes,
+                 "name fewer with --backend or --integrator, or make the scene smaller");
+  return {std::move(spec), size, memory_bytes, expected_time(settings, size)};
+}
+
+std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes) {
+  std::vector<ExpectedTime> times;
+  for (const PlannedScene& scene : scenes) times.push_back(scene.time);
+  return times;
+}
+
+}  // namespace mssim
