@@ -43,6 +43,26 @@ void visit_body(FieldVisitor& fields, BodySpec& body) {
 
 std::string pointer_to(std::size_t body) { return "/bodies/list/" + std::to_string(body); }
 
+/// Meshing takes minutes where there are millions of nodes: what cannot be held afterwards is refused before.
+void require_memory_for_meshes(const SceneSpec& spec) {
+  SceneCounts least;
+  const std::vector<BodySpec>& list = bodies_of(spec).list;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    try {
+      const SceneCounts body = least_counts(list[i].shape, spec.file.parent_path());
+      least.nodes += body.nodes;
+      least.springs_unique += body.springs_unique;
+    } catch (const SceneError& error) {  // of another scene whose shape it takes
+      refuse(spec.file, pointer_to(i), "has no mesh: " + printable(error.what(), 1500));
+    }
+  }
+  if (const auto shortage = memory_shortage(memory_needed(least.nodes, least.springs_unique)))
+    refuse(spec.file, "/bodies",
+           "has at least " + std::to_string(least.nodes) + " nodes and " +
+               std::to_string(least.springs_unique) + " springs and " + *shortage +
+               ": give fewer bodies, or bodies of fewer cells or points");
+}
+
 /// A mesh and what follows from it, for all bodies of that shape.
 struct MeshedShape {
   TetMesh mesh;  ///< its centre is the origin
@@ -53,7 +73,8 @@ struct MeshedShape {
 /// The shapes of a scene, each meshed once.
 class MeshedShapes {
  public:
-  explicit MeshedShapes(const SceneSpec& spec) : spec_(spec) {}
+  /// Throws SceneError where the memory does not do for what will be meshed.
+  explicit MeshedShapes(const SceneSpec& spec) : spec_(spec) { require_memory_for_meshes(spec); }
 
   const MeshedShape& of_body(std::size_t body) {
     const BodyShape& shape = bodies_of(spec_).list[body].shape;
@@ -78,6 +99,17 @@ class MeshedShapes {
     return shapes_.emplace_back(shape, std::move(meshed)).second;
   }
 
+  /// Of all bodies together.
+  SceneCounts counts() {
+    SceneCounts counts;
+    for (std::size_t i = 0; i < bodies_of(spec_).list.size(); ++i) {
+      const MeshedShape& shape = of_body(i);
+      counts.nodes += shape.mesh.nodes.size();
+      counts.springs_unique += shape.edges.size();
+    }
+    return counts;
+  }
+
  private:
   void require_lengths(const MeshedShape& meshed, std::size_t body) const {
     for (const auto& [a, b] : meshed.edges)
@@ -91,26 +123,6 @@ class MeshedShapes {
   const SceneSpec& spec_;
   std::vector<std::pair<BodyShape, MeshedShape>> shapes_;
 };
-
-/// Meshing takes minutes where there are millions of nodes: what cannot be held afterwards is refused before.
-void require_memory_for_meshes(const SceneSpec& spec) {
-  SceneCounts least;
-  const std::vector<BodySpec>& list = bodies_of(spec).list;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    try {
-      const SceneCounts body = least_counts(list[i].shape, spec.file.parent_path());
-      least.nodes += body.nodes;
-      least.springs_unique += body.springs_unique;
-    } catch (const SceneError& error) {  // of another scene whose shape it takes
-      refuse(spec.file, pointer_to(i), "has no mesh: " + printable(error.what(), 1500));
-    }
-  }
-  if (const auto shortage = memory_shortage(memory_needed(least.nodes, least.springs_unique)))
-    refuse(spec.file, "/bodies",
-           "has at least " + std::to_string(least.nodes) + " nodes and " +
-               std::to_string(least.springs_unique) + " springs and " + *shortage +
-               ": give fewer bodies, or bodies of fewer cells or points");
-}
 
 /// Rodrigues' rotation by `angle` (radians) about the unit vector `axis`.
 Vec3d turned(const Vec3d& r, const Vec3d& axis, double angle) {
@@ -170,21 +182,12 @@ std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
   return counts;
 }
 
-SceneCounts bodies_counts(const SceneSpec& spec) {
-  require_memory_for_meshes(spec);
-  MeshedShapes shapes(spec);
-  SceneCounts counts;
-  for (std::size_t i = 0; i < bodies_of(spec).list.size(); ++i) {
-    const MeshedShape& shape = shapes.of_body(i);
-    counts.nodes += shape.mesh.nodes.size();
-    counts.springs_unique += shape.edges.size();
-  }
-  return counts;
-}
+SceneCounts bodies_counts(const SceneSpec& spec) { return MeshedShapes(spec).counts(); }
 
 System build_bodies(const SceneSpec& spec) {
   const BodiesSpec& bodies = bodies_of(spec);
   MeshedShapes shapes(spec);
+  require_memory(spec, "/bodies", shapes.counts());
   System system;
   system.materials = {bodies.springs};
   system.gravity = spec.gravity_m_per_s2;

@@ -24,8 +24,8 @@ SceneCounts bodies_counts(const SceneSpec& spec);
 
 /// The bodies one after the other, each in its mesh's node order, its springs the edges of its tetrahedra at
 /// their length in the mesh. A body starts turned, as a rigid body that flies and spins, and grows at its
-/// swell rate. Deterministic. Throws SceneError when a body has no mesh or starts below the floor,
-/// and MissingProgram.
+/// swell rate. Deterministic. Throws SceneError when a body has no mesh or starts below the floor
+/// and when the memory does not suffice, and MissingProgram.
 System build_bodies(const SceneSpec& spec);
 
 }  // namespace mssim

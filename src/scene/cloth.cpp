@@ -10,6 +10,7 @@
 #include "scene/fields/json_document.h"
 #include "scene/fields/material_fields.h"
 #include "scene/fields/scene_error.h"
+#include "scene/spec/memory.h"
 
 namespace mssim {
 namespace {
@@ -143,6 +144,7 @@ std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec) { return c
 
 System build_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
+  require_memory(spec, "/cloth", cloth_counts(spec));
   System system;
   const GridPatch grid{cloth.rows, cloth.columns, cloth.spacing_m};
   system.topology = grid;

@@ -12,13 +12,20 @@
 namespace mssim {
 namespace {
 
+template <System (*build)(const SceneSpec& spec)>
+BuiltScene without_note(const SceneSpec& spec) {
+  return {build(spec), ""};
+}
+
 constexpr std::array<SceneKind, 3> kinds{{
     // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
     // both of its ends.
-    {"cloth", visit_cloth_fields, check_cloth, 2, stated_cloth_counts, cloth_counts, build_cloth},
+    {"cloth", visit_cloth_fields, check_cloth, 2, stated_cloth_counts, cloth_counts,
+     without_note<build_cloth>},
     // Those of bodies seem to be the length of the array of packed springs, three values each: all nine can
     // be divided by three, and the thirds fit tetrahedral meshes.
-    {"bodies", visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts, build_bodies},
+    {"bodies", visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts,
+     without_note<build_bodies>},
     {"garment", visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, garment_counts,
      build_garment_scene},
 }};
@@ -29,6 +36,8 @@ SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
     counts.springs_published = *per_spring * counts.springs_unique;
   return counts;
 }
+
+std::string pointer_to_kind(const SceneSpec& spec) { return "/" + std::string(kind_of(spec).name); }
 
 }  // namespace
 
@@ -47,22 +56,20 @@ SceneCounts counts_of(const SceneSpec& spec, const System& system) {
   return with_published(spec, {system.nodes(), system.springs.size()});
 }
 
-void require_memory(const SceneSpec& spec) {
-  const SceneCounts counts = counts_of(spec);
-  require_memory(spec, counts, memory_needed(counts.nodes, counts.springs_unique), "make the scene smaller");
-}
+void require_memory(const SceneSpec& spec) { require_memory(spec, pointer_to_kind(spec), counts_of(spec)); }
 
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy) {
-  require_memory(spec, "/" + std::string(kind_of(spec).name), counts, needed, remedy);
+  require_memory(spec, pointer_to_kind(spec), counts, needed, remedy);
 }
 
-System build_system(const SceneSpec& spec) {
-  require_memory(spec);
-  System system = kind_of(spec).build(spec);
-  round_to_single(system.start);
-  round_to_single(system.floor.height);
-  return system;
+BuiltScene build_scene(const SceneSpec& spec) {
+  BuiltScene scene = kind_of(spec).build(spec);
+  round_to_single(scene.system.start);
+  round_to_single(scene.system.floor.height);
+  return scene;
 }
+
+System build_system(const SceneSpec& spec) { return build_scene(spec).system; }
 
 }  // namespace mssim

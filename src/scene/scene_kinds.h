@@ -7,6 +7,7 @@
 
 #include "model/system.h"
 #include "scene/fields/field_visitor.h"
+#include "scene/spec/built_scene.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -25,7 +26,8 @@ struct SceneKind {
   std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
   /// What the scene has of both.
   SceneCounts (*counts)(const SceneSpec& spec);
-  System (*build)(const SceneSpec& spec);
+  /// Builds the scene once it has found that the memory does.
+  BuiltScene (*build)(const SceneSpec& spec);
 };
 
 /// The TABLE of scene kinds, in the order of SceneSpec::body's alternatives. A new kind is one row in
@@ -53,8 +55,11 @@ void require_memory(const SceneSpec& spec);
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy);
 
-/// The System of the scene. Throws SceneError when it needs more memory than there is, before allocating any,
-/// and like counts_of.
+/// The scene, every file that it names read once. Throws SceneError when it needs more memory than there is,
+/// before allocating any for its System, and like counts_of.
+BuiltScene build_scene(const SceneSpec& spec);
+
+/// Its System alone.
 System build_system(const SceneSpec& spec);
 
 }  // namespace mssim

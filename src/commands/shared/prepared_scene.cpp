@@ -4,7 +4,6 @@
 #include <utility>
 #include <variant>
 
-#include "garment/scene/garment_body.h"
 #include "scene/scene_kinds.h"
 #include "text/note.h"
 
@@ -29,11 +28,11 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
 PreparedScene prepare_scene(SceneSpec spec) {
   PreparedScene scene;
   scene.spec = std::move(spec);
-  scene.system = build_system(scene.spec);
+  auto [system, note_of_building] = build_scene(scene.spec);
+  scene.system = std::move(system);
   scene.counts = counts_of(scene.spec, scene.system);
   scene.note = difference(scene.spec, scene.counts);
-  if (std::holds_alternative<GarmentSpec>(scene.spec.body))
-    add_to_note(scene.note, ignored_parts(measured_body(scene.spec).trunk_and_legs()));
+  add_to_note(scene.note, note_of_building);
   scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
   return scene;
 }

@@ -17,6 +17,7 @@
 #include "scene/fields/json_document.h"
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"
+#include "scene/spec/memory.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -94,6 +95,8 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
   return maps;
 }
 
+SceneCounts counts_of(const GarmentBuild& build) { return {build.placed.size(), build.springs.size()}; }
+
 }  // namespace
 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
@@ -133,14 +136,14 @@ std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
 }
 
 SceneCounts garment_counts(const SceneSpec& spec) {
-  const GarmentBuild build = cut_and_placed(spec, measured_body(spec)).build;
-  return {build.placed.size(), build.springs.size()};
+  return counts_of(cut_and_placed(spec, measured_body(spec)).build);
 }
 
-System build_garment_scene(const SceneSpec& spec) {
+BuiltScene build_garment_scene(const SceneSpec& spec) {
   const GarmentSpec& garment = garment_of(spec);
   const BodyProfile body = measured_body(spec);
   auto [build, body_offset] = cut_and_placed(spec, body);
+  require_memory(spec, "/garment", counts_of(build));
   const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
   if (lowest_start < spec.floor.height)
     refuse(spec.file, "/floor/height_m",
@@ -161,7 +164,7 @@ System build_garment_scene(const SceneSpec& spec) {
   if (garment.layers) build.garment.touching = {{layer_pairs(build.garment), {}}, *garment.layers};
   build.garment.body_maps = maps_for_layers(spec, build.garment, body.trunk_and_legs().surface, body_offset);
   system.topology = std::move(build.garment);
-  return system;
+  return {std::move(system), ignored_parts(body.trunk_and_legs())};
 }
 
 }  // namespace mssim

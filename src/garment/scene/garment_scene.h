@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "model/system.h"
 #include "scene/fields/field_visitor.h"
+#include "scene/spec/built_scene.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -21,8 +21,9 @@ std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec);
 /// Measures the body and drafts the pattern. Throws SceneError.
 SceneCounts garment_counts(const SceneSpec& spec);
 
-/// Panels placed around the body, at rest, and the maps of the body that they collide with. Deterministic.
-/// Throws SceneError when the body cannot be measured or the pattern does not fit together.
-System build_garment_scene(const SceneSpec& spec);
+/// Panels placed around the body, at rest, and the maps of the body that they collide with; the note says
+/// what of the body they ignore. Deterministic. Throws SceneError when the body cannot be measured, the
+/// pattern does not fit together or the memory does not suffice.
+BuiltScene build_garment_scene(const SceneSpec& spec);
 
 }  // namespace mssim

@@ -12,6 +12,9 @@ namespace mssim {
 /// back. The backend under test comes on top.
 std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs);
 
+/// Throws SceneError when any run of a scene of this size needs more than the available memory, as below.
+void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts);
+
 /// Throws SceneError when `needed` bytes for a scene of this size are more than the available memory, naming
 /// both and the remedy. `pointer` is the JSON pointer to what sets the size.
 void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts,

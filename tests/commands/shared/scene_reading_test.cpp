@@ -1,49 +1,17 @@
 #include <gtest/gtest.h>
-#include <sys/inotify.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "commands/shared/command.h"
 #include "commands/shared/exit_code.h"
-#include "platform/descriptor.h"
+#include "tests/support/open_count.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {
 namespace {
-
-/// Counts how often a file is opened from now on.
-class OpenCount {
- public:
-  explicit OpenCount(const std::filesystem::path& file) : queue_(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
-    // Events that are alike and follow each other would be told as one; between two openings there is a
-    // closing.
-    if (::inotify_add_watch(queue_.get(), file.c_str(), IN_OPEN | IN_CLOSE) < 0)
-      throw std::runtime_error("cannot watch " + file.string());
-  }
-
-  int value() const {
-    int opened = 0;
-    std::array<char, 4096> events{};
-    ssize_t size = 0;
-    while ((size = ::read(queue_.get(), events.data(), events.size())) > 0)
-      for (std::size_t at = 0; at < static_cast<std::size_t>(size);) {
-        inotify_event event{};
-        std::memcpy(&event, events.data() + at, sizeof event);
-        if (event.mask & IN_OPEN) ++opened;
-        at += sizeof event + event.len;
-      }
-    return opened;
-  }
-
- private:
-  Descriptor queue_;
-};
 
 int run_with(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "mssim");
@@ -59,7 +27,7 @@ class SceneReadingTest : public TemporaryFolderTest {
   /// opened.
   int openings(std::vector<std::string> arguments, const std::string& scene = "cloth2500") const {
     const std::filesystem::path file = put("mine.json", text_of(source_file("scenes/" + scene + ".json")));
-    const OpenCount count(file);
+    OpenCount count(file);
     arguments.push_back(file.string());
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();

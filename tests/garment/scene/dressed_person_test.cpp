@@ -9,8 +9,10 @@
 #include "commands/shared/prepared_scene.h"
 #include "garment/scene/garment_body.h"
 #include "garment/scene/garment_cut.h"
+#include "scene/scene_kinds.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/dressed_jeans.h"
+#include "tests/support/open_count.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {
@@ -96,11 +98,15 @@ TEST_F(DressedPerson, WhoseHandsRestAgainstTheHipsIsDressedWithinAllBounds) {
 TEST_F(DressedPerson, IsSaidToHaveArmsThatTheGarmentIgnores) {
   const SceneSpec spec = scene_for("jeans1k", {.triangles = 1'600});
   EXPECT_THAT(
-      ignored_parts(measured_body(spec).trunk_and_legs()),
+      build_scene(spec).note,
       AllOf(
           HasSubstr("garments ignore what the body has beside trunk and legs (arms, hands, hair), from 0.6"),
           HasSubstr(" to 1.1")));
-  EXPECT_EQ(ignored_parts(measured_body(find_scene("jeans1k")).trunk_and_legs()), "");
+  EXPECT_EQ(build_scene(find_scene("jeans1k")).note, "");
+  // As a command says it; the person is read and measured once.
+  OpenCount count(folder() / "person.obj");
+  EXPECT_THAT(prepare_scene(spec).note, HasSubstr("garments ignore"));
+  EXPECT_EQ(count.value(), 1);
   // What is drawn is the whole person.
   EXPECT_EQ(body_of_garment(spec).triangles.size(), 1'600U);
 }
