@@ -92,17 +92,24 @@ std::vector<std::filesystem::path> files_of(const SceneSpec& spec) {
   return files;
 }
 
-std::vector<std::string> scene_names() {
-  std::vector<std::tuple<std::size_t, std::uint64_t, std::string>> scenes;
+std::vector<SceneSpec> shipped_scenes() {
+  using Key = std::tuple<std::size_t, std::uint64_t, std::string>;
+  std::vector<std::pair<Key, SceneSpec>> scenes;
   for (std::string& name : names_in_folder()) {
-    const SceneSpec spec = load_scene(file_of(name));
-    scenes.emplace_back(spec.body.index(), stated_counts(spec).value_or(SceneCounts{}).nodes,
-                        std::move(name));
+    SceneSpec spec = load_scene(file_of(name));
+    Key key(spec.body.index(), stated_counts(spec).value_or(SceneCounts{}).nodes, std::move(name));
+    scenes.emplace_back(std::move(key), std::move(spec));
   }
-  std::sort(scenes.begin(), scenes.end());
+  std::ranges::sort(scenes, {}, &std::pair<Key, SceneSpec>::first);
+  std::vector<SceneSpec> specs;
+  specs.reserve(scenes.size());
+  for (auto& [key, spec] : scenes) specs.push_back(std::move(spec));
+  return specs;
+}
+
+std::vector<std::string> scene_names() {
   std::vector<std::string> names;
-  names.reserve(scenes.size());
-  for (auto& [kind, nodes, name] : scenes) names.push_back(std::move(name));
+  for (const SceneSpec& spec : shipped_scenes()) names.push_back(spec.file.stem().string());
   return names;
 }
 

@@ -29,8 +29,11 @@ bool is_path_of_scene(std::string_view name_or_path);
 /// SceneError; for an unknown name it lists the known ones.
 SceneSpec find_scene(std::string_view name_or_path);
 
-/// The names of the scenes in the data folder, kind by kind, the smallest (in nodes, as stated) first. Throws
-/// SceneError when one of them cannot be read.
+/// The scenes in the data folder, kind by kind, the smallest (in nodes, as stated) first. Throws SceneError
+/// when one of them cannot be read.
+std::vector<SceneSpec> shipped_scenes();
+
+/// Their names.
 std::vector<std::string> scene_names();
 
 }  // namespace mssim

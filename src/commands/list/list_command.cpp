@@ -66,8 +66,7 @@ class SceneCounter {
 Listing list_scenes(const ExecutionOptions& /*options*/) {
   Listing listing;
   SceneCounter counter;
-  for (const std::string& name : scene_names()) {
-    const SceneSpec spec = find_scene(name);
+  for (const SceneSpec& spec : shipped_scenes()) {
     const std::optional<SceneCounts> counts = counter.count(spec);
     const auto number = [](const std::optional<std::uint64_t>& count) {
       return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
