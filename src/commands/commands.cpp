@@ -36,19 +36,19 @@ namespace mssim {
 namespace {
 
 constexpr std::array<Command, 7> table{{
-    {"bench", "Time every backend on scenes, and prove that each computes rightly",
+    {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
-    {"run", "Simulate one scene, and trace it into a file if asked to",
+    {"run", "Simulate one scene; write a trace or an energy curve if asked to",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
-    {"check", "Say whether scenes are right, and what they would be and take, without a run",
+    {"check", "Check scene files: size, memory, time and stability limit, without a run",
      "mssim check my-cloth.json", declare_check},
-    {"compare", "Say which of two benches or programs is faster, and whether that is certain",
+    {"compare", "Compare two results or programs: which is faster, and is that certain?",
      "mssim compare results/yesterday results/today", declare_compare},
     {"measure", "Measure a person's surface, and write a scene of jeans for it",
      "mssim measure scan.obj --scene my.json", declare_measure},
     {"list", "List scenes, suites, backends, ways, integrators or devices", "mssim list scenes --format csv",
      declare_list},
-    {"help", "Show this page, or that of a command", "mssim help bench", declare_help},
+    {"help", "Show this page, or the page of a command", "mssim help bench", declare_help},
 }};
 
 constexpr std::string_view exit_codes =
@@ -90,7 +90,7 @@ int run_guarded(const std::function<int()>& run) {
   } catch (const WriteError& error) {
     return fail(exit_file_error, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(exit_bad_input, "the memory does not suffice; close other programs or take a smaller scene");
+    return fail(exit_bad_input, "there is not enough memory; close other programs or use a smaller scene");
   } catch (const std::exception& error) {
     return fail(exit_file_error, error.what());
   }

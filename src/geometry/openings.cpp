@@ -145,8 +145,8 @@ std::vector<Opening> close_openings(Surface& surface, double largest) {
                           " m are closed; close it where the surface was made");
     if (!opening.is_ring)
       refuse(opening,
-             " goes round no hole, since triangles beside it run in different directions; turn them "
-             "the same way round where the surface was made");
+             " does not enclose a hole, because triangles beside it have different orientations; give them "
+             "one orientation where the surface was made");
   }
   for (const Opening& opening : openings) fill(surface, opening);
   return openings;

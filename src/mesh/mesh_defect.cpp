@@ -44,7 +44,7 @@ std::optional<MeshDefect> node_twice(const TetMesh& mesh) {
   });
   if (same == order.end()) return std::nullopt;
   return MeshDefect{MeshDefect::node, *(same + 1),
-                    "another node stands at " + place(mesh.nodes[*same]) + " too; merge the two"};
+                    "another node is at " + place(mesh.nodes[*same]) + " too; merge the two"};
 }
 
 std::optional<MeshDefect> bad_volume(const TetMesh& mesh) {
@@ -74,7 +74,7 @@ std::optional<MeshDefect> crowded_face(const TetMesh& mesh) {
     return MeshDefect{
         MeshDefect::tetrahedron, static_cast<std::size_t>(mesh.tetrahedra.rend() - last) - 1,
         "the tetrahedron shares a face with two others or more; tetrahedra of a body do not overlap, so "
-        "remove what stands twice"};
+        "remove the duplicates"};
   }
   return std::nullopt;
 }

@@ -17,7 +17,7 @@ class ObjReader {
       const std::string_view keyword = lines_.words().front();
       if (keyword != "v" && keyword != "f") continue;
       if (lines_.words().back() == "\\")
-        lines_.fail("the line goes on after a backslash; join it with the next");
+        lines_.fail("the line continues after a backslash; join it with the next");
       if (keyword == "v")
         vertex();
       else

@@ -38,7 +38,7 @@ Surface parse_binary(const std::string& name, std::string_view content) {
   if (content.size() != due)
     throw InputError(name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
                      counted(count, "triangle") + " in " + std::to_string(due) + " bytes, and has " +
-                     std::to_string(content.size()) + "; it is truncated or no STL file");
+                     std::to_string(content.size()) + "; it is truncated or not an STL file");
   if (count == 0) throw InputError(name + ": the file has no triangles; give a surface");
   Surface surface;
   PointMerger merger(surface);
@@ -91,7 +91,7 @@ class AsciiReader {
     if (equal(words[0], first) && (second.empty() || (words.size() > 1 && equal(words[1], second)))) return;
     const std::string due = std::string(first) + (second.empty() ? "" : " ") + std::string(second);
     lines_.fail("it begins with " + TextLines::quoted(words[0]) + " where \"" + due +
-                "\" is due; the file is damaged or no STL file");
+                "\" is expected; the file is damaged or not an STL file");
   }
 
   void next(std::string_view first, std::string_view second) {
@@ -132,7 +132,7 @@ Surface parse_stl(const std::string& name, std::string_view content) {
   if (!is_binary(content)) return AsciiReader(name, content).read();
   if (content.size() < bytes_before_triangles)
     throw InputError(name + " has " + counted(content.size(), "byte") +
-                     ", and a binary STL file at least 84; it is truncated or no STL file");
+                     ", and a binary STL file at least 84; it is truncated or not an STL file");
   return parse_binary(name, content);
 }
 

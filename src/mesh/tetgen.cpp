@@ -71,7 +71,7 @@ class Run {
     try {
       return parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
     } catch (const InputError& error) {
-      throw InputError("what " + program_.executable.string() + " made cannot be used: " + error.what());
+      throw InputError("the output of " + program_.executable.string() + " cannot be used: " + error.what());
     }
   }
 
@@ -83,7 +83,7 @@ class Run {
     if (ended.signal == SIGXCPU || ended.signal == SIGKILL)
       throw InputError(
           "TetGen was stopped after " + std::to_string(cpu_seconds) +
-          " s of processor time or for want of memory; give a surface of fewer triangles or a larger "
+          " s of processor time or for lack of memory; give a surface of fewer triangles or a larger "
           "largest volume");
     const std::string search = tetgen("-d").output;
     if (const auto crossing = crossing_triangles(search)) throw InputError(*crossing);

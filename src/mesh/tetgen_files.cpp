@@ -46,7 +46,7 @@ void require_words(const TextLines& lines, std::int64_t expected) {
 
 void require_end(TextLines& lines, const std::string& things, std::size_t count) {
   if (lines.next())
-    lines.fail("the file goes on after the " + std::to_string(count) + " " + things +
+    lines.fail("the file continues after the " + std::to_string(count) + " " + things +
                " that its first line promises; correct the number or remove the rest");
 }
 
@@ -79,9 +79,9 @@ class NodeFile {
       if (first != 0 && first != 1)
         lines_.fail("the first node has the number " + std::to_string(first) + "; number nodes from 0 or 1");
       if (index != first + static_cast<std::int64_t>(n))
-        lines_.fail("node " + std::to_string(index) + " stands where node " +
+        lines_.fail("node " + std::to_string(index) + " is where node " +
                     std::to_string(first + static_cast<std::int64_t>(n)) +
-                    " is due; number nodes in ascending order");
+                    " is expected; number nodes in ascending order");
       nodes.push_back({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
       at_line.push_back(lines_.line());
     }
@@ -121,8 +121,9 @@ class EleFile {
         const std::int64_t node = lines_.integer(1 + corner, "a node of a tetrahedron");
         const std::int64_t end = first_node + static_cast<std::int64_t>(nodes);
         if (node < first_node || node >= end)
-          lines_.fail("node " + std::to_string(node) + " is none of the nodes " + std::to_string(first_node) +
-                      " to " + std::to_string(end - 1) + "; give .node and .ele files of one mesh");
+          lines_.fail("node " + std::to_string(node) + " is not one of the nodes " +
+                      std::to_string(first_node) + " to " + std::to_string(end - 1) +
+                      "; give .node and .ele files of one mesh");
         tetrahedron[corner] = static_cast<std::uint32_t>(node - first_node);
       }
       tetrahedra.push_back(tetrahedron);

@@ -24,7 +24,7 @@ TemporaryFolder::TemporaryFolder() {
   std::string name = (parent / "mssim-XXXXXX").string();
   if (!::mkdtemp(name.data()))
     throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +
-                             std::strerror(errno) + "); set TMPDIR to a folder that may be written");
+                             std::strerror(errno) + "); set TMPDIR to a writable folder");
   path_ = name;
 }
 

@@ -216,7 +216,7 @@ System build_bodies(const SceneSpec& spec) {
       if (in_single(system.springs[s].first) == in_single(system.springs[s].second))
         refuse(spec.file, pointer_to(i) + "/centre_m",
                "is so far away that two nodes " + shown(system.springs[s].rest_length) +
-                   " m apart start at one place in single precision: move the body towards the origin");
+                   " m apart start at the same place in single precision: move the body towards the origin");
     }
   }
   system.topology = std::move(mesh);

@@ -131,7 +131,7 @@ void check_cloth(const SceneSpec& spec) {
     refuse(spec.file, "/cloth/ripple/height_m",
            "is " + shown_number(cloth.ripple.height_m) +
                ", more than the spacing, and could fold springs at the pins: give at most " +
-               shown_number(cloth.spacing_m) + " or take /cloth/pins away");
+               shown_number(cloth.spacing_m) + " or remove /cloth/pins");
 }
 
 SceneCounts cloth_counts(const SceneSpec& spec) {

@@ -200,7 +200,7 @@ while IFS='|' read -r script said; do
 done <<'END'
 exit 0|ended without writing a mesh.*make sure that .*/tetgen is TetGen
 echo no licence >&2; exit 7|ended with exit code 7 after writing "no licence"
-echo garbage >body.1.node; echo garbage >body.1.ele|/tetgen made cannot be used: .*"garbage"
+echo garbage >body.1.node; echo garbage >body.1.ele|/tetgen cannot be used: .*"garbage"
 kill -KILL $$|was stopped
 END
 [ "$(find "$work/cache" -type f | wc -l)" -ge 9 ] || fail "the cache has shrunk"

@@ -170,15 +170,15 @@ ab 3 steady deaf
 warns '^no such device$'
 warns 'deaf bench exited with 3'
 ab 2 steady silent
-warns 'silent bench exited with 0 instead of measuring, saying nothing'
+warns 'silent bench exited with 0 instead of measuring, without a message'
 ab 2 steady broken
 warns 'timings.csv, line 2, column ms_per_step_min: "not-a-number" is not a number'
 ab 3 steady missing
 warns 'cannot run .*missing: give the path'
 expect 2 'needs a --scene' compare --ab "$work/steady" "$work/slow"
-expect 2 'scene goes with --ab alone' compare "$work" "$work" --scene cloth2500
+expect 2 'scene needs --ab: add it' compare "$work" "$work" --scene cloth2500
 expect 2 'time-budget' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --time-budget 0
-expect 2 'ab does not go with --force' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
+expect 2 'ab and --force exclude each other' compare --ab "$work/steady" "$work/slow" --scene cloth2500 --force
 
 # Interrupted: ends the program under way, leaves nothing.
 set -m

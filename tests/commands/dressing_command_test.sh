@@ -64,13 +64,13 @@ wrong() {
 # With gravity from the start the jeans fall before they hold, and are found on the floor although their seams close.
 wrong falling 's/"seaming_gravity": 0/"seaming_gravity": 1/; s/"seam_force_n_per_m": 4/"seam_force_n_per_m": 1/'
 dress 1 --scene "$work/falling.json"
-misfit 'the upper edge.s distance from where it is worn is -[0-9.]* mm, beyond ±20 mm; try a lower waist'
+misfit 'the distance of the upper edge from its place in the pattern is -[0-9.]* mm, beyond ±20 mm; try a lower waist'
 misfit 'the garment slid down: '
 grep -qE '^upper_edge_rise_mm +-[0-9.]+ +±20 +no$' "$work/out" || fail "the table's bound: $(cat "$work/out")"
 # Without correction the springs of a softer cloth are too long.
 wrong slack 's/"correction": "bounded"/"correction": "none"/; s/"bounded": {[^}]*}/"none": {}/; s/": 200,/": 60,/'
 dress 1 --scene "$work/slack.json"
-misfit 'the elongation that 99.9 % stay below is [0-9.]* %, beyond 8 %'
+misfit 'the 99.9th percentile of elongations is [0-9.]* %, beyond 8 %'
 # Without a force no seam closes in time, and what is sewn as it is does not sit.
 wrong open 's/"seam_force_n_per_m": 4/"seam_force_n_per_m": 0/'
 dress 1 --scene "$work/open.json"
@@ -88,7 +88,7 @@ misfit 'layers of the cloth cross is [1-9][0-9]*, beyond 0'
 # Bodies that are none, and what a garment cannot have.
 wrong thin 's/"girth_m": 0.98/"girth_m": 0.3/'
 dress 2 --scene "$work/thin.json"
-misfit '/garment/body is no body: '
+misfit '/garment/body is not a usable body: '
 for backend in threads-mutex hybrid; do
   dress 2 --scene jeans2k --backend "$backend"
   misfit 'garments are dressed by serial, openmp and opencl'

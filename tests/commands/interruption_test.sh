@@ -44,7 +44,7 @@ start_and_signal() {
 # SIGINT: what is measured stands in whole files and on stdout, and the exit status says it.
 start_and_signal INT int/timings.csv "${bench[@]}" --out int
 [ "$status" -eq 130 ] || fail "SIGINT gives exit status $status"
-grep -q 'results so far are in int; --resume goes on' err || fail "SIGINT: $(cat err)"
+grep -q 'results so far are in int; --resume continues' err || fail "SIGINT: $(cat err)"
 grep -q '^cloth2500 .*serial' out || fail "after SIGINT nothing is printed"
 whole int
 case $(rounds int) in
@@ -67,21 +67,21 @@ cmp -s kept int/samples.csv || fail "--resume measured a finished folder again"
 grep -q '^cloth4900 .*openmp' out || fail "--resume of a finished folder prints no table"
 
 # Results are neither replaced nor mixed unawares.
-expect 2 'int holds results already: give another --out, --resume .*or --overwrite' "${bench[@]}" --out int
+expect 2 'int already holds results: give another --out, --resume .*or --overwrite' "${bench[@]}" --out int
 cmp -s kept int/samples.csv || fail "a refused bench has changed the folder"
 "$mssim" "${scenes[@]}" --backend serial --rounds 6 --out int --resume >out 2>err && fail "other backends are mixed"
 grep -q 'other backends or integrators of cloth2500' err || fail "other backends: $(cat err)"
 cp -r int moved
 sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8/' moved/provenance.json
-expect 2 'cannot go on in moved: the CPU was Another CPU .*; the number of threads was 8 and is 1; choose another' \
+expect 2 'cannot continue in moved: the CPU was Another CPU .*; the number of threads was 8 and is 1; choose another' \
   "${bench[@]}" --out moved --resume
 expect 2 'resume' bench --scene cloth2500 --resume
-expect 2 'cannot go on in int: it has results of cloth2500, which this command leaves out; choose another' \
+expect 2 'cannot continue in int: it has results of cloth2500, which this command leaves out; choose another' \
   bench --scene cloth4900 --integrator semi-euler --threads 1 --backend serial,openmp --rounds 6 --out int --resume
 "$mssim" "${scenes[@]}" --backend opencl --rounds 2 --memory copy --out copied >out 2>err || fail "opencl: $(cat err)"
 cp copied/timings.csv kept.csv
 "$mssim" "${scenes[@]}" --backend opencl --rounds 3 --out copied --resume >out 2>err && fail "other devices are mixed"
-grep -q 'cannot go on in copied: the device of opencl was .* (copied memory) and is ' err || fail "other devices: $(cat err)"
+grep -q 'cannot continue in copied: the device of opencl was .* (copied memory) and is ' err || fail "other devices: $(cat err)"
 cmp -s kept.csv copied/timings.csv || fail "a refused --resume has changed the rows"
 expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
 "$mssim" bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite >out 2>err ||
@@ -91,8 +91,8 @@ expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
 
 # Tables of what scenes are count as results, and what is replaced leaves nothing of what was there.
 "$mssim" bench --suite table2 --out tables >out 2>err || fail "table2: $(cat err)"
-expect 2 'tables holds results already' bench --scene cloth2500 --out tables
-expect 2 'cannot go on in tables: it has results of box-large, box-medium, .*, torus-small, which this command leaves out' bench --scene cloth2500 --out tables --resume
+expect 2 'tables already holds results' bench --scene cloth2500 --out tables
+expect 2 'cannot continue in tables: it has results of box-large, box-medium, .*, torus-small, which this command leaves out' bench --scene cloth2500 --out tables --resume
 "$mssim" bench --scene jeans1k --backend openmp --rounds 1 --out tables --overwrite >out 2>err || fail "--overwrite of tables: $(cat err)"
 [ ! -e tables/table2.md ] && [ -s tables/figure6.md ] || fail "--overwrite leaves $(ls tables)"
 

@@ -115,7 +115,7 @@ status=0
 
 # Nothing is replaced unasked, and nothing is written where something is wrong.
 echo mine >"$work/mine.json"
-expect 2 'is there already: give another --scene, or --overwrite' measure "$work/scan.obj" --scene "$work/mine.json"
+expect 2 'already exists: give another --scene, or --overwrite' measure "$work/scan.obj" --scene "$work/mine.json"
 [ "$(cat "$work/mine.json")" = mine ] || fail "a scene was replaced unasked"
 measure 0 "$work/scan.obj" --scene "$work/mine.json" --overwrite
 grep -q surface_file "$work/mine.json" || fail "--overwrite does not replace"
@@ -133,7 +133,7 @@ expect 2 'cannot look along z' measure "$work/scan.obj" --up z --facing +z
 person 0.01 +x+y+z neck >"$work/neck.obj"
 person 0.01 +x+y+z waist >"$work/waist.obj"
 measure 2 "$work/neck.obj" --scene "$work/neck.json"
-says 'it is open at 1 place: close it where it was made, or give --close-holes'
+says 'it has 1 opening: close it where the surface was made, or give --close-holes'
 grep -q '^opening_1 .*24 edges around (.*, open' "$work/out" || fail "the opening: $(cat "$work/out")"
 [ ! -e "$work/neck.json" ] || fail "a scene of an open body is written"
 measure 0 "$work/neck.obj" --close-holes --scene "$work/neck.json"

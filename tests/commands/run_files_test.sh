@@ -34,7 +34,7 @@ wait "$process" || status=$?
 [ "$(frames tw.h5)" -eq "$(grep -c '^[0-9]' tw.csv)" ] || fail "the trace and the curve of the first run differ"
 
 # One name for two files.
-expect 2 '--trace and --energy-curve are the same file, ./x.h5; give each a name of its own' \
+expect 2 '--trace and --energy-curve are the same file, ./x.h5; give them different names' \
   "${fall[@]}" --trace ./x.h5 --energy-curve x.h5
 expect 2 'the XDMF beside --trace and --energy-curve are the same file' "${fall[@]}" --trace x.h5 --energy-curve x.xdmf
 cp "$source/scenes/cloth2500.json" mine.json

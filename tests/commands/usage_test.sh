@@ -48,10 +48,10 @@ expect 2 'mssim compare has no option "--frobnicate"; see mssim compare --help' 
 expect 2 '^mssim: --scene NAME|FILE is missing; see mssim run --help$' run
 expect 2 '^mssim: --scene needs a value: give --scene NAME|FILE; see mssim run --help$' run --scene
 expect 2 '^mssim: --scene is given 2 times: give it once;' run --scene cloth2500 --scene cloth4900
-expect 2 '^mssim: --dry-run takes no value: leave that out;' bench --scene cloth2500 --dry-run=perhaps
+expect 2 '^mssim: --dry-run takes no value: leave it out;' bench --scene cloth2500 --dry-run=perhaps
 expect 2 '^mssim: WHAT is missing: give what to list: scenes, ' list
-expect 2 '^mssim: "twice" is one word too many for mssim list: ' list scenes twice
-expect 2 '^mssim: --resume does not go with --overwrite: leave out one of them;' bench --scene cloth2500 --resume --overwrite
+expect 2 '^mssim: unexpected argument "twice" of mssim list: ' list scenes twice
+expect 2 '^mssim: --resume and --overwrite exclude each other: leave out one of them;' bench --scene cloth2500 --resume --overwrite
 
 # Values.
 expect 2 '^mssim: --threads: "x" is not a whole number from 1 to 4096; see mssim bench --help$' bench --scene cloth2500 --threads x

@@ -151,7 +151,7 @@ TEST(Openings, TrianglesThatDisagreeMakeNoRing) {
         std::ranges::find(triangle, ring.points[1]) != triangle.end())
       std::swap(triangle[1], triangle[2]);
   EXPECT_FALSE(openings_of(surface).front().is_ring && openings_of(surface).back().is_ring);
-  EXPECT_THAT(input_error_of([&] { close_openings(surface, 1); }), HasSubstr("goes round no hole"));
+  EXPECT_THAT(input_error_of([&] { close_openings(surface, 1); }), HasSubstr("does not enclose a hole"));
 }
 
 TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {

@@ -202,13 +202,14 @@ TEST_P(BrokenStlFile, IsRefusedWithPlaceAndValue) {
 
 INSTANTIATE_TEST_SUITE_P(
     Ascii, BrokenStlFile,
-    testing::Values(BrokenText{"hello\n", "a.stl, line 1: ", "\"hello\" where \"solid\" is due"},
+    testing::Values(BrokenText{"hello\n", "a.stl, line 1: ", "\"hello\" where \"solid\" is expected"},
                     BrokenText{"solid a\nendsolid a\n", "a.stl, line 2: ", "no facets"},
-                    BrokenText{"solid a\nfacet\nouter\n", "a.stl, line 3: ", "where \"outer loop\" is due"},
+                    BrokenText{"solid a\nfacet\nouter\n",
+                               "a.stl, line 3: ", "where \"outer loop\" is expected"},
                     BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0\n", "a.stl, line 4: ", "z is missing"},
                     BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 o\n", "a.stl, line 4: ", "z is \"o\""},
                     BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 0\nendloop\n",
-                               "a.stl, line 5: ", "where \"vertex\" is due"}));
+                               "a.stl, line 5: ", "where \"vertex\" is expected"}));
 
 using SurfaceFile = MeshTest;
 

@@ -97,10 +97,10 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenFile{FOUR_NODES "3 1e999 0 1", nullptr, "a.node, line 5: ", "x is \"1e999\""},
         BrokenFile{FOUR_NODES "3 -2e9 0 1", nullptr,
                    "a.node, line 5: ", "x is \"-2e9\"; give a number from -1e9 to 1e9"},
-        BrokenFile{FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 stands where node 3 is due"},
-        BrokenFile{FOUR_NODES "3 0 0 1\n4 1 1 1", nullptr, "a.node, line 6: ", "goes on after the 4 nodes"},
+        BrokenFile{FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 is where node 3 is expected"},
+        BrokenFile{FOUR_NODES "3 0 0 1\n4 1 1 1", nullptr, "a.node, line 6: ", "continues after the 4 nodes"},
         BrokenFile{"1 3 0 0\n7 0 0 0\n", nullptr, "a.node, line 2: ", "the first node has the number 7"},
-        BrokenFile{FIVE_NODES "4 0 0 1\n", nullptr, "a.node, line 6: ", "another node stands at (0, 0, 1)"},
+        BrokenFile{FIVE_NODES "4 0 0 1\n", nullptr, "a.node, line 6: ", "another node is at (0, 0, 1)"},
         BrokenFile{nullptr, "1 4 0\n0 0 1 2 3\n", "a.node, line 6: ", "no tetrahedron has this node"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -115,14 +115,14 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4.5",
                    "a.ele, line 3: ", "is \"4.5\"; give a whole number"},
         BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 5\n",
-                   "a.ele, line 3: ", "node 5 is none of the nodes 0 to 4"},
-        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 -1\n", "a.ele, line 3: ", "node -1 is none of"},
+                   "a.ele, line 3: ", "node 5 is not one of the nodes 0 to 4"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 -1\n", "a.ele, line 3: ", "node -1 is not one of"},
         BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 4 3\n", "a.ele, line 3: ", "volume is -0.33333"},
         BrokenFile{nullptr, "2 4 0\n0 0 1 2 2\n1 1 2 3 4\n", "a.ele, line 2: ", "it is flat"},
         BrokenFile{nullptr, "3 4 0\n0 0 1 2 3\n1 1 2 3 4\n2 0 1 2 3\n",
                    "a.ele, line 4: ", "shares a face with two"},
         BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4\nmore",
-                   "a.ele, line 4: ", "goes on after the 2 tetrahedra"}));
+                   "a.ele, line 4: ", "continues after the 2 tetrahedra"}));
 
 TEST(TetgenFiles, OfOneEndlessLineAreRefusedBeforeItIsSplitIntoWords) {
   std::string words = "5 3 0 0\n0";

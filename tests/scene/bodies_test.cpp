@@ -262,7 +262,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadBodies{"[1, 2, 3]", "[1, 0.005, 3]", "/bodies/list/0/centre_m/1",
                               "not above the floor at 0: raise it"},
                     BadBodies{"[1, 2, 3]", "[-1e6, 2, 3]", "/bodies/list/0/centre_m",
-                              "start at one place in single precision"},
+                              "start at the same place in single precision"},
                     BadBodies{"\"unit_m\": 0.01", "\"unit_m\": 1e-12", "/bodies/list/0",
                               "has a spring of 3e-12 m: springs are from 1e-07 to 1000000 m long"},
                     BadBodies{"\"unit_m\": 0.01", "\"unit_m\": 1e6", "/bodies/list/0",

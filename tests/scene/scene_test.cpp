@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadScene{"0.0005", "0.0095", "/cloth/ripple/height_m", "is 0.0095", "give at most 0.009"},
                     BadScene{"\"height_m\": 0.0005, \"wavelength_m\": 0.09",
                              "\"height_m\": 0.011, \"wavelength_m\": 0.9", "/cloth/ripple/height_m",
-                             "is 0.011", "give at most 0.01 or take /cloth/pins away"},
+                             "is 0.011", "give at most 0.01 or remove /cloth/pins"},
                     BadScene{"\"rows\": 50,\n    \"columns\": 50", "\"rows\": 65536,\n    \"columns\": 65536",
                              "/cloth/rows", "is 65536, which with 65536 columns makes 4294967296 nodes",
                              "at or below 4294967295"}));

@@ -129,7 +129,7 @@ void take_survivors(const std::vector<RegisteredDriver>& drivers, const std::str
   if (offer.troubles.size() == drivers.size()) return;
   const TemporaryValue vendors(vendors_variable, survivors.path().string());
   if (const auto end = end_of_asking({}))
-    offer.troubles.push_back("the OpenCL drivers " + *end + ", though none does alone");
+    offer.troubles.push_back("the OpenCL drivers " + *end + ", but each one alone survives");
   else
     take_devices(registered_drivers(), pocl_failure, offer);
 }

@@ -42,7 +42,7 @@ struct Unsupported : std::runtime_error {
 /// The mass of every node, kg. Throws Unsupported when they differ.
 inline double require_uniform_mass(const System& system) {
   const std::optional<double> mass = uniform_node_mass(system);
-  if (!mass) throw Unsupported("the nodes of a cloth must weigh the same, and this one's do not");
+  if (!mass) throw Unsupported("the nodes of a cloth must have the same mass, and those of this one do not");
   return *mass;
 }
 

@@ -102,7 +102,7 @@ PackedSprings::PackedSprings(const System& system) : place(system.nodes()) {
   constexpr std::size_t largest = std::numeric_limits<std::uint32_t>::max() / slice_nodes;
   if (system.springs.size() > largest)
     throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
-                      " springs, hybrid numbers at most " + std::to_string(largest));
+                      " springs; hybrid supports at most " + std::to_string(largest));
   NodeOrder order = node_order(system);
   scene_node = std::move(order.scene_node);
   for (std::uint32_t i = 0; i < scene_node.size(); ++i) place[scene_node[i]] = i;

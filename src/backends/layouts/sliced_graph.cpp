@@ -34,7 +34,7 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
     : lanes(slice_lanes), place(system.nodes()) {
   if (system.springs.size() > no_node / 2)
     throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
-                      " springs, a sliced graph numbers at most 2147483647");
+                      " springs; a sliced graph holds at most 2147483647");
   const std::vector<std::uint32_t> kinds = kind_of_nodes(system);
   std::vector<std::uint32_t> degree(system.nodes(), 0);
   for (const Spring& spring : system.springs) {

@@ -53,7 +53,7 @@ SlicedBodies::SlicedBodies(const System& system, const Integrator& method, doubl
       std::numeric_limits<std::uint32_t>::max() / offsets - SlicedGraph::window;
   if (system.nodes() > most_nodes)
     throw Unsupported("the scene has " + std::to_string(system.nodes()) +
-                      " nodes, openmp steps bodies of at most " + std::to_string(most_nodes));
+                      " nodes; openmp supports bodies of at most " + std::to_string(most_nodes));
   SlicedGraph graph(system, lanes);
   entries = AlignedArray(graph.entries() * 2 * lanes);
   for (std::size_t entry = 0; entry < graph.entries(); ++entry)

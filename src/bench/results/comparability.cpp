@@ -20,7 +20,8 @@ std::string cpu_of(const Machine& machine) {
 }
 
 std::string size_of(const ResultRow& row) {
-  return std::to_string(row.nodes) + " nodes and " + std::to_string(row.springs_unique) + " springs large";
+  return "one of " + std::to_string(row.nodes) + " nodes and " + std::to_string(row.springs_unique) +
+         " springs";
 }
 
 }  // namespace
@@ -30,7 +31,7 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
   add(sentences, "the CPU", cpu_of(before.machine), cpu_of(now.machine));
   add(sentences, "the compiler", before.build.compiler, now.build.compiler);
   add(sentences, "the build type", before.build.build_type, now.build.build_type);
-  add(sentences, "what the compiler is given", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
+  add(sentences, "the compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
   add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
   for (const SceneHash& scene : before.scenes)
     if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);

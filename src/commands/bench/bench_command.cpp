@@ -62,9 +62,9 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
   if (!stopped)
     std::cerr << "results are in " << folder;
   else if (results.rows().empty())
-    std::cerr << "nothing was measured yet; --resume goes on";
+    std::cerr << "nothing was measured yet; --resume continues";
   else
-    std::cerr << "results so far are in " << folder << "; --resume goes on";
+    std::cerr << "results so far are in " << folder << "; --resume continues";
   std::cerr << '\n';
 }
 
@@ -121,34 +121,35 @@ std::function<int()> declare_bench(CLI::App& app) {
       ->type_name("NAME,...");
   declare_execution(app, options->execution);
   app.add_option("--rounds", options->rounds,
-                 "Samples of each combination (default: 15; with --time-budget at most so many)")
+                 "Samples of each combination (default: 15); with --time-budget the largest number")
       ->check(whole_number(1, most_rounds))
       ->type_name("N");
   app.add_option("--time-budget", options->time_budget_s,
-                 "Time that the measurement is to take, in as many rounds as fit; traces come on top")
+                 "Time for the measurement, in as many rounds as fit; traces take extra time")
       ->check(positive_number())
       ->type_name("SECONDS");
   app.add_flag("--dry-run", options->dry_run,
-               "Print what would be measured and about how long it would take, and do nothing");
+               "Print what would be measured and about how long it would take, then exit");
   app.add_option("--out", options->output.folder, "Folder for the results: tables, samples, provenance")
       ->type_name("FOLDER");
-  CLI::Option* resume = app.add_flag(
-      "--resume", options->output.resume,
-      "Go on where an earlier run of the same command ended, whatever ended it: keep what the folder has");
+  CLI::Option* resume =
+      app.add_flag("--resume", options->output.resume,
+                   "Continue an interrupted run of the same command: keep the finished rounds of the folder");
   app.add_flag("--overwrite", options->output.overwrite, "Replace the results that the folder has")
       ->excludes(resume);
   app.add_flag("--trace", options->output.trace,
-               "Trace each combination too, after it has been timed, into FOLDER/traces");
-  add_choice<SummaryFormat>(app, "--format", options->output.format,
-                            {{"table", SummaryFormat::table},
-                             {"csv", SummaryFormat::csv},
-                             {"json", SummaryFormat::json},
-                             {"github", SummaryFormat::github}},
-                            "What to print: table, csv, json, or github, what github-action-benchmark reads, "
-                            "which is written into FOLDER too (default: table)");
+               "Also trace each combination into FOLDER/traces, after it has been timed");
+  add_choice<SummaryFormat>(
+      app, "--format", options->output.format,
+      {{"table", SummaryFormat::table},
+       {"csv", SummaryFormat::csv},
+       {"json", SummaryFormat::json},
+       {"github", SummaryFormat::github}},
+      "What to print: table, csv, json, or github (the input of github-action-benchmark, "
+      "also written into FOLDER) (default: table)");
   app.add_option("--verified", options->verified,
-                 "Result folder in which this program has verified all this already: take from there what is "
-                 "right, and only take samples")
+                 "Result folder in which this program has already verified these combinations: rely on it, "
+                 "and only take samples")
       ->type_name("FOLDER");
   return [options] { return run(*options); };
 }

@@ -98,8 +98,8 @@ void require_distinct_names(const std::vector<SceneSpec>& scenes) {
 
 void require_traceable(const SceneSpec& spec) {
   if (std::holds_alternative<GarmentSpec>(spec.body))
-    throw UsageError("--trace does not go with " + spec.name +
-                     ", which is a garment: what it is verified with is no continuous motion; leave it out");
+    throw UsageError("--trace cannot be used with " + spec.name +
+                     ", which is a garment: its verification is not a continuous motion; leave --trace out");
   if (const auto problem = trace_name_problem(spec.name + ".h5"))
     throw UsageError("--trace names traces after their scene, and " + *problem);
 }

@@ -33,10 +33,9 @@ bool is_finished(const BenchSettings& settings, const std::string& scene,
     for (const BackendInfo* backend : settings.backends) asked.emplace(backend->name, integrator->name);
   for (const ResultRow& row : earlier) measured.emplace(row.backend, row.integrator);
   if (asked != measured)
-    throw UsageError(
-        "the folder has other backends or integrators of " + scene +
-        " than this command asks for: --resume goes on with the same ones; choose another --out, "
-        "or --overwrite to measure anew");
+    throw UsageError("the folder has other backends or integrators of " + scene +
+                     " than this command: --resume needs the same ones; choose another --out, "
+                     "or --overwrite to measure anew");
   return std::ranges::all_of(
       earlier, [&](const ResultRow& row) { return row.status != "ok" || row.rounds >= settings.rounds; });
 }

@@ -24,7 +24,7 @@ void tell_plan(const BenchPlan& plan) {
                        {"rounds", std::lround(rounds)},
                        {"expected_s", seconds(scene.time)}});
   for (const SceneSpec& scene : plan.described)
-    std::cout << scene.name << ": nothing is timed, its structure is told\n";
+    std::cout << scene.name << ": not timed; its structure is shown\n";
   if (!listing.empty()) std::cout << to_text(listing, ListingFormat::table);
   std::cout << "about " << seconds(all) << " s in all\n";
 }

@@ -22,7 +22,7 @@ std::string revision(const BuildInfo& build) {
 void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
   std::vector<std::string> all = differences(earlier, now);
   if (revision(earlier.build) != revision(now.build))
-    all.push_back("the program was of commit " + revision(earlier.build) + " and is of " +
+    all.push_back("the program was built from commit " + revision(earlier.build) + " and is now from " +
                   revision(now.build));
   std::vector<std::string> left_out;
   for (const SceneHash& scene : earlier.scenes)
@@ -37,7 +37,7 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
 
 void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
   if (!differences.empty())
-    throw UsageError("--resume cannot go on in " + folder + ": " + joined(differences, "; ") +
+    throw UsageError("--resume cannot continue in " + folder + ": " + joined(differences, "; ") +
                      "; choose another --out, or --overwrite to measure anew");
 }
 
@@ -52,7 +52,7 @@ std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan)
   }
   if (!output.overwrite)
     throw UsageError(output.folder +
-                     " holds results already: give another --out, --resume to go on with them, "
+                     " already holds results: give another --out, --resume to continue them, "
                      "or --overwrite to replace them");
   folder.clear();
   return {};

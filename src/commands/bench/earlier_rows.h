@@ -15,7 +15,7 @@ namespace mssim {
 /// not have, and what reading them throws.
 std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan);
 
-/// Throws UsageError where there are sentences that say why --resume cannot go on in the folder.
+/// Throws UsageError where there are sentences that say why --resume cannot continue in the folder.
 void require_resumable(const std::vector<std::string>& differences, const std::string& folder);
 
 }  // namespace mssim

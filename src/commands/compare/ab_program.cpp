@@ -94,7 +94,7 @@ void AbProgram::fail(const ChildResult& result) const {
   const std::string how = result.signal != 0 ? "was ended by signal " + std::to_string(result.signal)
                                              : "exited with " + std::to_string(result.exit_code);
   const std::string sentence = file_ + " bench " + how + " instead of measuring" +
-                               (result.output.empty() ? ", saying nothing" : "; what it said stands above");
+                               (result.output.empty() ? ", without a message" : "; its messages are above");
   if (result.signal == 0 && result.exit_code == exit_unavailable) throw Unavailable(sentence);
   throw UsageError(sentence);
 }

@@ -68,11 +68,12 @@ void add_round(Series& series, const std::vector<CombinationTime>& base,
   PairedTimes& pairs = series.pairs;
   const CombinationTime *a = find(base, pairs), *b = find(next, pairs);
   if (!a || !b)
-    throw UsageError(combination_name(pairs) +
-                     " was measured in one round and is missing in another; run the programs by themselves");
+    throw UsageError(
+        combination_name(pairs) +
+        " was measured in one round and is missing in another; run each program separately to see why");
   if (!a->least_ms)
     throw UsageError(combination_name(pairs) + " was measured in one round and not in another (" + a->status +
-                     "); run the programs by themselves");
+                     "); run each program separately to see why");
   if (!b->least_ms) return lose(series, *a, b->status);
   pairs.base_ms.push_back(*a->least_ms);
   pairs.new_ms.push_back(*b->least_ms);
@@ -142,7 +143,7 @@ RunComparison compare_programs(const AbOptions& options) {
   std::size_t rounds = 0;
   {
     ProgressLine progress(1);
-    progress.begin_scene(options.base + " and " + options.next + " by turns");
+    progress.begin_scene(options.base + " and " + options.next + " alternately");
     series = verify(programs, options, progress);
     while (!settled() && (rounds == 0 || seconds_since(start) + longest_s <= options.time_budget_s)) {
       const auto round_start = std::chrono::steady_clock::now();

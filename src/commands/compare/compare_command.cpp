@@ -40,8 +40,8 @@ void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool f
   const std::string sentence = joined(all, "; ");
   if (!force)
     throw UsageError("the two runs are not comparable: " + sentence +
-                     "; measure both alike, or compare them all the same with --force");
-  std::cerr << "mssim: compared all the same: " << sentence << '\n';
+                     "; measure both in the same way, or compare them anyway with --force");
+  std::cerr << "mssim: compared anyway: " << sentence << '\n';
 }
 
 /// One line for combinations that are not in the table, however many.
@@ -111,7 +111,8 @@ std::function<int()> declare_compare(CLI::App& app) {
       ->required();
   app.add_option("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
       ->required();
-  app.add_option("--threshold", options->threshold_percent, "A change that matters, in percent (default: 5)")
+  app.add_option("--threshold", options->threshold_percent,
+                 "Smallest change that counts, in percent (default: 5)")
       ->check(positive_number())
       ->type_name("PERCENT");
   add_choice<ComparisonFormat>(app, "--format", options->format,
@@ -121,8 +122,9 @@ std::function<int()> declare_compare(CLI::App& app) {
                                "What to print: table, markdown or json (default: table)");
   CLI::Option* ab =
       app.add_flag("--ab", options->programs,
-                   "BASE and NEW are mssim programs: run them by turns, as a new process each time");
-  app.add_flag("--force", options->force, "Compare runs of unlike machines, builds, threads or scenes too")
+                   "BASE and NEW are mssim programs: run them alternately, as a new process each time");
+  app.add_flag("--force", options->force,
+               "Compare runs of different machines, builds, threads or scenes anyway")
       ->excludes(ab);
   add_scenes(app, "--scene", options->ab.scenes, "With --ab: scenes to measure")->needs(ab);
   app.add_option("--backend", options->ab.backends, "With --ab: backends (default: openmp)")

@@ -47,7 +47,7 @@ std::optional<std::string> leftover(const CLI::App& command) {
       std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   if (option != rest.end()) return unknown_option(*option, command);
   if (rest.empty()) return std::nullopt;
-  return '"' + printable(rest.front()) + "\" is one word too many for " + typed_name(command) +
+  return "unexpected argument \"" + printable(rest.front()) + "\" of " + typed_name(command) +
          ": an option begins with --";
 }
 
@@ -71,7 +71,7 @@ std::string missing(const std::string& name, const CLI::App& command) {
 
 std::string wrong_count(const std::string& name, const CLI::App& command) {
   const CLI::Option* option = command.get_option_no_throw(name);
-  if (option == nullptr || option->get_expected_max() == 0) return name + " takes no value: leave that out";
+  if (option == nullptr || option->get_expected_max() == 0) return name + " takes no value: leave it out";
   if (option->count() > 1)
     return name + " is given " + std::to_string(option->count()) + " times: give it once";
   return name + " needs a value: give " + name + ' ' + option->get_type_name();
@@ -92,9 +92,9 @@ std::string problem(const CLI::ParseError& error, const CLI::App& command) {
   // What takes a value has a check of its own (choices.h), so this is a flag.
   if (dynamic_cast<const CLI::ConversionError*>(&error)) return wrong_count(flag_in(message), command);
   if (dynamic_cast<const CLI::RequiresError*>(&error))
-    return subject + " goes with " + other + " alone: add it, or leave out " + subject;
+    return subject + " needs " + other + ": add it, or leave out " + subject;
   if (dynamic_cast<const CLI::ExcludesError*>(&error))
-    return subject + " does not go with " + other + ": leave out one of them";
+    return subject + " and " + other + " exclude each other: leave out one of them";
   return message;  // of the checks in choices.h
 }
 

@@ -62,13 +62,13 @@ void require_free(const MeasureOptions& options) {
   const fs::path scene = options.scene;
   if (scene.extension() != ".json")
     throw UsageError("--scene is " + printable(options.scene, 1000) +
-                     ": give a file that ends in .json, as mssim run wants it");
+                     ": give a file that ends in .json, as mssim run requires");
   if (escaped(options.body) != options.body)
     throw UsageError(printable(options.body, 1000) +
                      " has characters that a scene file cannot hold: give the file another name");
   if (fs::exists(scene) && !options.overwrite)
     throw UsageError(printable(options.scene, 1000) +
-                     " is there already: give another --scene, or --overwrite to replace it");
+                     " already exists: give another --scene, or --overwrite to replace it");
 }
 
 /// A body that has been measured: what its scene file says of it, and what it is.
@@ -106,9 +106,9 @@ MeasuredFile measure_file(const MeasureOptions& options) {
     listing.add_openings(openings, options.close_holes ? "closed" : "open");
     if (!openings.empty() && !options.close_holes)
       throw InputError(openings.size() == 1
-                           ? "it is open at 1 place: close it where it was made, or give --close-holes"
-                           : "it is open at " + std::to_string(openings.size()) +
-                                 " places: close them where it was made, or give --close-holes");
+                           ? "it has 1 opening: close it where the surface was made, or give --close-holes"
+                           : "it has " + std::to_string(openings.size()) +
+                                 " openings: close them where the surface was made, or give --close-holes");
     BodyProfile profile(surface, options.body);
     tell_of_ignored_parts(profile);
     const BodyLandmarks landmarks = find_landmarks(profile);
@@ -147,10 +147,9 @@ bool is_surface_file(const std::string& body) {
 
 int measure_scene(const MeasureOptions& options) {
   if (!options.unit.empty() || options.up || options.facing || options.close_holes || !options.scene.empty())
-    throw UsageError(
-        printable(options.body, 1000) +
-        " is no .obj or .stl file but a scene, which says how its body stands: leave out --unit, "
-        "--up, --facing, --close-holes and --scene");
+    throw UsageError(printable(options.body, 1000) +
+                     " is a scene, not an .obj or .stl file, and says how its body stands: leave out --unit, "
+                     "--up, --facing, --close-holes and --scene");
   const SceneSpec spec = find_scene(options.body);
   const auto* garment = std::get_if<GarmentSpec>(&spec.body);
   if (garment == nullptr)
@@ -203,7 +202,7 @@ std::function<int()> declare_measure(CLI::App& app) {
   CLI::Option* scene =
       app.add_option("--scene", options->scene, "Scene file to write: jeans for the body, for mssim run")
           ->type_name("FILE");
-  app.add_flag("--overwrite", options->overwrite, "Replace the scene file if it is there")->needs(scene);
+  app.add_flag("--overwrite", options->overwrite, "Replace the scene file if it exists")->needs(scene);
   declare_listing_format(app, options->format);
   return [options] { return run_measure(*options); };
 }

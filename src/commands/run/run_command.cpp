@@ -115,7 +115,7 @@ int run_garment(const RunOptions& options, const PreparedScene& scene, const Int
       chosen_backend(options, scene, integrator, make_dressing_backend, make_reference_dressing);
   if (options.losses)
     throw UsageError(
-        "--losses does not go with a garment, on which seams and contacts do work that is not accounted for; "
+        "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
         "leave it out");
   const TraceHeader header = header_of(options, scene, *backend, integrator);
   // After the header, for which libraries are loaded that catch signals themselves, and before there is a
@@ -211,7 +211,7 @@ std::function<int()> declare_run(CLI::App& app) {
       ->type_name("NAME");
   app.add_option("--integrator", options->integrator, "Integrator (default: semi-euler)")->type_name("NAME");
   app.add_option("--duration", options->duration_s,
-                 "Simulated time (default: 1); a garment is dressed until it has settled, at most so long "
+                 "Simulated time (default: 1); for a garment the longest time that it may take to settle "
                  "(default: 4)")
       ->check(positive_number())
       ->type_name("SECONDS");
@@ -233,7 +233,7 @@ std::function<int()> declare_run(CLI::App& app) {
                  "Write the energies of all frames to this CSV file")
       ->type_name("FILE");
   app.add_flag("--losses", options->losses,
-               "Account for what damping, friction, bounces and the integrator take from the energy; takes a "
+               "Account for the energy lost to damping, friction, bounces and the integrator; computes a "
                "double-precision step for every step (not for garments)");
   declare_execution(app, options->execution);
   return [options] { return run(*options); };

@@ -115,7 +115,8 @@ CLI::Option* add_scenes(CLI::App& app, const std::string& name, std::vector<std:
   };
   return app
       .add_option_function<std::vector<std::string>>(
-          name, take, description + "; a comma separates them, but in the name of a file that there is")
+          name, take,
+          description + ", separated by commas (but not at a comma in the name of an existing file)")
       ->type_name("NAME|FILE,...");
 }
 

@@ -35,7 +35,7 @@ bool is_same(const fs::path& a, const fs::path& b) {
 void require_other(const NamedFile& a, const NamedFile& b) {
   if (is_same(a.path, b.path))
     throw UsageError(a.role + " and " + b.role + " are the same file, " + printable(a.path.string()) +
-                     "; give each a name of its own");
+                     "; give them different names");
 }
 
 }  // namespace
@@ -45,8 +45,7 @@ void require_distinct(const std::vector<NamedFile>& written, const std::vector<N
     for (auto other = file + 1; other != written.end(); ++other) {
       require_other(*file, *other);
       for (const auto& [under_way, whole] : {std::pair(*file, *other), std::pair(*other, *file)})
-        require_other(
-            {"what " + under_way.role + " is called until it is whole", temporary_of(under_way.path)}, whole);
+        require_other({"the temporary file of " + under_way.role, temporary_of(under_way.path)}, whole);
     }
     for (const NamedFile& input : read) require_other(*file, input);
   }

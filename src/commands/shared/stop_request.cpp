@@ -11,7 +11,7 @@ namespace mssim {
 namespace {
 
 constexpr std::string_view notice =
-    "\nmssim: stopping after the measurement or frame under way; a second signal stops at once\n";
+    "\nmssim: stopping after the current measurement or frame; a second signal stops at once\n";
 
 // What a signal handler may touch has to be global.
 volatile std::sig_atomic_t received = 0;

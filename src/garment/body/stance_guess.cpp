@@ -131,11 +131,11 @@ void find_facing(Candidate& best, const Surface& surface, const GivenStance& giv
   const double turned = std::round(turned_degrees(best.gaps));
   if (std::abs(turned) > askew && given.facing)
     doubts.push_back("facing: its legs stand " + shown(turned) +
-                     " degrees beside the axis; turn_deg in the scene's surface_file turns it");
+                     " degrees off the axis; turn_deg in the scene's surface_file turns it");
   if (given.facing) return;
   if (std::abs(turned) > askew) {
     turn_ahead(best, surface);
-    doubts.push_back("facing: its legs stand beside the axes, and it is turned by " +
+    doubts.push_back("facing: its legs stand off the axes, so it is turned by " +
                      shown(best.stance.turn_deg) + " degrees; give --facing to leave it as it is");
   }
   const double toes = toes_ahead(best.body);
@@ -159,8 +159,9 @@ double unit_of(double height, const GivenStance& given, std::vector<std::string>
   }
   const auto guess = guess_unit(height);
   if (!guess)
-    throw InputError("it is " + shown(height) + " high, which is a person of " + shown(shortest_person) +
-                     " to " + shown(tallest_person) + " m in no unit; give the unit with --unit");
+    throw InputError("it is " + shown(height) + " high, which in no unit is a person of " +
+                     shown(shortest_person) + " to " + shown(tallest_person) +
+                     " m; give the unit with --unit");
   if (!guess->certain)
     doubts.push_back("unit: in " + std::string(guess->unit.name) + " the body is " +
                      metres(guess->unit.metres) + " high, which is nearest to a person of " +

@@ -25,7 +25,7 @@ void require_corner(const PatternPiece& piece, std::string_view corner, const Ve
   if (length(a - b) <= corner_tolerance) return;
   throw InputError(piece.name + ": at the " + std::string(corner) + " corner the " + std::string(edge_a) +
                    " boundary ends at " + place(a) + " and the " + std::string(edge_b) + " one at " +
-                   place(b) + "; let them meet to a tenth of a millimetre");
+                   place(b) + "; make them meet within 0.1 mm");
 }
 
 /// The outline, counter-clockwise. At the corners, where the curves meet only nearly, it takes the first

@@ -58,7 +58,7 @@ Vec3d Curve::at(double fraction) const {
 
 std::pair<Curve, Curve> Curve::split(double fraction) const {
   if (!(fraction > 0 && fraction < 1))
-    throw InputError("a boundary curve is to be split at " + shown(fraction) +
+    throw InputError("a boundary curve cannot be split at " + shown(fraction) +
                      " of its length; give a fraction between 0 and 1");
   const Vec3d cut = at(fraction);
   const auto after = points_.begin() + static_cast<std::ptrdiff_t>(point_after(fraction * length()));

@@ -66,7 +66,7 @@ PatternPiece piece_of(const std::string& name, const JeansOutline& outline, bool
 
 JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes) {
   if (nodes < 300 || nodes > 10'000'000)
-    throw InputError("jeans: they are to have " + std::to_string(nodes) +
+    throw InputError("jeans: they cannot have " + std::to_string(nodes) +
                      " nodes; give a number from 300 to 10000000");
   const double height = 0.5 * (mean_height(draft.front) + mean_height(draft.back));
   const double front_width = area_of(draft.front) / height, back_width = area_of(draft.back) / height;

@@ -11,7 +11,7 @@ constexpr std::uint32_t most_lines = 10'000;
 
 void require_lines(const PatternPiece& piece, std::uint32_t count, std::string_view what) {
   if (count < 2 || count > most_lines)
-    throw InputError(piece.name + ": it is to have " + std::to_string(count) + " " + std::string(what) +
+    throw InputError(piece.name + ": it cannot have " + std::to_string(count) + " " + std::string(what) +
                      " of nodes; give a number from 2 to " + std::to_string(most_lines));
 }
 
@@ -37,9 +37,9 @@ LineEnds line_ends(const PatternPiece& piece, std::string_view what, std::uint32
     if (!(line.index > last.index && line.index + 1 < count && line.first > last.first && line.first < 1 &&
           line.second > last.second && line.second < 1))
       throw InputError(piece.name + ": " + std::string(what) + " " + std::to_string(line.index) +
-                       " is to end at the fractions " + shown(line.first) + " and " + shown(line.second) +
-                       " of its boundaries; let indices from 1 to " + std::to_string(count - 2) +
-                       " and fractions between 0 and 1 ascend");
+                       " cannot end at the fractions " + shown(line.first) + " and " + shown(line.second) +
+                       " of its boundaries; give ascending indices from 1 to " + std::to_string(count - 2) +
+                       " and ascending fractions between 0 and 1");
     go_on_to(line);
   }
   go_on_to({count - 1, 1, 1});
@@ -59,7 +59,7 @@ void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
         if (cross(next - here, before - here).z <= 0)
           throw FoldedPiece(piece.name + ": the cell of row " + std::to_string(row) + " and column " +
                             std::to_string(column) + " folds over at " + place(here) +
-                            "; straighten the boundaries there or let the grid lines end elsewhere");
+                            "; straighten the boundaries there or end the grid lines elsewhere");
       }
     }
 }

@@ -76,7 +76,7 @@ BentPoint bent(double along, double radius, double most_back) {
 std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
                                const PanelPlacement& placement, const BodyDepth& body) {
   if (!(placement.distance > 0 && placement.radius > 0))
-    throw InputError(panel + ": it is to be placed " + shown(placement.distance) +
+    throw InputError(panel + ": it cannot be placed " + shown(placement.distance) +
                      " m from the body, bent with a radius of " + shown(placement.radius) +
                      " m; give positive lengths");
   const auto [lowest, highest] = std::minmax_element(

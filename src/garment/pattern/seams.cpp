@@ -29,7 +29,7 @@ std::size_t panel_named(const std::string& where, const std::string& name,
     if (panels[i].name == name) return i;
     names.push_back(panels[i].name);
   }
-  throw InputError(where + "there is no panel " + name + "; take one of " + joined(names, ", "));
+  throw InputError(where + "there is no panel " + name + "; use one of " + joined(names, ", "));
 }
 
 std::size_t nearest(const std::vector<double>& arcs, double arc) {
@@ -45,13 +45,13 @@ StretchNodes nodes_of(const std::string& where, const SeamStretch& stretch,
   const auto is_fraction = [](double x) { return x >= 0 && x <= 1; };
   if (!is_fraction(stretch.from) || !is_fraction(stretch.to) || stretch.from == stretch.to)
     throw InputError(where + text_of(stretch) +
-                     " is no stretch of it; give two different fractions from 0 to 1");
+                     " is not a valid stretch; give two different fractions from 0 to 1");
   const std::vector<double>& arcs = meshes[p].arcs_on(stretch.edge);
   const std::size_t begin = nearest(arcs, stretch.from * arcs.back());
   const std::size_t end = nearest(arcs, stretch.to * arcs.back());
   if (begin == end)
     throw InputError(where + text_of(stretch) +
-                     " holds less than two nodes; lengthen it or give the panel more");
+                     " has fewer than two nodes; lengthen it or give the panel more nodes");
   const std::vector<std::size_t> on_edge = meshes[p].edge_nodes(stretch.edge);
   StretchNodes found;
   found.drawn_length = std::abs(stretch.to - stretch.from) * arcs.back();
@@ -87,7 +87,8 @@ std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> pan
   if (!(std::abs(first.drawn_length - second.drawn_length) <= seam.tolerance * longer))
     throw InputError(where + text_of(seam.first) + " is " + shown(first.drawn_length) + " m long and " +
                      text_of(seam.second) + " " + shown(second.drawn_length) +
-                     " m; make them alike or raise the seam's tolerance of " + shown(seam.tolerance));
+                     " m; give them the same length or raise the seam's tolerance of " +
+                     shown(seam.tolerance));
   const bool first_is_finer = first.nodes.size() >= second.nodes.size();
   const StretchNodes &finer = first_is_finer ? first : second, &coarser = first_is_finer ? second : first;
   std::vector<Joint> joints;
@@ -100,7 +101,7 @@ std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> pan
     joint.seam = seam_index;
     if (joint.node == joint.edge_first || joint.node == joint.edge_second)
       throw InputError(where + text_of(seam.first) + " and " + text_of(seam.second) + " share the node " +
-                       std::to_string(joint.node) + "; take two stretches that are apart");
+                       std::to_string(joint.node) + "; use two separate stretches");
     joints.push_back(joint);
   }
   return joints;

@@ -66,7 +66,7 @@ Surface body_from_file(const SceneSpec& spec, const BodyFile& body) {
   try {
     surface = stood_up(read_surface(spec.file.parent_path() / body.file), body.stance);
   } catch (const InputError& error) {
-    refuse(spec.file, section + "/file", "is no body: " + printable(error.what(), 1500));
+    refuse(spec.file, section + "/file", "is not a usable body: " + printable(error.what(), 1500));
   }
   if (body.close_holes_m) {
     try {
@@ -76,12 +76,13 @@ Surface body_from_file(const SceneSpec& spec, const BodyFile& body) {
     }
   } else if (const std::vector<Opening> openings = openings_of(surface); !openings.empty()) {
     const Opening& largest = openings.front();
-    refuse(spec.file, section + "/file",
-           "is no closed body: it has " + std::to_string(openings.size()) +
-               (openings.size() == 1 ? " opening" : " openings, the largest") + " of " +
-               std::to_string(largest.edges()) + " edges around " + place(largest.centre) + ", " +
-               shown(largest.size) +
-               " m across; close what is open, or give \"close_holes_m\", the size up to which it is closed");
+    refuse(
+        spec.file, section + "/file",
+        "is not a closed body: it has " + std::to_string(openings.size()) +
+            (openings.size() == 1 ? " opening" : " openings, the largest") + " of " +
+            std::to_string(largest.edges()) + " edges around " + place(largest.centre) + ", " +
+            shown(largest.size) +
+            " m across; close the surface, or give \"close_holes_m\", the largest opening that mssim closes");
   }
   return surface;
 }
@@ -125,7 +126,7 @@ Surface body_of_garment(const SceneSpec& spec) {
   try {
     return mannequin(form.measures, form.resolution);
   } catch (const InputError& error) {
-    refuse(spec.file, "/garment/body", "is no body: " + printable(error.what(), 1500));
+    refuse(spec.file, "/garment/body", "is not a usable body: " + printable(error.what(), 1500));
   }
 }
 

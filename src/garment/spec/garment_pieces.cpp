@@ -114,7 +114,7 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
         curve_of(piece.boundaries[edge]);
       } catch (const InputError& error) {
         refuse(file, place + "/" + std::string(panel_edge_names[edge]),
-               "is no boundary: " + printable(error.what(), 1500));
+               "is not a valid boundary: " + printable(error.what(), 1500));
       }
     }
     nodes += std::uint64_t{piece.rows} * piece.columns;

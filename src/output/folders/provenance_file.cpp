@@ -31,7 +31,7 @@ std::string read_text(const std::filesystem::path& file) {
   // A pipe would block and a folder reads as nothing.
   if (!std::filesystem::is_regular_file(file, error))
     fail(file, error ? "cannot be read (" + error.message() + "): give a folder that mssim bench wrote"
-                     : "is no file: give a folder that mssim bench wrote");
+                     : "is not a file: give a folder that mssim bench wrote");
   std::ifstream in(file, std::ios::binary);
   std::string text(largest_provenance_bytes + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -126,7 +126,7 @@ class Place {
 
   void require(bool good, const std::string& wanted) const {
     if (!good)
-      fail(file_, (pointer_.empty() ? "the whole" : pointer_) + " is " +
+      fail(file_, (pointer_.empty() ? "the document" : pointer_) + " is " +
                       printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)) + " instead of " +
                       wanted + ": give a provenance.json that mssim wrote");
   }

@@ -12,7 +12,7 @@ std::vector<CombinationTime> read_combination_times(const std::filesystem::path&
     const auto found = std::ranges::find(table.header(), name);
     if (found == table.header().end())
       throw CsvError(file.string() + ", line 1: there is no column " + name +
-                     "; take a program that writes it");
+                     "; use a program that writes it");
     return static_cast<std::size_t>(found - table.header().begin());
   };
   const std::size_t scene = column("scene"), backend = column("backend"), integrator = column("integrator"),

@@ -24,7 +24,7 @@ class OutputNames : public TemporaryFolderTest {
           require_distinct({{"--trace", first}, {"--energy-curve", second}}, {});
         },
         ThrowsMessage<UsageError>(
-            AllOf(HasSubstr("are the same file"), HasSubstr("give each a name of its own"))))
+            AllOf(HasSubstr("are the same file"), HasSubstr("give them different names"))))
         << first << " and " << second;
     EXPECT_THROW(require_distinct({{"--trace", first}}, {{"a file of the scene", second}}), UsageError);
   }
@@ -50,7 +50,7 @@ TEST_F(OutputNames, AreToldApartHoweverTheyAreWritten) {
 
 TEST_F(OutputNames, AreNotThoseOfFilesUnderWay) {
   const fs::path trace = folder() / "x.h5", curve = folder() / "x.h5.part";
-  const auto refused = ThrowsMessage<UsageError>(HasSubstr("what --trace is called until it is whole"));
+  const auto refused = ThrowsMessage<UsageError>(HasSubstr("the temporary file of --trace"));
   EXPECT_THAT([&] { require_distinct({{"--trace", trace}, {"--energy-curve", curve}}, {}); }, refused);
   EXPECT_THAT([&] { require_distinct({{"--energy-curve", curve}, {"--trace", trace}}, {}); }, refused);
 }

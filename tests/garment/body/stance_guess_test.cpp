@@ -112,7 +112,7 @@ TEST(StanceGuess, ABodyThatLooksBetweenTheAxesIsTurned) {
     const StanceGuess guess = guess_stance(posed(person, {1, 1, degrees, {0.1, 0, 2}, degrees > 0}), {});
     SCOPED_TRACE(degrees);
     EXPECT_THAT(guess.doubts,
-                ElementsAre(HasSubstr("facing: its legs stand beside the axes, and it is turned by")));
+                ElementsAre(HasSubstr("facing: its legs stand off the axes, so it is turned by")));
     const Surface found = stood_up(posed(person, {1, 1, degrees, {0.1, 0, 2}, degrees > 0}), guess.stance);
     for (std::size_t p = 0; p < found.points.size(); p += 100) {
       EXPECT_NEAR(found.points[p].x, person.points[p].x, 0.02);
@@ -122,7 +122,7 @@ TEST(StanceGuess, ABodyThatLooksBetweenTheAxesIsTurned) {
   const Surface askew = posed(person, {1, 1, 30, {}, false});
   const StanceGuess given = guess_stance(askew, {{}, {}, Facing::plus_z});
   EXPECT_EQ(given.stance.turn_deg, 0);
-  EXPECT_THAT(given.doubts, ElementsAre(HasSubstr("its legs stand 30 degrees beside the axis; turn_deg")));
+  EXPECT_THAT(given.doubts, ElementsAre(HasSubstr("its legs stand 30 degrees off the axis; turn_deg")));
 }
 
 TEST(StanceGuess, WhatIsGivenIsKept) {
@@ -147,8 +147,7 @@ TEST(StanceGuess, WhatCannotBeIsRefused) {
               HasSubstr("it stands upright neither in y nor in z; turn it"));
   Surface huge = form();
   for (Vec3d& point : huge.points) point = 17.0 * point;
-  EXPECT_THAT(input_error_of([&] { guess_stance(huge, {}); }),
-              HasSubstr("in no unit; give the unit with --unit"));
+  EXPECT_THAT(input_error_of([&] { guess_stance(huge, {}); }), HasSubstr("m; give the unit with --unit"));
   EXPECT_EQ(guess_stance(huge, {0.1, {}, {}}).stance.unit_m, 0.1);
 }
 

@@ -79,8 +79,8 @@ TEST(DressedJeans, OfLimpClothAreOverlongWithoutCorrection) {
     for (auto& material : on.system.materials) material.stiffness *= 0.1;
     on.garment().dressing.correction = VelocityCorrection::none;
   });
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("the elongation that 99 % stay below is ")));
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("the elongation that 99.9 % stay below is ")));
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the 99th percentile of elongations is ")));
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the 99.9th percentile of elongations is ")));
 }
 
 TEST(DressedJeans, ThatFallWhileTheyAreSewnPassTheNaiveChecksAndAreFoundTooLow) {
@@ -91,13 +91,14 @@ TEST(DressedJeans, ThatFallWhileTheyAreSewnPassTheNaiveChecksAndAreFoundTooLow) 
   EXPECT_TRUE(jeans.result.seamed_at);
   EXPECT_LT(jeans.fit.largest_gap, 1e-3);
   EXPECT_LT(jeans.fit.deepest_node, 1e-3);
-  EXPECT_THAT(jeans.found, Contains(HasSubstr("the upper edge's distance from where it is worn is -")));
+  EXPECT_THAT(jeans.found,
+              Contains(HasSubstr("the distance of the upper edge from its place in the pattern is -")));
 }
 
 TEST(DressedJeans, ThatAreDrawnUpHaveTheirCrotchTooHigh) {
   const Dressed jeans = dressed_after([](DressingCase& on) { on.system.gravity = -50; });
   EXPECT_THAT(jeans.found,
-              Contains(HasSubstr("the distance of where seams meet from where that is worn is ")));
+              Contains(HasSubstr("the distance of the crotch from its place in the pattern is ")));
   EXPECT_GT(jeans.fit.meeting_rise, 0.03);
 }
 

@@ -136,7 +136,7 @@ TEST(JeansGrid, TheNumberOfNodesIsMetWithCellsAboutSquare) {
     }
   }
   EXPECT_THAT(input_error_of([] { jeans_grid(draft_jeans(JeansBody{}.measures()), 299); }),
-              HasSubstr("to have 299 nodes; give a number from 300"));
+              HasSubstr("cannot have 299 nodes; give a number from 300"));
 }
 
 TEST(Jeans, CellsFoldForNoHipAndNoNumberOfNodes) {

@@ -88,7 +88,7 @@ TEST(PanelMesh, CornersMustMeetToATenthOfAMillimetre) {
   EXPECT_EQ(complaint(piece),
             "front: at the top right corner the top boundary ends at (1.00011, 1, 0) and the right one at "
             "(1, 1, 0); "
-            "let them meet to a tenth of a millimetre");
+            "make them meet within 0.1 mm");
 }
 
 TEST(PanelMesh, BoundariesThatMeetElsewhereAreRefused) {
@@ -112,7 +112,7 @@ TEST(PanelMesh, CellsThatFoldOverAreRefused) {
   piece.bottom = Curve({{0, 0, 0}, {0.4, 0, 0}, {0.4, -2, 0}, {0.6, -2, 0}, {0.6, 0, 0}, {1, 0, 0}});
   EXPECT_THAT(complaint(piece, {30, 30}),
               AllOf(StartsWith("front: the cell of row "), HasSubstr(" folds over at ("),
-                    HasSubstr("straighten the boundaries there or let the grid lines")));
+                    HasSubstr("straighten the boundaries there or end the grid lines")));
 }
 
 TEST(PanelMesh, APieceDrawnFromBehindFoldsOver) {
@@ -123,14 +123,15 @@ TEST(PanelMesh, APieceDrawnFromBehindFoldsOver) {
 
 TEST(PanelMesh, BadGridsAreRefused) {
   const PatternPiece piece = rectangle_piece("front", 1, 1);
-  EXPECT_EQ(complaint(piece, {1, 4}), "front: it is to have 1 rows of nodes; give a number from 2 to 10000");
+  EXPECT_EQ(complaint(piece, {1, 4}), "front: it cannot have 1 rows of nodes; give a number from 2 to 10000");
   EXPECT_EQ(complaint(piece, {4, 1}),
-            "front: it is to have 1 columns of nodes; give a number from 2 to 10000");
+            "front: it cannot have 1 columns of nodes; give a number from 2 to 10000");
   EXPECT_THAT(
       complaint(piece, {4, 4, {{3, 0.5, 0.5}}}),
-      AllOf(StartsWith("front: row 3 is to end at the fractions 0.5 and 0.5"), HasSubstr("from 1 to 2")));
-  EXPECT_THAT(complaint(piece, {9, 4, {{2, 0.5, 0.5}, {3, 0.6, 0.4}}}), StartsWith("front: row 3 is to end"));
-  EXPECT_THAT(complaint(piece, {4, 9, {}, {{2, 0.5, 1}}}), StartsWith("front: column 2 is to end"));
+      AllOf(StartsWith("front: row 3 cannot end at the fractions 0.5 and 0.5"), HasSubstr("from 1 to 2")));
+  EXPECT_THAT(complaint(piece, {9, 4, {{2, 0.5, 0.5}, {3, 0.6, 0.4}}}),
+              StartsWith("front: row 3 cannot end"));
+  EXPECT_THAT(complaint(piece, {4, 9, {}, {{2, 0.5, 1}}}), StartsWith("front: column 2 cannot end"));
 }
 
 }  // namespace

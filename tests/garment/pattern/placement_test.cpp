@@ -119,7 +119,7 @@ TEST(Placement, BadPlacementsAreRefused) {
   PanelPlacement flat;
   flat.radius = 0;
   EXPECT_THAT(input_error_of([&] { place_panel("front", mesh, flat, depth_of(0.1, -0.1)); }),
-              AllOf(StartsWith("front: it is to be placed 0.03 m from the body, bent with a radius of 0 m"),
+              AllOf(StartsWith("front: it cannot be placed 0.03 m from the body, bent with a radius of 0 m"),
                     HasSubstr("give positive lengths")));
 }
 

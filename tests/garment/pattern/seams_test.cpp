@@ -116,7 +116,7 @@ TEST(Seams, VeryDifferentLengthsAreRefused) {
   EXPECT_EQ(pair.complaint(whole),
             "seam s: the right boundary of a from 0 to 1 is 1 m long and the left boundary of b from 0 to 1 "
             "1.04 m; "
-            "make them alike or raise the seam's tolerance of 0.03");
+            "give them the same length or raise the seam's tolerance of 0.03");
   Seam tolerant = whole;
   tolerant.tolerance = 0.04;
   EXPECT_EQ(pair.complaint(tolerant), "");
@@ -127,16 +127,15 @@ TEST(Seams, BadStretchesAreRefused) {
   const auto complaint = [&](const SeamStretch& first) {
     return pair.complaint(seam_of(first, {"b", PanelEdge::left}));
   };
-  EXPECT_EQ(complaint({"c", PanelEdge::right}), "seam s: there is no panel c; take one of a, b");
+  EXPECT_EQ(complaint({"c", PanelEdge::right}), "seam s: there is no panel c; use one of a, b");
   EXPECT_THAT(
       complaint({"a", PanelEdge::top, 0.5, 0.5}),
-      StartsWith("seam s: the top boundary of a from 0.5 to 0.5 is no stretch of it; give two different"));
-  EXPECT_THAT(complaint({"a", PanelEdge::right, 0, 1.1}), HasSubstr("from 0 to 1.1 is no stretch of it"));
+      StartsWith("seam s: the top boundary of a from 0.5 to 0.5 is not a valid stretch; give two different"));
+  EXPECT_THAT(complaint({"a", PanelEdge::right, 0, 1.1}), HasSubstr("from 0 to 1.1 is not a valid stretch"));
   EXPECT_THAT(complaint({"a", PanelEdge::right, 0.01, 0.1}),
-              AllOf(HasSubstr("holds less than two nodes"), HasSubstr("or give the panel more")));
-  EXPECT_THAT(
-      pair.complaint(seam_of({"a", PanelEdge::right}, {"a", PanelEdge::top})),
-      AllOf(StartsWith("seam s: "), HasSubstr("share the node 9; take two stretches that are apart")));
+              AllOf(HasSubstr("has fewer than two nodes"), HasSubstr("or give the panel more nodes")));
+  EXPECT_THAT(pair.complaint(seam_of({"a", PanelEdge::right}, {"a", PanelEdge::top})),
+              AllOf(StartsWith("seam s: "), HasSubstr("share the node 9; use two separate stretches")));
 }
 
 }  // namespace

@@ -268,16 +268,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadPieces{R"("name": "seat")", R"("name": "apron")", "/garment/pieces/panels/1",
                   "two panels have this name", "rename one of them"},
         BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.21, 1.05]]})",
-                  "/garment/pieces/panels/0", "apron: at the top right corner", "let them meet"},
+                  "/garment/pieces/panels/0", "apron: at the top right corner", "make them meet"},
         BadPieces{
             apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0, 0.7], [0.2, 1.05]]})",
             "/garment/pieces/panels/0", "the top and the bottom boundary meet", "neither cross nor touch"},
         BadPieces{first_stretch, R"("first": {"panel": "aprn", "edge": "right", "from": 0, "to": 1})",
-                  "/garment/pieces/seams/0", "there is no panel aprn", "take one of apron, seat"},
+                  "/garment/pieces/seams/0", "there is no panel aprn", "use one of apron, seat"},
         BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0.4, "to": 1})",
                   "/garment/pieces/seams/0", "is 0.15 m long", "raise the seam's tolerance of 0.03"},
         BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0.5, "to": 0.5})",
-                  "/garment/pieces/seams/0", "from 0.5 to 0.5 is no stretch", "two different fractions"}));
+                  "/garment/pieces/seams/0", "from 0.5 to 0.5 is not a valid stretch",
+                  "two different fractions"}));
 
 TEST(GarmentPieces, NeedABodyAtTheirHeights) {
   std::string text = two_pieces;

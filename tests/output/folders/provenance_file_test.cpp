@@ -113,7 +113,7 @@ TEST_F(ProvenanceFile, IsRefusedWithThePlaceAndTheValue) {
   EXPECT_THAT(refusal_with("/cpu/caches/0/bytes", 1e300), HasSubstr("/cpu/caches/0/bytes is 1e+300"));
   for (const char* hash : {"fedcba987654321", "fedcba987654321g", "0xfedcba98765432", "fedcba98765432100"})
     EXPECT_THAT(refusal_with("/scenes_fnv1a_64/mine", hash), HasSubstr("instead of 16 hexadecimal digits"));
-  EXPECT_THAT(refusal_of("[]"), HasSubstr("the whole is [] instead of an object"));
+  EXPECT_THAT(refusal_of("[]"), HasSubstr("the document is [] instead of an object"));
 }
 
 TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {

@@ -17,10 +17,10 @@ TEST(TraceName, IsGoodWhereItEndsInH5AndIsPrintable) {
 }
 
 TEST(TraceName, EndsInH5) {
-  EXPECT_EQ(problem_of("out/t.txt"), "\"t.txt\" is not named NAME.h5, as traces are: give t.h5");
-  EXPECT_EQ(problem_of("t"), "\"t\" is not named NAME.h5, as traces are: give t.h5");
-  EXPECT_EQ(problem_of(".h5"), "\".h5\" is not named NAME.h5, as traces are: give .h5.h5");
-  EXPECT_EQ(problem_of("out/"), "\"\" is not named NAME.h5, as traces are: give a file in that folder");
+  EXPECT_EQ(problem_of("out/t.txt"), "\"t.txt\" is not a name of the form NAME.h5: give t.h5");
+  EXPECT_EQ(problem_of("t"), "\"t\" is not a name of the form NAME.h5: give t.h5");
+  EXPECT_EQ(problem_of(".h5"), "\".h5\" is not a name of the form NAME.h5: give .h5.h5");
+  EXPECT_EQ(problem_of("out/"), "\"\" is not a name of the form NAME.h5: give a file in that folder");
 }
 
 TEST(TraceName, HasNothingThatReadersOfTheXdmfFileMisread) {
