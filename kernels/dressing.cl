@@ -137,9 +137,8 @@ MSSIM_INLINE void update_site(Site site, Block block, __global const float* pixe
   const Mask real = inverse_mass > 0.0f;
   Vector x = load_vector(sheet->position + site.at, plane);
   Vector v = load_vector(sheet->velocity + site.at, plane);
-  Vector a = times(inverse_mass, spring_forces(site, block, sheet));
-  a = minus(a, times((Real)(phase->damping), v));
-  a.y -= phase->gravity;
+  Vector a = node_acceleration_unfused(times(inverse_mass, spring_forces(site, block, sheet)), v,
+                                       (Real)(phase->damping), (Real)(phase->gravity));
   if (!draping) a = plus(a, load_vector(sheet->pull + site.at, plane));
   v = times_plus((Real)(rules->dt), where(real, a, no_vector()), v);
   Real free = inverse_mass;

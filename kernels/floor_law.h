@@ -3,7 +3,9 @@
  * loses at most friction times the change of the normal speed (Coulomb's law for an impulse).
  *
  * Text for many number types like spring_law.h; beyond that file's names it needs
- *   where_less(a, b, yes, no)   yes where a < b, else no.
+ *   where_less(a, b, yes, no)   yes where a < b, else no,
+ *   MSSIM_VECTOR_LAW            what stands before a function that returns a Vector, three Reals x, y and z,
+ *   dot_product(a, b)           of two Vectors.
  */
 
 /* Vertical speed after the contact (m/s). */
@@ -21,4 +23,14 @@ MSSIM_LAW floor_grip(Real normal_change, Real slide_squared, Real friction) {
   /* 1e-30 keeps the reciprocal finite for a node that does not slide at all. */
   Real kept = one - friction * normal_change * inverse_sqrt(slide_squared + 1e-30f);
   return where_less(kept, none, none, kept);
+}
+
+/* Velocity after the contact (m/s). */
+MSSIM_VECTOR_LAW floor_velocity(Vector v, Real restitution, Real friction) {
+  Real rebound = floor_rebound(v.y, restitution);
+  Vector slide = v;
+  slide.y = restitution - restitution;
+  Real grip = floor_grip(rebound - v.y, dot_product(slide, slide), friction);
+  Vector after = {grip * v.x, rebound, grip * v.z};
+  return after;
 }

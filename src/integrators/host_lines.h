@@ -25,9 +25,7 @@ template <class Real>
 inline void touch_floor(Vec3<Real>& x, Vec3<Real>& v, Real height, Real restitution, Real friction) {
   if (!(x.y < height)) return;
   x.y = height;
-  const Real rebound = floor_rebound(v.y, restitution);
-  const Real grip = floor_grip(rebound - v.y, v.x * v.x + v.z * v.z, friction);
-  v = {grip * v.x, rebound, grip * v.z};
+  v = floor_velocity(v, restitution, friction);
 }
 
 }  // namespace mssim

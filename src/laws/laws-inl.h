@@ -12,7 +12,12 @@
 #define MSSIM_GIVES(Name) \
   template <class Real>   \
   MSSIM_LAW_INLINE Name<Real>
+#define MSSIM_VECTOR_LAW              \
+  template <class Vector, class Real> \
+  MSSIM_LAW_INLINE Vector
+#define dot_product dot
 
+#include "kernels/acceleration_law.h"
 #include "kernels/floor_law.h"
 #include "kernels/spring_law.h"
 // After what they need.
@@ -24,4 +29,6 @@
 #undef MSSIM_STRUCT
 #undef MSSIM_OF
 #undef MSSIM_GIVES
+#undef MSSIM_VECTOR_LAW
+#undef dot_product
 #undef MSSIM_LAW_INLINE

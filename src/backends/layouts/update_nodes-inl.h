@@ -28,18 +28,16 @@ HWY_INLINE NodeLanes load_nodes(const float* first) {
                                         MSSIM_INLINE_LAMBDA { return first + i * record_floats; });
 }
 
-/// One stage at the nodes whose records begin `offset` floats after each pair's: adds drag and gravity to
-/// `a`, what the springs give them, and runs the stage's lines. `node` is what they are in the gathered pair;
-/// those not `free` stay as they are.
+/// One stage at the nodes whose records begin `offset` floats after each pair's. `pull`: the acceleration
+/// that the springs give them; `node`: what they are in the gathered pair; those not `free` stay as they are.
 template <std::size_t method, std::size_t stage>
-HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeLanes& node, Lanes3 a,
-                             Mask free, const Coefficients<float>& coefficients,
+HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeLanes& node,
+                             const Lanes3& pull, Mask free, const Coefficients<float>& coefficients,
                              const Surroundings& surroundings) {
   constexpr Stage table = integrators[method].stages[stage];
-  a = mul_add(Lanes(-surroundings.viscous_damping), node.v, a);
-  a.y = a.y - Lanes(surroundings.gravity);
   // What is held is at rest; without acceleration every line gives it back as it was.
-  a = keep(free, a);
+  const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping),
+                                                Lanes(surroundings.gravity)));
 
   NodeLanes loaded[pair_kinds];
   const auto half = [&](auto slot) MSSIM_INLINE_LAMBDA -> Lanes3& {

@@ -100,9 +100,9 @@ bool grid_program_walks(int lanes) { return lanes > 1; }
 std::string grid_program_text(const Integrator& integrator, int lanes) {
   const bool walks = grid_program_walks(lanes);
   std::string text =
-      program_text(lanes, {"lanes.h", "spring_law.h", "floor_law.h", "surroundings.h", "touch_floor.h",
-                           "step_parameters.h", "stage.h", "grid_parameters.h", "grid_spring.h",
-                           walks ? "grid_bands.cl" : "grid_nodes.cl"});
+      program_text(lanes, {"lanes.h", "spring_law.h", "acceleration_law.h", "floor_law.h", "surroundings.h",
+                           "touch_floor.h", "step_parameters.h", "stage.h", "grid_parameters.h",
+                           "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
   std::string kinds;
   for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
     kinds += "#define " + std::string(grid_spring_kinds[kind].name) + " " + std::to_string(kind) + "\n";

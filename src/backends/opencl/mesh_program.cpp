@@ -38,10 +38,11 @@ std::size_t mesh_slice_lanes(int lanes) {
 }
 
 std::string mesh_program_text(const Integrator& integrator, int lanes) {
-  std::string text = "#define MSSIM_SLICE " + std::to_string(mesh_slice_lanes(lanes)) + "\n" +
-                     program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "floor_law.h",
-                                          "surroundings.h", "touch_floor.h", "step_parameters.h", "stage.h",
-                                          "mesh_parameters.h", "mesh_stage.cl"});
+  std::string text =
+      "#define MSSIM_SLICE " + std::to_string(mesh_slice_lanes(lanes)) + "\n" +
+      program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "acceleration_law.h", "floor_law.h",
+                           "surroundings.h", "touch_floor.h", "step_parameters.h", "stage.h",
+                           "mesh_parameters.h", "mesh_stage.cl"});
   for (std::size_t number = 0; number < integrator.stage_count; ++number) {
     const StoredStage stage{integrator, number, Storage::separate};
     text += update_text(stage) + kernel_text(stage);

@@ -176,9 +176,9 @@ HWY_INLINE void walk_row(const RowConstants& constants, const ColumnView& column
   if constexpr (update) {
     const Surroundings& surroundings = constants.surroundings;
     // The forces are accelerations already; dummies get none and stay where they are.
-    Lanes3 a = mul_add(Lanes(-surroundings.viscous_damping), node.v, force);
-    a.y = a.y - Lanes(surroundings.gravity);
-    a = keep(below(cloth_row, rows), a);
+    const Lanes3 a = keep(
+        below(cloth_row, rows),
+        node_acceleration(force, node.v, Lanes(surroundings.viscous_damping), Lanes(surroundings.gravity)));
     const auto address = [&](Pair pair, std::size_t slot) MSSIM_INLINE_LAMBDA {
       return column.pairs[index(pair)] + row * row_floats + static_cast<std::ptrdiff_t>(slot % 2) * 3 * lanes;
     };

@@ -86,8 +86,7 @@ void SpringList<Real>::update_nodes(std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     if (pinned_[i] != 0) continue;
     const Node node = gathered[i];
-    Vec3<Real> a = inverse_mass_[i] * force_[i] - viscous_damping * node.v;
-    a.y -= gravity;
+    const Vec3<Real> a = node_acceleration(inverse_mass_[i] * force_[i], node.v, viscous_damping, gravity);
     const auto slot_of = [&](auto slot) -> Vec3<Real>& {
       constexpr std::size_t s = index(decltype(slot)::value);
       return s % 2 == 0 ? nodes[s / 2][i].x : nodes[s / 2][i].v;

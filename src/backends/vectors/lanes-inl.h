@@ -85,6 +85,9 @@ HWY_INLINE Lanes3 mul_add(Lanes s, const Lanes3& a, const Lanes3& b) {
 HWY_INLINE Lanes3 keep(Mask mask, const Lanes3& a) {
   return {keep(mask, a.x), keep(mask, a.y), keep(mask, a.z)};
 }
+HWY_INLINE Lanes3 select(Mask mask, const Lanes3& yes, const Lanes3& no) {
+  return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
+}
 HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
   return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
 }
@@ -96,10 +99,8 @@ HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
 HWY_INLINE void touch_floor(Mask under, Lanes height, Lanes restitution, Lanes friction, Lanes3& x,
                             Lanes3& v) {
   if (HWY_LIKELY(hn::AllFalse(FloatTag(), under))) return;
-  const Lanes rebound = floor_rebound(v.y, restitution);
-  const Lanes grip = floor_grip(rebound - v.y, mul_add(v.z, v.z, v.x * v.x), friction);
   x.y = select(under, height, x.y);
-  v = {select(under, grip * v.x, v.x), select(under, rebound, v.y), select(under, grip * v.z, v.z)};
+  v = select(under, floor_velocity(v, restitution, friction), v);
 }
 
 #include "integrators/stage_update-inl.h"

@@ -26,8 +26,8 @@ struct StepCost {
 /// optimistic. Sign changes are free.
 inline constexpr std::size_t flops_per_spring = 6 + 10 + 7 + 3 + 6;
 
-/// Of the acceleration of one node, when the springs' constants were divided by its mass beforehand: viscous
-/// damping (3 products, 3 sums) and gravity (1 sum).
+/// Of the acceleration of one node (acceleration_law.h), when the springs' constants were divided by its mass
+/// beforehand: viscous damping (3 products, 3 sums) and gravity (1 sum).
 inline constexpr std::size_t flops_per_acceleration = 3 + 3 + 1;
 
 /// Of the pointwise lines of a stage, for one node: in each of three components a product for every term

@@ -163,9 +163,10 @@ std::string stencil_text() {
 
 std::string text_with(int lanes, const char* kernels) {
   return stencil_text() +
-         program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "floor_law.h", "surroundings.h",
-                              "touch_floor.h", "body_frame.h", "body_contact.h", "elongation_law.h",
-                              "joint_law.h", "dressing_parameters.h", "dressing.cl", kernels});
+         program_text(
+             lanes, {"lanes.h", "records.h", "spring_law.h", "acceleration_law.h", "floor_law.h",
+                     "surroundings.h", "touch_floor.h", "body_frame.h", "body_contact.h", "elongation_law.h",
+                     "joint_law.h", "dressing_parameters.h", "dressing.cl", kernels});
 }
 
 }  // namespace

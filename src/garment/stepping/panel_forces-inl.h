@@ -126,8 +126,8 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
   if (hn::AllFalse(FloatTag(), inside)) return inside;
   const ClothResponse<Lanes> after = body_response(ClothPoint<Lanes>{x.x, x.y, x.z, v.x, v.y, v.z}, contact,
                                                    Lanes(rule.phase.friction), Lanes(rule.push_speed), dt);
-  x = {select(inside, after.x, x.x), select(inside, after.y, x.y), select(inside, after.z, x.z)};
-  v = {select(inside, after.u, v.x), select(inside, after.v, v.y), select(inside, after.w, v.z)};
+  x = select(inside, {after.x, after.y, after.z}, x);
+  v = select(inside, {after.u, after.v, after.w}, v);
   return hn::And(inside, hn::Gt(after.stuck.v, hn::Zero(FloatTag())));
 }
 
@@ -171,8 +171,8 @@ HWY_INLINE void update_velocities(PanelSheet& sheet, const PanelSheet::Block& bl
       const Mask real = hn::Gt(inverse_mass.v, hn::Zero(FloatTag()));
       const Lanes3 x = load(sheet.position, at);
       Lanes3 v = load(sheet.velocity, at);
-      Lanes3 a = inverse_mass * force_on(scratch, row, column) - damping * v;
-      a.y = a.y - gravity;
+      Lanes3 a =
+          node_acceleration_unfused(inverse_mass * force_on(scratch, row, column), v, damping, gravity);
       if (rule.has_joints) a = a + load(sheet.pull, at);
       v = mul_add(dt, keep(real, a), v);
       if (!rule.layers_touch) {

@@ -100,8 +100,8 @@ class SerialDressing final : public DressingBackend {
   void add_external_forces() {  // loop 2, per mass: what is added up is an acceleration from here on
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (inverse_mass_[i] == 0) continue;
-      force_[i] = inverse_mass_[i] * force_[i] - phase_.damping * nodes_[i].v;
-      force_[i].y -= phase_.gravity;
+      force_[i] = node_acceleration_unfused(inverse_mass_[i] * force_[i], nodes_[i].v, phase_.damping,
+                                            phase_.gravity);
     }
   }
 
