@@ -36,7 +36,7 @@ backends/devices      text platform integrators backends/interface
 backends/spring_list  integrators model backends/interface
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/opencl       kernels integrators model backends/interface backends/layouts backends/devices
-backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices backends/opencl
+backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices
 garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
 backends              backends/interface backends/devices backends/spring_list backends/openmp backends/opencl backends/hybrid garment/stepping
 backends/accumulation model backends/interface backends/threads backends/spring_list backends

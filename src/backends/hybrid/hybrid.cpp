@@ -27,20 +27,14 @@ class Hybrid final : public Backend {
   Hybrid(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
          int threads, int lanes, DeviceMemory memory)
       : integrator_(integrator),
-        device_label_(label_of(device, memory)),
-        runs_on_host_(device.type == OpenclDeviceType::cpu),
         threads_(threads),
-        processors_(std::max(threads, threads_of(device))),
         kernel_(node_kernels().front()),
         nodes_(system, integrator, dt_s),
         // All forces are there before a node is written, so that pairs may share memory.
         device_(system, nodes_.packed, stored_pairs(integrator, Storage::in_place), device, lanes, memory) {
     nodes_.packed.units = {};
     nodes_.packed.entries = {};
-    // Drivers finish compiling at a kernel's first launch with a range.
-    set_state(system.start);
-    step(1);
-    set_state(system.start);
+    warm_up(*this, system.start, 1);
   }
 
   void set_state(const State& state) override {
@@ -56,9 +50,10 @@ class Hybrid final : public Backend {
 
   State state() const override { return read_records(device_.pair(present_).data(), nodes_.packed.place); }
 
-  std::string device() const override { return device_label_; }
-  int threads() const override { return processors_; }  // host and device take turns
-  bool runs_on_host() const override { return runs_on_host_; }
+  std::string device() const override { return device_.queue().label(); }
+  /// Of the host or the device, whichever takes more: they take turns.
+  int threads() const override { return std::max(threads_, device_.queue().threads()); }
+  bool runs_on_host() const override { return device_.queue().runs_on_host(); }
 
  private:
   /// Slices that a thread integrates between two looks at what is left: 16, unless those were too many
@@ -122,10 +117,7 @@ class Hybrid final : public Backend {
   }
 
   const Integrator& integrator_;
-  std::string device_label_;
-  bool runs_on_host_;
-  int threads_;     // of the host
-  int processors_;  // of the host or the device, whichever takes more
+  int threads_;  // of the host
   NodeKernel kernel_;
   HostNodes nodes_;
   SpringDevice device_;

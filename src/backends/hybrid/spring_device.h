@@ -8,9 +8,10 @@
 
 #include "backends/devices/buffer.h"
 #include "backends/devices/device.h"
+#include "backends/devices/device_queue.h"
+#include "backends/devices/work_items.h"
 #include "backends/layouts/node_records.h"
 #include "backends/layouts/packed_springs.h"
-#include "backends/opencl/lots.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
 
@@ -28,6 +29,7 @@ class SpringDevice {
   SpringDevice(const SpringDevice&) = delete;
   SpringDevice& operator=(const SpringDevice&) = delete;
 
+  const DeviceQueue& queue() const { return queue_; }
   /// The records of a stored pair, [places][record_floats].
   std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }
   /// Forces as PackedSprings places them, four floats each, N.
@@ -37,15 +39,10 @@ class SpringDevice {
   void compute_forces(Pair stored);
 
  private:
-  template <class T>
-  OpenclBuffer<T> buffer_with(std::span<const T> values) const;
-  void make_kernel(const System& system, const PackedSprings& packed, int lanes);
+  void make_launch(const System& system, const PackedSprings& packed, int lanes);
 
-  OpenclDevice device_;
-  DeviceMemory memory_;
   OpenclLots lots_;
-  cl::Context context_;
-  cl::CommandQueue queue_;
+  DeviceQueue queue_;
   std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are stored
   std::array<std::span<float>, pair_kinds> host_pairs_;               // as mapped
   std::optional<OpenclBuffer<float>> forces_;
@@ -57,7 +54,7 @@ class SpringDevice {
     float damping;    // N s/m
   };
   std::optional<OpenclBuffer<Material>> materials_;
-  std::optional<cl::Kernel> kernel_;  // none without springs
+  std::optional<Launch> launch_;  // none without springs
 };
 
 }  // namespace mssim

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "backends/devices/work_items.h"
 #include "backends/layouts/node_records.h"
 #include "backends/layouts/sliced_graph.h"
-#include "backends/opencl/lots.h"
 #include "backends/opencl/mesh_program.h"
 #include "backends/opencl/stages.h"
 #include "kernels/mesh_parameters.h"
@@ -39,8 +39,7 @@ class OpenclMesh final : public OpenclStages {
     add_argument(std::span(graph.stiffness));
     add_argument(std::span(graph.damping));
     add_argument(std::span(graph.held));
-    prepare(mesh_program_text(integrator, lanes), {cl::NDRange(lots.global), cl::NDRange(lots.local)},
-            system.start);
+    prepare(mesh_program_text(integrator, lanes), lots.items, system.start);
   }
 };
 

@@ -1,6 +1,5 @@
 #include "backends/opencl/stages.h"
 
-#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -11,10 +10,6 @@
 
 namespace mssim {
 namespace {
-
-/// Launches between two waits for the queue to run empty: waiting is rare enough to cost nothing, and a
-/// driver never has to hold more unfinished commands than this.
-constexpr std::size_t longest_queue = 256;
 
 /// `state` and `next` change roles after every step, or where they share memory their ghosts do.
 Pair role(Pair pair, bool swapped) {
@@ -37,33 +32,21 @@ StepParameters step_parameters_of(const System& system, const Integrator& integr
 OpenclStages::OpenclStages(const System& system, const Integrator& integrator, double dt_s,
                            const OpenclDevice& device, DeviceMemory memory, Storage storage,
                            PairLayout layout, std::vector<std::uint64_t> others)
-    : integrator_(integrator),
-      device_(device),
-      memory_(memory),
-      storage_(storage),
-      layout_(std::move(layout)) {
+    : integrator_(integrator), storage_(storage), layout_(std::move(layout)), queue_(device, memory) {
   const std::vector<Pair> stored = stored_pairs(integrator, storage);
   others.insert(others.end(), stored.size(), layout_.floats * sizeof(float));
   others.push_back(pair_kinds * layout_.ghost_floats * sizeof(float));
   require_memory(device, others);
 
-  const cl::Device cl_device(device.id, true);
-  context_ = cl::Context(cl_device);
-  queue_ = cl::CommandQueue(context_, cl_device);
   // Zeros in the padding too, so that no arithmetic there meets a denormal number, which can be slow.
-  const auto make_zeros = [&](std::optional<OpenclBuffer<float>>& buffer, std::size_t floats) {
-    buffer.emplace(context_, device_, memory_, floats);
-    buffer->write(queue_, [](std::span<float> array) { std::fill(array.begin(), array.end(), 0.0F); });
-  };
-  for (const Pair pair : stored) make_zeros(pairs_[index(pair)], layout_.floats);
-  if (layout_.ghost_floats > 0) make_zeros(ghosts_, pair_kinds * layout_.ghost_floats);
+  for (const Pair pair : stored) pairs_[index(pair)] = queue_.zeros<float>(layout_.floats);
+  if (layout_.ghost_floats > 0) ghosts_ = queue_.zeros<float>(pair_kinds * layout_.ghost_floats);
   const StepParameters step = step_parameters_of(system, integrator, dt_s);
   add_argument(std::span(&step, 1));
 }
 
 void OpenclStages::prepare(const std::string& program_text, const WorkItems& items, const State& start) {
-  items_ = items;
-  const cl::Program program = build_program(context_, cl::Device(device_.id, true), program_text);
+  const cl::Program program = queue_.build(program_text);
   // One kernel object per stage and role of the pairs, its arguments set once and for all.
   for (const bool swapped : {false, true})
     for (std::size_t stage = 0; stage < integrator_.stage_count; ++stage) {
@@ -76,11 +59,9 @@ void OpenclStages::prepare(const std::string& program_text, const WorkItems& ite
         kernel.setArg(argument++, cl_int{swapped ? 1 : 0});
       }
       for (const auto& buffer : arguments_) kernel.setArg(argument++, buffer.buffer());
-      kernels_[swapped ? 1 : 0].push_back(kernel);
+      launches_[swapped ? 1 : 0].push_back({kernel, items});
     }
-  set_state(start);
-  step(2);  // in both roles of the pairs
-  set_state(start);
+  warm_up(*this, start, 2);  // in both roles of the pairs
 }
 
 const OpenclBuffer<float>& OpenclStages::arrays(Pair pair, bool swapped) const {
@@ -96,12 +77,12 @@ void OpenclStages::set_state(const State& state) {
       memory[place + layout_.component[i]] = static_cast<float>(values[i]);
   };
   opencl_call<std::runtime_error>([&] {
-    arrays(Pair::state, swapped_).write(queue_, [&](std::span<float> memory) {
+    arrays(Pair::state, swapped_).write(queue_.commands(), [&](std::span<float> memory) {
       for (std::size_t node = 0; node < layout_.node.size(); ++node) put(memory, layout_.node[node], node);
       for (const auto& [place, node] : layout_.copies) put(memory, place, node);
     });
     if (!ghosts_) return;
-    ghosts_->write(queue_, [&](std::span<float> memory) {
+    ghosts_->write(queue_.commands(), [&](std::span<float> memory) {
       const std::size_t first = index(role(Pair::state, swapped_)) * layout_.ghost_floats;
       for (const auto& [place, node] : layout_.ghosts) put(memory, first + place, node);
     });
@@ -110,30 +91,25 @@ void OpenclStages::set_state(const State& state) {
 
 void OpenclStages::step(int count) {
   opencl_call<std::runtime_error>([&] {
-    std::size_t queued = 0;
-    for (int i = 0; i < count; ++i) {
-      for (const cl::Kernel& kernel : kernels_[swapped_ ? 1 : 0]) {
-        queue_.enqueueNDRangeKernel(kernel, cl::NullRange, items_.global, items_.local);
-        if (++queued % longest_queue == 0) queue_.finish();
-      }
-      swapped_ = !swapped_;
-    }
-    queue_.finish();
+    queue_.take_steps(count, [&](int step) -> const std::vector<Launch>& {
+      return launches_[swapped_ != (step % 2 != 0) ? 1 : 0];
+    });
+    if (count % 2 != 0) swapped_ = !swapped_;
   });
 }
 
 State OpenclStages::state() const {
   return opencl_call<std::runtime_error>([&] {
     const OpenclBuffer<float>& present = arrays(Pair::state, swapped_);
-    const auto memory = present.map(queue_, CL_MAP_READ);
+    const auto memory = present.map(queue_.commands(), CL_MAP_READ);
     State state;
     for (const std::size_t node : layout_.node) {
       const auto number = [&](std::size_t i) { return double{memory[node + layout_.component[i]]}; };
       state.position.push_back({number(0), number(1), number(2)});
       state.velocity.push_back({number(3), number(4), number(5)});
     }
-    present.unmap(queue_, memory, CL_MAP_READ);
-    queue_.finish();
+    present.unmap(queue_.commands(), memory, CL_MAP_READ);
+    queue_.commands().finish();
     return state;
   });
 }

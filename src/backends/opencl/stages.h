@@ -1,11 +1,9 @@
 #pragma once
 
 #include <CL/opencl.hpp>
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +12,7 @@
 
 #include "backends/devices/buffer.h"
 #include "backends/devices/device.h"
-#include "backends/devices/sub_device.h"
+#include "backends/devices/device_queue.h"
 #include "backends/interface/backend.h"
 #include "backends/interface/surroundings.h"
 #include "kernels/step_parameters.h"
@@ -34,11 +32,6 @@ struct PairLayout {
   std::array<std::size_t, 6> component{};  ///< from there on x, y, z, u, v, w
 };
 
-/// Work-items of a launch, a multiple of those of a group.
-struct WorkItems {
-  cl::NDRange global, local;
-};
-
 /// Steps a system by one kernel per stage of the integrator, all steps queued one behind the other: what the
 /// `opencl` backend does whatever the topology. A derived class says how nodes lie in memory, gives the
 /// program and the arguments that its kernels take, and then calls `prepare`.
@@ -47,9 +40,9 @@ class OpenclStages : public Backend {
   void set_state(const State& state) override;
   void step(int count) override;
   State state() const override;
-  std::string device() const override { return label_of(device_, memory_); }
-  int threads() const override { return threads_of(device_); }
-  bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
+  std::string device() const override { return queue_.label(); }
+  int threads() const override { return queue_.threads(); }
+  bool runs_on_host() const override { return queue_.runs_on_host(); }
 
  protected:
   /// Pairs that share memory (`storage`) have ghosts instead of it for what is gathered while it is written:
@@ -63,18 +56,11 @@ class OpenclStages : public Backend {
   /// parameters are there from the beginning.
   template <class T>
   void add_argument(std::span<const T> values) {
-    const auto bytes = std::as_bytes(values);
-    add_buffer(bytes.size()).write(queue_, [&](std::span<std::byte> array) {
-      std::copy(bytes.begin(), bytes.end(), array.begin());
-    });
+    arguments_.push_back(queue_.copy_of(std::as_bytes(values)));
   }
-  /// OpenCL has no empty buffers.
-  const OpenclBuffer<std::byte>& add_buffer(std::size_t bytes) {
-    return arguments_.emplace_back(context_, device_, memory_, std::max<std::size_t>(1, bytes));
-  }
+  void add_buffer(std::size_t bytes) { arguments_.push_back(queue_.array<std::byte>(bytes)); }
 
-  /// Builds the program, and takes some steps, because drivers finish compiling at a kernel's first launch
-  /// with a range; then stands at `start`.
+  /// Builds the program and warms up; then stands at `start`.
   void prepare(const std::string& program_text, const WorkItems& items, const State& start);
 
  private:
@@ -82,18 +68,14 @@ class OpenclStages : public Backend {
   const OpenclBuffer<float>& arrays(Pair pair, bool swapped) const;
 
   const Integrator& integrator_;
-  OpenclDevice device_;
-  DeviceMemory memory_;
   Storage storage_;
   PairLayout layout_;
-  cl::Context context_;
-  cl::CommandQueue queue_;
-  WorkItems items_;
+  DeviceQueue queue_;
   std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are needed
   std::optional<OpenclBuffer<float>> ghosts_;                         // [Pair][ghost_floats]
   std::vector<OpenclBuffer<std::byte>> arguments_;
-  std::array<std::vector<cl::Kernel>, 2> kernels_;  // [swapped][stage]
-  bool swapped_ = false;  // the state lies in the pair `next`, or only its ghosts do
+  std::array<std::vector<Launch>, 2> launches_;  // [swapped][stage]
+  bool swapped_ = false;                         // the state lies in the pair `next`, or only its ghosts do
 };
 
 }  // namespace mssim

@@ -12,38 +12,27 @@
 
 #include "backends/devices/buffer.h"
 #include "backends/devices/call.h"
-#include "backends/devices/program.h"
-#include "backends/devices/sub_device.h"
+#include "backends/devices/device_queue.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/opencl_panels.h"
 
 namespace mssim {
 namespace {
 
-/// Launches between two waits for the queue to run empty: waiting is rare enough to cost nothing, and a
-/// driver never has to hold more unfinished commands than this.
-constexpr std::size_t longest_queue = 256;
-
 class OpenclDressing final : public DressingBackend {
  public:
   OpenclDressing(const System& system, const OpenclDevice& device, DeviceMemory memory,
                  const DressingShape& shape, const OpenclPanels& panels)
       : garment_(std::get<Garment>(system.topology)),
-        device_(device),
-        memory_(memory),
         place_(panels.place),
         plane_(panels.inverse_mass.size()),
-        context_(cl::Device(device.id, true)),
-        queue_(context_, cl::Device(device.id, true)),
-        position_(zeros<float>(3 * plane_)),
-        velocity_(zeros<float>(3 * plane_)),
-        sewn_(zeros<cl_int>(panels.joints.size())),
-        progress_(zeros<DressingState>(1)) {
+        queue_(device, memory),
+        position_(queue_.zeros<float>(3 * plane_)),
+        velocity_(queue_.zeros<float>(3 * plane_)),
+        sewn_(queue_.zeros<cl_int>(panels.joints.size())),
+        progress_(queue_.zeros<DressingState>(1)) {
     make_launches(panels, shape, correction_sweeps(garment_.dressing));
-    // Drivers finish compiling at a kernel's first launch with a range.
-    OpenclDressing::set_state(system.start);
-    OpenclDressing::step(1);
-    OpenclDressing::set_state(system.start);
+    warm_up(*this, system.start, 1);
   }
 
   void set_state(const State& state) override {
@@ -52,25 +41,19 @@ class OpenclDressing final : public DressingBackend {
       put(state.position, position_);
       put(state.velocity, velocity_);
       const auto open = static_cast<int>(start.open_joints);
-      sewn_.write(queue_, [&](std::span<cl_int> sewn) { std::ranges::fill(sewn, open > 0 ? 0 : 1); });
-      progress_.write(queue_, [&](std::span<DressingState> progress) {
+      sewn_.write(queue_.commands(),
+                  [&](std::span<cl_int> sewn) { std::ranges::fill(sewn, open > 0 ? 0 : 1); });
+      progress_.write(queue_.commands(), [&](std::span<DressingState> progress) {
         progress.front() = {0, start.draping ? 1 : 0, 0, open, open};
       });
-      if (begin_joints_) enqueue(*begin_joints_);
-      queue_.finish();
+      if (begin_joints_) queue_.launch(*begin_joints_);
+      queue_.commands().finish();
     });
   }
 
   void step(int count) override {
-    opencl_call<std::runtime_error>([&] {
-      std::size_t queued = 0;
-      for (int i = 0; i < count; ++i)
-        for (const Launch& launch : launches_) {
-          enqueue(launch);
-          if (++queued % longest_queue == 0) queue_.finish();
-        }
-      queue_.finish();
-    });
+    opencl_call<std::runtime_error>(
+        [&] { queue_.take_steps(count, [&](int) -> const std::vector<Launch>& { return launches_; }); });
   }
 
   State state() const override {
@@ -81,42 +64,23 @@ class OpenclDressing final : public DressingBackend {
 
   DressingProgress progress() const override {
     return opencl_call<std::runtime_error>([&]() -> DressingProgress {
-      const auto memory = progress_.map(queue_, CL_MAP_READ);
+      const auto memory = progress_.map(queue_.commands(), CL_MAP_READ);
       const DressingState progress = memory.front();
-      progress_.unmap(queue_, memory, CL_MAP_READ);
-      queue_.finish();
+      progress_.unmap(queue_.commands(), memory, CL_MAP_READ);
+      queue_.commands().finish();
       return {static_cast<std::size_t>(progress.open_joints), progress.draping != 0, progress.seamed_at};
     });
   }
 
-  std::string device() const override { return label_of(device_, memory_); }
-  int threads() const override { return threads_of(device_); }
-  bool runs_on_host() const override { return device_.type == OpenclDeviceType::cpu; }
+  std::string device() const override { return queue_.label(); }
+  int threads() const override { return queue_.threads(); }
+  bool runs_on_host() const override { return queue_.runs_on_host(); }
 
  private:
-  struct Launch {
-    cl::Kernel kernel;
-    cl::NDRange global, local;
-  };
-
-  void enqueue(const Launch& launch) {
-    queue_.enqueueNDRangeKernel(launch.kernel, cl::NullRange, launch.global, launch.local);
-  }
-
-  template <class T>
-  OpenclBuffer<T> zeros(std::size_t size) {
-    OpenclBuffer<T> buffer(context_, device_, memory_, std::max<std::size_t>(1, size));
-    buffer.write(queue_, [](std::span<T> array) { std::ranges::fill(array, T{}); });
-    return buffer;
-  }
-  /// A buffer that only kernels see from now on. OpenCL has no empty ones.
+  /// A buffer that only kernels see from now on.
   template <class T>
   const cl::Buffer& kept(std::span<const T> values) {
-    const auto bytes = std::as_bytes(values);
-    const auto& buffer =
-        kept_.emplace_back(context_, device_, memory_, std::max<std::size_t>(1, bytes.size()));
-    buffer.write(queue_, [&](std::span<std::byte> array) { std::ranges::copy(bytes, array.begin()); });
-    return buffer.buffer();
+    return kept_.emplace_back(queue_.copy_of(std::as_bytes(values))).buffer();
   }
   template <class T>
   const cl::Buffer& kept(const std::vector<T>& values) {
@@ -138,14 +102,13 @@ class OpenclDressing final : public DressingBackend {
                                         progress_.buffer()};
     const auto launch = [&](const cl::Program& program, const char* name, std::size_t groups,
                             std::size_t items, const auto&... arguments) {
-      Launch made{cl::Kernel(program, name), cl::NDRange(groups * items), cl::NDRange(items)};
+      Launch made{cl::Kernel(program, name), {cl::NDRange(groups * items), cl::NDRange(items)}};
       cl_uint argument = 0;
       for (const cl::Buffer& buffer : sheet) made.kernel.setArg(argument++, buffer);
       (made.kernel.setArg(argument++, arguments), ...);
       return made;
     };
-    const cl::Device device(device_.id, true);
-    const cl::Program on_panels = build_program(context_, device, panels_program_text(shape.lanes));
+    const cl::Program on_panels = queue_.build(panels_program_text(shape.lanes));
     const cl::Buffer blocks = kept(panels.blocks), at_joint = kept(panels.at_joint);
     const auto on_blocks = [&](const char* name, const auto&... arguments) {
       launches_.push_back(launch(on_panels, name, panels.blocks.size(), shape.items, blocks, arguments...));
@@ -162,7 +125,7 @@ class OpenclDressing final : public DressingBackend {
     } while (done < sweeps);
 
     if (panels.joints.empty()) return;
-    const cl::Program on_joints = build_program(context_, device, joints_program_text());
+    const cl::Program on_joints = queue_.build(joints_program_text());
     const cl::Buffer joints = kept(panels.joints), ends = kept(panels.level_ends),
                      nodes = kept(panels.joint_nodes);
     const auto one_group = [&](const char* name) {
@@ -173,7 +136,7 @@ class OpenclDressing final : public DressingBackend {
   }
 
   void put(const std::vector<Vec3d>& vectors, const OpenclBuffer<float>& buffer) {
-    buffer.write(queue_, [&](std::span<float> planes) {
+    buffer.write(queue_.commands(), [&](std::span<float> planes) {
       for (std::size_t i = 0; i < place_.size(); ++i) {
         const auto value = vec3_cast<float>(vectors[i]);
         planes[place_[i]] = value.x;
@@ -183,24 +146,21 @@ class OpenclDressing final : public DressingBackend {
     });
   }
   std::vector<Vec3d> taken(const OpenclBuffer<float>& buffer) const {
-    const auto planes = buffer.map(queue_, CL_MAP_READ);
+    const auto planes = buffer.map(queue_.commands(), CL_MAP_READ);
     std::vector<Vec3d> vectors;
     vectors.reserve(place_.size());
     for (const std::size_t at : place_)
       vectors.push_back(
           vec3_cast<double>(Vec3<float>{planes[at], planes[plane_ + at], planes[2 * plane_ + at]}));
-    buffer.unmap(queue_, planes, CL_MAP_READ);
-    queue_.finish();
+    buffer.unmap(queue_.commands(), planes, CL_MAP_READ);
+    queue_.commands().finish();
     return vectors;
   }
 
   const Garment& garment_;
-  OpenclDevice device_;
-  DeviceMemory memory_;
   std::vector<std::size_t> place_;  ///< [nodes] float of a node
   std::size_t plane_;               ///< floats of a component
-  cl::Context context_;
-  cl::CommandQueue queue_;
+  DeviceQueue queue_;
   OpenclBuffer<float> position_, velocity_;  ///< [3][plane]
   OpenclBuffer<cl_int> sewn_;                ///< [joints]
   OpenclBuffer<DressingState> progress_;     ///< [1]

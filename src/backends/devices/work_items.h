@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CL/opencl.hpp>
 #include <algorithm>
 #include <cstddef>
 
@@ -7,20 +8,24 @@
 
 namespace mssim {
 
+/// Work-items of a launch, a multiple of those of a group.
+struct WorkItems {
+  cl::NDRange global, local;
+};
+
 /// How the work-items of a launch share work that comes in lots of `lanes` nodes or springs each. On a CPU,
 /// where a work-item has several lanes, few work-items take many lots in turn, and yet enough that one that
 /// was held up leaves some of its share to the others. Where it has one lane, each takes one.
 struct OpenclLots {
-  std::size_t global = 0;    ///< work-items, a multiple of `local`
-  std::size_t local = 0;     ///< work-items of a group
+  WorkItems items;
   std::size_t per_item = 0;  ///< lots of a work-item
 
   OpenclLots(std::size_t lots, const OpenclDevice& device, int lanes) {
     constexpr std::size_t good_items_per_unit = 16, good_group = 64;
     const bool wide = lanes > 1;
-    local = wide ? 1 : good_group;
+    const std::size_t local = wide ? 1 : good_group;
     per_item = wide ? std::max<std::size_t>(1, lots / (good_items_per_unit * device.compute_units)) : 1;
-    global = ((lots + per_item - 1) / per_item + local - 1) / local * local;
+    items = {cl::NDRange(((lots + per_item - 1) / per_item + local - 1) / local * local), cl::NDRange(local)};
   }
 };
 
