@@ -31,31 +31,24 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
   return fits || narrow ? 1 : steps;
 }
 
-BandLayout layout_for(const GridPatch& grid, std::size_t lanes) {
-  BandLayout layout;
-  layout.lanes = lanes;
-  layout.rows = grid.rows;
-  layout.columns = grid.columns;
-  layout.height = std::max(halo, (layout.rows + lanes - 1) / lanes);
-  return layout;
-}
-
 }  // namespace
+
+BandLayout::BandLayout(const GridPatch& grid, std::size_t lane_count)
+    : lanes(lane_count),
+      rows(grid.rows),
+      columns(grid.columns),
+      height(std::max(halo, (rows + lanes - 1) / lanes)) {}
 
 BandSheet::BandSheet(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
                      std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass)
-    : layout(layout_for(grid, lanes)),
+    : layout(grid, lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
       surroundings(surroundings_of(system)),
       spacing_(grid.spacing) {
   const double mass = require_uniform_mass(system);
-  for (std::size_t kind = 0; kind < materials.size(); ++kind) {
-    const double stiffness = system.materials[kind].stiffness / mass;
-    const double rest = static_cast<double>(grid.rest_length(static_cast<GridSpringKind>(kind)));
-    materials[kind] = {static_cast<float>(stiffness), static_cast<float>(stiffness * rest),
-                       static_cast<float>(system.materials[kind].damping / mass)};
-  }
+  for (const GridSpringKind kind : {structural, shear, bending})
+    springs.emplace_back(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass);
 
   parts.resize(
       std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, layout.columns / narrowest_part(method))));
@@ -77,9 +70,7 @@ BandSheet::BandSheet(const System& system, const GridPatch& grid, const Integrat
     for (BandPart& part : parts) {
       if (column + part.ghosts < part.first || part.place(column) >= part.pins.size()) continue;
       const Vec3<float> position = vec3_cast<float>(system.start.position[node]);
-      part.pins[part.place(column)].push_back(
-          {(row % layout.height + halo) * layout.row_floats() + row / layout.height,
-           {position.x, position.y, position.z}});
+      part.pins[part.place(column)].push_back({layout.place(row), {position.x, position.y, position.z}});
     }
   }
 }
@@ -126,7 +117,7 @@ State BandSheet::state() const {
     for (std::size_t c = part.first; c < part.first + part.count; ++c) {
       const float* column = part.column(layout, Pair::state, c);
       for (std::size_t row = 0; row < layout.rows; ++row) {
-        const float* in = column + (row % layout.height + halo) * layout.row_floats() + row / layout.height;
+        const float* in = column + layout.place(row);
         const std::size_t node = row * layout.columns + c, step = layout.lanes;
         state.position[node] = vec3_cast<double>(Vec3<float>{in[0], in[step], in[2 * step]});
         state.velocity[node] = vec3_cast<double>(Vec3<float>{in[3 * step], in[4 * step], in[5 * step]});

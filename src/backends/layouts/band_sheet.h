@@ -9,6 +9,7 @@
 
 #include "backends/interface/surroundings.h"
 #include "backends/layouts/aligned_array.h"
+#include "backends/layouts/spring_constants.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
@@ -26,14 +27,18 @@ namespace mssim {
 /// Two halo rows above and below repeat the neighbouring band's rows. Rows that the last bands have too many
 /// are dummies: they stay at rest and no force from them reaches a node of the cloth.
 struct BandLayout {
-  std::size_t lanes = 0;
-  std::size_t rows = 0, columns = 0;  ///< of the cloth
-  std::size_t height = 0;             ///< rows in a band
+  std::size_t lanes;
+  std::size_t rows, columns;  ///< of the cloth
+  std::size_t height;         ///< rows in a band
+
+  BandLayout(const GridPatch& grid, std::size_t lane_count);
 
   static constexpr std::size_t halo = 2;        ///< longest spring, in rows or columns
   static constexpr std::size_t components = 6;  ///< position and velocity
   std::size_t row_floats() const { return components * lanes; }
   std::size_t column_floats() const { return (height + 2 * halo) * row_floats(); }
+  /// Floats from a column's start to the x of the node in a row of the cloth.
+  std::size_t place(std::size_t row) const { return (row % height + halo) * row_floats() + row / height; }
   /// Floats of one column of forces: rows 0 .. height, three components. The last row is scratch.
   std::size_t force_floats() const { return (height + 1) * 3 * lanes; }
 };
@@ -89,11 +94,7 @@ struct BandSheet {
   BandLayout layout;
   const Integrator* integrator = nullptr;
   Coefficients<float> coefficients{};
-  /// Spring constants divided by the node mass, so that forces are accelerations.
-  struct Material {
-    float stiffness, stiffness_rest, damping;
-  };
-  std::array<Material, grid_spring_kinds.size()> materials{};
+  std::vector<SpringConstants> springs;  ///< [kinds]
   Surroundings surroundings{};
   std::size_t steps_per_pass = 1;  ///< steps under way at once
   std::vector<BandPart> parts;

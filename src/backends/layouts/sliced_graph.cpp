@@ -6,6 +6,7 @@
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/cuthill_mckee.h"
+#include "backends/layouts/spring_constants.h"
 
 namespace mssim {
 namespace {
@@ -80,13 +81,13 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
     if (springs[i].empty()) continue;
     const SpringMaterial& material = system.materials[kinds[scene_node[i]]];
     const double mass = system.node_mass[scene_node[i]];
-    stiffness[i] = static_cast<float>(material.stiffness / mass);
-    damping[i] = static_cast<float>(material.damping / mass);
     std::size_t element = first_entry[slice] * lanes + i % lanes;
     for (const Neighbour& other : springs[i]) {
+      const SpringConstants spring(material, static_cast<double>(other.rest_length), mass);
+      stiffness[i] = spring.stiffness;
+      damping[i] = spring.damping;
       neighbour[element] = other.place;
-      stiffness_rest[element] =
-          static_cast<float>(material.stiffness * static_cast<double>(other.rest_length) / mass);
+      stiffness_rest[element] = spring.stiffness_rest;
       element += lanes;
     }
   }

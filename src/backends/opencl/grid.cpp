@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "backends/layouts/band_sheet.h"
+#include "backends/layouts/spring_constants.h"
 #include "backends/opencl/grid_program.h"
 #include "backends/opencl/stages.h"
 #include "kernels/grid_parameters.h"
@@ -27,10 +28,10 @@ GridParameters parameters_of(const System& system, const GridPatch& patch) {
   grid.columns = static_cast<int>(patch.columns);
   const double mass = require_uniform_mass(system);
   for (const GridSpringKind kind : {structural, shear, bending}) {
-    const SpringMaterial& material = system.materials[kind];
-    grid.stiffness[kind] = static_cast<float>(material.stiffness / mass);
-    grid.stiffness_rest[kind] = static_cast<float>(material.stiffness * patch.rest_length(kind) / mass);
-    grid.damping[kind] = static_cast<float>(material.damping / mass);
+    const SpringConstants spring(system.materials[kind], static_cast<double>(patch.rest_length(kind)), mass);
+    grid.stiffness[kind] = spring.stiffness;
+    grid.stiffness_rest[kind] = spring.stiffness_rest;
+    grid.damping[kind] = spring.damping;
   }
   return grid;
 }
@@ -115,11 +116,8 @@ struct BandShape {
   static constexpr std::size_t halo = BandLayout::halo;
   static constexpr std::size_t part_ghosts = 2 * halo;  // columns
 
-  BandShape(const GridPatch& grid, const OpenclDevice& device, int lanes) {
-    bands.lanes = static_cast<std::size_t>(lanes);
-    bands.rows = grid.rows;
-    bands.columns = grid.columns;
-    bands.height = std::max(halo, (bands.rows + bands.lanes - 1) / bands.lanes);
+  BandShape(const GridPatch& grid, const OpenclDevice& device, int lanes)
+      : bands(grid, static_cast<std::size_t>(lanes)) {
     // A few parts for every compute unit, so that one that was held up leaves some of its share to the
     // others, unless the two further columns that each part walks over were more than a small share of it.
     constexpr std::size_t good_columns = 40, most_parts_per_unit = 4;
@@ -145,7 +143,7 @@ struct BandShape {
       const auto place = [&](std::size_t layout_row, std::size_t in_lane) {
         return layout_row * bands.row_floats() + in_lane;
       };
-      in_bands.emplace_back(place(in_band, lane), row);
+      in_bands.emplace_back(bands.place(row), row);
       if (in_band < 2 * halo && lane > 0) in_halos.emplace_back(place(in_band + bands.height, lane - 1), row);
       if (in_band >= bands.height && lane + 1 < bands.lanes)
         in_halos.emplace_back(place(in_band - bands.height, lane + 1), row);

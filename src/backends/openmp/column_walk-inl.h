@@ -63,8 +63,8 @@ struct ColumnView {
 /// Spring constants in registers.
 struct SpringLanes {
   Lanes stiffness, stiffness_rest, damping;
-  HWY_INLINE explicit SpringLanes(const BandSheet::Material& m)
-      : stiffness(m.stiffness), stiffness_rest(m.stiffness_rest), damping(m.damping) {}
+  HWY_INLINE explicit SpringLanes(const SpringConstants& s)
+      : stiffness(s.stiffness), stiffness_rest(s.stiffness_rest), damping(s.damping) {}
 };
 
 /// What every row needs of the sheet. A copy, as the walk's ColumnView is: a vector's store may change
@@ -77,8 +77,8 @@ struct RowConstants {
   std::uint32_t rows;  ///< of the cloth
   Index band_start;    ///< row of the cloth at row 0 of each lane
   HWY_INLINE explicit RowConstants(const BandSheet& sheet)
-      : spring{SpringLanes(sheet.materials[structural]), SpringLanes(sheet.materials[shear]),
-               SpringLanes(sheet.materials[bending])},
+      : spring{SpringLanes(sheet.springs[structural]), SpringLanes(sheet.springs[shear]),
+               SpringLanes(sheet.springs[bending])},
         coefficients(sheet.coefficients),
         surroundings(sheet.surroundings),
         rows(static_cast<std::uint32_t>(sheet.layout.rows)),
