@@ -5,7 +5,7 @@
  * A work-group takes a block of rows. On a GPU its work-items share the nodes, one a Real, and meet at
  * barriers; on a CPU it is one work-item, which takes MSSIM_LANES neighbours of a row at a time. Every sum
  * and every correction has the same order either way. The springs of a row are those that its nodes own:
- * stencil_down and stencil_right are panel_stencil, generated from it.
+ * stencil_rows and stencil_columns are panel_stencil, generated from it.
  */
 typedef __constant struct DressingParameters* Rules;
 typedef __global const struct DressingBlock* Block;
@@ -90,14 +90,14 @@ MSSIM_INLINE Vector spring_forces(Site site, Block block, const Sheet* sheet) {
   const Vector own = load_vector(sheet->position + site.at, sheet->plane);
   Vector sum = no_vector();
   for (int d = 0; d < stencil_directions; ++d) {
-    const int offset = stencil_down[d] * block->stride + stencil_right[d];
+    const int offset = stencil_rows[d] * block->stride + stencil_columns[d];
     __global const float* rest = sheet->rest + d * sheet->plane + site.at;
     __global const float* stiffness =
         sheet->stiffness + d * sheet->rules->spring_rows + block->row + site.row;
     const Vector next = load_vector_anywhere(sheet->position + site.at + offset, sheet->plane);
     const Vector last = load_vector_anywhere(sheet->position + site.at - offset, sheet->plane);
     sum = plus(sum, spring_force(minus(next, own), load_aligned(rest), *stiffness));
-    sum = plus(sum, spring_force(minus(last, own), load_lanes(rest - offset), stiffness[-stencil_down[d]]));
+    sum = plus(sum, spring_force(minus(last, own), load_lanes(rest - offset), stiffness[-stencil_rows[d]]));
   }
   return sum;
 }
@@ -149,9 +149,12 @@ MSSIM_INLINE void update_site(Site site, Block block, __global const float* pixe
   store_vector(x, sheet->moved + site.at, plane);
 }
 
-/* Springs of a direction, from a site to rows below, which have no node in common. */
+/* Loop 5, as src/garment/stepping/panel_correction-inl.h has it in C++, which also says what holds the two
+ * together.
+ *
+ * Springs of a direction, from a site to rows below, which have no node in common. */
 MSSIM_INLINE void correct_springs(int at, int direction, Block block, const Sheet* sheet) {
-  const int plane = sheet->plane, far_at = at + block->stride + stencil_right[direction];
+  const int plane = sheet->plane, far_at = at + block->stride + stencil_columns[direction];
   const Vector d =
       minus(load_vector_anywhere(sheet->moved + far_at, plane), load_vector(sheet->moved + at, plane));
   const Real squared = dot_product(d, d);
@@ -217,7 +220,7 @@ MSSIM_INLINE void correct_lines(Block block, int direction, int forwards, const 
 #if MSSIM_LANES == 1
   for (int line = item; line < block->columns + rows; line += items)
     for (int k = 0; k < rows; ++k) {
-      const int row = forwards ? k : rows - 1 - k, right = stencil_right[direction];
+      const int row = forwards ? k : rows - 1 - k, right = stencil_columns[direction];
       const int column = line + right * row - (right > 0 ? rows : 0);
       if (column >= 0 && column < block->columns)
         correct_springs(block->first + row * block->stride + column, direction, block, sheet);

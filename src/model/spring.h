@@ -37,7 +37,7 @@ inline constexpr std::array<GridSpringKindInfo, 3> grid_spring_kinds{{
     {"bending", 4},
 }};
 
-/// One spring of the stencil from its owner, the upper or left end, to the other end.
+/// One spring of the stencil, from its owner to the other end. Down means higher rows, of panels too.
 struct GridSpring {
   int rows;     ///< down
   int columns;  ///< to the right

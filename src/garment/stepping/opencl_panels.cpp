@@ -9,6 +9,7 @@
 #include "backends/interface/backend.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/panel_sheet.h"
+#include "garment/stepping/panel_stencil.h"
 
 namespace mssim {
 namespace {
@@ -150,15 +151,15 @@ namespace {
 
 /// panel_stencil for the kernels. Contractions would round differently in kernels of different shapes.
 std::string stencil_text() {
-  std::string down, right;
-  for (const PanelSpring& spring : panel_stencil) {
-    down += (down.empty() ? "" : ", ") + std::to_string(spring.rows);
-    right += (right.empty() ? "" : ", ") + std::to_string(spring.columns);
+  std::string rows, columns;
+  for (const GridSpring& spring : panel_stencil) {
+    rows += (rows.empty() ? "" : ", ") + std::to_string(spring.rows);
+    columns += (columns.empty() ? "" : ", ") + std::to_string(spring.columns);
   }
   return "#pragma OPENCL FP_CONTRACT OFF\n#define stencil_directions " +
          std::to_string(panel_stencil.size()) + "\n#define limited_directions " +
-         std::to_string(limited_directions) + "\n__constant int stencil_down[] = {" + down +
-         "};\n__constant int stencil_right[] = {" + right + "};\n";
+         std::to_string(limited_directions) + "\n__constant int stencil_rows[] = {" + rows +
+         "};\n__constant int stencil_columns[] = {" + columns + "};\n";
 }
 
 std::string text_with(int lanes, const char* kernels) {

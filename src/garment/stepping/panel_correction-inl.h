@@ -1,5 +1,9 @@
 // Loop 5 of Algorithm 1 on rows of nodes side by side. Compiled once per instruction set
 // (hwy/foreach_target.h), so the guard toggles.
+//
+// kernels/dressing.cl has the same loop over OpenCL C's vectors and, for a GPU, over lines of springs. The
+// impulse is one text (kernels/elongation_law.h); Dressing.CorrectsInVectorsAsTheReferenceDoes and
+// OpenclDressing.CorrectsInEverySweepAsSerialDoes hold both to the order of correction_order.h.
 #if defined(MSSIM_PANEL_CORRECTION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_PANEL_CORRECTION_INL_H_
 #undef MSSIM_PANEL_CORRECTION_INL_H_

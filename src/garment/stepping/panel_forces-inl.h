@@ -16,6 +16,7 @@
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/panel_sheet.h"
+#include "garment/stepping/panel_stencil.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

@@ -6,17 +6,10 @@
 #include <vector>
 
 #include "backends/layouts/aligned_array.h"
+#include "garment/stepping/panel_stencil.h"
 #include "model/system.h"
 
 namespace mssim {
-
-/// The springs of the 12-neighbour stencil, from their node in the lower row (or the left one) to the other.
-struct PanelSpring {
-  std::ptrdiff_t rows, columns;
-};
-inline constexpr std::array<PanelSpring, 6> panel_stencil{{{0, 1}, {1, 0}, {1, 1}, {1, -1}, {0, 2}, {2, 0}}};
-/// The first so many are limited in their elongation, in the order of correction (correction_order.h).
-inline constexpr std::size_t limited_directions = 4;
 
 /// Three arrays of floats, one a component.
 struct Float3Arrays {
