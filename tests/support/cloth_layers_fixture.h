@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +12,7 @@
 
 #include "garment/garment.h"
 #include "garment/layers/cloth_cloth.h"
+#include "garment/layers/cloth_contacts.h"
 #include "garment/layers/panel_boxes.h"
 #include "garment/layers/panel_layers.h"
 #include "geometry/vec3.h"
@@ -74,6 +76,13 @@ struct LayeredCloth {
     return {garment, layers, mass, settings, threads};
   }
 };
+
+/// How many nodes have gone through another layer, and not farther than `reach` (m).
+inline std::size_t nodes_on_wrong_side(const LayeredCloth& cloth, double reach) {
+  ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), reach, 1);
+  return static_cast<std::size_t>(std::ranges::count_if(
+      search.find(cloth.coordinates()), [](const ClothContact& contact) { return contact.gap < 0; }));
+}
 
 /// A horizontal sheet at a height: rows run towards -z, columns to +x, so that its normal points up.
 inline std::function<Vec3d(double, double)> level(double height, double spacing, double x = 0, double z = 0) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -97,10 +98,6 @@ void dilate(std::vector<BodyPixel>& pixels, std::uint32_t columns) {
 }
 
 }  // namespace
-
-std::uint64_t body_maps_bytes(const Surface& surface, const BodyMapSettings& settings) {
-  return grid_of(surface, settings).pixels() * sizeof(BodyPixel);
-}
 
 BodyMaps::BodyMaps(const Surface& surface, const BodyMapSettings& settings) {
   validate_surface(surface, "the body");

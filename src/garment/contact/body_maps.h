@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,10 +22,6 @@ struct BodyMapSettings {
 /// A pixel's record, on as many bytes as it is long: two lie in a cache line.
 struct alignas(BODY_FLOATS * sizeof(float)) BodyPixel : BodyPlanes<float> {};
 static_assert(sizeof(BodyPixel) == BODY_FLOATS * sizeof(float));
-
-/// Memory that the maps of `surface` take, bytes. Throws std::invalid_argument for settings out of range and
-/// for more than most_pixels_a_side pixels.
-std::uint64_t body_maps_bytes(const Surface& surface, const BodyMapSettings& settings = {});
 
 /// A body as cloth meets it: images from the front (from z = +infinity) and the back, orthographic, whose
 /// pixels hold the plane tangent to the nearest face (Vassilev, Spanlang and Chrysanthou, "Fast cloth
@@ -54,7 +49,8 @@ std::uint64_t body_maps_bytes(const Surface& surface, const BodyMapSettings& set
 /// Immutable: threads may ask it at the same time.
 class BodyMaps {
  public:
-  /// Throws InputError unless validate_surface accepts the surface, and like body_maps_bytes.
+  /// Throws InputError unless validate_surface accepts the surface, std::invalid_argument for settings out of
+  /// range and for more than most_pixels_a_side pixels.
   explicit BodyMaps(const Surface& surface, const BodyMapSettings& settings = {});
 
   const BodyFrame& frame() const { return frame_; }

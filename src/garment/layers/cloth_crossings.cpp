@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "garment/layers/cloth_contacts.h"
-
 namespace mssim {
 namespace {
 
@@ -125,20 +123,6 @@ std::size_t count_crossings(const Garment& garment, const ClothLayers& layers,
   for (const auto& [inner, outer] : layers.pairs)
     count += count_crossings(garment.panels[inner], garment.panels[outer], position);
   return count;
-}
-
-std::size_t count_wrong_side(const Garment& garment, const ClothLayers& layers,
-                             std::span<const Vec3d> position, double reach) {
-  std::array<std::vector<float>, 3> rounded;
-  for (const Vec3d& point : position) {
-    rounded[0].push_back(static_cast<float>(point.x));
-    rounded[1].push_back(static_cast<float>(point.y));
-    rounded[2].push_back(static_cast<float>(point.z));
-  }
-  ClothContactSearch search(garment, layers, position.size(), reach, 1);
-  return static_cast<std::size_t>(
-      std::ranges::count_if(search.find({rounded[0], rounded[1], rounded[2]}),
-                            [](const ClothContact& contact) { return contact.gap < 0; }));
 }
 
 }  // namespace mssim

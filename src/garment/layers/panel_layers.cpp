@@ -37,24 +37,6 @@ void validate_panel(std::uint32_t index, const Garment& garment, std::size_t nod
                                 " nodes, each of which needs a mass");
 }
 
-/// The panel's normal, m^2 times how far it points away from the vertical line through `axis`, m.
-double outwardness(const GarmentPanel& panel, std::span<const Vec3d> position, const Vec3d& axis) {
-  double sum = 0;
-  for (std::uint32_t row = 0; row + 1 < panel.rows; ++row) {
-    for (std::uint32_t column = 0; column + 1 < panel.columns; ++column) {
-      const Vec3d& low_left = position[panel.node(row, column)];
-      const Vec3d& low_right = position[panel.node(row, column + 1)];
-      const Vec3d& high_left = position[panel.node(row + 1, column)];
-      const Vec3d& high_right = position[panel.node(row + 1, column + 1)];
-      const Vec3d area = 0.5 * cross(high_right - low_left, high_left - low_right);
-      Vec3d away = 0.25 * (low_left + low_right + high_left + high_right) - axis;
-      away.y = 0;
-      sum += dot(area, away);
-    }
-  }
-  return sum;
-}
-
 }  // namespace
 
 std::vector<PanelPair> layer_pairs(const Garment& garment) {
@@ -73,16 +55,6 @@ std::vector<PanelPair> layer_pairs(const Garment& garment) {
     }
   }
   return pairs;
-}
-
-std::vector<std::uint32_t> mirrored_panels(const Garment& garment, std::span<const Vec3d> position,
-                                           const Vec3d& axis) {
-  std::vector<std::uint32_t> mirrored;
-  for (std::uint32_t index = 0; index < garment.panels.size(); ++index) {
-    validate_panel(index, garment, position.size());
-    if (outwardness(garment.panels[index], position, axis) < 0) mirrored.push_back(index);
-  }
-  return mirrored;
 }
 
 void validate_layers(const ClothLayers& layers, const Garment& garment, std::size_t nodes) {

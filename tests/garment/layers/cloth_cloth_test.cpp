@@ -217,7 +217,7 @@ TEST(ClothCloth, CatchesASheetThatFallsOnAnother) {
     }
     if (on) {
       EXPECT_EQ(most, 0U);
-      EXPECT_EQ(count_wrong_side(cloth.garment, cloth.layers, cloth.points(), 0.02), 0U);
+      EXPECT_EQ(nodes_on_wrong_side(cloth, 0.02), 0U);
       EXPECT_LT(cloth.speed(0).y, 0);  // it carries the inner one along
     } else {
       EXPECT_GT(most, 10U);
@@ -243,7 +243,7 @@ TEST(ClothCloth, DrapesASheetOverALayerWithFolds) {
     }
     if (on) {
       EXPECT_EQ(most, 0U);
-      EXPECT_EQ(count_wrong_side(cloth.garment, cloth.layers, cloth.points(), 0.02), 0U);
+      EXPECT_EQ(nodes_on_wrong_side(cloth, 0.02), 0U);
       EXPECT_GT(collision.contacts().size(), 100U);
       // It lies in the folds: its heights differ by more than half of theirs.
       const auto& height = cloth.position[1];
@@ -274,7 +274,7 @@ TEST(ClothCloth, HoldsALayerOffTheSeamOfTwoPanels) {
       ASSERT_EQ(crossings(cloth), 0U) << step;
     }
   }
-  EXPECT_EQ(count_wrong_side(cloth.garment, cloth.layers, cloth.points(), 0.02), 0U);
+  EXPECT_EQ(nodes_on_wrong_side(cloth, 0.02), 0U);
   EXPECT_GT(collision.contacts().size(), 200U);
 }
 

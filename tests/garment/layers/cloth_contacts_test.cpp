@@ -269,17 +269,6 @@ TEST(LayerPairs, AreThoseOfDifferentLayersThatNoSeamJoins) {
   EXPECT_THAT(layer_pairs(garment), ElementsAre(PanelPair{1, 0}, PanelPair{1, 3}, PanelPair{2, 3}));
 }
 
-TEST(MirroredPanels, AreThoseThatFaceTheAxis) {
-  LayeredCloth cloth;
-  const auto before = [](double row, double column) { return Vec3d{1 + column, row, 2}; };
-  const auto behind = [](double row, double column) { return Vec3d{1 - column, row, 0.5}; };
-  cloth.add(0, 3, 2, before);
-  cloth.add(0, 3, 2, behind);
-  cloth.add(1, 3, 2, [&](double row, double column) { return before(row, -column); });
-  cloth.add(1, 3, 2, [&](double row, double column) { return behind(-row, column); });
-  EXPECT_THAT(mirrored_panels(cloth.garment, cloth.points(), {0, 7, 1}), ElementsAre(2, 3));
-}
-
 TEST(ClothContactSearch, RefusesWhatItCannotSearch) {
   const LayeredCloth good = level_and_node({});
   const auto refusal = [&](const Garment& garment, const ClothLayers& layers, std::size_t nodes = 13,
