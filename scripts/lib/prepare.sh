@@ -9,6 +9,13 @@ readonly exit_missing=3
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
+# timed COMMAND ARGUMENT...: runs it, and says how long it took.
+timed() {
+  local start=$SECONDS
+  "$@"
+  say "$* took $((SECONDS - start)) s"
+}
+
 # answer_help ARGUMENT...: if one of them is -h or --help, prints the comment at the top of the script, and exits.
 answer_help() {
   local argument
@@ -96,7 +103,9 @@ build() {
     (cd -- "$root" && cmake --preset "$preset" --fresh) </dev/null >"$folder/configure.log" 2>&1 ||
       fail_build "$folder/configure.log"
   fi
+  local start=$SECONDS
   NINJA_STATUS='[%f/%t] ' ninja -C "$folder" "$@" </dev/null 2>&1 |
     follow_build "mssim, $preset" "$folder/build.log" || fail_build "$folder/build.log"
+  ((SECONDS - start < 10)) || say "built mssim, $preset, in $((SECONDS - start)) s"
   exec {lock}>&-
 }
