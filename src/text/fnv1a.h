@@ -1,8 +1,11 @@
 #pragma once
 
+#include <charconv>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace mssim {
 
@@ -24,6 +27,15 @@ inline std::string hexadecimal(std::uint64_t value) {
   for (auto digit = text.rbegin(); digit != text.rend(); ++digit, value >>= 4)
     *digit = "0123456789abcdef"[value & 15];
   return text;
+}
+
+/// The value that hexadecimal() wrote, none for any other text.
+inline std::optional<std::uint64_t> from_hexadecimal(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  if (error != std::errc() || end != text.data() + text.size() || hexadecimal(value) != text)
+    return std::nullopt;
+  return value;
 }
 
 }  // namespace mssim

@@ -127,6 +127,17 @@ TEST_F(BenchScene, GivesARowForEveryCombinationAndKeepsEveryRound) {
     }
 }
 
+TEST_F(BenchScene, TellsByTheHashesOfStatesWhichRowsAreTheSameToTheLastBit) {
+  job_.integrators.resize(1);
+  const std::vector<ResultRow> one = run();
+  job_.execution.threads = 3;
+  const std::vector<ResultRow> three = run();
+  ASSERT_TRUE(one[1].state_hash);
+  EXPECT_EQ(one[1].backend, "openmp");
+  EXPECT_EQ(one[1].state_hash, three[1].state_hash);
+  EXPECT_NE(one[0].state_hash, one[1].state_hash) << "serial adds in another order";
+}
+
 TEST_F(BenchScene, SaysOfARowThatItTookMoreProcessorsThanWereAskedFor) {
   job_.backends = {find_backend("openmp"), &undividable};
   job_.note = "another mesh";

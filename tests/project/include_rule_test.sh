@@ -16,7 +16,7 @@ integrators           geometry laws
 
 garment/contact       kernels text geometry laws
 garment               geometry garment/contact
-model                 geometry laws garment
+model                 text geometry laws garment
 mesh                  text platform geometry model
 garment/body          text geometry
 garment/pattern       text geometry garment garment/body model
@@ -47,7 +47,7 @@ bench/results         text statistics bench/machine
 bench/roofline        integrators model
 bench/verification    text integrators model backends/interface backends/spring_list
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
-garment/bench         text statistics integrators backends/interface garment/stepping bench/verification bench/job
+garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
 bench                 text garment/stepping bench/roofline bench/verification bench/job garment/bench
 
 output/hdf5

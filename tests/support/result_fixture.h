@@ -34,6 +34,7 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.paper_ms = 19.475;
   row.position_error = 1e-5;
   row.energy_drift = -2e-7;
+  row.state_hash = 0x0123456789abcdef;
   row.verified = true;
   row.warm_up_trials = 4;
   row.samples_ms = {2 * ms, ms / 2, ms};
@@ -47,6 +48,7 @@ inline ResultRow failed_row(const std::string& backend, const std::string& statu
   row.ms_per_step = row.ms_per_step_low = row.ms_per_step_high = row.ms_per_step_min = std::nullopt;
   row.springs_per_second = row.gigabytes_per_second = row.roofline_fraction = std::nullopt;
   row.paper_ms = row.position_error = row.energy_drift = std::nullopt;
+  row.state_hash = std::nullopt;
   row.samples_ms.clear();
   row.sample_steps.clear();
   row.rounds = 0;

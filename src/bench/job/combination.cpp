@@ -85,6 +85,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
 void take_verification(Combination& combination, const Verification& verification) {
   combination.row.position_error = verification.position_error;
   combination.row.energy_drift = verification.energy_drift;
+  combination.row.state_hash = verification.state_hash;
   combination.row.verified = !verification.failure;
   if (verification.failure) fail(combination, "failed: " + *verification.failure);
 }
@@ -101,6 +102,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
                 "failed: verified was " + subject_of(*found) + ", and this is " + subject_of(row));
   row.position_error = found->position_error;
   row.energy_drift = found->energy_drift;
+  row.state_hash = found->state_hash;
   row.dressing = found->dressing;
   row.verified = true;
   add_to_note(row.note, "verified by an earlier process");

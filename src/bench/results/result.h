@@ -51,6 +51,9 @@ struct ResultRow {
       position_error;  ///< largest distance to the double reference over the mean rest length
   std::optional<double>
       energy_drift;  ///< difference of total energy to the reference over the energy in motion
+  /// Of the state after the verification's steps (model/state_hash.h): rows with the same hash are the same
+  /// to the last bit. None where an older mssim did not tell.
+  std::optional<std::uint64_t> state_hash;
   bool verified = false;
   std::string status = "ok";  ///< ok, or failed/unsupported/unavailable with the reason after a colon
   std::string note;           ///< what a reader of the numbers should know, or empty

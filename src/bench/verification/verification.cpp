@@ -6,6 +6,7 @@
 
 #include "backends/spring_list/serial.h"
 #include "bench/verification/blow_up.h"
+#include "model/state_hash.h"
 #include "text/counted.h"
 
 namespace mssim {
@@ -81,6 +82,7 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
         blow_up ? describe(*blow_up, dt_s) : "not finite in one run, finite in the next: a data race";
     return result;
   }
+  result.state_hash = state_hash(state);
   double largest = 0;
   for (std::size_t i = 0; i < system.nodes(); ++i) {
     const Vec3d d = state.position[i] - reference.state.position[i];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -29,8 +30,8 @@ inline constexpr double energy_tolerance = 0.01;
 /// roundings add up like a random walk, to the square root of their number, and that is what float backends
 /// show: over 100 steps of all cloths the methods with one such stage end 8 to 12 u |x| away from the
 /// reference, RK4 with four of them 24 to 53. Allowed are four times the square root.
-/// tests/verification_test.cpp proves that a missing spring or pin, or one kind of spring 1 % too stiff,
-/// exceeds it.
+/// tests/bench/verification/verification_test.cpp proves that a missing spring or pin, or one kind of spring
+/// 1 % too stiff, exceeds it.
 double position_tolerance(const System& system, const Integrator& integrator, int steps);
 
 /// Runs the reference. Its state is taken, at a multiple of ten steps, before any node touches the floor:
@@ -42,7 +43,8 @@ struct Verification {
   double position_error = 0;  ///< largest distance between the same node's positions, in mean rest lengths
   double energy_drift =
       0;  ///< total energy less the reference's, over the reference's kinetic + elastic energy
-  std::optional<std::string> failure;  ///< empty: verified
+  std::optional<std::uint64_t> state_hash;  ///< of the state after the last step (model/state_hash.h)
+  std::optional<std::string> failure;       ///< empty: verified
 };
 
 /// Steps the backend from the start and compares. Leaves the backend in any state.

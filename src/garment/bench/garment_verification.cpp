@@ -8,6 +8,7 @@
 
 #include "bench/verification/blow_up.h"
 #include "garment/stepping/serial_dressing.h"
+#include "model/state_hash.h"
 #include "statistics/quantile.h"
 #include "statistics/statistics.h"
 
@@ -68,6 +69,7 @@ class StretchErrors {
         const auto blow_up = find_blow_up(backend, stretch.start, stretch_steps);
         return blow_up ? describe(*blow_up, dt_s) : "not finite in one run, finite in the next: a data race";
       }
+      last_hash_ = state_hash(state);
       for (std::size_t i = 0; i < errors_.size(); ++i)
         errors_[i].push_back(length(state.position[i] - stretch.end.position[i]) / unit_);
       const Energy expected = energy_of(system_, stretch.end);
@@ -91,6 +93,8 @@ class StretchErrors {
     return mssim::quantile(std::move(all), share);
   }
 
+  /// Of the state after the last step.
+  std::uint64_t last_hash() const { return last_hash_; }
   double energy_error() const { return energy_error_; }
   double energy_in_motion() const { return energy_in_motion_; }
 
@@ -99,6 +103,7 @@ class StretchErrors {
   double unit_;                              ///< m
   std::vector<std::vector<double>> errors_;  ///< [nodes][stretches] in mean rest lengths
   double energy_error_ = 0, energy_in_motion_ = 0;
+  std::uint64_t last_hash_ = 0;
 };
 
 }  // namespace
@@ -126,6 +131,7 @@ Verification verify_garment(Backend& backend, const System& system, const Garmen
 
   const double of_node = seaming.largest_median();
   const double of_half = draped.quantile(0.5), of_most = draped.quantile(0.9), any = draped.quantile(1);
+  result.state_hash = draped.last_hash();
   result.position_error = std::max(of_node, of_most);
   result.energy_drift = (seaming.energy_error() + draped.energy_error()) /
                         (seaming.energy_in_motion() + draped.energy_in_motion());

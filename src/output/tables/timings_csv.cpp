@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "statistics/outliers.h"
+#include "text/fnv1a.h"
 
 namespace mssim {
 namespace {
@@ -77,6 +78,15 @@ Column truth(std::string_view name, bool ResultRow::*field) {
           }};
 }
 
+Column hash(std::string_view name, std::optional<std::uint64_t> ResultRow::*field) {
+  return {name, [=](const ResultRow& row) { return row.*field ? hexadecimal(*(row.*field)) : std::string(); },
+          [=](ResultRow& row, const CsvTable& table, std::size_t r, std::size_t c) {
+            if (table.text(r, c).empty()) return;
+            row.*field = from_hexadecimal(table.text(r, c));
+            if (!(row.*field)) throw table.complaint(r, c, "is not a hash of 16 hexadecimal digits");
+          }};
+}
+
 /// The TABLE of columns, in their order. Readers rely on it: new columns go to the end, and files of older
 /// programs, which end after one of `oldest_columns` or more, are read too.
 constexpr std::size_t oldest_columns = 24;
@@ -109,6 +119,7 @@ const std::vector<Column>& columns() {
       text("note", &Row::note),
       count("warm_up_trials", &Row::warm_up_trials),
       count("outliers", &Row::outliers),
+      hash("state_hash", &Row::state_hash),
   };
   return table;
 }

@@ -12,6 +12,7 @@
 #include "backends/spring_list/serial.h"
 #include "bench/verification/blow_up.h"
 #include "integrators/integrators.h"
+#include "model/state_hash.h"
 #include "scene/scene_file.h"
 #include "tests/support/cloth_system.h"
 
@@ -61,6 +62,7 @@ TEST(Verification, PassesARightBackend) {
   EXPECT_FALSE(verification.failure) << *verification.failure;
   EXPECT_GT(verification.position_error, 0) << "single precision cannot be exact";
   EXPECT_LT(verification.position_error, reference.tolerance);
+  EXPECT_EQ(verification.state_hash, state_hash(backend->state()));
 }
 
 /// Expects a right backend to pass and each mistake to be found, with every integrator.

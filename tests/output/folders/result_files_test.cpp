@@ -41,11 +41,11 @@ TEST_F(ResultFiles, TimingsHaveTheDocumentedColumnsAndQuoteWhatNeedsIt) {
       "scene,nodes,springs_unique,springs_published,backend,device,threads,integrator,dt_s,rounds,"
       "ms_per_step,ms_per_step_low,ms_per_step_high,ms_per_step_min,springs_per_second,"
       "gigabytes_per_second,roofline_fraction,speedup_vs_serial,paper_ms,position_error,energy_drift,"
-      "verified,status,note,warm_up_trials,outliers\n"
+      "verified,status,note,warm_up_trials,outliers,state_hash\n"
       "cloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,116016000,1.5,"
-      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0\n"
+      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0,0123456789abcdef\n"
       "cloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
-      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0\n");
+      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0,\n");
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
@@ -95,7 +95,7 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
   std::istringstream lines(timings_csv(rows));
   std::string text;
   for (std::string line; std::getline(lines, line);) {
-    for (int columns = 0; columns < 2; ++columns) line.resize(line.rfind(','));
+    for (int columns = 0; columns < 3; ++columns) line.resize(line.rfind(','));
     text += line + '\n';
   }
   EXPECT_THAT(text, HasSubstr("status,note\n"));
@@ -103,6 +103,7 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].ms_per_step, 0.5);
   EXPECT_EQ(back[0].warm_up_trials, 0);
+  EXPECT_EQ(back[0].state_hash, std::nullopt);
 }
 
 TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
@@ -124,7 +125,9 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(complaint(with("19.475", "nan")), HasSubstr("column paper_ms: \"nan\""));
   EXPECT_THAT(complaint(with("2500,14502", "-1,14502")), HasSubstr("column nodes: \"-1\""));
   EXPECT_THAT(complaint(with("true", "yes")), HasSubstr("column verified: \"yes\""));
-  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 25 fields where the header has 26"));
+  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 26 fields where the header has 27"));
+  EXPECT_THAT(complaint(with("0123456789abcdef", "0123")),
+              HasSubstr("is not a hash of 16 hexadecimal digits"));
   EXPECT_THAT(complaint(with("ok", "\"ok")), HasSubstr("line 2: a quoted field does not end"));
   EXPECT_THAT(complaint(with("roofline_fraction", "roof")), HasSubstr("column 17 is \"roof\""));
   EXPECT_THAT(complaint(""), HasSubstr("column 1 is missing"));
