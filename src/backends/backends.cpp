@@ -18,8 +18,8 @@ namespace {
 
 // On a cloth a band's or plane's padding is nothing to speak of; bodies are cut into slices, whose making
 // takes about as much again as what is made. Those with a device read a state back into arrays that grow,
-// which takes some 40 bytes a node beside the state. tests/bench_memory_test.cpp holds these against what is
-// really taken.
+// which takes some 40 bytes a node beside the state. tests/bench/bench_memory_test.cpp holds these against
+// what is really taken.
 constexpr MemoryUse bands{.node = 24};  // all pairs but the state are a few columns
 constexpr MemoryUse slices{.node = 130, .pair_node = 32, .storage = Storage::separate, .spring = 38};
 constexpr MemoryUse planes{.node = 56, .pair_node = 24, .storage = Storage::separate};

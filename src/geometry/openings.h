@@ -20,9 +20,9 @@ struct Opening {
 /// All of them, the largest first. Openings that touch in a point are told apart; none has a point twice.
 std::vector<Opening> openings_of(const Surface& surface);
 
-/// Fills the openings that are not larger than `largest`, m, with a fan of triangles
-/// each, and returns them. Throws InputError, which says where and how large it is, for a larger one and for
-/// one whose edges make no ring.
+/// Fills the openings that are not larger than `largest`, m, with a fan of triangles each, and returns them.
+/// Throws InputError, which says where and how large it is, for a larger one and for one whose edges make no
+/// ring.
 std::vector<Opening> close_openings(Surface& surface, double largest);
 
 /// Fills all openings of a part of a closed surface with triangles between the points of their rings, cutting

@@ -1,5 +1,5 @@
 // Every kernel that there is, on the smallest systems that use all of it: short enough for a simulator that
-// looks for races and uninitialised memory (tests/oclgrind_test.sh).
+// looks for races and uninitialised memory (tests/project/oclgrind_test.sh).
 #include <gtest/gtest.h>
 
 #include <algorithm>
