@@ -31,14 +31,22 @@ const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>
 
 void visit_body(FieldVisitor& fields, BodySpec& body) {
   visit_shape_fields(fields, body);
-  fields.vector("centre_m", Presence::required, body.centre_m, from(-1e6, 1e6));
-  fields.object("turn", Presence::optional, [&](FieldVisitor& turn) {
-    turn.vector("axis", Presence::required, body.turn_axis, from(-1, 1));
-    turn.number("angle_deg", body.turn_deg, from(-360, 360));
-  });
-  fields.vector("velocity_m_per_s", Presence::required, body.velocity_m_per_s, from(-1000, 1000));
-  fields.vector("spin_rad_per_s", Presence::required, body.spin_rad_per_s, from(-1000, 1000));
-  fields.number("swell_per_s", body.swell_per_s, from(-100, 100));
+  fields.vector({"centre_m", "Where the centre of mass starts, [x, y, z], m."}, Presence::required,
+                body.centre_m, from(-1e6, 1e6));
+  fields.object({"turn", "How the shape is turned about its centre at the start."}, Presence::optional,
+                [&](FieldVisitor& turn) {
+                  turn.vector({"axis", "Direction of the axis, of any length but zero."}, Presence::required,
+                              body.turn_axis, from(-1, 1));
+                  turn.number({"angle_deg", "Angle, degrees."}, body.turn_deg, from(-360, 360));
+                });
+  fields.vector({"velocity_m_per_s", "Velocity of the centre at the start, m/s."}, Presence::required,
+                body.velocity_m_per_s, from(-1000, 1000));
+  fields.vector({"spin_rad_per_s", "Angular velocity about the centre at the start, rad/s."},
+                Presence::required, body.spin_rad_per_s, from(-1000, 1000));
+  fields.number(
+      {"swell_per_s",
+       "Rate at which the body grows at first, 1/s, so that every spring works from the first step on."},
+      body.swell_per_s, from(-100, 100));
 }
 
 std::string pointer_to(std::size_t body) { return "/bodies/list/" + std::to_string(body); }
@@ -156,12 +164,15 @@ void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const Meshed
 
 void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
   BodiesSpec& bodies = spec.body.emplace<BodiesSpec>();
-  fields.number("density_kg_per_m3", bodies.density_kg_per_m3, from(1e-3, 1e6));
-  fields.object("springs", Presence::required, [&](FieldVisitor& springs) {
-    visit_material(springs, bodies.springs, above(0, largest_stiffness));
-  });
-  fields.list("list", Presence::required, most_bodies,
-              [&](FieldVisitor& element) { visit_body(element, bodies.list.emplace_back()); });
+  fields.number(
+      {"density_kg_per_m3", "Mass per volume, kg/m^3; the mass of a body is spread evenly over its nodes."},
+      bodies.density_kg_per_m3, from(1e-3, 1e6));
+  fields.object(
+      {"springs", "How the springs answer stretching."}, Presence::required,
+      [&](FieldVisitor& springs) { visit_material(springs, bodies.springs, above(0, largest_stiffness)); });
+  fields.list({"list", "The bodies."}, Presence::required, most_bodies,
+              {"One body, and how it starts.",
+               [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); }});
 }
 
 void check_bodies(const SceneSpec& spec) {

@@ -17,83 +17,98 @@ namespace {
 constexpr std::uint32_t most_nodes = 100'000'000;
 
 void visit_expected(FieldVisitor& fields, BodySpec& body) {
-  fields.object("expected", Presence::optional, [&](FieldVisitor& expected) {
-    MeshSize& size = body.expected.emplace();
-    expected.integer("nodes", size.nodes, 4, most_nodes);
-    expected.integer("springs", size.springs, 6, most_nodes);
-  });
+  fields.object(
+      {"expected",
+       "What the mesh of this shape should have; mssim says so where another TetGen gives something else."},
+      Presence::optional, [&](FieldVisitor& expected) {
+        MeshSize& size = body.expected.emplace();
+        expected.integer({"nodes", "Number of nodes."}, size.nodes, 4, most_nodes);
+        expected.integer({"springs", "Number of unique springs, the edges of the tetrahedra."}, size.springs,
+                         6, most_nodes);
+      });
 }
 
 void visit_interior(FieldVisitor& fields, InteriorPoints& interior) {
-  fields.object("interior", Presence::required, [&](FieldVisitor& points) {
-    points.integer("points", interior.count, 0, 1'000'000);
-    points.integer("seed", interior.seed, 0, 0xffff'ffff);
-    points.number("jitter", interior.jitter, from(0, 0.5));
-    points.number("margin", interior.margin, from(0, 1));
-  });
+  fields.object(
+      {"interior", "The points inside the shape that become nodes: those of a lattice, moved at random."},
+      Presence::required, [&](FieldVisitor& points) {
+        points.integer({"points", "How many there are."}, interior.count, 0, 1'000'000);
+        points.integer({"seed", "Seed of the random numbers."}, interior.seed, 0, 0xffff'ffff);
+        points.number({"jitter", "How far a point may be moved, in lattice spacings."}, interior.jitter,
+                      from(0, 0.5));
+        points.number({"margin", "Smallest distance from the surface, in lattice spacings."}, interior.margin,
+                      from(0, 1));
+      });
 }
 
 void visit_box(FieldVisitor& fields, BodySpec& body) {
   auto& [box, interior] = body.shape.emplace<GeneratedShape<BoxShape>>();
-  fields.vector("size_m", Presence::required, box.size, above(0, 1000));
-  fields.integer("cells_x", box.cells[0], 1, 1000);
-  fields.integer("cells_y", box.cells[1], 1, 1000);
-  fields.integer("cells_z", box.cells[2], 1, 1000);
+  fields.vector({"size_m", "Length of the sides, m."}, Presence::required, box.size, above(0, 1000));
+  fields.integer({"cells_x", "Squares along x."}, box.cells[0], 1, 1000);
+  fields.integer({"cells_y", "Squares along y."}, box.cells[1], 1, 1000);
+  fields.integer({"cells_z", "Squares along z."}, box.cells[2], 1, 1000);
   visit_interior(fields, interior);
   visit_expected(fields, body);
 }
 
 void visit_sphere(FieldVisitor& fields, BodySpec& body) {
   auto& [sphere, interior] = body.shape.emplace<GeneratedShape<SphereShape>>();
-  fields.number("radius_m", sphere.radius_m, above(0, 1000));
-  fields.integer("frequency", sphere.frequency, 1, 1000);
+  fields.number({"radius_m", "Radius of the sphere, m."}, sphere.radius_m, above(0, 1000));
+  fields.integer({"frequency", "Triangles along an edge of the icosahedron."}, sphere.frequency, 1, 1000);
   visit_interior(fields, interior);
   visit_expected(fields, body);
 }
 
 void visit_torus(FieldVisitor& fields, BodySpec& body) {
   auto& [torus, interior] = body.shape.emplace<GeneratedShape<TorusShape>>();
-  fields.number("major_radius_m", torus.major_radius_m, above(0, 1000));
-  fields.number("minor_radius_m", torus.minor_radius_m, above(0, 1000));
-  fields.integer("cells_around", torus.cells_around, 3, 1000);
-  fields.integer("cells_across", torus.cells_across, 3, 1000);
+  fields.number({"major_radius_m", "From the centre of the ring to that of its section, m."},
+                torus.major_radius_m, above(0, 1000));
+  fields.number({"minor_radius_m", "Radius of the section, m."}, torus.minor_radius_m, above(0, 1000));
+  fields.integer({"cells_around", "Sections along the ring."}, torus.cells_around, 3, 1000);
+  fields.integer({"cells_across", "Points of a section."}, torus.cells_across, 3, 1000);
   visit_interior(fields, interior);
   visit_expected(fields, body);
 }
 
 void visit_mesh_files(FieldVisitor& fields, BodySpec& body) {
   auto& files = body.shape.emplace<MeshFiles>();
-  fields.text("node_file", Presence::required, files.node_file);
-  fields.text("ele_file", Presence::required, files.ele_file);
-  fields.number("unit_m", files.unit_m, above(0, 1e6));
+  fields.text({"node_file", "Path of the .node file, from this file's folder."}, Presence::required,
+              files.node_file);
+  fields.text({"ele_file", "Path of the .ele file, from this file's folder."}, Presence::required,
+              files.ele_file);
+  fields.number({"unit_m", "Metres in one unit of the files, m."}, files.unit_m, above(0, 1e6));
   visit_expected(fields, body);
 }
 
 void visit_surface_file(FieldVisitor& fields, BodySpec& body) {
   auto& surface = body.shape.emplace<SurfaceFile>();
-  fields.text("file", Presence::required, surface.file);
-  fields.number("unit_m", surface.unit_m, above(0, 1e6));
-  fields.number("largest_tetrahedron_m3", surface.largest_tetrahedron_m3, from(0, 1e9));
+  fields.text({"file", "Path of the file, from this file's folder."}, Presence::required, surface.file);
+  fields.number({"unit_m", "Metres in one unit of the file, m."}, surface.unit_m, above(0, 1e6));
+  fields.number({"largest_tetrahedron_m3", "No tetrahedron becomes larger than this, m^3; 0 for no limit."},
+                surface.largest_tetrahedron_m3, from(0, 1e9));
   visit_expected(fields, body);
 }
 
 void visit_scene_shape(FieldVisitor& fields, BodySpec& body) {
-  fields.text("name", Presence::required, body.shape.emplace<ShapeOfScene>().name);
+  fields.text({"name", "The scene's name, or the path of its file, from this file's folder."},
+              Presence::required, body.shape.emplace<ShapeOfScene>().name);
 }
 
-/// The TABLE of shapes, in the order of BodyShape's alternatives: the value of `shape`, and what names the
-/// fields of its section.
+/// The TABLE of shapes, in the order of BodyShape's alternatives: the value of `shape`, its section, and what
+/// names the section's fields.
 struct ShapeKind {
-  std::string_view name;
+  Field section;
   void (*visit_fields)(FieldVisitor& fields, BodySpec& body);
 };
 constexpr std::array<ShapeKind, 6> kinds{{
-    {"box", visit_box},
-    {"sphere", visit_sphere},
-    {"torus", visit_torus},
-    {"tetgen", visit_mesh_files},
-    {"surface", visit_surface_file},
-    {"scene", visit_scene_shape},
+    {{"box", "A box, its sides along the axes, its surface cut into squares of two triangles each."},
+     visit_box},
+    {{"sphere", "A sphere, its surface a finer icosahedron."}, visit_sphere},
+    {{"torus", "A ring around the y axis."}, visit_torus},
+    {{"tetgen", "A mesh in TetGen's files."}, visit_mesh_files},
+    {{"surface", "A closed surface in an OBJ or STL file, to be filled with tetrahedra."},
+     visit_surface_file},
+    {{"scene", "The shape of the first body of another scene."}, visit_scene_shape},
 }};
 static_assert(kinds.size() == std::variant_size_v<BodyShape>);
 
@@ -159,8 +174,8 @@ struct LeastCounter {
 void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
   std::vector<Section> sections;
   for (const ShapeKind& kind : kinds)
-    sections.push_back({kind.name, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
-  fields.one_of("shape", sections);
+    sections.push_back({kind.section, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
+  fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
 }
 
 std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem::path& folder) {

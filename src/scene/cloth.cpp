@@ -27,24 +27,31 @@ constexpr double steepest_ripple = 0.1;
 const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.body); }
 
 void visit_pins(FieldVisitor& fields, ClothPins& pins) {
-  fields.integer("row", pins.row, 0, 999'999);
-  fields.integer("every_columns", pins.every_columns, 1, 1'000'000);
+  fields.integer({"row", "The row that is pinned, counted from 0."}, pins.row, 0, 999'999);
+  fields.integer(
+      {"every_columns",
+       "Of the pinned row every so many columns one node is pinned, from column 0 on, and the last."},
+      pins.every_columns, 1, 1'000'000);
 }
 
 void visit_ripple(FieldVisitor& fields, ClothRipple& ripple) {
-  fields.number("height_m", ripple.height_m, from(0, 100));
-  fields.number("wavelength_m", ripple.wavelength_m, from(1e-6, 1e6));
-  fields.number("speed_m_per_s", ripple.speed_m_per_s, from(0, 1000));
+  fields.number(
+      {"height_m", "Amplitude of the vertical displacement, m; within the plane it is half as large."},
+      ripple.height_m, from(0, 100));
+  fields.number({"wavelength_m", "Wavelength along x and along z, m."}, ripple.wavelength_m, from(1e-6, 1e6));
+  fields.number({"speed_m_per_s", "Amplitude of each component of the velocity, m/s."}, ripple.speed_m_per_s,
+                from(0, 1000));
 }
 
 void visit_springs(FieldVisitor& fields, ClothSpec& cloth) {
-  for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
-    fields.object(grid_spring_kinds[kind].name, Presence::required, [&](FieldVisitor& material) {
-      // Without structural springs nothing would hold the cloth together; the other two kinds can be left
-      // out.
-      visit_material(material, cloth.springs[kind],
-                     kind == structural ? above(0, largest_stiffness) : from(0, largest_stiffness));
-    });
+  constexpr std::array<std::string_view, grid_spring_kinds.size()> descriptions{
+      "Springs between neighbours.", "Springs across the diagonals.", "Springs between nodes two apart."};
+  for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind) {
+    // Without structural springs nothing would hold the cloth together; the other two kinds can be left out.
+    const Range stiffness = kind == structural ? above(0, largest_stiffness) : from(0, largest_stiffness);
+    fields.object({grid_spring_kinds[kind].name, descriptions.at(kind)}, Presence::required,
+                  [&](FieldVisitor& material) { visit_material(material, cloth.springs[kind], stiffness); });
+  }
 }
 
 bool is_pinned(const ClothSpec& cloth, std::uint32_t row, std::uint32_t column) {
@@ -91,16 +98,24 @@ class Ripple {
 
 void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
   ClothSpec& cloth = spec.body.emplace<ClothSpec>();
-  fields.integer("rows", cloth.rows, 2, 1'000'000);
-  fields.integer("columns", cloth.columns, 2, 1'000'000);
-  fields.number("spacing_m", cloth.spacing_m, from(1e-6, 100));
-  fields.number("areal_density_kg_per_m2", cloth.areal_density_kg_per_m2, from(1e-6, 1e6));
-  fields.number("ceiling_height_m", cloth.ceiling_height_m, from(-1e6, 1e6));
-  fields.object("pins", Presence::optional,
-                [&](FieldVisitor& pins) { visit_pins(pins, cloth.pins.emplace()); });
-  fields.object("ripple", Presence::required,
-                [&](FieldVisitor& ripple) { visit_ripple(ripple, cloth.ripple); });
-  fields.object("springs", Presence::required, [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
+  fields.integer({"rows", "Number of rows (along z); rows times columns must be below 2^32."}, cloth.rows, 2,
+                 1'000'000);
+  fields.integer({"columns", "Number of columns (along x)."}, cloth.columns, 2, 1'000'000);
+  fields.number({"spacing_m", "Distance of neighbours at rest, m."}, cloth.spacing_m, from(1e-6, 100));
+  fields.number(
+      {"areal_density_kg_per_m2", "Mass per area, kg/m^2; a node weighs this times the spacing squared."},
+      cloth.areal_density_kg_per_m2, from(1e-6, 1e6));
+  fields.number({"ceiling_height_m", "Height that the cloth starts and is pinned at, m."},
+                cloth.ceiling_height_m, from(-1e6, 1e6));
+  fields.object(
+      {"pins", "The nodes that stay where they start. Without this section the cloth falls freely."},
+      Presence::optional, [&](FieldVisitor& pins) { visit_pins(pins, cloth.pins.emplace()); });
+  fields.object(
+      {"ripple",
+       "A standing wave at the start, so that all springs work and all nodes move from the first step."},
+      Presence::required, [&](FieldVisitor& ripple) { visit_ripple(ripple, cloth.ripple); });
+  fields.object({"springs", "How each kind of spring answers stretching."}, Presence::required,
+                [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
 }
 
 void check_cloth(const SceneSpec& spec) {

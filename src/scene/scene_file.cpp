@@ -7,6 +7,7 @@
 #include "platform/data_folder.h"
 #include "scene/fields/json_document.h"
 #include "scene/fields/json_reader.h"
+#include "scene/fields/json_schema.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_kinds.h"
 #include "text/nearest_name.h"
@@ -16,9 +17,10 @@ namespace mssim {
 namespace {
 
 void visit_floor(FieldVisitor& fields, Floor& floor) {
-  fields.number("height_m", floor.height, from(-1e6, 1e6));
-  fields.number("restitution", floor.restitution, from(0, 1));
-  fields.number("friction", floor.friction, from(0, 100));
+  fields.number({"height_m", "Height of the floor, m."}, floor.height, from(-1e6, 1e6));
+  fields.number({"restitution", "Share of the falling speed that comes back, without unit."},
+                floor.restitution, from(0, 1));
+  fields.number({"friction", "Coulomb's coefficient, without unit."}, floor.friction, from(0, 100));
 }
 
 std::filesystem::path scene_folder() { return data_folder() / "scenes"; }
@@ -38,23 +40,34 @@ std::vector<std::string> names_in_folder() {
   return names;
 }
 
-}  // namespace
-
+/// Names the fields of a whole scene file, with their targets in `spec`.
 void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
   std::string schema;  // for editors; says nothing about the scene
-  fields.text("$schema", Presence::optional, schema);
+  fields.text({"$schema", "The path of this schema, for editors; mssim does not use it."}, Presence::optional,
+              schema);
   std::vector<Section> kinds;
   for (const SceneKind& kind : scene_kinds())
-    kinds.push_back({kind.name, [&](FieldVisitor& body) { kind.visit_fields(body, spec); }});
-  fields.one_of("kind", kinds);
-  fields.text("description", Presence::required, spec.description);
-  fields.number_or_auto("dt_s", spec.dt_s, above(0, 1));
-  fields.number("gravity_m_per_s2", spec.gravity_m_per_s2, from(0, 1000));
-  fields.number("viscous_damping_per_s", spec.viscous_damping_per_s, from(0, 1e6));
-  fields.object("floor", Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
+    kinds.push_back(
+        {{kind.name, kind.description}, [&](FieldVisitor& body) { kind.visit_fields(body, spec); }});
+  fields.one_of({"kind", "The scene kind, which is also the key of the section that describes its body."},
+                kinds);
+  fields.text({"description", "One line for listings."}, Presence::required, spec.description);
+  fields.number_or_auto({"dt_s",
+                         "Length of a time step, s; \"auto\" takes half of the stability limit of the least "
+                         "stable integrator."},
+                        spec.dt_s, above(0, 1));
+  fields.number({"gravity_m_per_s2", "Gravitational acceleration, downwards, m/s^2."}, spec.gravity_m_per_s2,
+                from(0, 1000));
+  fields.number(
+      {"viscous_damping_per_s", "Deceleration of every node per speed, 1/s: a = -viscous_damping v."},
+      spec.viscous_damping_per_s, from(0, 1e6));
+  fields.object(
+      {"floor",
+       "The plane y = height that nothing falls through. It acts once a step, behind the integrator: of a "
+       "free node below it, y becomes the height, a falling v_y becomes -restitution * v_y, and the "
+       "horizontal speed loses friction * (1 + restitution) * |v_y|, at most all of it."},
+      Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
 }
-
-namespace {
 
 SceneSpec scene_of(JsonDocument document) {
   SceneSpec spec;
@@ -67,6 +80,17 @@ SceneSpec scene_of(JsonDocument document) {
 }
 
 }  // namespace
+
+std::string scene_schema() {
+  SceneSpec unused;
+  return json_schema(
+      "Scene of mssim",
+      "A mass-spring scene: how it is stepped, what acts on it, and its body. SI units, stated in the keys; "
+      "y points up. mssim checks further that the fields fit together: the pinned row exists, cloth and "
+      "bodies start above the floor, the ripple is at most a tenth of its wavelength and, where there are "
+      "pins, at most the spacing high, and meshes are sound.",
+      [&](FieldVisitor& fields) { visit_scene_fields(fields, unused); });
+}
 
 SceneSpec parse_scene(const std::filesystem::path& file, std::string text) {
   return scene_of(parse_json(file, std::move(text)));

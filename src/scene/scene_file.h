@@ -5,13 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/fields/field_visitor.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-/// Names the fields of a whole scene file, with their targets in `spec`.
-void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec);
+/// The JSON Schema of scene files, which is committed as scenes/scene.schema.json.
+std::string scene_schema();
 
 /// Checks the text of a scene file, which need not exist; the scene is named after it. Throws SceneError.
 SceneSpec parse_scene(const std::filesystem::path& file, std::string text);

@@ -20,13 +20,19 @@ BuiltScene without_note(const SceneSpec& spec) {
 constexpr std::array<SceneKind, 3> kinds{{
     // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
     // both of its ends.
-    {"cloth", visit_cloth_fields, check_cloth, 2, stated_cloth_counts, cloth_counts,
-     without_note<build_cloth>},
+    {"cloth",
+     "A regular cloth, level at first: row r, column c starts at (c spacing, ceiling height, r spacing). "
+     "Neighbours are joined by structural springs, diagonal ones by shear springs, those two apart by "
+     "bending springs.",
+     visit_cloth_fields, check_cloth, 2, stated_cloth_counts, cloth_counts, without_note<build_cloth>},
     // Those of bodies seem to be the length of the array of packed springs, three values each: all nine can
     // be divided by three, and the thirds fit tetrahedral meshes.
-    {"bodies", visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts,
-     without_note<build_bodies>},
-    {"garment", visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, garment_counts,
+    {"bodies",
+     "Solid bodies cut into tetrahedra, whose edges are the springs. They fall side by side; only the floor "
+     "stops them.",
+     visit_bodies_fields, check_bodies, 3, stated_bodies_counts, bodies_counts, without_note<build_bodies>},
+    {"garment", "Panels that are drawn together around a body along their seams, and draped.",
+     visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, garment_counts,
      build_garment_scene},
 }};
 static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);

@@ -118,5 +118,6 @@ done
 "$mssim" list ways --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list ways"
 "$mssim" list suites --format csv | grep '^scaling,true,false,"cloth40k, .* and cloth16m",' >/dev/null || fail "list suites"
 "$mssim" bench --help | tr -s '\n ' ' ' | grep 'tables stands for table1, table2 and table3' >/dev/null || fail "bench --help does not say what tables is"
+"$mssim" list schema | cmp - "$2/scenes/scene.schema.json" || fail "list schema"
 if "$mssim" list scenes >/dev/full 2>"$work/err"; then fail "a full standard output is no error"; fi
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -164,7 +164,10 @@ struct ListOptions {
   ExecutionOptions execution;
 };
 
+constexpr std::string_view schema_subject = "schema";
+
 int run_list(const ListOptions& options) {
+  if (options.subject == schema_subject) std::cout << scene_schema();
   for (const Subject& subject : subjects) {
     if (subject.name != options.subject) continue;
     const Listing listing = subject.list(options.execution);
@@ -179,7 +182,9 @@ std::function<int()> declare_list(CLI::App& app) {
   const auto options = std::make_shared<ListOptions>();
   std::vector<std::string_view> known;
   for (const Subject& subject : subjects) known.push_back(subject.name);
-  app.add_option("WHAT", options->subject, "What to list: " + listed(known, "or"))
+  known.push_back(schema_subject);
+  app.add_option("WHAT", options->subject,
+                 "What to list: " + listed(known, "or") + " of scene files, as JSON")
       ->required()
       ->transform(one_of("word", {known.begin(), known.end()}));
   declare_listing_format(app, options->format);

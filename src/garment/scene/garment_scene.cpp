@@ -28,52 +28,88 @@ constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
 const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
 
 void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
-  fields.integer("nodes", jeans.nodes, fewest_nodes, most_nodes);
-  visit_length(fields, "waist_height_m", jeans.measures.waist_height);
-  visit_length(fields, "hip_height_m", jeans.measures.hip_height);
-  visit_length(fields, "knee_height_m", jeans.measures.knee_height);
-  visit_length(fields, "hem_height_m", jeans.measures.hem_height);
-  visit_length(fields, "knee_m", jeans.measures.knee);
-  visit_length(fields, "hem_m", jeans.measures.hem);
-  fields.number("hip_ease_m", jeans.measures.hip_ease, from(0, largest_length_m));
-  fields.number("waist_ease_m", jeans.measures.waist_ease, from(0, largest_length_m));
-  fields.number("crotch_ease_m", jeans.measures.crotch_ease, from(0, largest_length_m));
+  fields.integer({"nodes", "About how many nodes all panels have."}, jeans.nodes, fewest_nodes, most_nodes);
+  visit_length(fields, {"waist_height_m", "Height at which the upper edge is worn at the side, m."},
+               jeans.measures.waist_height);
+  visit_length(fields, {"hip_height_m", "Height at which the body's girth is largest, m."},
+               jeans.measures.hip_height);
+  visit_length(fields, {"knee_height_m", "Height of the knee, m."}, jeans.measures.knee_height);
+  visit_length(fields, {"hem_height_m", "Height at which the hem is worn, m."}, jeans.measures.hem_height);
+  visit_length(fields, {"knee_m", "Around one leg of the jeans at the knee, m."}, jeans.measures.knee);
+  visit_length(fields, {"hem_m", "Around one leg of the jeans at the hem, m."}, jeans.measures.hem);
+  fields.number(
+      {"hip_ease_m",
+       "How much wider than the body and what lies between the jeans are at the hip, all round, m."},
+      jeans.measures.hip_ease, from(0, largest_length_m));
+  fields.number({"waist_ease_m", "The same at the waist, m."}, jeans.measures.waist_ease,
+                from(0, largest_length_m));
+  fields.number({"crotch_ease_m", "How far the crotch of the jeans lies below the body's, m."},
+                jeans.measures.crotch_ease, from(0, largest_length_m));
 }
 
 void visit_correction(FieldVisitor& fields, Dressing& dressing, VelocityCorrection correction) {
   dressing.correction = correction;
   if (correction == VelocityCorrection::none) return;
-  fields.number("threshold", dressing.correction_threshold, from(0, 10));
-  fields.integer("sweeps", dressing.correction_sweeps, 1, 1000);
-  if (correction == VelocityCorrection::bounded) fields.number("rate", dressing.correction_rate, from(0, 1));
+  fields.number(
+      {"threshold", "Elongation over rest length beyond which a spring is corrected, without unit."},
+      dressing.correction_threshold, from(0, 10));
+  fields.integer({"sweeps", "Passes over all springs in a step, forwards and backwards by turns."},
+                 dressing.correction_sweeps, 1, 1000);
+  if (correction == VelocityCorrection::bounded)
+    fields.number({"rate", "Share of the excess that a step takes away, without unit."},
+                  dressing.correction_rate, from(0, 1));
 }
 
 void visit_dressing(FieldVisitor& fields, Dressing& dressing) {
-  fields.number("seam_force_n_per_m", dressing.seam_force, from(0, 1e6));
-  fields.number("seam_force_doubling_s", dressing.seam_force_doubling_s, above(0, 1e6));
-  fields.number("seaming_damping_per_s", dressing.seaming_damping, from(0, 1e6));
-  fields.number("seaming_gravity", dressing.seaming_gravity, from(0, 1));
-  fields.number("longest_seaming_s", dressing.longest_seaming_s, from(0, 1e6));
-  visit_length(fields, "sewn_gap_m", dressing.sewn_gap);
-  fields.number("closing_share", dressing.closing_share, from(0, 1));
-  fields.number("closing_speed_m_per_s", dressing.closing_speed, above(0, 1000));
-  fields.number("friction", dressing.friction, from(0, 100));
-  fields.number("push_speed_m_per_s", dressing.push_speed, from(0, 1000));
-  const auto section = [&](std::string_view name, VelocityCorrection correction) {
+  fields.number({"seam_force_n_per_m", "Force that draws a seam together at first, per length, N/m."},
+                dressing.seam_force, from(0, 1e6));
+  fields.number({"seam_force_doubling_s", "Time in which that force has grown by its first value, s."},
+                dressing.seam_force_doubling_s, above(0, 1e6));
+  fields.number({"seaming_damping_per_s",
+                 "Deceleration of every node per speed while the seams close, 1/s; viscous_damping_per_s is "
+                 "for draping."},
+                dressing.seaming_damping, from(0, 1e6));
+  fields.number({"seaming_gravity", "Share of gravity that acts while the seams close, without unit."},
+                dressing.seaming_gravity, from(0, 1));
+  fields.number({"longest_seaming_s", "Simulated time after which open seams are sewn as they are, s."},
+                dressing.longest_seaming_s, from(0, 1e6));
+  visit_length(fields, {"sewn_gap_m", "Gap below which a joint counts as sewn and its ends move as one, m."},
+               dressing.sewn_gap);
+  fields.number({"closing_share", "Share of a sewn joint's gap that a step closes at most, without unit."},
+                dressing.closing_share, from(0, 1));
+  fields.number({"closing_speed_m_per_s", "Speed at which a sewn joint's gap closes at most, m/s."},
+                dressing.closing_speed, above(0, 1000));
+  fields.number({"friction", "Coulomb's coefficient between cloth and body while draping, without unit."},
+                dressing.friction, from(0, 100));
+  fields.number({"push_speed_m_per_s", "Speed at which a point inside the body is moved out at most, m/s."},
+                dressing.push_speed, from(0, 1000));
+  const auto section = [&](const Field& field, VelocityCorrection correction) {
     return Section{
-        name, [&dressing, correction](FieldVisitor& rule) { visit_correction(rule, dressing, correction); }};
+        field, [&dressing, correction](FieldVisitor& rule) { visit_correction(rule, dressing, correction); }};
   };
-  const std::array sections{section("none", VelocityCorrection::none),
-                            section("published", VelocityCorrection::published),
-                            section("bounded", VelocityCorrection::bounded)};
-  fields.one_of("correction", sections);
+  const std::array sections{
+      section({"none", "Nothing is done to over-elongated springs."}, VelocityCorrection::none),
+      section(
+          {"published", "What lengthens an over-elongated spring is taken from the velocities of its ends."},
+          VelocityCorrection::published),
+      section(
+          {"bounded",
+           "An over-elongated spring has to shorten: its ends part at -rate times excess per step at most."},
+          VelocityCorrection::bounded)};
+  fields.one_of({"correction", "Which of the sections says what is done to over-elongated springs."},
+                sections);
 }
 
 void visit_layers(FieldVisitor& fields, ClothClothSettings& layers) {
-  visit_length(fields, "thickness_m", layers.thickness);
-  fields.number("friction", layers.friction, from(0, 100));
-  fields.number("push_speed_m_per_s", layers.push_speed, from(0, 1000));
-  fields.integer("sweeps", layers.sweeps, 1, 1000);
+  visit_length(fields,
+               {"thickness_m", "Distance that layers keep, m; more than what they approach in a step."},
+               layers.thickness);
+  fields.number({"friction", "Coulomb's coefficient of friction between layers."}, layers.friction,
+                from(0, 100));
+  fields.number({"push_speed_m_per_s",
+                 "Speed at which layers that are too near or have crossed are moved apart at most, m/s."},
+                layers.push_speed, from(0, 1000));
+  fields.integer({"sweeps", "Sweeps over all contacts in a step."}, layers.sweeps, 1, 1000);
 }
 
 /// The body as each layer meets it: where layers touch, an outer one has no room but for what lies under it.
@@ -102,26 +138,44 @@ SceneCounts counts_of(const GarmentBuild& build) { return {build.placed.size(), 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
   GarmentSpec& garment = spec.body.emplace<GarmentSpec>();
   visit_body_fields(fields, garment);
-  visit_length(fields, "pixel_m", garment.pixel_m);
-  fields.number("skin_m", garment.skin_m, from(0, largest_length_m));
+  visit_length(fields, {"pixel_m", "Width of a pixel of the maps that cloth collides with, m."},
+               garment.pixel_m);
+  fields.number({"skin_m",
+                 "How far the maps lie before the body's surface, m; what coarse cloth needs lest the body "
+                 "shows between its nodes is added."},
+                garment.skin_m, from(0, largest_length_m));
+  constexpr Field jeans_field{"jeans",
+                              "Jeans of four panels and six seams that fit the body; its girths and the "
+                              "height of its crotch are measured."};
   const auto jeans_of = [&](FieldVisitor& jeans) { visit_jeans(jeans, garment.jeans.emplace()); };
   const auto pieces_of = [&](FieldVisitor& pieces) { visit_pieces(pieces, garment.pieces.emplace()); };
-  const std::array patterns{Section{"jeans", jeans_of}, Section{"pieces", pieces_of},
-                            Section{"outfit", [&](FieldVisitor& outfit) {
-                                      outfit.object("jeans", Presence::required, jeans_of);
-                                      pieces_of(outfit);
-                                    }}};
-  fields.one_of("pattern", patterns);
-  fields.object("cloth", Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
-  fields.object("dressing", Presence::required,
+  const std::array patterns{
+      Section{jeans_field, jeans_of},
+      Section{{"pieces", "Panels and seams of one's own pattern."}, pieces_of},
+      Section{{"outfit", "Jeans, and panels and seams of one's own pattern."}, [&](FieldVisitor& outfit) {
+                outfit.object(jeans_field, Presence::required, jeans_of);
+                pieces_of(outfit);
+              }}};
+  fields.one_of({"pattern",
+                 "What is dressed, and the key of the section that describes it: jeans drafted for the body, "
+                 "pieces of one's own, or both."},
+                patterns);
+  fields.object({"cloth", "What jeans, and pieces without a cloth of their own, are cut from."},
+                Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
+  fields.object({"dressing", "How the panels are drawn together and draped."}, Presence::required,
                 [&](FieldVisitor& dressing) { visit_dressing(dressing, garment.dressing); });
-  fields.object("layers", Presence::optional,
+  fields.object({"layers",
+                 "How layers of cloth keep apart; left out, they go through each other. The body lies "
+                 "further out for each layer by the thickness."},
+                Presence::optional,
                 [&](FieldVisitor& layers) { visit_layers(layers, garment.layers.emplace()); });
-  fields.object("expected", Presence::optional, [&](FieldVisitor& expected) {
-    MeshSize& size = garment.expected.emplace();
-    expected.integer("nodes", size.nodes, 4, most_nodes);
-    expected.integer("springs", size.springs, 6, 6 * most_nodes);
-  });
+  fields.object(
+      {"expected", "What the pattern comes to, for listings."}, Presence::optional,
+      [&](FieldVisitor& expected) {
+        MeshSize& size = garment.expected.emplace();
+        expected.integer({"nodes", "Nodes of all panels."}, size.nodes, 4, most_nodes);
+        expected.integer({"springs", "Unique springs of all panels."}, size.springs, 6, 6 * most_nodes);
+      });
 }
 
 void check_garment(const SceneSpec& spec) {

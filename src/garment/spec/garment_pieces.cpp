@@ -12,44 +12,65 @@ constexpr std::uint32_t most_panels = 64, most_seams = 256, most_lines = 10'000,
 constexpr std::size_t most_points = 100;  // of a boundary: they are compared with each other
 constexpr double largest_length_m = 10;
 
-void visit_boundary(FieldVisitor& fields, std::string_view key, BoundarySpec& boundary) {
-  fields.object(key, Presence::required, [&](FieldVisitor& drawn) {
+void visit_boundary(FieldVisitor& fields, const Field& field, BoundarySpec& boundary) {
+  fields.object(field, Presence::required, [&](FieldVisitor& drawn) {
     constexpr std::array<std::string_view, 2> curves{"polyline", "bezier"};
     std::uint32_t curve = 0;
-    drawn.choice("curve", Presence::required, curves, curve);
+    drawn.choice({"curve",
+                  "How the points draw the curve: joined by straight lines, or as end point, two control "
+                  "points, end point, ... of cubic Bezier segments."},
+                 Presence::required, curves, curve);
     boundary.is_bezier = curve == 1;
-    drawn.points("points_m", 2, most_points, from(-largest_length_m, largest_length_m), boundary.points);
+    drawn.points({"points_m",
+                  "Points [x, y], m, y being the height at which they are worn; 3 n + 1 of them for n Bezier "
+                  "segments."},
+                 2, most_points, from(-largest_length_m, largest_length_m), boundary.points);
   });
 }
 
 void visit_piece(FieldVisitor& fields, PieceSpec& piece) {
-  fields.text("name", Presence::required, piece.name);
-  fields.integer("rows", piece.rows, 2, most_lines);
-  fields.integer("columns", piece.columns, 2, most_lines);
-  fields.integer("layer", piece.layer, 0, most_layers - 1);
+  fields.text({"name", "Its name, which no other panel has; seams name it."}, Presence::required, piece.name);
+  fields.integer({"rows", "Rows of nodes, from the bottom boundary to the top one."}, piece.rows, 2,
+                 most_lines);
+  fields.integer({"columns", "Columns of nodes, from the left boundary to the right one."}, piece.columns, 2,
+                 most_lines);
+  fields.integer({"layer", "Which layer of cloth it is; 0 lies on the body, as jeans do."}, piece.layer, 0,
+                 most_layers - 1);
+  constexpr std::array<std::string_view, panel_edge_names.size()> descriptions{
+      "The lower boundary, from left to right.", "The upper boundary, from left to right.",
+      "The left boundary, from bottom to top.", "The right boundary, from bottom to top."};
   for (std::size_t edge = 0; edge < panel_edge_names.size(); ++edge)
-    visit_boundary(fields, panel_edge_names[edge], piece.boundaries[edge]);
-  fields.object("placement", Presence::required, [&](FieldVisitor& placement) {
-    constexpr std::array<std::string_view, 2> sides{"front", "back"};
-    std::uint32_t side = 0;
-    placement.choice("side", Presence::required, sides, side);
-    piece.behind = side == 1;
-    placement.number("axis_m", piece.axis_m, from(-largest_length_m, largest_length_m));
-    placement.number("distance_m", piece.distance_m, above(0, largest_length_m));
-    placement.number("bend_radius_m", piece.bend_radius_m, above(0, largest_length_m));
-  });
-  fields.object("cloth", Presence::optional,
+    visit_boundary(fields, {panel_edge_names[edge], descriptions.at(edge)}, piece.boundaries[edge]);
+  fields.object(
+      {"placement", "Where the panel begins, at the heights that it is drawn at."}, Presence::required,
+      [&](FieldVisitor& placement) {
+        constexpr std::array<std::string_view, 2> sides{"front", "back"};
+        std::uint32_t side = 0;
+        placement.choice({"side", "Before the body or behind it."}, Presence::required, sides, side);
+        piece.behind = side == 1;
+        placement.number({"axis_m", "x at which the drawing's x = 0 stands, m."}, piece.axis_m,
+                         from(-largest_length_m, largest_length_m));
+        placement.number(
+            {"distance_m", "Distance from the body's foremost (hindmost) point at each height, m."},
+            piece.distance_m, above(0, largest_length_m));
+        placement.number(
+            {"bend_radius_m", "Radius of the upright cylinder round which the panel is bent, m."},
+            piece.bend_radius_m, above(0, largest_length_m));
+      });
+  fields.object({"cloth", "What this panel is cut from, instead of the garment's cloth."}, Presence::optional,
                 [&](FieldVisitor& cloth) { visit_cloth(cloth, piece.cloth.emplace()); });
 }
 
-void visit_stretch(FieldVisitor& fields, std::string_view key, SeamStretch& stretch) {
-  fields.object(key, Presence::required, [&](FieldVisitor& sewn) {
-    sewn.text("panel", Presence::required, stretch.panel);
+void visit_stretch(FieldVisitor& fields, const Field& field, SeamStretch& stretch) {
+  fields.object(field, Presence::required, [&](FieldVisitor& sewn) {
+    sewn.text({"panel", "Name of the panel; jeans have front left, back left, front right and back right."},
+              Presence::required, stretch.panel);
     auto edge = static_cast<std::uint32_t>(stretch.edge);
-    sewn.choice("edge", Presence::required, panel_edge_names, edge);
+    sewn.choice({"edge", "Which of its boundaries."}, Presence::required, panel_edge_names, edge);
     stretch.edge = static_cast<PanelEdge>(edge);
-    sewn.number("from", stretch.from, from(0, 1));
-    sewn.number("to", stretch.to, from(0, 1));
+    sewn.number({"from", "Where the stretch begins, as a fraction of the boundary's length."}, stretch.from,
+                from(0, 1));
+    sewn.number({"to", "Where it ends; it may run backwards."}, stretch.to, from(0, 1));
   });
 }
 
@@ -77,29 +98,49 @@ PatternPanel panel_of(const PieceSpec& piece, const PanelCloth& cloth) {
 }  // namespace
 
 void visit_cloth(FieldVisitor& fields, PanelCloth& cloth) {
-  fields.number("areal_density_kg_per_m2", cloth.area_density, above(0, 1e6));
-  fields.number("structural_n_per_m", cloth.structural.stiffness, above(0, largest_stiffness));
-  fields.number("shear_n_per_m", cloth.shear.stiffness, above(0, largest_stiffness));
-  fields.number("bending_n_per_m", cloth.bending.stiffness, above(0, largest_stiffness));
-  fields.number("least_mass_share", cloth.least_mass_share, from(0, 1));
-  fields.object("waistband", Presence::optional, [&](FieldVisitor& band) {
-    band.number("height_m", cloth.waistband.height, above(0, largest_length_m));
-    band.number("stiffness_factor", cloth.waistband.stiffness_factor, above(0, 1000));
-    band.number("mass_factor", cloth.waistband.mass_factor, above(0, 1000));
-    band.number("seam_factor", cloth.waistband.seam_factor, above(0, 1000));
-  });
+  fields.number({"areal_density_kg_per_m2", "Mass per area, kg/m^2."}, cloth.area_density, above(0, 1e6));
+  fields.number(
+      {"structural_n_per_m", "Stiffness of the springs between neighbours of a row or a column, N/m."},
+      cloth.structural.stiffness, above(0, largest_stiffness));
+  fields.number({"shear_n_per_m", "Stiffness of the springs along the diagonals of cells, N/m."},
+                cloth.shear.stiffness, above(0, largest_stiffness));
+  fields.number(
+      {"bending_n_per_m", "Stiffness of the springs between every second node of a row or a column, N/m."},
+      cloth.bending.stiffness, above(0, largest_stiffness));
+  fields.number({"least_mass_share",
+                 "The least mass of a node over its panel's mean one, without unit: nodes on the boundary "
+                 "have less cloth."},
+                cloth.least_mass_share, from(0, 1));
+  fields.object({"waistband", "The rows next to the upper edge, which hold the garment on the body."},
+                Presence::optional, [&](FieldVisitor& band) {
+                  band.number({"height_m", "Height of the band, m."}, cloth.waistband.height,
+                              above(0, largest_length_m));
+                  band.number(
+                      {"stiffness_factor", "On the stiffness of the springs along the rows, without unit."},
+                      cloth.waistband.stiffness_factor, above(0, 1000));
+                  band.number({"mass_factor", "On the masses of its nodes, without unit."},
+                              cloth.waistband.mass_factor, above(0, 1000));
+                  band.number({"seam_factor", "On the force of the seams, without unit."},
+                              cloth.waistband.seam_factor, above(0, 1000));
+                });
 }
 
 void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces) {
-  fields.list("panels", Presence::required, most_panels,
-              [&](FieldVisitor& element) { visit_piece(element, pieces.panels.emplace_back()); });
-  fields.list("seams", Presence::optional, most_seams, [&](FieldVisitor& element) {
-    Seam& seam = pieces.seams.emplace_back();
-    element.text("name", Presence::required, seam.name);
-    visit_stretch(element, "first", seam.first);
-    visit_stretch(element, "second", seam.second);
-    element.number("tolerance", seam.tolerance, from(0, 1));
-  });
+  fields.list({"panels", "The panels."}, Presence::required, most_panels,
+              {"A panel: a grid of nodes on a pattern piece between four boundaries, drawn as it is seen "
+               "from outside when it is worn.",
+               [&](FieldVisitor& panel) { visit_piece(panel, pieces.panels.emplace_back()); }});
+  fields.list({"seams", "The seams; left out, nothing is sewn."}, Presence::optional, most_seams,
+              {"Two stretches of boundaries that are sewn together, beginning to beginning.",
+               [&](FieldVisitor& element) {
+                 Seam& seam = pieces.seams.emplace_back();
+                 element.text({"name", "Its name, for messages."}, Presence::required, seam.name);
+                 visit_stretch(element, {"first", "One of the two stretches."}, seam.first);
+                 visit_stretch(element, {"second", "The other one."}, seam.second);
+                 element.number(
+                     {"tolerance", "How much their lengths may differ, as a fraction of the longer one."},
+                     seam.tolerance, from(0, 1));
+               }});
 }
 
 void check_pieces(const std::filesystem::path& file, const std::string& pointer, const PiecesSpec& pieces,

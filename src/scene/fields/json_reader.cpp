@@ -55,68 +55,68 @@ class JsonReader final : public FieldVisitor {
            "is " + described(value) + ": give an object, { ... }");
   }
 
-  void number(std::string_view key, double& target, const Range& range) override {
+  void number(const Field& field, double& target, const Range& range) override {
     const std::string wanted = "a number " + described(range);
-    if (const json* value = find(key, Presence::required, wanted))
-      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
+    if (const json* value = find(field.key, Presence::required, wanted))
+      target = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
   }
 
-  void optional_number(std::string_view key, std::optional<double>& target, const Range& range) override {
+  void optional_number(const Field& field, std::optional<double>& target, const Range& range) override {
     const std::string wanted = "a number " + described(range);
-    if (const json* value = find(key, Presence::optional, wanted))
-      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
+    if (const json* value = find(field.key, Presence::optional, wanted))
+      target = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
   }
 
-  void number_or_auto(std::string_view key, std::optional<double>& target, const Range& range) override {
+  void number_or_auto(const Field& field, std::optional<double>& target, const Range& range) override {
     const std::string wanted = "a number " + described(range) + ", or \"auto\"";
-    const json* value = find(key, Presence::required, wanted);
+    const json* value = find(field.key, Presence::required, wanted);
     if (value == nullptr) return;
     if (*value == "auto")
       target.reset();
     else
-      target = number_of(json_pointer(pointer_, key), *value, range, wanted);
+      target = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
   }
 
-  void integer(std::string_view key, std::uint32_t& target, std::uint32_t minimum,
+  void integer(const Field& field, std::uint32_t& target, std::uint32_t minimum,
                std::uint32_t maximum) override {
     const Range range = from(minimum, maximum);
     const std::string wanted = "an integer " + described(range);
-    const json* value = find(key, Presence::required, wanted);
+    const json* value = find(field.key, Presence::required, wanted);
     if (value == nullptr) return;
-    const double number = number_of(json_pointer(pointer_, key), *value, range, wanted);
-    if (number != std::floor(number)) refuse(key, *value, wanted);
+    const double number = number_of(json_pointer(pointer_, field.key), *value, range, wanted);
+    if (number != std::floor(number)) refuse(field.key, *value, wanted);
     target = static_cast<std::uint32_t>(number);
   }
 
-  void text(std::string_view key, Presence presence, std::string& target) override {
+  void text(const Field& field, Presence presence, std::string& target) override {
     const std::string wanted = "one line of text of at most " + std::to_string(longest_text) + " characters";
-    const json* value = find(key, presence, wanted);
+    const json* value = find(field.key, presence, wanted);
     if (value == nullptr) return;
-    if (!value->is_string()) refuse(key, *value, wanted);
+    if (!value->is_string()) refuse(field.key, *value, wanted);
     const auto& words = value->get_ref<const std::string&>();
     const bool one_line =
         std::none_of(words.begin(), words.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
-    if (!one_line || count_characters(words) > longest_text) refuse(key, *value, wanted);
+    if (!one_line || count_characters(words) > longest_text) refuse(field.key, *value, wanted);
     target = words;
   }
 
-  void vector(std::string_view key, Presence presence, Vec3d& target, const Range& each) override {
+  void vector(const Field& field, Presence presence, Vec3d& target, const Range& each) override {
     const std::string wanted = "a list of three numbers " + described(each);
-    const json* value = find(key, presence, wanted);
+    const json* value = find(field.key, presence, wanted);
     if (value == nullptr) return;
-    if (!value->is_array() || value->size() != 3) refuse(key, *value, wanted);
-    const std::string list = json_pointer(pointer_, key);
+    if (!value->is_array() || value->size() != 3) refuse(field.key, *value, wanted);
+    const std::string list = json_pointer(pointer_, field.key);
     target = {component(list, *value, 0, each), component(list, *value, 1, each),
               component(list, *value, 2, each)};
   }
 
-  void points(std::string_view key, std::size_t least, std::size_t most, const Range& each,
+  void points(const Field& field, std::size_t least, std::size_t most, const Range& each,
               std::vector<Vec3d>& target) override {
     const std::string wanted =
         "a list, [ ... ], of " + std::to_string(least) + " to " + std::to_string(most) + " points [x, y]";
-    const json* value = find(key, Presence::required, wanted);
+    const json* value = find(field.key, Presence::required, wanted);
     if (value == nullptr) return;
-    const std::string list = json_pointer(pointer_, key);
+    const std::string list = json_pointer(pointer_, field.key);
     require_length(list, *value, least, most, wanted);
     target.clear();
     for (std::size_t i = 0; i < value->size(); ++i) {
@@ -128,38 +128,38 @@ class JsonReader final : public FieldVisitor {
     }
   }
 
-  void choice(std::string_view key, Presence presence, std::span<const std::string_view> words,
+  void choice(const Field& field, Presence presence, std::span<const std::string_view> words,
               std::uint32_t& target) override {
-    if (const auto number = chosen(key, presence, words)) target = static_cast<std::uint32_t>(*number);
+    if (const auto number = chosen(field.key, presence, words)) target = static_cast<std::uint32_t>(*number);
   }
 
-  void one_of(std::string_view key, std::span<const Section> sections) override {
+  void one_of(const Field& field, std::span<const Section> sections) override {
     std::vector<std::string_view> names;
     names.reserve(sections.size());
-    for (const Section& section : sections) names.push_back(section.name);
-    if (const auto number = chosen(key, Presence::required, names))
-      object(names[*number], Presence::required, sections[*number].fields);
+    for (const Section& section : sections) names.push_back(section.field.key);
+    if (const auto number = chosen(field.key, Presence::required, names))
+      object(sections[*number].field, Presence::required, sections[*number].fields);
     else
       known_.insert(known_.end(), names.begin(), names.end());
   }
 
-  void list(std::string_view key, Presence presence, std::size_t most, const FieldList& element) override {
+  void list(const Field& field, Presence presence, std::size_t most, const Elements& elements) override {
     const std::string wanted = "a list, [ ... ], of 1 to " + std::to_string(most) + " objects";
-    const json* value = find(key, presence, wanted);
+    const json* value = find(field.key, presence, wanted);
     if (value == nullptr) return;
-    const std::string pointer = json_pointer(pointer_, key);
+    const std::string pointer = json_pointer(pointer_, field.key);
     require_length(pointer, *value, 1, most, wanted);
     for (std::size_t i = 0; i < value->size(); ++i) {
       JsonReader nested(file_, json_pointer(pointer, std::to_string(i)), (*value)[i]);
-      element(nested);
+      elements.fields(nested);
       nested.finish();
     }
   }
 
-  void object(std::string_view key, Presence presence, const FieldList& fields) override {
-    const json* value = find(key, presence, "an object, { ... }");
+  void object(const Field& field, Presence presence, const FieldList& fields) override {
+    const json* value = find(field.key, presence, "an object, { ... }");
     if (value == nullptr) return;
-    JsonReader nested(file_, json_pointer(pointer_, key), *value);
+    JsonReader nested(file_, json_pointer(pointer_, field.key), *value);
     fields(nested);
     nested.finish();
   }

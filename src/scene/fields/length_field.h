@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string_view>
-
 #include "scene/fields/field_visitor.h"
 
 namespace mssim {
@@ -10,8 +8,8 @@ namespace mssim {
 inline constexpr double largest_length_m = 10;
 
 /// A length of a garment or its body.
-inline void visit_length(FieldVisitor& fields, std::string_view key, double& target) {
-  fields.number(key, target, above(0, largest_length_m));
+inline void visit_length(FieldVisitor& fields, const Field& field, double& target) {
+  fields.number(field, target, above(0, largest_length_m));
 }
 
 }  // namespace mssim
