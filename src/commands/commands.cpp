@@ -1,21 +1,20 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <functional>
 #include <iostream>
-#include <memory>
+#include <map>
 #include <new>
 #include <string>
 #include <vector>
 
 #include "backends/interface/backend.h"
 #include "bench/machine/build_info.h"
+#include "commands/arguments/program_parser.h"
 #include "commands/bench/bench_command.h"
 #include "commands/check/check_command.h"
 #include "commands/compare/compare_command.h"
 #include "commands/help/help_command.h"
-#include "commands/help/help_page.h"
-#include "commands/help/usage_error.h"
 #include "commands/list/list_command.h"
 #include "commands/measure/measure_command.h"
 #include "commands/run/run_command.h"
@@ -108,45 +107,37 @@ std::string unknown_command(std::string_view name) {
 
 int run_program(int argc, char** argv) {
   remember_arguments(argc, argv);
-  CLI::App app("mssim " + build_info().version + ": benchmark harness for parallel mass-spring simulation",
-               "mssim");
-  const auto page = std::make_shared<HelpPage>();
-  page->label("Positionals", "Arguments");
-  app.formatter(page);
-  app.set_help_flag("-h,--help", "Show this page");
-  app.set_version_flag("-V,--version",
-                       "mssim " + build_info().version + " (" + build_info().commit +
-                           (build_info().dirty ? ", changed" : "") + ")",
-                       "Show the version and the commit that it was built from");
-  app.require_subcommand(0, 1);
-  std::string examples;
-  std::function<int()> run;
-  for (const Command& command : commands()) {
-    CLI::App* sub = app.add_subcommand(std::string(command.name), std::string(command.description));
-    sub->group("Commands");
-    sub->footer("Example:\n  " + std::string(command.example));
-    examples += "\n  " + std::string(command.example);
-    const std::function<int()> body = command.declare(*sub);
-    sub->callback([&run, body] { run = body; });
-  }
-  app.footer("mssim help COMMAND explains a command and its options.\n\nExamples:" + examples + "\n\n" +
-             std::string(exit_codes));
   if (argc > 1 && argv[1][0] != '-') {  // the parser would take it for a word too many
     const std::string_view word = argv[1];
     if (std::ranges::find(commands(), word, &Command::name) == commands().end())
       return fail(exit_bad_input, unknown_command(word));
   }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return fail(exit_bad_input, usage_sentence(error, app));
+  const BuildInfo& build = build_info();
+  ProgramParser parser(
+      "mssim", "mssim " + build.version + ": benchmark harness for parallel mass-spring simulation",
+      "mssim " + build.version + " (" + build.commit + (build.dirty ? ", changed" : "") + ")");
+  std::string examples;
+  std::map<std::string, std::function<int()>> run;
+  for (const Command& command : commands()) {
+    const std::string name(command.name), example(command.example);
+    Arguments arguments =
+        parser.add_command(name, std::string(command.description), "Example:\n  " + example);
+    run[name] = command.declare(arguments);
+    examples += "\n  " + example;
   }
-  if (!run) {
-    std::cerr << help_page(app, "mssim");
+  parser.end_help_with("mssim help COMMAND explains a command and its options.\n\nExamples:" + examples +
+                       "\n\n" + std::string(exit_codes));
+  const ProgramParser::Request request = parser.parse(argc, argv);
+  if (!request.refusal.empty()) return fail(exit_bad_input, request.refusal);
+  int code = exit_ok;
+  if (!request.page.empty()) {
+    std::cout << request.page;
+  } else if (request.command.empty()) {
+    std::cerr << parser.help_page();
     return exit_bad_input;
+  } else {
+    code = run_guarded(run.at(request.command));
   }
-  const int code = run_guarded(run);
   // Results that could not be written are no results (a full disk; a closed pipe ends the program by
   // SIGPIPE).
   if (!std::cout.flush()) return fail(exit_file_error, "standard output could not be written");

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <array>
 
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
 #include "mesh/text_lines.h"
+#include "text/number_in.h"
 
 namespace mssim {
 namespace {
@@ -42,20 +42,22 @@ class ObjReader {
 
   /// A corner reads V, V/VT, V//VN or V/VT/VN; negative numbers count back from the latest.
   std::int64_t corner(std::string_view word) const {
-    std::array<std::int64_t, 3> number{};
+    std::int64_t vertex = 0;
     std::size_t part = 0;
     for (std::string_view rest = word;; ++part) {
       const std::size_t slash = std::min(rest.find('/'), rest.size());
       const bool may_be_empty = part == 1 && slash < rest.size();
       const bool is_empty = may_be_empty && slash == 0;
-      if (part >= number.size() || (!is_empty && !TextLines::parse(rest.substr(0, slash), number[part])))
+      const auto number = number_in<std::int64_t>(rest.substr(0, slash));
+      if (part > 2 || (!number && !is_empty))
         lines_.fail("the corner " + TextLines::quoted(word) +
                     " of a face cannot be read; write V, V/VT, V//VN or V/VT/VN");
+      if (part == 0) vertex = *number;
       if (slash == rest.size()) break;
       rest.remove_prefix(slash + 1);
     }
     const auto latest = static_cast<std::int64_t>(vertices_.size());
-    const std::int64_t vertex = number[0] < 0 ? latest + 1 + number[0] : number[0];
+    if (vertex < 0) vertex += latest + 1;
     if (vertex < 1)
       lines_.fail("the corner " + TextLines::quoted(word) +
                   " of a face names no vertex; they count from 1, or -1 for the latest");

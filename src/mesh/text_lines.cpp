@@ -1,26 +1,18 @@
 #include "mesh/text_lines.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <system_error>
 
 #include "geometry/geometry.h"
 #include "text/input_error.h"
+#include "text/number_in.h"
 #include "text/printable.h"
 
 namespace mssim {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\f\v";
-
-template <class Number>
-bool parse_number(std::string_view word, Number& value) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const char* end = word.data() + word.size();
-  const auto [stopped, error] = std::from_chars(word.data(), end, value);
-  return error == std::errc{} && stopped == end;
-}
 
 }  // namespace
 
@@ -76,27 +68,24 @@ void TextLines::require_next(const std::string& expected) {
   if (!next()) fail("the file ends before " + expected + "; it is truncated, so write it again");
 }
 
-bool TextLines::parse(std::string_view word, double& value) { return parse_number(word, value); }
-bool TextLines::parse(std::string_view word, std::int64_t& value) { return parse_number(word, value); }
-
 std::string TextLines::quoted(std::string_view word) {
   constexpr std::size_t longest = 40;
   return '"' + printable(word, longest) + '"';
 }
 
 double TextLines::coordinate(std::size_t index, std::string_view what) const {
-  double value = 0;
   const std::string_view text = word(index, what);
-  if (!parse(text, value) || !is_coordinate(value))
+  const auto value = number_in<double>(text);
+  if (!value || !is_coordinate(*value))
     fail(std::string(what) + " is " + quoted(text) + "; " + std::string(coordinate_wanted));
-  return value;
+  return *value;
 }
 
 std::int64_t TextLines::integer(std::size_t index, std::string_view what) const {
-  std::int64_t value = 0;
   const std::string_view text = word(index, what);
-  if (!parse(text, value)) fail(std::string(what) + " is " + quoted(text) + "; give a whole number");
-  return value;
+  const auto value = number_in<std::int64_t>(text);
+  if (!value) fail(std::string(what) + " is " + quoted(text) + "; give a whole number");
+  return *value;
 }
 
 void TextLines::fail_at(std::size_t line, const std::string& what) const {

@@ -38,9 +38,6 @@ class TextLines {
   /// Word `index` as a whole number.
   std::int64_t integer(std::size_t index, std::string_view what) const;
 
-  /// The whole word as a number, in no locale; false when it is none or too large.
-  static bool parse(std::string_view word, double& value);
-  static bool parse(std::string_view word, std::int64_t& value);
   /// A word for a message: in quotes, printable, cut off when long.
   static std::string quoted(std::string_view word);
 

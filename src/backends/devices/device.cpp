@@ -5,16 +5,11 @@
 #include <CL/opencl.hpp>
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "text/small_letters.h"
 
 namespace mssim {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 OpenclDeviceType type_of(cl_device_type type) {
   if ((type & CL_DEVICE_TYPE_GPU) != 0) return OpenclDeviceType::gpu;
@@ -148,7 +143,8 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
 
   std::vector<OpenclDevice> fitting;
   for (const OpenclDevice& device : devices)
-    if (lower(device.name).find(lower(wanted)) != std::string::npos) fitting.push_back(device);
+    if (small_letters(device.name).find(small_letters(wanted)) != std::string::npos)
+      fitting.push_back(device);
   if (fitting.empty())
     throw Unavailable("no OpenCL device has \"" + std::string(wanted) +
                       "\" in its name; there are: " + listing(devices));

@@ -1,6 +1,5 @@
 #include "commands/bench/bench_command.h"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -101,56 +100,60 @@ int run(const BenchOptions& options) {
 
 }  // namespace
 
-std::function<int()> declare_bench(CLI::App& app) {
+std::function<int()> declare_bench(Arguments& arguments) {
   const auto options = std::make_shared<BenchOptions>();
   const std::vector<std::string> names = suite_names();
   const std::vector<std::string_view> suites(names.begin(), names.end());
-  add_scenes(app, "--scene", options->scenes, "Scenes to measure: names (see mssim list scenes) or files");
-  app.add_option("--suite", options->suite,
-                 "Scenes and what is compared on them: " + listed(suites, "or") +
-                     " (see mssim list suites); tables stands for table1, table2 and table3")
-      ->transform(one_of("suite", names))
-      ->type_name("NAME");
-  app.add_option("--backend", options->backends, "Backends, or ways with --suite races (default: all)")
-      ->delimiter(',')
-      ->type_name("NAME,...");
-  app.add_option("--integrator", options->integrators,
-                 "Integrators, or all (default: semi-euler,midpoint,rk4; with --suite races, scaling or "
-                 "garment semi-euler)")
-      ->delimiter(',')
-      ->type_name("NAME,...");
-  declare_execution(app, options->execution);
-  app.add_option("--rounds", options->rounds,
-                 "Samples of each combination (default: 15); with --time-budget the largest number")
-      ->check(whole_number(1, most_rounds))
-      ->type_name("N");
-  app.add_option("--time-budget", options->time_budget_s,
-                 "Time for the measurement, in as many rounds as fit; traces take extra time")
-      ->check(positive_number())
-      ->type_name("SECONDS");
-  app.add_flag("--dry-run", options->dry_run,
-               "Print what would be measured and about how long it would take, then exit");
-  app.add_option("--out", options->output.folder, "Folder for the results: tables, samples, provenance")
-      ->type_name("FOLDER");
-  CLI::Option* resume =
-      app.add_flag("--resume", options->output.resume,
-                   "Continue an interrupted run of the same command: keep the finished rounds of the folder");
-  app.add_flag("--overwrite", options->output.overwrite, "Replace the results that the folder has")
-      ->excludes(resume);
-  app.add_flag("--trace", options->output.trace,
-               "Also trace each combination into FOLDER/traces, after it has been timed");
-  add_choice<SummaryFormat>(
-      app, "--format", options->output.format,
+  add_scenes(arguments, "--scene", options->scenes,
+             "Scenes to measure: names (see mssim list scenes) or files");
+  arguments
+      .add("--suite", options->suite,
+           "Scenes and what is compared on them: " + listed(suites, "or") +
+               " (see mssim list suites); tables stands for table1, table2 and table3",
+           one_of("suite", names))
+      .value_name("NAME");
+  arguments.add_list("--backend", options->backends, "Backends, or ways with --suite races (default: all)")
+      .value_name("NAME,...");
+  arguments
+      .add_list("--integrator", options->integrators,
+                "Integrators, or all (default: semi-euler,midpoint,rk4; with --suite races, scaling or "
+                "garment semi-euler)")
+      .value_name("NAME,...");
+  declare_execution(arguments, options->execution);
+  arguments
+      .add_number("--rounds", options->rounds,
+                  "Samples of each combination (default: 15); with --time-budget the largest number",
+                  whole_number(1, most_rounds))
+      .value_name("N");
+  arguments
+      .add_number("--time-budget", options->time_budget_s,
+                  "Time for the measurement, in as many rounds as fit; traces take extra time",
+                  positive_number())
+      .value_name("SECONDS");
+  arguments.add_flag("--dry-run", options->dry_run,
+                     "Print what would be measured and about how long it would take, then exit");
+  arguments.add("--out", options->output.folder, "Folder for the results: tables, samples, provenance")
+      .value_name("FOLDER");
+  const Argument resume = arguments.add_flag(
+      "--resume", options->output.resume,
+      "Continue an interrupted run of the same command: keep the finished rounds of the folder");
+  arguments.add_flag("--overwrite", options->output.overwrite, "Replace the results that the folder has")
+      .excludes(resume);
+  arguments.add_flag("--trace", options->output.trace,
+                     "Also trace each combination into FOLDER/traces, after it has been timed");
+  arguments.add_choice<SummaryFormat>(
+      "--format", options->output.format,
       {{"table", SummaryFormat::table},
        {"csv", SummaryFormat::csv},
        {"json", SummaryFormat::json},
        {"github", SummaryFormat::github}},
       "What to print: table, csv, json, or github (the input of github-action-benchmark, "
       "also written into FOLDER) (default: table)");
-  app.add_option("--verified", options->verified,
-                 "Result folder in which this program has already verified these combinations: rely on it, "
-                 "and only take samples")
-      ->type_name("FOLDER");
+  arguments
+      .add("--verified", options->verified,
+           "Result folder in which this program has already verified these combinations: rely on it, "
+           "and only take samples")
+      .value_name("FOLDER");
   return [options] { return run(*options); };
 }
 

@@ -2,13 +2,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
 /// Declares `mssim bench`'s options; see Command::declare.
-std::function<int()> declare_bench(CLI::App& app);
+std::function<int()> declare_bench(Arguments& arguments);
 
 }  // namespace mssim

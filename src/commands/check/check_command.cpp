@@ -1,6 +1,5 @@
 #include "commands/check/check_command.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <iterator>
@@ -57,11 +56,11 @@ int run(const CheckOptions& options) {
 
 }  // namespace
 
-std::function<int()> declare_check(CLI::App& app) {
+std::function<int()> declare_check(Arguments& arguments) {
   const auto options = std::make_shared<CheckOptions>();
-  add_scenes(app, "SCENE", options->scenes, "Scenes to check: names (see mssim list scenes) or files")
-      ->required();
-  declare_listing_format(app, options->format);
+  add_scenes(arguments, "SCENE", options->scenes, "Scenes to check: names (see mssim list scenes) or files")
+      .required();
+  declare_listing_format(arguments, options->format);
   return [options] { return run(*options); };
 }
 

@@ -2,13 +2,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
 /// Declares `mssim check`'s options; see Command::declare.
-std::function<int()> declare_check(CLI::App& app);
+std::function<int()> declare_check(Arguments& arguments);
 
 }  // namespace mssim

@@ -1,6 +1,5 @@
 #include "commands/compare/compare_command.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -104,45 +103,47 @@ int run(CompareOptions options) {
 
 }  // namespace
 
-std::function<int()> declare_compare(CLI::App& app) {
+std::function<int()> declare_compare(Arguments& arguments) {
   const auto options = std::make_shared<CompareOptions>();
-  app.add_option("BASE", options->ab.base,
-                 "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
-      ->required();
-  app.add_option("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
-      ->required();
-  app.add_option("--threshold", options->threshold_percent,
-                 "Smallest change that counts, in percent (default: 5)")
-      ->check(positive_number())
-      ->type_name("PERCENT");
-  add_choice<ComparisonFormat>(app, "--format", options->format,
-                               {{"table", ComparisonFormat::table},
-                                {"markdown", ComparisonFormat::markdown},
-                                {"json", ComparisonFormat::json}},
-                               "What to print: table, markdown or json (default: table)");
-  CLI::Option* ab =
-      app.add_flag("--ab", options->programs,
-                   "BASE and NEW are mssim programs: run them alternately, as a new process each time");
-  app.add_flag("--force", options->force,
-               "Compare runs of different machines, builds, threads or scenes anyway")
-      ->excludes(ab);
-  add_scenes(app, "--scene", options->ab.scenes, "With --ab: scenes to measure")->needs(ab);
-  app.add_option("--backend", options->ab.backends, "With --ab: backends (default: openmp)")
-      ->delimiter(',')
-      ->needs(ab)
-      ->type_name("NAME,...");
-  app.add_option("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
-      ->delimiter(',')
-      ->needs(ab)
-      ->type_name("NAME,...");
-  app.add_option("--threads", options->ab.threads, "With --ab: threads (default: all processors)")
-      ->check(whole_number(1, most_threads))
-      ->needs(ab)
-      ->type_name("N");
-  app.add_option("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)")
-      ->check(number_between(1, 86400))
-      ->needs(ab)
-      ->type_name("SECONDS");
+  arguments
+      .add("BASE", options->ab.base,
+           "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
+      .required();
+  arguments.add("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
+      .required();
+  arguments
+      .add_number("--threshold", options->threshold_percent,
+                  "Smallest change that counts, in percent (default: 5)", positive_number())
+      .value_name("PERCENT");
+  arguments.add_choice<ComparisonFormat>("--format", options->format,
+                                         {{"table", ComparisonFormat::table},
+                                          {"markdown", ComparisonFormat::markdown},
+                                          {"json", ComparisonFormat::json}},
+                                         "What to print: table, markdown or json (default: table)");
+  const Argument ab =
+      arguments.add_flag("--ab", options->programs,
+                         "BASE and NEW are mssim programs: run them alternately, as a new process each time");
+  arguments
+      .add_flag("--force", options->force,
+                "Compare runs of different machines, builds, threads or scenes anyway")
+      .excludes(ab);
+  add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
+  arguments.add_list("--backend", options->ab.backends, "With --ab: backends (default: openmp)")
+      .needs(ab)
+      .value_name("NAME,...");
+  arguments.add_list("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
+      .needs(ab)
+      .value_name("NAME,...");
+  arguments
+      .add_number("--threads", options->ab.threads, "With --ab: threads (default: all processors)",
+                  whole_number(1, most_threads))
+      .needs(ab)
+      .value_name("N");
+  arguments
+      .add_number("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)",
+                  number_between(1, 86400))
+      .needs(ab)
+      .value_name("SECONDS");
   return [options] { return run(*options); };
 }
 

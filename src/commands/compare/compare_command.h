@@ -2,13 +2,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
 /// Declares `mssim compare`'s options; see Command::declare.
-std::function<int()> declare_compare(CLI::App& app);
+std::function<int()> declare_compare(Arguments& arguments);
 
 }  // namespace mssim

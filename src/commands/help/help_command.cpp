@@ -1,36 +1,23 @@
 #include "commands/help/help_command.h"
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "commands/help/help_page.h"
 #include "commands/shared/command.h"
 #include "commands/shared/exit_code.h"
 
 namespace mssim {
-namespace {
 
-int run(const CLI::App& program, const std::string& name) {
-  if (name.empty()) {
-    std::cout << help_page(program, "mssim");
-    return exit_ok;
-  }
-  const std::vector<const CLI::App*> named =
-      program.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
-  if (named.empty()) throw UsageError(unknown_command(name));
-  std::cout << help_page(*named.front(), "mssim " + name);
-  return exit_ok;
-}
-
-}  // namespace
-
-std::function<int()> declare_help(CLI::App& app) {
+std::function<int()> declare_help(Arguments& arguments) {
   const auto name = std::make_shared<std::string>();
-  app.add_option("COMMAND", *name, "Command to explain (default: all of them, in a line each)");
-  return [name, program = app.get_parent()] { return run(*program, *name); };
+  arguments.add("COMMAND", *name, "Command to explain (default: all of them, in a line each)");
+  return [name, arguments] {
+    const std::string page = arguments.help_page(*name);
+    if (page.empty()) throw UsageError(unknown_command(*name));
+    std::cout << page;
+    return exit_ok;
+  };
 }
 
 }  // namespace mssim

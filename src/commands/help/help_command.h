@@ -2,13 +2,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
 /// Declares `mssim help`'s options; see Command::declare.
-std::function<int()> declare_help(CLI::App& app);
+std::function<int()> declare_help(Arguments& arguments);
 
 }  // namespace mssim

@@ -1,6 +1,5 @@
 #include "commands/list/list_command.h"
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <iostream>
 #include <memory>
@@ -178,19 +177,20 @@ int run_list(const ListOptions& options) {
 
 }  // namespace
 
-std::function<int()> declare_list(CLI::App& app) {
+std::function<int()> declare_list(Arguments& arguments) {
   const auto options = std::make_shared<ListOptions>();
   std::vector<std::string_view> known;
   for (const Subject& subject : subjects) known.push_back(subject.name);
   known.push_back(schema_subject);
-  app.add_option("WHAT", options->subject,
-                 "What to list: " + listed(known, "or") + " of scene files, as JSON")
-      ->required()
-      ->transform(one_of("word", {known.begin(), known.end()}));
-  declare_listing_format(app, options->format);
-  app.add_option("--device", options->execution.device,
-                 "OpenCL device that backends are checked with: its number or a part of its name")
-      ->type_name("N|NAME");
+  arguments
+      .add("WHAT", options->subject, "What to list: " + listed(known, "or") + " of scene files, as JSON",
+           one_of("word", {known.begin(), known.end()}))
+      .required();
+  declare_listing_format(arguments, options->format);
+  arguments
+      .add("--device", options->execution.device,
+           "OpenCL device that backends are checked with: its number or a part of its name")
+      .value_name("N|NAME");
   return [options] { return run_list(*options); };
 }
 

@@ -2,13 +2,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
 /// Declares `mssim list`'s options; see Command::declare.
-std::function<int()> declare_list(CLI::App& app);
+std::function<int()> declare_list(Arguments& arguments);
 
 }  // namespace mssim

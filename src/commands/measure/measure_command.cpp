@@ -1,6 +1,5 @@
 #include "commands/measure/measure_command.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -17,13 +16,14 @@
 #include "garment/pattern/jeans_for_body.h"
 #include "garment/scene/garment_body.h"
 #include "mesh/surface_file.h"
-#include "mesh/text_lines.h"
 #include "platform/atomic_file.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/input_error.h"
+#include "text/number_in.h"
 #include "text/printable.h"
+#include "text/small_letters.h"
 
 namespace mssim {
 namespace {
@@ -51,8 +51,7 @@ std::optional<double> unit_given(const std::string& text) {
     if (unit.name == text) return unit.metres;
     names += std::string(unit.name) + ", ";
   }
-  double metres = 0;
-  if (TextLines::parse(text, metres) && metres > 0 && metres <= 1e6) return metres;
+  if (const auto metres = number_in<double>(text); metres && *metres > 0 && *metres <= 1e6) return metres;
   throw UsageError("--unit is \"" + printable(text, 100) + "\": give " + names +
                    "or the metres in one unit of the file");
 }
@@ -141,7 +140,7 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
 }
 
 bool is_surface_file(const std::string& body) {
-  const std::string extension = CLI::detail::to_lower(fs::path(body).extension().string());
+  const std::string extension = small_letters(fs::path(body).extension().string());
   return extension == ".obj" || extension == ".stl";
 }
 
@@ -186,24 +185,25 @@ std::map<std::string, std::optional<Value>> choices_of(const std::array<std::str
 
 }  // namespace
 
-std::function<int()> declare_measure(CLI::App& app) {
+std::function<int()> declare_measure(Arguments& arguments) {
   const auto options = std::make_shared<MeasureOptions>();
-  app.add_option("BODY", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
-      ->required();
-  app.add_option("--unit", options->unit,
-                 "Unit of the file: m, cm, mm, inch, foot, or its metres (default: found from the height)")
-      ->type_name("UNIT");
-  add_choice(app, "--up", options->up, choices_of<UpAxis>(up_axis_names),
-             "Axis of the file along which the body stands: y or z (default: found)");
-  add_choice(app, "--facing", options->facing, choices_of<Facing>(facing_names),
-             "Where the body looks: +x, -x, +y, -y, +z or -z (default: found)");
-  app.add_flag("--close-holes", options->close_holes,
-               "Fill openings of the surface that are up to 0.2 m across");
-  CLI::Option* scene =
-      app.add_option("--scene", options->scene, "Scene file to write: jeans for the body, for mssim run")
-          ->type_name("FILE");
-  app.add_flag("--overwrite", options->overwrite, "Replace the scene file if it exists")->needs(scene);
-  declare_listing_format(app, options->format);
+  arguments.add("BODY", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
+      .required();
+  arguments
+      .add("--unit", options->unit,
+           "Unit of the file: m, cm, mm, inch, foot, or its metres (default: found from the height)")
+      .value_name("UNIT");
+  arguments.add_choice("--up", options->up, choices_of<UpAxis>(up_axis_names),
+                       "Axis of the file along which the body stands: y or z (default: found)");
+  arguments.add_choice("--facing", options->facing, choices_of<Facing>(facing_names),
+                       "Where the body looks: +x, -x, +y, -y, +z or -z (default: found)");
+  arguments.add_flag("--close-holes", options->close_holes,
+                     "Fill openings of the surface that are up to 0.2 m across");
+  const Argument scene =
+      arguments.add("--scene", options->scene, "Scene file to write: jeans for the body, for mssim run")
+          .value_name("FILE");
+  arguments.add_flag("--overwrite", options->overwrite, "Replace the scene file if it exists").needs(scene);
+  declare_listing_format(arguments, options->format);
   return [options] { return run_measure(*options); };
 }
 

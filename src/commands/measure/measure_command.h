@@ -2,13 +2,11 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
 /// Declares `mssim measure`'s options; see Command::declare.
-std::function<int()> declare_measure(CLI::App& app);
+std::function<int()> declare_measure(Arguments& arguments);
 
 }  // namespace mssim

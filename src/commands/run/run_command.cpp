@@ -1,6 +1,5 @@
 #include "commands/run/run_command.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -202,40 +201,43 @@ int run(const RunOptions& options) {
 
 }  // namespace
 
-std::function<int()> declare_run(CLI::App& app) {
+std::function<int()> declare_run(Arguments& arguments) {
   const auto options = std::make_shared<RunOptions>();
-  app.add_option("--scene", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
-      ->required()
-      ->type_name("NAME|FILE");
-  app.add_option("--backend", options->backend, "Backend that simulates it (default: openmp)")
-      ->type_name("NAME");
-  app.add_option("--integrator", options->integrator, "Integrator (default: semi-euler)")->type_name("NAME");
-  app.add_option("--duration", options->duration_s,
-                 "Simulated time (default: 1); for a garment the longest time that it may take to settle "
-                 "(default: 4)")
-      ->check(positive_number())
-      ->type_name("SECONDS");
-  app.add_option("--fps", options->fps,
-                 "Frames per simulated second of the trace and the energy curve (default: 60)")
-      ->check(positive_number())
-      ->type_name("N");
-  app.add_option("--dt", options->dt_s, "Time of a step (default: the scene's)")
-      ->check(positive_number())
-      ->type_name("SECONDS");
-  app.add_option("--precision", options->precision,
-                 "single, or double with --backend serial (default: single)")
-      ->transform(one_of("precision", {"single", "double"}))
-      ->type_name("WORD");
-  app.add_option("--trace", options->files.trace,
-                 "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView beside it")
-      ->type_name("FILE");
-  app.add_option("--energy-curve", options->files.energy_curve,
-                 "Write the energies of all frames to this CSV file")
-      ->type_name("FILE");
-  app.add_flag("--losses", options->losses,
-               "Account for the energy lost to damping, friction, bounces and the integrator; computes a "
-               "double-precision step for every step (not for garments)");
-  declare_execution(app, options->execution);
+  arguments.add("--scene", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
+      .required()
+      .value_name("NAME|FILE");
+  arguments.add("--backend", options->backend, "Backend that simulates it (default: openmp)")
+      .value_name("NAME");
+  arguments.add("--integrator", options->integrator, "Integrator (default: semi-euler)").value_name("NAME");
+  arguments
+      .add_number("--duration", options->duration_s,
+                  "Simulated time (default: 1); for a garment the longest time that it may take to settle "
+                  "(default: 4)",
+                  positive_number())
+      .value_name("SECONDS");
+  arguments
+      .add_number("--fps", options->fps,
+                  "Frames per simulated second of the trace and the energy curve (default: 60)",
+                  positive_number())
+      .value_name("N");
+  arguments.add_number("--dt", options->dt_s, "Time of a step (default: the scene's)", positive_number())
+      .value_name("SECONDS");
+  arguments
+      .add("--precision", options->precision, "single, or double with --backend serial (default: single)",
+           one_of("precision", {"single", "double"}))
+      .value_name("WORD");
+  arguments
+      .add("--trace", options->files.trace,
+           "Write an H5MD trace to this file, NAME.h5, and NAME.xdmf for ParaView beside it")
+      .value_name("FILE");
+  arguments
+      .add("--energy-curve", options->files.energy_curve, "Write the energies of all frames to this CSV file")
+      .value_name("FILE");
+  arguments.add_flag(
+      "--losses", options->losses,
+      "Account for the energy lost to damping, friction, bounces and the integrator; computes a "
+      "double-precision step for every step (not for garments)");
+  declare_execution(arguments, options->execution);
   return [options] { return run(*options); };
 }
 

@@ -2,9 +2,7 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
@@ -12,6 +10,6 @@ namespace mssim {
 inline constexpr double default_duration_s = 1;
 
 /// Declares `mssim run`'s options; see Command::declare.
-std::function<int()> declare_run(CLI::App& app);
+std::function<int()> declare_run(Arguments& arguments);
 
 }  // namespace mssim

@@ -5,9 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace CLI {
-class App;
-}
+#include "commands/arguments/arguments.h"
 
 namespace mssim {
 
@@ -16,8 +14,8 @@ struct Command {
   std::string_view name;
   std::string_view description;
   std::string_view example;  ///< shown by `mssim --help` and `mssim COMMAND --help`
-  /// Declares the options on `app` and returns what runs after they have been parsed: it returns an ExitCode.
-  std::function<int()> (*declare)(CLI::App& app);
+  /// Declares its arguments and returns what runs after they have been parsed: it returns an ExitCode.
+  std::function<int()> (*declare)(Arguments& arguments);
 };
 
 std::span<const Command> commands();

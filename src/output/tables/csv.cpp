@@ -1,6 +1,5 @@
 #include "output/tables/csv.h"
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "text/decimal.h"
+#include "text/number_in.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -37,15 +37,6 @@ std::string read_text(const std::filesystem::path& file) {
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (in.bad()) throw CsvError("cannot read " + file.string() + ": check its disk");
   return text;
-}
-
-template <class Number>
-std::optional<Number> whole_field(const std::string& field) {
-  Number number{};
-  const char* end = field.data() + field.size();
-  const auto [stop, error] = std::from_chars(field.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
 }
 
 }  // namespace
@@ -125,7 +116,7 @@ CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {
-  const auto value = whole_field<double>(text(record, column));
+  const auto value = number_in<double>(text(record, column));
   if (!value || !std::isfinite(*value))
     throw complaint(record, column, "is not a number; write a finite one");
   return *value;
@@ -138,7 +129,7 @@ std::optional<double> CsvTable::optional_number(std::size_t record, std::size_t 
 
 std::uint64_t CsvTable::count(std::size_t record, std::size_t column) const {
   constexpr std::uint64_t largest = std::uint64_t{1} << 53;
-  const auto value = whole_field<std::uint64_t>(text(record, column));
+  const auto value = number_in<std::uint64_t>(text(record, column));
   if (!value || *value > largest) throw complaint(record, column, "is not a whole number from 0 to 2^53");
   return *value;
 }

@@ -1,4 +1,4 @@
-#include "commands/help/usage_error.h"
+#include "commands/arguments/usage_error.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "text/nearest_name.h"
 #include "text/printable.h"
+#include "text/small_letters.h"
 
 namespace mssim {
 namespace {
@@ -57,7 +58,7 @@ std::string subject_of(std::string_view message) {
 }
 
 std::string small_first(std::string text) {
-  if (!text.empty()) text.front() = CLI::detail::to_lower(text.substr(0, 1)).front();
+  if (!text.empty()) text.front() = small_letters(text.substr(0, 1)).front();
   return text;
 }
 
@@ -89,13 +90,13 @@ std::string problem(const CLI::ParseError& error, const CLI::App& command) {
   const std::string other = message.substr(message.rfind(' ') + 1);
   if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing(subject, command);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return wrong_count(subject, command);
-  // What takes a value has a check of its own (choices.h), so this is a flag.
+  // What takes a value has a check of its own (value_rule.h), so this is a flag.
   if (dynamic_cast<const CLI::ConversionError*>(&error)) return wrong_count(flag_in(message), command);
   if (dynamic_cast<const CLI::RequiresError*>(&error))
     return subject + " needs " + other + ": add it, or leave out " + subject;
   if (dynamic_cast<const CLI::ExcludesError*>(&error))
     return subject + " and " + other + " exclude each other: leave out one of them";
-  return message;  // of the checks in choices.h
+  return message;  // of the checks in value_rule.h
 }
 
 }  // namespace

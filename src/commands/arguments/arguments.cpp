@@ -1,0 +1,70 @@
+#include "commands/arguments/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
+
+namespace mssim {
+
+Argument& Argument::value_name(const std::string& word) {
+  option_->type_name(word);
+  return *this;
+}
+
+Argument& Argument::required() {
+  option_->required();
+  return *this;
+}
+
+Argument& Argument::needs(const Argument& other) {
+  option_->needs(other.option_);
+  return *this;
+}
+
+Argument& Argument::excludes(const Argument& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Argument Arguments::add(const std::string& name, std::string& target, const std::string& description,
+                        const ValueRule& rule) {
+  return add_taken(
+      name, [&target](const std::string& text) { target = text; }, description, rule);
+}
+
+Argument Arguments::add_taken(const std::string& name, const std::function<void(const std::string&)>& take,
+                              const std::string& description, const ValueRule& rule) {
+  CLI::Option* option = command_->add_option_function<std::string>(name, take, description);
+  if (rule) option->transform(CLI::Validator(rule, ""));
+  return Argument(*option);
+}
+
+Argument Arguments::add_list(const std::string& name, std::vector<std::string>& target,
+                             const std::string& description,
+                             const std::function<std::vector<std::string>(std::string_view)>& split) {
+  if (!split) return Argument(*command_->add_option(name, target, description)->delimiter(','));
+  const auto take = [&target, split](const std::vector<std::string>& texts) {
+    target.clear();
+    for (const std::string& text : texts) std::ranges::move(split(text), std::back_inserter(target));
+  };
+  return Argument(*command_->add_option_function<std::vector<std::string>>(name, take, description));
+}
+
+Argument Arguments::add_flag(const std::string& name, bool& target, const std::string& description) {
+  return Argument(*command_->add_flag(name, target, description));
+}
+
+std::string Arguments::help_page(const std::string& name) const {
+  const CLI::App* program = command_;
+  while (program->get_parent() != nullptr) program = program->get_parent();
+  // App::help() would show the page of the command that has been parsed.
+  const auto page = [](const CLI::App& app, const std::string& typed_name) {
+    return app.get_formatter()->make_help(&app, typed_name, CLI::AppFormatMode::Normal);
+  };
+  if (name.empty()) return page(*program, program->get_name());
+  for (const CLI::App* command : program->get_subcommands({}))
+    if (command->get_name() == name) return page(*command, program->get_name() + ' ' + name);
+  return {};
+}
+
+}  // namespace mssim

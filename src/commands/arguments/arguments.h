@@ -1,0 +1,99 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "commands/arguments/value_rule.h"
+#include "text/number_in.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace mssim {
+
+/// An argument that has been declared: an option, a flag, or a word without a name.
+class Argument {
+ public:
+  explicit Argument(CLI::Option& option) : option_(&option) {}
+
+  /// The word for its value in --help.
+  Argument& value_name(const std::string& word);
+  Argument& required();
+  /// It is an error without `other`.
+  Argument& needs(const Argument& other);
+  /// It is an error together with `other`.
+  Argument& excludes(const Argument& other);
+
+ private:
+  CLI::Option* option_;
+};
+
+/// Declares what a command takes on its command line. The command-line library stands behind it, in three
+/// files of this folder: its header costs each file that includes it seconds of compiling. A name is
+/// `--NAME`, or `WORD` of an argument without a name. A target must outlive the parsing and keeps its value,
+/// the default, where the argument is not given.
+class Arguments {
+ public:
+  explicit Arguments(CLI::App& command) : command_(&command) {}
+
+  /// A text that `rule` accepts.
+  Argument add(const std::string& name, std::string& target, const std::string& description,
+               const ValueRule& rule = {});
+
+  /// A number, an int or double or an optional one, that `rule` accepts; it accepts numbers of that kind
+  /// only.
+  template <class Target>
+  Argument add_number(const std::string& name, Target& target, const std::string& description,
+                      const ValueRule& rule) {
+    return add_taken(
+        name, [&target](const std::string& text) { assign(target, text); }, description, rule);
+  }
+
+  /// One of these words, in any case; the target becomes what it stands for.
+  template <class Value>
+  Argument add_choice(const std::string& name, Value& target, const std::map<std::string, Value>& choices,
+                      const std::string& description) {
+    std::vector<std::string> words;
+    for (const auto& [word, value] : choices) words.push_back(word);
+    return add_taken(
+               name, [&target, choices](const std::string& word) { target = choices.at(word); }, description,
+               one_of("value", std::move(words)))
+        .value_name("WORD");
+  }
+
+  /// Several texts, separated by commas or, with `split`, by what it takes one text apart at.
+  Argument add_list(const std::string& name, std::vector<std::string>& target, const std::string& description,
+                    const std::function<std::vector<std::string>(std::string_view)>& split = {});
+
+  /// True when it is given.
+  Argument add_flag(const std::string& name, bool& target, const std::string& description);
+
+  /// The help page of the program that the command belongs to or, with a name, of that command of it; empty
+  /// where there is no such command.
+  std::string help_page(const std::string& name) const;
+
+ private:
+  /// `take` gets the text as `rule` has left it.
+  Argument add_taken(const std::string& name, const std::function<void(const std::string&)>& take,
+                     const std::string& description, const ValueRule& rule);
+
+  template <class Number>
+  static void assign(Number& target, const std::string& text) {
+    target = number_in<Number>(text).value();
+  }
+  template <class Number>
+  static void assign(std::optional<Number>& target, const std::string& text) {
+    target = number_in<Number>(text).value();
+  }
+
+  CLI::App* command_;
+};
+
+}  // namespace mssim
