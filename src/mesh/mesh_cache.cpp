@@ -1,13 +1,12 @@
 #include "mesh/mesh_cache.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
-#include <fstream>
 #include <string>
 
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
+#include "platform/atomic_file.h"
+#include "platform/write_error.h"
 #include "text/fnv1a.h"
 #include "text/input_error.h"
 
@@ -53,37 +52,6 @@ std::optional<TetMesh> read_entry(const fs::path& file) {
   }
 }
 
-/// A file that is removed unless it was renamed.
-class NewFile {
- public:
-  explicit NewFile(const fs::path& file)
-      : name_(file.string() + ".XXXXXX"), descriptor_(::mkstemp(name_.data())) {}
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
-  ~NewFile() {
-    if (descriptor_ < 0) return;
-    ::close(descriptor_);
-    ::unlink(name_.c_str());  // after a rename there is nothing of that name
-  }
-
-  bool write(std::string_view text) const {
-    while (descriptor_ >= 0 && !text.empty()) {
-      const ssize_t written = ::write(descriptor_, text.data(), text.size());
-      if (written <= 0) return false;
-      text.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return descriptor_ >= 0;
-  }
-  void rename_to(const fs::path& file) const {
-    std::error_code ignored;
-    fs::rename(name_, file, ignored);
-  }
-
- private:
-  std::string name_;
-  int descriptor_;
-};
-
 std::string file_name(std::uint64_t input, std::uint64_t program) {
   return hexadecimal(input) + '-' + hexadecimal(program) + std::string(extension);
 }
@@ -123,8 +91,11 @@ void MeshCache::store(std::uint64_t input, std::uint64_t program, const TetMesh&
   const std::string nodes = node_text(mesh.nodes);
   const std::string tetrahedra = ele_text(mesh.tetrahedra);
   const fs::path file = folder_ / file_name(input, program);
-  const NewFile temporary(file);
-  if (temporary.write(header_of(nodes, tetrahedra) + nodes + tetrahedra)) temporary.rename_to(file);
+  try {
+    write_file_atomically(file, header_of(nodes, tetrahedra) + nodes + tetrahedra);
+  } catch (const WriteError&) {
+    // The mesh is made anew next time; or another process is storing the same.
+  }
 }
 
 }  // namespace mssim

@@ -1,10 +1,9 @@
 #include "mesh/text_lines.h"
 
 #include <algorithm>
-#include <fstream>
-#include <system_error>
 
 #include "geometry/geometry.h"
+#include "platform/whole_file.h"
 #include "text/input_error.h"
 #include "text/number_in.h"
 #include "text/printable.h"
@@ -17,20 +16,13 @@ constexpr std::string_view blanks = " \t\r\f\v";
 }  // namespace
 
 std::string read_text(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw InputError(file.string() +
-                     (std::filesystem::exists(file, error) ? " is not a regular file" : " is missing") +
-                     "; name the file of a mesh");
   // The texts of ten million tetrahedra take half of this.
-  constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 30;
-  if (const std::uintmax_t bytes = std::filesystem::file_size(file, error); !error && bytes > most_bytes)
-    throw InputError(file.string() + " has " + std::to_string(bytes) + " bytes and at most " +
-                     std::to_string(most_bytes) + " are read; give a smaller mesh");
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw InputError(file.string() + " cannot be read; check its permissions");
-  return text;
+  constexpr std::size_t most_bytes = std::size_t{1} << 30;
+  try {
+    return read_file(file, most_bytes);
+  } catch (const ReadError& error) {
+    throw InputError(error.sentence(file, "give the file of a mesh"));
+  }
 }
 
 TextLines::TextLines(std::string file, std::string_view text, char comment)

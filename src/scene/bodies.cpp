@@ -11,7 +11,6 @@
 #include "geometry/geometry.h"
 #include "platform/available_memory.h"
 #include "scene/body_shapes.h"
-#include "scene/fields/json_document.h"
 #include "scene/fields/material_fields.h"
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "scene/fields/json_document.h"
 #include "scene/fields/material_fields.h"
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"

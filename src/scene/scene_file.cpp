@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "platform/data_folder.h"
-#include "scene/fields/json_document.h"
+#include "platform/whole_file.h"
 #include "scene/fields/json_reader.h"
 #include "scene/fields/json_schema.h"
 #include "scene/fields/scene_error.h"
@@ -69,14 +69,23 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
       Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
 }
 
-SceneSpec scene_of(JsonDocument document) {
-  SceneSpec spec;
-  read_fields(document, [&](FieldVisitor& fields) { visit_scene_fields(fields, spec); });
-  spec.name = escaped(document.file.stem().string());
-  spec.file = std::move(document.file);
-  spec.source = std::move(document.text);
-  kind_of(spec).check(spec);
-  return spec;
+std::string_view remedy_of(ReadError::Cause cause) {
+  switch (cause) {
+    case ReadError::Cause::missing:
+      return "check the path, or name a scene of `mssim list scenes`";
+    case ReadError::Cause::too_large:
+      return "give a scene file, which takes a few kilobytes";
+    default:
+      return "give the path of a scene file";
+  }
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  try {
+    return read_file(file, largest_scene_bytes);
+  } catch (const ReadError& error) {
+    throw SceneError(error.sentence(file, remedy_of(error.cause)));
+  }
 }
 
 }  // namespace
@@ -93,10 +102,16 @@ std::string scene_schema() {
 }
 
 SceneSpec parse_scene(const std::filesystem::path& file, std::string text) {
-  return scene_of(parse_json(file, std::move(text)));
+  SceneSpec spec;
+  read_fields(file, text, [&](FieldVisitor& fields) { visit_scene_fields(fields, spec); });
+  spec.name = escaped(file.stem().string());
+  spec.file = file;
+  spec.source = std::move(text);
+  kind_of(spec).check(spec);
+  return spec;
 }
 
-SceneSpec load_scene(const std::filesystem::path& file) { return scene_of(read_json(file)); }
+SceneSpec load_scene(const std::filesystem::path& file) { return parse_scene(file, text_of(file)); }
 
 std::vector<std::filesystem::path> files_of(const SceneSpec& spec) {
   std::vector<std::filesystem::path> files{spec.file};

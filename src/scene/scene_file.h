@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -8,6 +9,9 @@
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
+
+/// A scene file is refused beyond this size: no scene needs it, and a wrong file should not fill the memory.
+inline constexpr std::size_t largest_scene_bytes = std::size_t{16} << 20;
 
 /// The JSON Schema of scene files, which is committed as scenes/scene.schema.json.
 std::string scene_schema();

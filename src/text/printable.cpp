@@ -1,16 +1,27 @@
 #include "text/printable.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 namespace mssim {
 namespace {
 
-/// What JSON lets pass unescaped, though terminals take it as commands: DEL, and in UTF-8 the controls from
-/// U+0080 to U+009F, which are the bytes C2 80 to C2 9F.
-bool is_control(std::string_view text, std::size_t at) {
+/// Does the text begin with a control character? In UTF-8 those from U+0080 to U+009F are the bytes C2 80 to
+/// C2 9F.
+bool is_control(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  return byte(at) == 0x7F || (byte(at) == 0xC2 && at + 1 < text.size() && byte(at + 1) < 0xA0);
+  return byte(0) < 0x20 || byte(0) == 0x7F || (byte(0) == 0xC2 && text.size() > 1 && byte(1) < 0xA0);
+}
+
+std::string hexadecimal_digits(unsigned char code) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  return {digits[code >> 4U], digits[code & 0xFU]};
+}
+
+/// A control character as JSON escapes it.
+std::string escape_of(unsigned char code) {
+  constexpr std::string_view named = "\b\t\n\f\r", names = "btnfr";
+  const std::size_t at = named.find(static_cast<char>(code));
+  return at == std::string_view::npos ? "\\u00" + hexadecimal_digits(code) : std::string("\\") + names[at];
 }
 
 /// Bytes of the character of valid UTF-8 (RFC 3629) that the text begins with; 0 where it begins with none.
@@ -32,47 +43,35 @@ std::size_t character_length(std::string_view text) {
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t length) {
-  std::string result;
-  if (text.size() > length) {
+  const bool is_cut = text.size() > length;
+  if (is_cut) {
     std::size_t end = length;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
       --end;  // not within a character
-    result = std::string(text.substr(0, end)) + "...";
-  } else {
-    result = text;
+    text = text.substr(0, end);
   }
-  // The JSON library's writer escapes control characters and replaces what is not UTF-8; quotes are put back.
-  using nlohmann::json;
-  const std::string escaped = json(result).dump(-1, ' ', false, json::error_handler_t::replace);
-  result.clear();
-  for (std::size_t i = 1; i + 1 < escaped.size(); ++i) {
-    if (escaped[i] == '\\' && (escaped[i + 1] == '"' || escaped[i + 1] == '\\')) ++i;
-    if (is_control(escaped, i)) {
-      constexpr std::string_view digits = "0123456789abcdef";
-      if (escaped[i] != 0x7F) ++i;
-      const auto code = static_cast<unsigned char>(escaped[i]);
-      result.append("\\u00").append({digits[code >> 4U], digits[code & 0xFU]});
-    } else {
-      result += escaped[i];
-    }
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t taken = character_length(text);
+    if (taken == 0)
+      result += "\uFFFD";
+    else if (is_control(text))
+      result += escape_of(static_cast<unsigned char>(text[taken - 1]));
+    else
+      result += text.substr(0, taken);
+    text.remove_prefix(std::max<std::size_t>(taken, 1));
   }
-  return result;
+  return is_cut ? result + "..." : result;
 }
 
 std::string escaped(std::string_view text) {
-  constexpr std::string_view digits = "0123456789abcdef";
   std::string result;
   while (!text.empty()) {
     const std::size_t length = character_length(text);
-    const bool plain = length > 0 && static_cast<unsigned char>(text[0]) >= 0x20 && !is_control(text, 0);
+    const bool plain = length > 0 && !is_control(text);
     const std::size_t taken = std::max<std::size_t>(length, 1);
-    for (const char c : text.substr(0, taken)) {
-      const auto code = static_cast<unsigned char>(c);
-      if (plain)
-        result += c;
-      else
-        result.append("\\x").append({digits[code >> 4U], digits[code & 0xFU]});
-    }
+    for (const char c : text.substr(0, taken))
+      result += plain ? std::string(1, c) : "\\x" + hexadecimal_digits(static_cast<unsigned char>(c));
     text.remove_prefix(taken);
   }
   return result;

@@ -4,14 +4,8 @@
 set -euo pipefail
 mssim=$1
 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-
-fail() {
-  echo "FAILED: $1"
-  failures=$((failures + 1))
-}
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
 
 # run ARGUMENTS...: the row goes to $work/row, nothing may be said on stderr
 run() {

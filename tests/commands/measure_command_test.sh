@@ -122,7 +122,7 @@ grep -q surface_file "$work/mine.json" || fail "--overwrite does not replace"
 expect 2 'give a file that ends in .json' measure "$work/scan.obj" --scene "$work/scan.obj" --overwrite
 measure 4 "$work/scan.obj" --scene "$work/none/my.json"
 says 'cannot write'
-expect 2 'b.obj is missing' measure "$work/b.obj"
+expect 2 'b.obj: there is no such file' measure "$work/b.obj"
 expect 2 'no scene is named' measure jeans4
 expect 2 'cloth2500 is a scene without a body to dress' measure cloth2500
 expect 2 'leave out --unit' measure jeans4k --unit mm

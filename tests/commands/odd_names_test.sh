@@ -8,8 +8,6 @@ source=$2
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
-# succeed ARGUMENTS...
-succeed() { "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null || fail "mssim $(printf '%q ' "$@") exits with $?: $(cat "$work/err")"; }
 # one_scene FILE NAME: a bench of it makes files of valid UTF-8 in which it is called NAME, here and in its trace
 one_scene() {
   rm -rf "$work/results"

@@ -221,7 +221,8 @@ TEST_F(SurfaceFile, IsReadByItsExtension) {
   EXPECT_EQ(read_surface(folder() / "a.stl").triangles.size(), 4U);
   EXPECT_THAT(input_error_of([&] { read_surface(folder() / "a.ply"); }),
               HasSubstr("ends in neither .obj nor .stl"));
-  EXPECT_THAT(input_error_of([&] { read_surface(folder() / "b.obj"); }), HasSubstr("b.obj is missing"));
+  EXPECT_THAT(input_error_of([&] { read_surface(folder() / "b.obj"); }),
+              HasSubstr("b.obj: there is no such file"));
 }
 
 TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {

@@ -136,9 +136,9 @@ TEST_F(MeshTest, TetgenFilesThatAreMissingOrFoldersAreNamed) {
   const auto complaint = [&](const std::string& ele) {
     return input_error_of([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
   };
-  EXPECT_THAT(complaint("b.ele"), HasSubstr("b.ele is missing"));
+  EXPECT_THAT(complaint("b.ele"), HasSubstr("b.ele: there is no such file: give the file of a mesh"));
   std::filesystem::create_directory(folder() / "c.ele");
-  EXPECT_THAT(complaint("c.ele"), HasSubstr("c.ele is not a regular file"));
+  EXPECT_THAT(complaint("c.ele"), HasSubstr("c.ele: is not a regular file: give the file of a mesh"));
   put("d.ele", good_tetrahedra);
   expect_good(read_tetgen_files(folder() / "a.node", folder() / "d.ele"));
 }

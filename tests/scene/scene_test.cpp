@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/fields/json_document.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "tests/support/scene_files.h"
@@ -249,7 +248,7 @@ TEST_F(SceneFile, ThatIsEmptyOrBlankIsRefused) {
 }
 
 TEST_F(SceneFile, ThatIsTooLongIsNotReadToItsEnd) {
-  EXPECT_THAT(error_of(write('"' + std::string(largest_json_bytes, 'x') + '"')),
+  EXPECT_THAT(error_of(write('"' + std::string(largest_scene_bytes, 'x') + '"')),
               AllOf(HasSubstr("is longer than 16 MiB"), HasSubstr("give a scene file")));
 }
 

@@ -21,6 +21,11 @@ expect() {
   [ ! -s "$work/out" ] || fail "stdout is not empty"
 }
 
+# succeed ARGUMENTS...: mssim must exit with 0; what it says is in $work/out and $work/err
+succeed() {
+  "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null || fail "mssim $(printf '%q ' "$@") exits with $?: $(cat "$work/err")"
+}
+
 # column_of FILE NAME: that column of a CSV file in which no field before it holds a comma
 column_of() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$1"

@@ -5,10 +5,10 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "platform/whole_file.h"
 
 namespace mssim {
 
@@ -37,11 +37,7 @@ class TemporaryFolderTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Throws std::runtime_error when there is no such file.
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot open " + file.string());
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+/// Throws ReadError when there is no such file.
+inline std::string text_of(const std::filesystem::path& file) { return read_file(file); }
 
 }  // namespace mssim

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 
 #include "backends/interface/backend.h"
 #include "platform/data_folder.h"
+#include "platform/whole_file.h"
 
 namespace mssim {
 namespace {
@@ -22,12 +22,11 @@ std::string name(Slot slot) { return std::string(slot_names[index(slot)]); }
 
 std::string kernel_file(const char* file) {
   const auto path = data_folder() / "kernels" / file;
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || text.str().empty())
-    throw std::runtime_error("cannot read " + path.string() + ", which the OpenCL backends are made from");
-  return text.str();
+  try {
+    return read_file(path);
+  } catch (const ReadError& error) {
+    throw std::runtime_error(error.sentence(path, "the OpenCL backends are made from it"));
+  }
 }
 
 bool uses_pair(const Stage& stage, Pair pair) {

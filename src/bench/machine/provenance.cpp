@@ -7,11 +7,11 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "bench/machine/noise.h"
 #include "platform/process_cpus.h"
+#include "platform/whole_file.h"
 #include "text/fnv1a.h"
 #include "text/printable.h"
 
@@ -50,10 +50,11 @@ std::string without_home(std::string_view argument) {
 
 /// Of the running program's file; none where it cannot be read.
 std::optional<std::uint64_t> program_hash() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
-  std::ostringstream bytes;
-  if (!(bytes << file.rdbuf())) return std::nullopt;
-  return fnv1a_64(bytes.view());
+  try {
+    return fnv1a_64(read_file("/proc/self/exe"));
+  } catch (const ReadError&) {
+    return std::nullopt;
+  }
 }
 
 std::string now_utc() {

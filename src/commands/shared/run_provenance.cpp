@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "backends/backends.h"
 #include "backends/devices/offer.h"
@@ -67,7 +66,7 @@ TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, con
   TraceHeader header;
   header.creator_version = build_info().version;
   header.scene_json = scene.spec.source;
-  header.provenance_json = to_json(provenance).dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  header.provenance_json = provenance_text(provenance);
   header.backend = backend_name + " on " + backend.device();
   header.integrator = integrator.name;
   header.dt_s = scene.dt_s;

@@ -11,7 +11,6 @@
 #include "geometry/geometry.h"
 #include "geometry/openings.h"
 #include "mesh/surface_file.h"
-#include "scene/fields/json_document.h"
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"
 #include "text/input_error.h"

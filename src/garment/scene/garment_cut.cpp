@@ -9,7 +9,6 @@
 
 #include "garment/pattern/jeans.h"
 #include "geometry/geometry.h"
-#include "scene/fields/json_document.h"
 #include "scene/fields/scene_error.h"
 #include "text/input_error.h"
 #include "text/printable.h"

@@ -14,7 +14,6 @@
 #include "garment/layers/panel_layers.h"
 #include "garment/scene/garment_body.h"
 #include "garment/scene/garment_cut.h"
-#include "scene/fields/json_document.h"
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "platform/whole_file.h"
 #include "text/fnv1a.h"
 #include "text/printable.h"
 
@@ -24,23 +24,6 @@ constexpr int deepest_level = 32;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
   throw ProvenanceError(file.string() + ": " + problem);
-}
-
-std::string read_text(const std::filesystem::path& file) {
-  std::error_code error;
-  // A pipe would block and a folder reads as nothing.
-  if (!std::filesystem::is_regular_file(file, error))
-    fail(file, error ? "cannot be read (" + error.message() + "): give a folder that mssim bench wrote"
-                     : "is not a file: give a folder that mssim bench wrote");
-  std::ifstream in(file, std::ios::binary);
-  std::string text(largest_provenance_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!in && !in.eof()) fail(file, "cannot be read: check its permissions");
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > largest_provenance_bytes)
-    fail(file, "is longer than " + std::to_string(largest_provenance_bytes >> 10) +
-                   " KiB: give a provenance.json that mssim wrote");
-  return text;
 }
 
 json caches_json(const std::vector<Cache>& caches) {
@@ -189,8 +172,6 @@ Provenance read_document(const Place& document) {
   return provenance;
 }
 
-}  // namespace
-
 json to_json(const Provenance& provenance) {
   const BuildInfo& build = provenance.build;
   const Machine& machine = provenance.machine;
@@ -231,8 +212,19 @@ json to_json(const Provenance& provenance) {
           {"scenes_fnv1a_64", scenes}};
 }
 
+}  // namespace
+
+std::string provenance_text(const Provenance& provenance) {
+  // A folder's name may hold bytes that are no UTF-8; they are replaced.
+  return to_json(provenance).dump(2, ' ', false, json::error_handler_t::replace);
+}
+
 Provenance read_provenance(const std::filesystem::path& file) {
-  return parse_provenance(file, read_text(file));
+  try {
+    return parse_provenance(file, read_file(file, largest_provenance_bytes));
+  } catch (const ReadError& error) {
+    throw ProvenanceError(error.sentence(file, "give a folder that mssim bench wrote"));
+  }
 }
 
 Provenance parse_provenance(const std::filesystem::path& file, std::string_view text) {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "bench/machine/provenance.h"
@@ -20,10 +20,11 @@ struct ProvenanceError : std::runtime_error {
 /// memory nor a message.
 inline constexpr std::size_t largest_provenance_bytes = std::size_t{256} << 10;
 
-/// All of it. Numbers are finite; what is not known is absent or null.
-nlohmann::json to_json(const Provenance& provenance);
+/// The text of provenance.json, indented, without a newline at its end. Numbers are finite; what is not known
+/// is absent or null.
+std::string provenance_text(const Provenance& provenance);
 
-/// Reads what to_json(Provenance) wrote. Every value must be what it should; what mssim has written from the
+/// Reads what provenance_text wrote. Every value must be what it should; what mssim has written from the
 /// first must be there, and what a newer one adds is ignored. Throws ProvenanceError.
 Provenance read_provenance(const std::filesystem::path& file);
 

@@ -78,7 +78,7 @@ void ResultFolder::go_on_with(const Provenance& earlier) {
 }
 
 void ResultFolder::begin() const {
-  write_file_atomically(folder_ / "provenance.json", text_of(to_json(provenance_)));
+  write_file_atomically(folder_ / "provenance.json", provenance_text(provenance_) + '\n');
 }
 
 void ResultFolder::write(std::span<const ResultRow> rows) const {

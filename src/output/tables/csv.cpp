@@ -1,11 +1,10 @@
 #include "output/tables/csv.h"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
+#include "platform/whole_file.h"
 #include "text/decimal.h"
 #include "text/number_in.h"
 #include "text/printable.h"
@@ -24,19 +23,11 @@ std::string quoted(const std::string& field) {
 }
 
 std::string read_text(const std::filesystem::path& file) {
-  std::error_code error;
-  // A device may never end, and a pipe would block.
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(file, error)) in.open(file, std::ios::binary);
-  if (!in.is_open())
-    throw CsvError("cannot read " + file.string() + ": check that it is a file, exists and may be read");
-  if (const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-      !error && bytes > largest_csv_bytes)
-    throw CsvError(file.string() + ": has " + std::to_string(bytes) + " bytes and at most " +
-                   std::to_string(largest_csv_bytes) + " are read; give a file that mssim wrote");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) throw CsvError("cannot read " + file.string() + ": check its disk");
-  return text;
+  try {
+    return read_file(file, largest_csv_bytes);
+  } catch (const ReadError& error) {
+    throw CsvError(error.sentence(file, "give a file that mssim wrote"));
+  }
 }
 
 }  // namespace

@@ -1,13 +1,6 @@
 #include "scene/fields/json_document.h"
 
-#include <cerrno>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
 #include <set>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -21,33 +14,6 @@ using nlohmann::json;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
   throw SceneError(printable(file.string(), 1000) + ": " + problem);
-}
-
-std::string read_text(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (status.type() == std::filesystem::file_type::not_found)
-    fail(file, "there is no such file: check the path, or name a scene of `mssim list scenes`");
-  if (error) fail(file, "cannot be looked up (" + error.message() + "): check the path and its permissions");
-  // A pipe would block and a folder reads as nothing, so only regular files are opened.
-  if (!std::filesystem::is_regular_file(status))
-    fail(file, "is not a regular file: give the path of a scene file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-    fail(file, std::string("cannot be opened (") + std::strerror(errno) + "): check its permissions");
-  std::string text;
-  std::vector<char> block(std::size_t{1} << 16);
-  errno = 0;
-  // The length is counted while reading, because the one that the file system states can be wrong (/proc).
-  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) || stream.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > largest_json_bytes)
-      fail(file, "is longer than " + std::to_string(largest_json_bytes >> 20) +
-                     " MiB: give a scene file, which takes a few kilobytes");
-  }
-  if (stream.bad() || errno != 0)
-    fail(file, std::string("cannot be read (") + std::strerror(errno) + "): check the file and its disk");
-  return text;
 }
 
 /// The JSON library's account of a syntax error, "[json.exception.parse_error.101] parse error at line 1,
@@ -157,16 +123,12 @@ class Watcher final : public json::json_sax_t {
 
 }  // namespace
 
-JsonDocument parse_json(const std::filesystem::path& file, std::string text) {
+nlohmann::json parse_json(const std::filesystem::path& file, const std::string& text) {
   if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
   Watcher watcher(file);
   json::sax_parse(text, &watcher);
-  JsonDocument document{file, std::move(text), {}};
-  document.value = json::parse(document.text);
-  return document;
+  return json::parse(text);
 }
-
-JsonDocument read_json(const std::filesystem::path& file) { return parse_json(file, read_text(file)); }
 
 std::string json_pointer(std::string_view pointer, std::string_view key) {
   std::string result(pointer);
@@ -180,16 +142,6 @@ std::string json_pointer(std::string_view pointer, std::string_view key) {
       result += c;
   }
   return result;
-}
-
-std::string shown_number(double number) {
-  // Whole numbers in full (general notation would make 1e+06 of a million), others in the fewest digits.
-  const bool whole = std::abs(number) < 1e15 && number == std::trunc(number);
-  char text[64];
-  const std::to_chars_result end =
-      whole ? std::to_chars(text, text + sizeof text, static_cast<std::int64_t>(number))
-            : std::to_chars(text, text + sizeof text, number, std::chars_format::general);
-  return {text, end.ptr};
 }
 
 }  // namespace mssim

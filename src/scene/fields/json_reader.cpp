@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/fields/json_document.h"
 #include "scene/fields/scene_error.h"
 #include "text/counted.h"
 #include "text/nearest_name.h"
@@ -244,8 +245,9 @@ class JsonReader final : public FieldVisitor {
 
 }  // namespace
 
-void read_fields(const JsonDocument& document, const FieldList& fields) {
-  JsonReader reader(document.file, "", document.value);
+void read_fields(const std::filesystem::path& file, const std::string& text, const FieldList& fields) {
+  const json document = parse_json(file, text);
+  JsonReader reader(file, "", document);
   fields(reader);
   reader.finish();
 }

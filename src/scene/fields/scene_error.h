@@ -18,4 +18,7 @@ struct SceneError : std::runtime_error {
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view pointer,
                          const std::string& problem);
 
+/// A number for an error message, as short as it reads back.
+std::string shown_number(double number);
+
 }  // namespace mssim

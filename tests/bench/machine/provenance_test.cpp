@@ -93,7 +93,7 @@ TEST(Provenance, TellsWhatRanWhereAndHow) {
   add_scene(provenance, "cloth2500", "foobar");
   provenance.opencl_devices = {"platform / device / driver"};
   provenance.tetgen = "1.5";
-  const nlohmann::json json = nlohmann::json::parse(to_json(provenance).dump());
+  const nlohmann::json json = nlohmann::json::parse(provenance_text(provenance));
   EXPECT_THAT(json["command_line"], ElementsAre("mssim", "bench", "--threads", "2"));
   EXPECT_EQ(json["build"]["commit"], build_info().commit);
   EXPECT_EQ(json["build"]["compiler"], build_info().compiler);
@@ -117,9 +117,10 @@ TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
   const std::string home = variable ? variable : "";
   setenv("HOME", "/home/jane_doe", 1);
   const std::string json =
-      to_json(gather_provenance({"/home/jane_doe/mssim/bin/mssim", "bench", "--out=/home/jane_doe/results",
+      nlohmann::json::parse(provenance_text(gather_provenance(
+                                {"/home/jane_doe/mssim/bin/mssim", "bench", "--out=/home/jane_doe/results",
                                  "/home/jane_doe2", "/home/jane_doe"},
-                                1))
+                                1)))
           .dump();
   setenv("HOME", home.c_str(), 1);
   unsetenv("MSSIM_TEST_TOKEN");
@@ -129,7 +130,7 @@ TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
 
 TEST(Provenance, HoldsTheseFactsAndNoOthers) {
   std::vector<std::string> facts;
-  const nlohmann::json json = to_json(gather_provenance({"mssim"}, 1));
+  const nlohmann::json json = nlohmann::json::parse(provenance_text(gather_provenance({"mssim"}, 1)));
   for (const auto& [name, value] : json.items()) facts.push_back(name);
   EXPECT_THAT(facts,
               ElementsAre("build", "command_line", "cpu", "device_memory", "earlier_starts_utc", "kernel",
