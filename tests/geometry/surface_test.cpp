@@ -96,8 +96,11 @@ TEST(Surface, GeneratedSurfacesAreClosedAndNearlyFillTheirShape) {
 }
 
 TEST(Surface, CoordinatesAreWholeMicrometres) {
-  for (const Vec3d& point : surface_of(SphereShape{0.1234567, 3}).points)
-    EXPECT_EQ(point.x, std::round(point.x * 1e6) / 1e6);
+  const Surface sphere = surface_of(SphereShape{0.1234567, 3});
+  ASSERT_FALSE(sphere.points.empty());
+  for (const Vec3d& point : sphere.points)
+    for (const double coordinate : {point.x, point.y, point.z})
+      EXPECT_EQ(coordinate, std::round(coordinate * 1e6) / 1e6);
 }
 
 TEST(Surface, ShapesThatCannotBeAreRefused) {

@@ -48,6 +48,7 @@ TEST_F(ChildProcesses, MayWriteMoreThanAPipeHolds) {
       "i=0; while [ $i -lt 3000 ]; do echo 0123456789012345678901234567890123456789; "
       "i=$((i + 1)); done; echo end");
   const std::vector<ChildResult> results = run_together(std::vector{much, much});
+  ASSERT_EQ(results.size(), 2U);
   for (const ChildResult& result : results) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.output.size(), 64U * 1024);

@@ -35,6 +35,7 @@ std::vector<SceneSpec> body_scenes() {
   std::vector<SceneSpec> scenes;
   for (const std::string& name : scene_names())
     if (SceneSpec spec = find_scene(name); kind_of(spec).name == "bodies") scenes.push_back(std::move(spec));
+  EXPECT_FALSE(scenes.empty());
   return scenes;
 }
 
@@ -55,7 +56,9 @@ std::vector<BodyNodes> bodies_in(const SceneSpec& spec) {
 }
 
 TEST(BodyScenes, OfOneBodyHaveExactlyThePublishedCounts) {
-  for (const PublishedBody& body : published_bodies()) {
+  const std::vector<PublishedBody> published = published_bodies();
+  ASSERT_EQ(published.size(), 9U);
+  for (const PublishedBody& body : published) {
     const SceneCounts counts = counts_of(find_scene(body.scene()));
     EXPECT_EQ(counts.nodes, body.nodes) << body.scene();
     EXPECT_EQ(counts.springs_published, body.springs) << body.scene();

@@ -48,6 +48,7 @@ std::vector<SceneSpec> cloth_scenes() {
   std::vector<SceneSpec> scenes;
   for (const std::string& name : scene_names())
     if (SceneSpec spec = find_scene(name); kind_of(spec).name == "cloth") scenes.push_back(std::move(spec));
+  EXPECT_FALSE(scenes.empty());
   return scenes;
 }
 

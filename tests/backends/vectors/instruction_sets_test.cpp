@@ -18,6 +18,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
 #include "tests/support/cloth_system.h"
+#include "tests/support/fused_sets.h"
 #include "tests/support/solid_system.h"
 
 namespace mssim {
@@ -112,11 +113,6 @@ TEST_P(EachInstructionSetAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShap
     const Verification verification = verify(*simulation, system, reference, dt_s);
     EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
   }
-}
-
-/// Whether an instruction set has multiply-adds, which round once where a product and a sum round twice.
-bool fuses(std::string_view instruction_set) {
-  return instruction_set == "AVX3" || instruction_set == "AVX2" || instruction_set == "NEON";
 }
 
 TEST_P(EachInstructionSetAndIntegrator, GivesTheSameBitsAsTheBestThatRoundsAlike) {
