@@ -82,10 +82,13 @@ TEST(Placement, TheHalfThatLooksInwardsStaysBeforeTheWholeBody) {
   PanelPlacement placement;
   placement.axis = [](double) { return 0.1; };
   const std::vector<Vec3d> placed = place_panel("p", mesh, placement, depth_of(0.16, -0.16));
+  int inwards = 0;
   for (std::size_t i = 0; i < placed.size(); ++i)
     if (mesh.nodes[i].x < 0) {
       EXPECT_GE(placed[i].z, 0.16 + 0.01 - 1e-6);
+      ++inwards;
     }
+  EXPECT_GT(inwards, 0);
 }
 
 TEST(Placement, ThePanelFollowsTheBodysDepthAndNeverCutsIntoIt) {
@@ -93,6 +96,8 @@ TEST(Placement, ThePanelFollowsTheBodysDepthAndNeverCutsIntoIt) {
   const BodyDepth body{[](double y) { return y < 0.5 ? 0.1 : 0.2; }, [](double) { return -0.1; }};
   const PanelMesh mesh = panel();
   const std::vector<Vec3d> placed = place_panel("p", mesh, {}, body);
+  EXPECT_LT(placed[mesh.node(0, 15)].y, 0.39);
+  EXPECT_GT(placed[mesh.node(mesh.rows - 1, 15)].y, 0.51);
   for (std::size_t row = 0; row < mesh.rows; ++row) {
     const Vec3d& node = placed[mesh.node(row, 15)];
     EXPECT_GE(node.z, body.front(node.y) + 0.03 - 1e-6);
