@@ -1,10 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace mssim {
 
 /// The shortest decimal text that reads back as the same number, in every locale.
 std::string decimal(double value);
+
+/// Three significant digits, without an exponent.
+std::string three_digits(double value);
+
+/// 4188004 as 4,188,004.
+std::string grouped(std::uint64_t number);
 
 }  // namespace mssim

@@ -52,7 +52,7 @@ bench                 text garment/stepping bench/roofline bench/verification be
 
 output/hdf5
 output/tables         text statistics platform bench/machine bench/results
-garment/output        garment bench/results output/hdf5 output/tables
+garment/output        text garment bench/results output/hdf5 output/tables
 output/traces         text platform geometry model output/hdf5 garment/output
 output/folders        text platform bench/machine bench/results output/tables garment/output
 

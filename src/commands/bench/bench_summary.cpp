@@ -1,29 +1,50 @@
 #include "commands/bench/bench_summary.h"
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "output/tables/github_json.h"
 #include "output/tables/listing.h"
+#include "output/tables/ratio_mark.h"
 #include "output/tables/result_table.h"
+#include "output/tables/table_json.h"
+#include "text/joined.h"
 
 namespace mssim {
 namespace {
 
-std::string text_of(const Listing& listing, SummaryFormat format) {
-  if (listing.empty() || format == SummaryFormat::github) return "";
-  return to_text(listing, format == SummaryFormat::csv    ? ListingFormat::csv
-                          : format == SummaryFormat::json ? ListingFormat::json
-                                                          : ListingFormat::table);
+std::string text_of(const Table& table, SummaryFormat format) {
+  if (table.rows.empty() || format == SummaryFormat::github) return "";
+  return to_text(table, format == SummaryFormat::csv    ? ListingFormat::csv
+                        : format == SummaryFormat::json ? ListingFormat::json
+                                                        : ListingFormat::table);
+}
+
+/// "opencl, hybrid ran on DEVICE", for each OpenCL device.
+std::vector<std::string> devices_of(RowPointers rows) {
+  std::map<std::string_view, std::vector<std::string>> backends;
+  for (const ResultRow* row : rows) {
+    const std::string_view device = opencl_device(*row);
+    if (device.empty()) continue;
+    std::vector<std::string>& names = backends[device];
+    if (std::ranges::find(names, row->backend) == names.end()) names.push_back(row->backend);
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [device, names] : backends)
+    sentences.push_back((joined(names, ", ") + " ran on ").append(device));
+  return sentences;
 }
 
 /// What stands below a table of rows.
-std::string remarks(std::span<const ResultRow> rows, int threads) {
-  std::vector<const ResultRow*> pointers;
-  for (const ResultRow& row : rows) pointers.push_back(&row);
+std::string remarks(RowPointers rows, const Table& table, int threads) {
+  std::vector<std::string> sentences = devices_of(rows);
+  sentences.insert(sentences.end(),
+                   {legend_of_ratios(table), legend_of_excess(rows, threads), reason_without_speedups(rows)});
   std::string text;
-  for (const std::string& sentence : {legend_of_excess(pointers, threads), reason_without_speedups(pointers)})
+  for (const std::string& sentence : sentences)
     if (!sentence.empty()) text += sentence + '\n';
   return text;
 }
@@ -31,45 +52,42 @@ std::string remarks(std::span<const ResultRow> rows, int threads) {
 }  // namespace
 
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads) {
-  if (format == SummaryFormat::github)
-    return github_json(rows).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
-  const auto number = [](const auto& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  if (format == SummaryFormat::github) return json_text(github_json(rows));
+  const std::vector<const ResultRow*> pointers = pointers_to(rows);
+  const auto marked = [](Cell cell, std::string_view mark) {
+    cell.suffix = mark;
+    return cell;
   };
-  const auto threads_cell = [&](const ResultRow& row) -> nlohmann::ordered_json {
-    if (format != SummaryFormat::table || !exceeds(row, threads)) return row.threads;
-    return std::to_string(row.threads).append(mark_of_excess(row, threads));
-  };
-  Listing listing;
+  Table table;
   for (const ResultRow& row : rows)
-    listing.push_back({{"scene", row.scene},
-                       {"nodes", row.nodes},
-                       {"springs_published", number(row.springs_published)},
-                       {"integrator", row.integrator},
-                       {"backend", row.backend},
-                       {"threads", threads_cell(row)},
-                       {"ms_per_step", number(row.ms_per_step)},
-                       {"low", number(row.ms_per_step_low)},
-                       {"high", number(row.ms_per_step_high)},
-                       {"speedup", number(row.speedup_vs_serial)},
-                       {"paper_ms", number(row.paper_ms)},
-                       {"roofline", number(row.roofline_fraction)},
-                       {"position_error", number(row.position_error)},
-                       {"verified", row.verified},
-                       {"status", row.status}});
-  return text_of(listing, format) + (format == SummaryFormat::table ? remarks(rows, threads) : "");
+    table.add({{"scene", row.scene},
+               {"nodes", row.nodes},
+               {"springs_published", row.springs_published},
+               {"integrator", row.integrator},
+               {"backend", row.backend},
+               {"threads", marked(row.threads, mark_of_excess(row, threads))},
+               {"ms_per_step", row.ms_per_step},
+               {"low", row.ms_per_step_low},
+               {"high", row.ms_per_step_high},
+               {"speedup", marked(row.speedup_vs_serial, mark_of_speedup(pointers, row))},
+               {"paper_ms", row.paper_ms},
+               {"roofline", row.roofline_fraction},
+               {"position_error", row.position_error},
+               {"verified", row.verified},
+               {"status", row.status}});
+  return text_of(table, format) + (format == SummaryFormat::table ? remarks(pointers, table, threads) : "");
 }
 
 std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
-  Listing listing;
+  Table table;
   for (const StructureRow& row : rows)
-    listing.push_back({{"scene", row.scene},
-                       {"nodes", row.nodes},
-                       {"springs_unique", row.springs_unique},
-                       {"springs_published", row.springs_published},
-                       {"tetrahedra", row.tetrahedra},
-                       {"smallest_dihedral_angle_deg", row.smallest_dihedral_angle_deg}});
-  return text_of(listing, format);
+    table.add({{"scene", row.scene},
+               {"nodes", row.nodes},
+               {"springs_unique", row.springs_unique},
+               {"springs_published", row.springs_published},
+               {"tetrahedra", row.tetrahedra},
+               {"smallest_dihedral_angle_deg", row.smallest_dihedral_angle_deg}});
+  return text_of(table, format);
 }
 
 }  // namespace mssim

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "output/tables/listing.h"
+#include "output/tables/table_text.h"
 
 namespace mssim {
 
@@ -15,17 +15,17 @@ void tell_plan(const BenchPlan& plan) {
   const auto seconds = [&](const ExpectedTime& time) {
     return std::lround(std::ceil(time.preparation + rounds * time.round));
   };
-  Listing listing;
+  Table table;
   for (const PlannedScene& scene : plan.timed)
-    listing.push_back({{"scene", scene.spec.name},
-                       {"nodes", scene.size.nodes},
-                       {"springs_unique", scene.size.springs},
-                       {"combinations", combinations(plan.settings)},
-                       {"rounds", std::lround(rounds)},
-                       {"expected_s", seconds(scene.time)}});
+    table.add({{"scene", scene.spec.name},
+               {"nodes", scene.size.nodes},
+               {"springs_unique", scene.size.springs},
+               {"combinations", combinations(plan.settings)},
+               {"rounds", std::lround(rounds)},
+               {"expected_s", seconds(scene.time)}});
   for (const SceneSpec& scene : plan.described)
     std::cout << scene.name << ": not timed; its structure is shown\n";
-  if (!listing.empty()) std::cout << to_text(listing, ListingFormat::table);
+  std::cout << table_text(table);
   std::cout << "about " << seconds(all) << " s in all\n";
 }
 

@@ -12,6 +12,7 @@
 #include "commands/shared/exit_code.h"
 #include "commands/shared/prepared_scene.h"
 #include "output/tables/listing.h"
+#include "output/tables/table_text.h"
 #include "scene/scene_file.h"
 
 namespace mssim {
@@ -24,23 +25,19 @@ struct CheckOptions {
 
 /// For a reader: what the scene is in a line of its own.
 std::string as_tables(const SceneReport& report) {
-  return to_text({report.scene}, ListingFormat::table) + '\n' +
-         to_text(report.combinations, ListingFormat::table);
+  return table_text(report.scene) + '\n' + table_text(report.combinations);
 }
 
-/// Each combination with what its scene is.
-Listing as_rows(const SceneReport& report) {
-  Listing rows;
-  for (const nlohmann::ordered_json& combination : report.combinations) {
-    nlohmann::ordered_json row = report.scene;
-    row.update(combination);
-    rows.push_back(std::move(row));
-  }
-  return rows;
+/// Adds each combination with what its scene is.
+void add_rows(Table& rows, const SceneReport& report) {
+  rows.columns = report.scene.columns;
+  std::ranges::copy(report.combinations.columns, std::back_inserter(rows.columns));
+  for (const std::vector<Cell>& combination : report.combinations.rows)
+    std::ranges::copy(combination, std::back_inserter(rows.rows.emplace_back(report.scene.rows.front())));
 }
 
 int run(const CheckOptions& options) {
-  Listing rows;
+  Table rows;
   std::string tables;
   for (const std::string& name : options.scenes) {
     const PreparedScene scene = prepare_scene(find_scene(name));
@@ -48,7 +45,7 @@ int run(const CheckOptions& options) {
     for (const std::string& warning : report.warnings)
       std::cerr << "mssim: " << scene.spec.name << ": " << warning << '\n';
     tables += (tables.empty() ? "" : "\n") + as_tables(report);
-    std::ranges::move(as_rows(report), std::back_inserter(rows));
+    add_rows(rows, report);
   }
   std::cout << (options.format == ListingFormat::table ? tables : to_text(rows, options.format));
   return exit_ok;

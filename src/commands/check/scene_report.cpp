@@ -24,8 +24,6 @@
 namespace mssim {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// A bench of these backends and integrators, as it is where nothing else is asked for.
 BenchSettings usual_settings(std::vector<const BackendInfo*> backends,
                              std::vector<const Integrator*> integrators) {
@@ -42,31 +40,33 @@ double seconds_of(const BenchSettings& settings, const SceneSize& size) {
   return time.preparation + settings.rounds * time.round;
 }
 
-Json scene_row(const PreparedScene& scene) {
+Table scene_table(const PreparedScene& scene) {
   const auto* mesh = std::get_if<TetrahedralMesh>(&scene.system.topology);
-  return {{"scene", scene.spec.name},
-          {"kind", kind_of(scene.spec).name},
-          {"nodes", scene.counts.nodes},
-          {"springs_unique", scene.counts.springs_unique},
-          {"tetrahedra", mesh ? Json(mesh->tetrahedra.size()) : Json()},
-          {"dt_s", scene.dt_s}};
+  Table table;
+  table.add({{"scene", scene.spec.name},
+             {"kind", kind_of(scene.spec).name},
+             {"nodes", scene.counts.nodes},
+             {"springs_unique", scene.counts.springs_unique},
+             {"tetrahedra", mesh ? Cell(mesh->tetrahedra.size()) : Cell()},
+             {"dt_s", scene.dt_s}});
+  return table;
 }
 
 bool can_step(const SceneSize& size, const Integrator& integrator, const BackendInfo& backend) {
   return !size.garment || (dresses(integrator) && dresses(backend));
 }
 
-Json combination_row(const PreparedScene& scene, const SceneSize& size, const Integrator& integrator,
-                     const BackendInfo& backend, double largest_dt_s) {
+void add_combination(Table& table, const PreparedScene& scene, const SceneSize& size,
+                     const Integrator& integrator, const BackendInfo& backend, double largest_dt_s) {
   const BenchSettings settings = usual_settings({&backend}, {&integrator});
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
-  return {{"integrator", integrator.name},
-          {"largest_stable_dt_s", largest_dt_s},
-          {"stable", scene.dt_s <= largest_dt_s},
-          {"backend", backend.name},
-          {"memory_bytes", bench_memory_needed(settings, size)},
-          {"bench_s", seconds_of(settings, size)},
-          {"run_s", expected_run_time(backend, integrator, size, steps)}};
+  table.add({{"integrator", integrator.name},
+             {"largest_stable_dt_s", largest_dt_s},
+             {"stable", scene.dt_s <= largest_dt_s},
+             {"backend", backend.name},
+             {"memory_bytes", bench_memory_needed(settings, size)},
+             {"bench_s", seconds_of(settings, size)},
+             {"run_s", expected_run_time(backend, integrator, size, steps)}});
 }
 
 /// The integrators that a bench takes unasked.
@@ -111,12 +111,12 @@ SceneReport report_on(const PreparedScene& scene) {
   const SceneSize size = size_of(scene.spec, scene.counts);
   const ModeBound modes = mode_bound(scene.system);
   SceneReport report;
-  report.scene = scene_row(scene);
+  report.scene = scene_table(scene);
   for (const Integrator& integrator : integrators) {
     const double largest_dt_s = largest_stable_dt(integrator, modes);
     for (const BackendInfo& backend : backends())
       if (can_step(size, integrator, backend))
-        report.combinations.push_back(combination_row(scene, size, integrator, backend, largest_dt_s));
+        add_combination(report.combinations, scene, size, integrator, backend, largest_dt_s);
   }
   if (!scene.note.empty()) report.warnings.push_back(scene.note);
   for (auto&& warning : {warning_of_dt(scene, modes), warning_of_memory(size)})

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "commands/shared/prepared_scene.h"
-#include "output/tables/listing.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 
 /// What a scene would be, told without a step of it.
 struct SceneReport {
-  nlohmann::ordered_json scene;  ///< one row: what it is
+  Table scene;  ///< one row: what it is
   /// A row for each integrator and backend that can step it: the largest stable dt, the memory that a bench
   /// of this combination takes, and how long a bench and a run of it take, about.
-  Listing combinations;
+  Table combinations;
   std::vector<std::string> warnings;  ///< sentences about what is allowed and seldom meant
 };
 

@@ -26,10 +26,6 @@
 namespace mssim {
 namespace {
 
-nlohmann::ordered_json or_null(const std::string& text) {
-  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
-}
-
 /// Counts what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why:
 /// once, since one cause (TetGen is missing) is behind all of them.
 class SceneCounter {
@@ -62,93 +58,89 @@ class SceneCounter {
   std::string first_reason_;
 };
 
-Listing list_scenes(const ExecutionOptions& /*options*/) {
-  Listing listing;
+Table list_scenes(const ExecutionOptions& /*options*/) {
+  Table table;
   SceneCounter counter;
   for (const SceneSpec& spec : shipped_scenes()) {
     const std::optional<SceneCounts> counts = counter.count(spec);
-    const auto number = [](const std::optional<std::uint64_t>& count) {
-      return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
-    };
-    listing.push_back(
-        {{"scene", spec.name},
-         {"kind", kind_of(spec).name},
-         {"nodes", number(counts ? std::optional(counts->nodes) : std::nullopt)},
-         {"springs_unique", number(counts ? std::optional(counts->springs_unique) : std::nullopt)},
-         {"springs_published", number(counts ? counts->springs_published : std::nullopt)},
-         {"dt_s", spec.dt_s ? nlohmann::ordered_json(*spec.dt_s) : nlohmann::ordered_json("auto")},
-         {"description", spec.description}});
+    table.add({{"scene", spec.name},
+               {"kind", kind_of(spec).name},
+               {"nodes", counts ? Cell(counts->nodes) : Cell()},
+               {"springs_unique", counts ? Cell(counts->springs_unique) : Cell()},
+               {"springs_published", counts ? Cell(counts->springs_published) : Cell()},
+               {"dt_s", spec.dt_s ? Cell(*spec.dt_s) : Cell("auto")},
+               {"description", spec.description}});
   }
   counter.report();
-  return listing;
+  return table;
 }
 
-Listing list_backends(const ExecutionOptions& options) {
-  Listing listing;
+Table list_backends(const ExecutionOptions& options) {
+  Table table;
   for (const BackendInfo& backend : backends()) {
     const std::string reason = unavailable_reason(backend, options);
-    listing.push_back({{"backend", backend.name},
-                       {"paper_configuration", backend.paper_configuration},
-                       {"available", reason.empty()},
-                       {"reason", or_null(reason)},
-                       {"description", backend.description}});
+    table.add({{"backend", backend.name},
+               {"paper_configuration", backend.paper_configuration},
+               {"available", reason.empty()},
+               {"reason", reason.empty() ? Cell() : Cell(reason)},
+               {"description", backend.description}});
   }
-  return listing;
+  return table;
 }
 
-Listing list_ways(const ExecutionOptions& /*options*/) {
-  Listing listing;
+Table list_ways(const ExecutionOptions& /*options*/) {
+  Table table;
   for (const RaceWay& way : race_ways())
-    listing.push_back({{"way", way.backend.name},
-                       {"extra_memory", way.extra_memory},
-                       {"springs_computed", way.springs_computed},
-                       {"same_bits", name_of(way.repeatable)},
-                       {"description", way.backend.description}});
-  return listing;
+    table.add({{"way", way.backend.name},
+               {"extra_memory", way.extra_memory},
+               {"springs_computed", way.springs_computed},
+               {"same_bits", name_of(way.repeatable)},
+               {"description", way.backend.description}});
+  return table;
 }
 
-Listing list_suites(const ExecutionOptions& /*options*/) {
-  Listing listing;
+Table list_suites(const ExecutionOptions& /*options*/) {
+  Table table;
   for (const Suite& suite : suites())
-    listing.push_back({{"suite", suite.name},
-                       {"timed", suite.timed},
-                       {"in_tables", suite.in_tables},
-                       {"scenes", listed(suite.scenes)},
-                       {"description", suite.description}});
-  return listing;
+    table.add({{"suite", suite.name},
+               {"timed", suite.timed},
+               {"in_tables", suite.in_tables},
+               {"scenes", listed(suite.scenes)},
+               {"description", suite.description}});
+  return table;
 }
 
-Listing list_integrators(const ExecutionOptions& /*options*/) {
-  Listing listing;
+Table list_integrators(const ExecutionOptions& /*options*/) {
+  Table table;
   for (const Integrator& integrator : integrators)
-    listing.push_back({{"integrator", integrator.name},
-                       {"order", integrator.order},
-                       {"force_evaluations", integrator.stage_count},
-                       {"description", integrator.description}});
-  return listing;
+    table.add({{"integrator", integrator.name},
+               {"order", integrator.order},
+               {"force_evaluations", integrator.stage_count},
+               {"description", integrator.description}});
+  return table;
 }
 
-Listing list_devices(const ExecutionOptions& /*options*/) {
-  Listing listing;
+Table list_devices(const ExecutionOptions& /*options*/) {
+  Table table;
   for (const OpenclDevice& device : opencl_offer().devices)
-    listing.push_back({{"number", device.number},
-                       {"name", device.name},
-                       {"type", name_of(device.type)},
-                       {"platform", device.platform},
-                       {"driver", device.driver_version},
-                       {"compute_units", device.compute_units},
-                       {"memory_bytes", device.global_memory_bytes},
-                       {"float_width", device.preferred_float_width}});
+    table.add({{"number", device.number},
+               {"name", device.name},
+               {"type", name_of(device.type)},
+               {"platform", device.platform},
+               {"driver", device.driver_version},
+               {"compute_units", device.compute_units},
+               {"memory_bytes", device.global_memory_bytes},
+               {"float_width", device.preferred_float_width}});
   tell_of_opencl();
   if (opencl_offer().devices.empty() && opencl_offer().troubles.empty())
     std::cerr << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
-  return listing;
+  return table;
 }
 
 /// The TABLE of what can be listed.
 struct Subject {
   std::string_view name;
-  Listing (*list)(const ExecutionOptions& options);
+  Table (*list)(const ExecutionOptions& options);
 };
 constexpr std::array<Subject, 6> subjects{{{"scenes", list_scenes},
                                            {"suites", list_suites},
@@ -169,8 +161,7 @@ int run_list(const ListOptions& options) {
   if (options.subject == schema_subject) std::cout << scene_schema();
   for (const Subject& subject : subjects) {
     if (subject.name != options.subject) continue;
-    const Listing listing = subject.list(options.execution);
-    std::cout << to_text(listing, options.format);
+    std::cout << to_text(subject.list(options.execution), options.format);
   }
   return exit_ok;
 }

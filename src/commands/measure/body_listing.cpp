@@ -24,13 +24,10 @@ std::string name_of_unit(double metres) {
 
 }  // namespace
 
-void BodyListing::add(const std::string& measure, nlohmann::ordered_json value, const std::string& unit,
+void BodyListing::add(const std::string& measure, Cell value, const std::string& unit,
                       const std::string& note) {
-  const auto text = [](const std::string& words) {
-    return words.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(words);
-  };
-  rows_.push_back(
-      {{"measure", measure}, {"value", std::move(value)}, {"unit", text(unit)}, {"note", text(note)}});
+  const auto text = [](const std::string& words) { return words.empty() ? Cell() : Cell(words); };
+  rows_.add({{"measure", measure}, {"value", std::move(value)}, {"unit", text(unit)}, {"note", text(note)}});
 }
 
 void BodyListing::add_stance(const BodyStance& stance, const std::string& how) {
@@ -55,7 +52,7 @@ void BodyListing::add_openings(std::span<const Opening> openings, const std::str
 void BodyListing::add_landmark(const std::string& name, const Landmark& landmark) {
   const std::string note = landmark.by_proportion ? "by proportion: nothing shows it" : "";
   add(name + "_height", to_tenths(landmark.height), "m", note);
-  add(name + "_girth", landmark.girth ? nlohmann::ordered_json(to_tenths(*landmark.girth)) : nullptr, "m",
+  add(name + "_girth", landmark.girth ? Cell(to_tenths(*landmark.girth)) : Cell(), "m",
       landmark.girth ? "" : "the legs are not apart there");
 }
 

@@ -6,7 +6,7 @@
 #include "garment/body/body_stance.h"
 #include "garment/body/landmarks.h"
 #include "geometry/openings.h"
-#include "output/tables/listing.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 
@@ -19,14 +19,13 @@ class BodyListing {
   void add_openings(std::span<const Opening> openings, const std::string& what);
   void add_measures(const BodyProfile& profile, const BodyLandmarks& landmarks);
 
-  const Listing& rows() const { return rows_; }
+  const Table& rows() const { return rows_; }
 
  private:
-  void add(const std::string& measure, nlohmann::ordered_json value, const std::string& unit,
-           const std::string& note = {});
+  void add(const std::string& measure, Cell value, const std::string& unit, const std::string& note = {});
   void add_landmark(const std::string& name, const Landmark& landmark);
 
-  Listing rows_;
+  Table rows_;
 };
 
 }  // namespace mssim

@@ -12,7 +12,7 @@
 #include "commands/shared/fit_body.h"
 #include "commands/shared/progress_line.h"
 #include "garment/fitting/fit_bounds.h"
-#include "output/tables/listing.h"
+#include "output/tables/table_text.h"
 
 namespace mssim {
 
@@ -53,24 +53,23 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   });
   const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.spec));
-  using Json = nlohmann::ordered_json;
-  const Json dressing{{"scene", scene.spec.name},
-                      {"backend", backend_name},
-                      {"threads", backend.threads()},
-                      {"nodes", scene.system.nodes()},
-                      {"dt_s", scene.dt_s},
-                      {"seamed_at", result.seamed_at ? Json(*result.seamed_at) : Json()},
-                      {"iterations", result.iterations},
-                      {"simulated_s", result.simulated_s},
-                      {"wall_s", seconds},
-                      {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}};
-  Listing fitting;
+  Table dressing, fitting;
+  dressing.add({{"scene", scene.spec.name},
+                {"backend", backend_name},
+                {"threads", backend.threads()},
+                {"nodes", scene.system.nodes()},
+                {"dt_s", scene.dt_s},
+                {"seamed_at", result.seamed_at},
+                {"iterations", result.iterations},
+                {"simulated_s", result.simulated_s},
+                {"wall_s", seconds},
+                {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}});
   for (const FitCheck& check : fit_checks(fit, {}))
-    fitting.push_back({{"fit", check.name},
-                       {"value", check.value},
-                       {"bound", check.bound ? Json(check.shown_bound) : Json()},
-                       {"within", check.within ? Json(*check.within) : Json()}});
-  std::cout << to_text({dressing}, ListingFormat::table) << '\n' << to_text(fitting, ListingFormat::table);
+    fitting.add({{"fit", check.name},
+                 {"value", check.value},
+                 {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
+                 {"within", check.within}});
+  std::cout << table_text(dressing) << '\n' << table_text(fitting);
   if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
     std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
               << " s the garment is still moving; a longer --duration gives it more time\n";

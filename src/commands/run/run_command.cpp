@@ -23,7 +23,7 @@
 #include "commands/shared/simulation.h"
 #include "commands/shared/stop_request.h"
 #include "garment/stepping/serial_dressing.h"
-#include "output/tables/listing.h"
+#include "output/tables/table_text.h"
 #include "output/traces/trace_name.h"
 #include "scene/scene_file.h"
 
@@ -95,10 +95,6 @@ std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, c
   return (curve.back().energy.total() + losses.total() - curve.front().energy.total()) / in_motion;
 }
 
-nlohmann::ordered_json or_null(const std::optional<double>& number) {
-  return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json();
-}
-
 TraceHeader header_of(const RunOptions& options, const PreparedScene& scene, const Backend& backend,
                       const Integrator& integrator) {
   TraceHeader header;
@@ -156,30 +152,28 @@ int run_simulation(const RunOptions& options, const PreparedScene& scene, const 
   });
 
   const std::vector<EnergySample>& curve = recorder.energies();
-  const auto loss = [&](double EnergyLosses::*kind) {
-    return losses ? or_null(*losses.*kind) : or_null(std::nullopt);
-  };
+  const auto loss = [&](double EnergyLosses::*kind) { return losses ? Cell(*losses.*kind) : Cell(); };
   const Energy &first = curve.front().energy, &last = curve.back().energy;
-  std::cout << to_text(
-      {{{"scene", scene.spec.name},
-        {"backend", options.backend},
-        {"device", backend->device()},
-        {"threads", backend->threads()},
-        {"integrator", options.integrator},
-        {"dt_s", scene.dt_s},
-        {"steps", steps},
-        {"simulated_s", curve.back().time_s},
-        {"wall_s", seconds},
-        {"kinetic_j", last.kinetic},
-        {"elastic_j", last.elastic},
-        {"gravitational_j", last.gravitational},
-        {"total_change_j", last.total() - first.total()},
-        {"damping_loss_j", loss(&EnergyLosses::damping)},
-        {"friction_loss_j", loss(&EnergyLosses::friction)},
-        {"bounce_loss_j", loss(&EnergyLosses::bounce)},
-        {"integration_loss_j", loss(&EnergyLosses::integration)},
-        {"energy_imbalance", losses ? or_null(energy_imbalance(curve, *losses)) : or_null(std::nullopt)}}},
-      ListingFormat::table);
+  Table table;
+  table.add({{"scene", scene.spec.name},
+             {"backend", options.backend},
+             {"device", backend->device()},
+             {"threads", backend->threads()},
+             {"integrator", options.integrator},
+             {"dt_s", scene.dt_s},
+             {"steps", steps},
+             {"simulated_s", curve.back().time_s},
+             {"wall_s", seconds},
+             {"kinetic_j", last.kinetic},
+             {"elastic_j", last.elastic},
+             {"gravitational_j", last.gravitational},
+             {"total_change_j", last.total() - first.total()},
+             {"damping_loss_j", loss(&EnergyLosses::damping)},
+             {"friction_loss_j", loss(&EnergyLosses::friction)},
+             {"bounce_loss_j", loss(&EnergyLosses::bounce)},
+             {"integration_loss_j", loss(&EnergyLosses::integration)},
+             {"energy_imbalance", losses ? Cell(energy_imbalance(curve, *losses)) : Cell()}});
+  std::cout << table_text(table);
   return exit_ok;
 }
 

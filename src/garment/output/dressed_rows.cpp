@@ -15,11 +15,6 @@ std::vector<const ResultRow*> rows_of_dressed_scenes(std::span<const ResultRow> 
   return found;
 }
 
-std::optional<double> ns_per_vertex(const ResultRow& row) {
-  if (!counts(row) || !row.ms_per_step) return std::nullopt;
-  return *row.ms_per_step * 1e6 / static_cast<double>(row.nodes);
-}
-
 std::optional<double> ms_per_iteration(const DressingRecord& dressing) {
   if (dressing.iterations == 0) return std::nullopt;
   return 1e3 * dressing.wall_s / static_cast<double>(dressing.iterations);

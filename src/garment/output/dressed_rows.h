@@ -13,9 +13,6 @@ namespace mssim {
 /// The rows of all scenes that any backend has dressed, in their order.
 std::vector<const ResultRow*> rows_of_dressed_scenes(std::span<const ResultRow> rows);
 
-/// Nanoseconds an iteration and vertex, none where there is no time.
-std::optional<double> ns_per_vertex(const ResultRow& row);
-
 /// Milliseconds an iteration, over a whole dressing; none where there was no iteration.
 std::optional<double> ms_per_iteration(const DressingRecord& dressing);
 

@@ -2,96 +2,72 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "garment/output/dressed_rows.h"
+#include "output/tables/result_table.h"
+#include "output/tables/table_csv.h"
 
 namespace mssim {
 namespace {
 
 /// A column of garment.csv that every row has.
-struct Column {
+struct GarmentColumn {
   std::string_view name;
-  std::string (*write)(const ResultRow& row);
+  Cell (*write)(const ResultRow& row);
   /// Reads what only this file has; null for what timings.csv has, too.
   void (*read)(DressingRecord& record, const CsvTable& table, std::size_t line, std::size_t column) = nullptr;
 };
 
-std::string truth(bool value) { return value ? "true" : "false"; }
-
-bool read_truth(const CsvTable& table, std::size_t line, std::size_t column) {
-  const std::string& text = table.text(line, column);
-  if (text != "true" && text != "false") throw table.complaint(line, column, "is neither true nor false");
-  return text == "true";
-}
-
-/// What `write` makes of the row's dressing; empty where it has none.
-template <class Write>
-std::string of_dressing(const ResultRow& row, Write&& write) {
-  return row.dressing ? write(*row.dressing) : std::string();
+/// A value of the row's dressing; nothing where it has none.
+template <class Value>
+Cell of_dressing(const ResultRow& row, Value DressingRecord::*value) {
+  return row.dressing ? Cell((*row.dressing).*value) : Cell();
 }
 
 /// The TABLE of columns, in their order; the numbers of the fit follow.
 constexpr std::size_t iterations_column = 12;
-constexpr std::array<Column, 20> columns{{
-    {"scene", [](const ResultRow& row) { return row.scene; }},
-    {"nodes", [](const ResultRow& row) { return std::to_string(row.nodes); }},
-    {"backend", [](const ResultRow& row) { return row.backend; }},
-    {"device", [](const ResultRow& row) { return row.device; }},
-    {"threads", [](const ResultRow& row) { return std::to_string(row.threads); }},
-    {"integrator", [](const ResultRow& row) { return row.integrator; }},
-    {"dt_s", [](const ResultRow& row) { return csv_number(row.dt_s); }},
-    {"ms_per_iteration", [](const ResultRow& row) { return csv_number(row.ms_per_step); }},
-    {"ms_per_iteration_low", [](const ResultRow& row) { return csv_number(row.ms_per_step_low); }},
-    {"ms_per_iteration_high", [](const ResultRow& row) { return csv_number(row.ms_per_step_high); }},
-    {"ns_per_iteration_and_vertex", [](const ResultRow& row) { return csv_number(ns_per_vertex(row)); }},
-    {"speedup_vs_serial", [](const ResultRow& row) { return csv_number(row.speedup_vs_serial); }},
+constexpr std::array<GarmentColumn, 20> columns{{
+    {"scene", [](const ResultRow& row) { return Cell(row.scene); }},
+    {"nodes", [](const ResultRow& row) { return Cell(row.nodes); }},
+    {"backend", [](const ResultRow& row) { return Cell(row.backend); }},
+    {"device", [](const ResultRow& row) { return Cell(row.device); }},
+    {"threads", [](const ResultRow& row) { return Cell(row.threads); }},
+    {"integrator", [](const ResultRow& row) { return Cell(row.integrator); }},
+    {"dt_s", [](const ResultRow& row) { return Cell(row.dt_s); }},
+    {"ms_per_iteration", [](const ResultRow& row) { return Cell(row.ms_per_step); }},
+    {"ms_per_iteration_low", [](const ResultRow& row) { return Cell(row.ms_per_step_low); }},
+    {"ms_per_iteration_high", [](const ResultRow& row) { return Cell(row.ms_per_step_high); }},
+    {"ns_per_iteration_and_vertex",
+     [](const ResultRow& row) { return Cell(ns_per_node(row, row.ms_per_step)); }},
+    {"speedup_vs_serial", [](const ResultRow& row) { return Cell(row.speedup_vs_serial); }},
     {"dressing_iterations",
-     [](const ResultRow& row) {
-       return of_dressing(row, [](const DressingRecord& d) { return std::to_string(d.iterations); });
-     },
+     [](const ResultRow& row) { return of_dressing(row, &DressingRecord::iterations); },
      [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
        d.iterations = table.count(l, c);
      }},
-    {"seamed_at",
-     [](const ResultRow& row) {
-       return of_dressing(row, [](const DressingRecord& d) {
-         return d.seamed_at ? std::to_string(*d.seamed_at) : std::string();
-       });
-     },
+    {"seamed_at", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::seamed_at); },
      [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
        if (!table.text(l, c).empty()) d.seamed_at = table.count(l, c);
      }},
-    {"settled",
-     [](const ResultRow& row) {
-       return of_dressing(row, [](const DressingRecord& d) { return truth(d.settled); });
-     },
+    {"settled", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::settled); },
      [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
-       d.settled = read_truth(table, l, c);
+       d.settled = table.truth(l, c);
      }},
-    {"simulated_s",
-     [](const ResultRow& row) {
-       return of_dressing(row, [](const DressingRecord& d) { return csv_number(d.simulated_s); });
-     },
+    {"simulated_s", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::simulated_s); },
      [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
        d.simulated_s = table.number(l, c);
      }},
-    {"dressing_s",
-     [](const ResultRow& row) {
-       return of_dressing(row, [](const DressingRecord& d) { return csv_number(d.wall_s); });
-     },
+    {"dressing_s", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::wall_s); },
      [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
        d.wall_s = table.number(l, c);
      }},
     {"dressing_ms_per_iteration",
-     [](const ResultRow& row) {
-       return of_dressing(row, [](const DressingRecord& d) { return csv_number(ms_per_iteration(d)); });
-     }},
-    {"verified", [](const ResultRow& row) { return truth(row.verified); }},
-    {"status", [](const ResultRow& row) { return row.status; }},
+     [](const ResultRow& row) { return row.dressing ? Cell(ms_per_iteration(*row.dressing)) : Cell(); }},
+    {"verified", [](const ResultRow& row) { return Cell(row.verified); }},
+    {"status", [](const ResultRow& row) { return Cell(row.status); }},
 }};
 static_assert(columns[iterations_column].name == "dressing_iterations");
 
@@ -104,15 +80,14 @@ std::vector<FitNumberRecord> fit_of_any(std::span<const ResultRow* const> rows) 
   return {};
 }
 
-void add_fit(const std::vector<FitNumberRecord>& known, const ResultRow& row,
-             std::vector<std::string>& fields) {
+void add_fit(const std::vector<FitNumberRecord>& known, const ResultRow& row, std::vector<Cell>& cells) {
   for (const FitNumberRecord& number : known) {
     const FitNumberRecord* found = nullptr;
     if (row.dressing)
       for (const FitNumberRecord& candidate : row.dressing->fit)
         if (candidate.name == number.name) found = &candidate;
-    fields.push_back(found ? csv_number(found->value) : "");
-    if (number.within) fields.push_back(found && found->within ? truth(*found->within) : "");
+    cells.push_back(found ? Cell(found->value) : Cell());
+    if (number.within) cells.push_back(found ? Cell(found->within) : Cell());
   }
 }
 
@@ -121,7 +96,7 @@ std::vector<FitNumberRecord> read_fit(const CsvTable& table, std::size_t line) {
   for (std::size_t column = columns.size(); column < table.header().size(); ++column) {
     const std::string& name = table.header()[column];
     if (!fit.empty() && name == fit.back().name + std::string(within_suffix)) {
-      if (!table.text(line, column).empty()) fit.back().within = read_truth(table, line, column);
+      if (!table.text(line, column).empty()) fit.back().within = table.truth(line, column);
     } else {
       fit.push_back({name, table.optional_number(line, column), std::nullopt});
     }
@@ -135,21 +110,19 @@ std::vector<FitNumberRecord> read_fit(const CsvTable& table, std::size_t line) {
 std::string garment_csv(std::span<const ResultRow> rows) {
   const std::vector<const ResultRow*> dressed = rows_of_dressed_scenes(rows);
   if (dressed.empty()) return "";
+  Table table;
   const std::vector<FitNumberRecord> fit = fit_of_any(dressed);
-  std::vector<std::string> fields;
-  for (const Column& column : columns) fields.emplace_back(column.name);
+  for (const GarmentColumn& column : columns) table.columns.push_back({std::string(column.name)});
   for (const FitNumberRecord& number : fit) {
-    fields.push_back(number.name);
-    if (number.within) fields.push_back(number.name + std::string(within_suffix));
+    table.columns.push_back({number.name});
+    if (number.within) table.columns.push_back({number.name + std::string(within_suffix)});
   }
-  std::string csv = csv_line(fields);
   for (const ResultRow* row : dressed) {
-    fields.clear();
-    for (const Column& column : columns) fields.push_back(column.write(*row));
-    add_fit(fit, *row, fields);
-    csv += csv_line(fields);
+    std::vector<Cell>& cells = table.rows.emplace_back();
+    for (const GarmentColumn& column : columns) cells.push_back(column.write(*row));
+    add_fit(fit, *row, cells);
   }
-  return csv;
+  return table_csv(table);
 }
 
 void read_dressings(const std::filesystem::path& file, std::span<ResultRow> rows) {
@@ -158,7 +131,7 @@ void read_dressings(const std::filesystem::path& file, std::span<ResultRow> rows
 
 void read_dressings(const CsvTable& table, std::span<ResultRow> rows) {
   std::vector<std::string_view> names;
-  for (const Column& column : columns) names.push_back(column.name);
+  for (const GarmentColumn& column : columns) names.push_back(column.name);
   table.require_columns(names);
   for (std::size_t line = 0; line < table.size(); ++line) {
     if (table.text(line, iterations_column).empty()) continue;

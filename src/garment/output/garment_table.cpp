@@ -1,17 +1,16 @@
 #include "garment/output/garment_table.h"
 
 #include <algorithm>
-#include <sstream>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "garment/output/dressed_rows.h"
-#include "output/tables/csv.h"
-#include "output/tables/markdown.h"
+#include "output/tables/ratio_mark.h"
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {
-
-constexpr std::string_view nothing = "–";
 
 using Rows = std::vector<const ResultRow*>;
 /// A line of a table: a backend with an integrator.
@@ -34,10 +33,7 @@ class Layout {
   const Rows& scenes() const { return scenes_; }
   const std::vector<Line>& lines() const { return lines_; }
   const ResultRow* find(const ResultRow& scene, const Line& line) const {
-    const auto row = std::ranges::find_if(rows_, [&](const ResultRow* candidate) {
-      return candidate->scene == scene.scene && Line(candidate->backend, candidate->integrator) == line;
-    });
-    return row == rows_.end() ? nullptr : *row;
+    return find_row(rows_, scene.scene, line.first, line.second);
   }
 
  private:
@@ -49,103 +45,91 @@ class Layout {
 bool is_baseline(const Line& line) { return line.first == "serial"; }
 
 /// A cell of the table of times.
-std::string time_cell(const ResultRow& row) {
-  if (!counts(row) || !row.ms_per_step) {
-    const std::string status = status_of(row);
-    return one_cell(status.substr(0, status.find(':')));
-  }
-  std::string cell = "**" + three_digits(*row.ms_per_step) + "**";
-  if (row.speedup_vs_serial && row.backend != "serial")
-    cell += " (" + three_digits(*row.speedup_vs_serial) + "×)";
+Cell time_cell(RowPointers rows, const ResultRow& row) {
+  const std::optional<double> ms = counts(row) ? row.ms_per_step : std::nullopt;
+  Cell cell = measured_cell(&row, ms);
+  if (ms && row.speedup_vs_serial && row.backend != "serial")
+    cell.suffix.append(in_brackets(*row.speedup_vs_serial)).append(mark_of_speedup(rows, row));
   return cell;
 }
 
-std::string vertex_cell(const ResultRow& row) {
-  const auto ns = ns_per_vertex(row);
-  return ns ? three_digits(*ns) : std::string(nothing);
+Cell vertex_cell(RowPointers /*rows*/, const ResultRow& row) { return ns_per_node(row, row.ms_per_step); }
+
+Cell dressing_cell(RowPointers /*rows*/, const ResultRow& row) {
+  if (!row.dressing) return {};
+  return three_digits(row.dressing->wall_s) + " s\n" + grouped(row.dressing->iterations);
 }
 
-std::string dressing_cell(const ResultRow& row) {
-  if (!row.dressing) return std::string(nothing);
-  return three_digits(row.dressing->wall_s) + " s<br>" + grouped(row.dressing->iterations);
-}
+using MakeCell = Cell (*)(RowPointers rows, const ResultRow& row);
 
-class Markdown {
- public:
-  explicit Markdown(const Layout& layout) : layout_(layout) {}
-
-  std::string text(const Provenance& provenance) {
-    threads_ = provenance.threads;
-    out_ << "# Figure 6 of Vassilev: milliseconds an iteration against vertices of jeans\n\n"
-         << measured_on(layout_.rows(), provenance)
-         << "One iteration of Algorithm 1, medians, of jeans that hang draped on the body: springs, joints, "
-            "collision with the body and the correction of velocities are at work. In brackets how many "
-            "times as fast as without parallelisation. The paper shows its own times as curves, without "
-            "numbers, from other machines.\n\n";
-    add_table("milliseconds an iteration", time_cell);
-    out_ << "\nNanoseconds an iteration and vertex, of the same samples:\n\n";
-    add_table("nanoseconds", vertex_cell);
-    out_ << "\nThe whole dressing, once: seconds and iterations from flat panels to jeans that hang settled. "
-            "`garment.csv` says how each fits.\n\n";
-    add_table("dressing", dressing_cell);
-    out_ << paragraph(legend_of_excess(layout_.rows(), threads_))
-         << paragraph(reason_without_speedups(layout_.rows())) << rows_without_a_time(layout_.rows());
-    return out_.str();
-  }
-
- private:
-  void add_table(std::string_view title, std::string (*cell)(const ResultRow& row)) {
-    out_ << "| " << title << " |";
-    for (const ResultRow* scene : layout_.scenes())
-      out_ << " " << scene->scene << "<br>" << grouped(scene->nodes) << " |";
-    out_ << "\n|---|";
-    for (std::size_t i = 0; i < layout_.scenes().size(); ++i) out_ << "---:|";
-    out_ << "\n";
-    for (const Line& line : layout_.lines()) {
-      out_ << "| " << (is_baseline(line) ? "without: " : "with: ") << "`" << line.first << "` |";
-      for (const ResultRow* scene : layout_.scenes()) {
-        const ResultRow* row = layout_.find(*scene, line);
-        out_ << " " << (row ? cell(*row) : std::string(nothing))
-             << (row ? mark_of_excess(*row, threads_) : "") << " |";
-      }
-      out_ << "\n";
+Table table_of(const Layout& layout, const Provenance& provenance, const std::string& title, MakeCell make) {
+  Table table{{{title}}, {}};
+  for (const ResultRow* scene : layout.scenes()) table.columns.push_back(scene_column(*scene));
+  for (const Line& line : layout.lines()) {
+    std::vector<Cell>& cells = table.rows.emplace_back();
+    cells.emplace_back((is_baseline(line) ? "without: " : "with: ") +
+                       backend_label(layout.rows(), line.first, provenance));
+    for (const ResultRow* scene : layout.scenes()) {
+      const ResultRow* row = layout.find(*scene, line);
+      Cell& cell = cells.emplace_back(row ? make(layout.rows(), *row) : Cell());
+      if (row) cell.suffix += mark_of_excess(*row, provenance.threads);
     }
   }
+  return table;
+}
 
-  const Layout& layout_;
-  std::ostringstream out_;
-  int threads_ = 0;  ///< asked for
-};
+Document page_of(const Layout& layout, const Provenance& provenance) {
+  Document page{
+      Heading{1, "Figure 6 of Vassilev: milliseconds an iteration against vertices of jeans"},
+      measured_on(layout.rows(), provenance),
+      Paragraph{
+          "One iteration of Algorithm 1, medians, of jeans that hang draped on the body: springs, joints, "
+          "collision with the body and the correction of velocities are at work. In brackets how many "
+          "times as fast as without parallelisation. The paper shows its own times as curves, without "
+          "numbers, from other machines."},
+      table_of(layout, provenance, "milliseconds an iteration", time_cell),
+      Paragraph{"Nanoseconds an iteration and vertex, of the same samples:"},
+      table_of(layout, provenance, "nanoseconds", vertex_cell),
+      Paragraph{
+          "The whole dressing, once: seconds and iterations from flat panels to jeans that hang settled. "
+          "`garment.csv` says how each fits."},
+      table_of(layout, provenance, "dressing", dressing_cell)};
+  add_sentence(page, legend_of_ratios(page));
+  add_sentence(page, legend_of_excess(layout.rows(), provenance.threads));
+  add_sentence(page, reason_without_speedups(layout.rows()));
+  add_rows_without_a_time(page, layout.rows());
+  return page;
+}
 
-std::string as_csv(const Layout& layout) {
-  std::vector<std::string> fields{"backend", "integrator", "parallel", "quantity"};
-  std::vector<std::string> vertices{"", "", "", "vertices"};
+Table data_of(const Layout& layout) {
+  Table table{{{"backend"}, {"integrator"}, {"parallel"}, {"quantity"}}, {}};
+  std::vector<Cell>& vertices = table.rows.emplace_back();
+  vertices = {{}, {}, {}, "vertices"};
   for (const ResultRow* scene : layout.scenes()) {
-    fields.push_back(scene->scene);
-    vertices.push_back(std::to_string(scene->nodes));
+    table.columns.push_back({scene->scene});
+    vertices.emplace_back(scene->nodes);
   }
-  std::string csv = csv_line(fields) + csv_line(vertices);
   for (const Line& line : layout.lines()) {
-    const auto add = [&](const std::string& quantity, auto&& value) {
-      fields = {line.first, line.second, is_baseline(line) ? "without" : "with", quantity};
+    const auto add = [&](std::string_view quantity, auto&& value) {
+      std::vector<Cell>& cells = table.rows.emplace_back();
+      cells = {line.first, line.second, is_baseline(line) ? "without" : "with", quantity};
       for (const ResultRow* scene : layout.scenes()) {
         const ResultRow* row = layout.find(*scene, line);
-        fields.push_back(row ? csv_number(value(*row)) : "");
+        cells.push_back(row ? Cell(value(*row)) : Cell());
       }
-      csv += csv_line(fields);
     };
     using Number = std::optional<double>;
     add("ms_per_iteration", [](const ResultRow& row) { return counts(row) ? row.ms_per_step : Number(); });
     add("speedup_vs_serial",
         [](const ResultRow& row) { return counts(row) ? row.speedup_vs_serial : Number(); });
-    add("ns_per_iteration_and_vertex", ns_per_vertex);
+    add("ns_per_iteration_and_vertex",
+        [](const ResultRow& row) { return ns_per_node(row, row.ms_per_step); });
     add("dressing_s",
         [](const ResultRow& row) { return row.dressing ? Number(row.dressing->wall_s) : Number(); });
-    add("dressing_iterations", [](const ResultRow& row) {
-      return row.dressing ? Number(static_cast<double>(row.dressing->iterations)) : Number();
-    });
+    add("dressing_iterations",
+        [](const ResultRow& row) { return row.dressing ? Cell(row.dressing->iterations) : Cell(); });
   }
-  return csv;
+  return table;
 }
 
 }  // namespace
@@ -156,7 +140,7 @@ TableMaker garment_tables() {
     Rows dressed = rows_of_dressed_scenes(rows);
     if (dressed.empty()) return tables;
     const Layout layout(std::move(dressed));
-    tables.push_back({"figure6", as_csv(layout), Markdown(layout).text(provenance)});
+    tables.push_back({"figure6", data_of(layout), page_of(layout, provenance)});
     return tables;
   };
 }

@@ -1,6 +1,7 @@
 #include "output/folders/result_folder.h"
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,9 @@
 #include "output/folders/provenance_file.h"
 #include "output/tables/benchmark_json.h"
 #include "output/tables/github_json.h"
+#include "output/tables/markdown.h"
+#include "output/tables/table_csv.h"
+#include "output/tables/table_json.h"
 #include "output/tables/timings_csv.h"
 #include "platform/atomic_file.h"
 #include "platform/write_error.h"
@@ -37,10 +41,8 @@ const fs::path& made(const fs::path& folder) {
   return folder;
 }
 
-/// Bytes that are no UTF-8 (a folder's name may hold any) are replaced.
-template <class Json>
-std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+std::vector<ResultFolder::File> files_of(const ResultTable& table) {
+  return {{csv_of(table.name), table_csv(table.data)}, {markdown_of(table.name), markdown(table.page)}};
 }
 
 }  // namespace
@@ -82,30 +84,29 @@ void ResultFolder::begin() const {
 }
 
 void ResultFolder::write(std::span<const ResultRow> rows) const {
-  const std::string timings = timings_csv(rows), samples = samples_csv(rows), garment = garment_csv(rows);
-  const std::string benchmark = text_of(benchmark_json(rows, provenance_));
-  const std::vector<ResultTable> tables = tables_(rows, provenance_);
-  for (const ResultTable& table : tables)
+  std::vector<File> files{{samples_name, samples_csv(rows)}};
+  if (std::string garment = garment_csv(rows); !garment.empty())
+    files.push_back({garment_name, std::move(garment)});
+  files.push_back({benchmark_name, json_text(benchmark_json(rows, provenance_))});
+  for (const ResultTable& table : tables_(rows, provenance_)) {
     if (std::ranges::find(table_names, table.name) == table_names.end())
       throw std::invalid_argument("the table " + table.name + " is not in table_names");
-  write_file_atomically(folder_ / samples_name, samples);
-  if (!garment.empty()) write_file_atomically(folder_ / garment_name, garment);
-  write_file_atomically(folder_ / benchmark_name, benchmark);
-  for (const ResultTable& table : tables) {
-    write_file_atomically(folder_ / csv_of(table.name), table.csv);
-    write_file_atomically(folder_ / markdown_of(table.name), table.markdown);
+    std::ranges::move(files_of(table), std::back_inserter(files));
   }
-  write_file_atomically(folder_ / timings_name, timings);
+  files.push_back({timings_name, timings_csv(rows)});
+  write_files(files);
 }
 
 void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
-  write_file_atomically(folder_ / github_name, text_of(github_json(rows)));
+  write_file_atomically(folder_ / github_name, json_text(github_json(rows)));
 }
 
 void ResultFolder::write(std::span<const StructureRow> rows) const {
-  const StructureTable table = structure_table(rows, provenance_);
-  write_file_atomically(folder_ / csv_of("table2"), table.csv);
-  write_file_atomically(folder_ / markdown_of("table2"), table.markdown);
+  write_files(files_of(structure_table(rows, provenance_)));
+}
+
+void ResultFolder::write_files(const std::vector<File>& files) const {
+  for (const File& file : files) write_file_atomically(folder_ / file.name, file.text);
 }
 
 std::vector<ResultRow> read_results(const fs::path& folder) {

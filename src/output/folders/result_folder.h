@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bench/machine/provenance.h"
@@ -44,7 +45,13 @@ class ResultFolder {
   /// Writes table2.csv and table2.md. Throws WriteError.
   void write(std::span<const StructureRow> rows) const;
 
+  struct File {
+    std::string name, text;
+  };
+
  private:
+  void write_files(const std::vector<File>& files) const;
+
   std::filesystem::path folder_;
   FolderLock lock_;
   Provenance provenance_;

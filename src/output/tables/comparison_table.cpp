@@ -1,95 +1,120 @@
 #include "output/tables/comparison_table.h"
 
-#include <algorithm>
-#include <sstream>
+#include <nlohmann/json.hpp>
 
-#include "output/tables/listing.h"
 #include "output/tables/markdown.h"
+#include "output/tables/ratio_mark.h"
+#include "output/tables/table_json.h"
+#include "output/tables/table_text.h"
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {
 
-using nlohmann::ordered_json;
-
-/// The samples that an undecided row would need, why a row is lost; null for others.
-ordered_json remark(const ComparedRow& row) {
+/// The samples that an undecided row would need, why a row is lost; nothing for others.
+Cell remark(const ComparedRow& row) {
   if (row.verdict == Verdict::lost) return row.reason;
-  if (row.verdict != Verdict::undecided) return nullptr;
+  if (row.verdict != Verdict::undecided) return {};
   return row.samples_needed ? std::to_string(*row.samples_needed) + " samples a side would decide"
                             : "many samples would be needed";
 }
 
-Listing rows_of(const RunComparison& comparison) {
-  Listing listing;
-  for (const ComparedRow& row : comparison.rows) {
-    const auto of_ratio = [&](double RatioEstimate::*value) {
-      return row.ratio ? ordered_json((*row.ratio).*value) : ordered_json();
-    };
-    listing.push_back({{"scene", row.scene},
-                       {"backend", row.backend},
-                       {"integrator", row.integrator},
-                       {"base_ms", row.base_ms},
-                       {"new_ms", row.new_ms ? ordered_json(*row.new_ms) : ordered_json()},
-                       {"ratio", of_ratio(&RatioEstimate::ratio)},
-                       {"low", of_ratio(&RatioEstimate::low)},
-                       {"high", of_ratio(&RatioEstimate::high)},
-                       {"p", of_ratio(&RatioEstimate::p)},
-                       {"verdict", name_of(row.verdict)},
-                       {"remark", remark(row)}});
-  }
-  return listing;
+Cell ratio_cell(const ComparedRow& row) {
+  if (!row.ratio) return {};
+  Cell cell = row.ratio->ratio;
+  cell.suffix = mark_of_ratio(row.ratio->ratio, *row.new_ms, row.base_ms);
+  return cell;
 }
 
-Listing means_of(const RunComparison& comparison) {
-  Listing listing;
+/// For terminals and programs.
+Table rows_of(const RunComparison& comparison) {
+  Table table;
+  for (const ComparedRow& row : comparison.rows) {
+    const auto of_ratio = [&](double RatioEstimate::*value) {
+      return row.ratio ? Cell((*row.ratio).*value) : Cell();
+    };
+    table.add({{"scene", row.scene},
+               {"backend", row.backend},
+               {"integrator", row.integrator},
+               {"base_ms", row.base_ms},
+               {"new_ms", row.new_ms},
+               {"ratio", ratio_cell(row)},
+               {"low", of_ratio(&RatioEstimate::low)},
+               {"high", of_ratio(&RatioEstimate::high)},
+               {"p", of_ratio(&RatioEstimate::p)},
+               {"verdict", name_of(row.verdict)},
+               {"remark", remark(row)}});
+  }
+  return table;
+}
+
+Table means_of(const RunComparison& comparison) {
+  Table table;
   for (const MeanRatio& mean : comparison.means)
-    listing.push_back({{"backend", mean.backend.empty() ? "all" : mean.backend},
-                       {"rows", mean.rows},
-                       {"geometric_mean_ratio", mean.ratio}});
-  return listing;
+    table.add({{"backend", mean.backend.empty() ? "all" : mean.backend},
+               {"rows", mean.rows},
+               {"geometric_mean_ratio", mean.ratio}});
+  return table;
 }
 
 std::string as_json(const RunComparison& comparison) {
-  const ordered_json document{{"threshold", comparison.threshold},
-                              {"regression", has_regression(comparison)},
-                              {"rows", rows_of(comparison)},
-                              {"geometric_means", means_of(comparison)}};
-  return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+  return json_text({{"threshold", comparison.threshold},
+                    {"regression", has_regression(comparison)},
+                    {"rows", table_json(rows_of(comparison))},
+                    {"geometric_means", table_json(means_of(comparison))}});
+}
+
+std::string as_text(const RunComparison& comparison) {
+  const Table rows = rows_of(comparison);
+  const std::string means = table_text(means_of(comparison)), legend = legend_of_ratios(rows);
+  return table_text(rows) + (means.empty() ? "" : "\n" + means) + (legend.empty() ? "" : legend + "\n");
+}
+
+/// The verdict and its remark.
+Cell verdict_cell(const ComparedRow& row) {
+  Cell cell = name_of(row.verdict);
+  cell.strong = row.verdict != Verdict::same && row.verdict != Verdict::undecided;
+  if (const Cell why = remark(row); const auto* text = std::get_if<std::string>(&why.value))
+    cell.suffix = ": " + *text;
+  return cell;
 }
 
 std::string as_markdown(const RunComparison& comparison) {
-  std::ostringstream text;
-  text << "| scene | backend | integrator | BASE ms | NEW ms | NEW / BASE | 95 % interval | verdict |\n"
-          "|---|---|---|---:|---:|---:|---|---|\n";
-  for (const ComparedRow& row : comparison.rows) {
-    text << "| " << one_cell(row.scene) << " | `" << row.backend << "` | " << row.integrator << " | "
-         << three_digits(row.base_ms) << " | ";
-    if (row.ratio)
-      text << three_digits(*row.new_ms) << " | " << three_digits(row.ratio->ratio) << " | "
-           << three_digits(row.ratio->low) << " to " << three_digits(row.ratio->high);
-    else
-      text << "– | – | –";
-    const bool plain = row.verdict == Verdict::same || row.verdict == Verdict::undecided;
-    text << " | " << (plain ? "" : "**") << name_of(row.verdict) << (plain ? "" : "**");
-    if (const ordered_json why = remark(row); !why.is_null())
-      text << ": " << one_cell(why.get<std::string>());
-    text << " |\n";
-  }
-  if (comparison.means.empty()) return text.str();
-  text << "\n| geometric mean of | rows | NEW / BASE |\n|---|---:|---:|\n";
+  Table rows;
+  for (const ComparedRow& row : comparison.rows)
+    rows.add(
+        {{"scene", row.scene},
+         {"backend", '`' + row.backend + '`'},
+         {"integrator", row.integrator},
+         {"BASE ms", row.base_ms},
+         {"NEW ms", row.ratio ? Cell(row.new_ms) : Cell()},
+         {"NEW / BASE", ratio_cell(row)},
+         {"95 % interval",
+          row.ratio ? Cell(three_digits(row.ratio->low) + " to " + three_digits(row.ratio->high)) : Cell()},
+         {"verdict", verdict_cell(row)}});
+  Table means;
   for (const MeanRatio& mean : comparison.means)
-    text << "| " << (mean.backend.empty() ? "all" : '`' + mean.backend + '`') << " | " << mean.rows << " | "
-         << three_digits(mean.ratio) << " |\n";
-  return text.str();
+    means.add({{"geometric mean of", mean.backend.empty() ? "all" : '`' + mean.backend + '`'},
+               {"rows", mean.rows},
+               {"NEW / BASE", mean.ratio}});
+  Document page{rows};
+  add_sentence(page, legend_of_ratios(rows));
+  if (!comparison.means.empty()) page.emplace_back(means);
+  return markdown(page);
 }
 
 }  // namespace
 
 std::string to_text(const RunComparison& comparison, ComparisonFormat format) {
-  if (format == ComparisonFormat::json) return as_json(comparison);
-  if (format == ComparisonFormat::markdown) return as_markdown(comparison);
-  const std::string means = to_text(means_of(comparison), ListingFormat::table);
-  return to_text(rows_of(comparison), ListingFormat::table) + (means.empty() ? "" : "\n" + means);
+  switch (format) {
+    case ComparisonFormat::json:
+      return as_json(comparison);
+    case ComparisonFormat::markdown:
+      return as_markdown(comparison);
+    case ComparisonFormat::table:
+      break;
+  }
+  return as_text(comparison);
 }
 
 }  // namespace mssim

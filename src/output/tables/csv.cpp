@@ -125,4 +125,10 @@ std::uint64_t CsvTable::count(std::size_t record, std::size_t column) const {
   return *value;
 }
 
+bool CsvTable::truth(std::size_t record, std::size_t column) const {
+  const std::string& field = text(record, column);
+  if (field != "true" && field != "false") throw complaint(record, column, "is neither true nor false");
+  return field == "true";
+}
+
 }  // namespace mssim

@@ -54,6 +54,8 @@ class CsvTable {
   std::optional<double> optional_number(std::size_t record, std::size_t column) const;
   /// Throws CsvError unless the whole field is a whole number from 0 to 2^53.
   std::uint64_t count(std::size_t record, std::size_t column) const;
+  /// Throws CsvError unless the field is "true" or "false".
+  bool truth(std::size_t record, std::size_t column) const;
   /// The CsvError for a field: "FILE, line L, column NAME: "VALUE" COMPLAINT".
   CsvError complaint(std::size_t record, std::size_t column, const std::string& what) const;
 

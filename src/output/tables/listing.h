@@ -1,19 +1,17 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstdint>
 #include <string>
-#include <vector>
+
+#include "output/tables/table.h"
 
 namespace mssim {
 
-/// Rows of named values for people and programs: each row is a JSON object with the same keys in the same
-/// order; null stands for a value that does not exist.
-using Listing = std::vector<nlohmann::ordered_json>;
+/// How a command prints a table.
+enum class ListingFormat : std::uint8_t { table, csv, json };
 
-enum class ListingFormat { table, csv, json };
-
-/// Columns aligned for a terminal (numbers to the right, at most `digits` significant), RFC 4180 CSV with a
-/// header, or a JSON array. Ends with a newline.
-std::string to_text(const Listing& listing, ListingFormat format, int digits = 4);
+/// Columns for a terminal, CSV whose numbers are JSON's, or a JSON array. Ends with a newline; a table
+/// without rows is empty text, or an empty array.
+std::string to_text(const Table& table, ListingFormat format);
 
 }  // namespace mssim

@@ -1,32 +1,86 @@
 #include "output/tables/markdown.h"
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "text/decimal.h"
 
 namespace mssim {
+namespace {
 
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
+/// Text that cannot end a cell or a line.
+std::string one_cell(std::string_view text) {
+  std::string cell;
+  for (const char character : text) {
+    if (character == '|')
+      cell += "\\|";
+    else if (character == '\n')
+      cell += "<br>";
+    else
+      cell += character;
+  }
+  return cell;
+}
+
+/// A cell's value as people read it.
+struct Shown {
+  const Cell& cell;
+  const std::string& unit;
+
+  std::string operator()(std::monostate) const { return "–"; }
+  std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
+  std::string operator()(std::int64_t number) const {
+    return grouped(static_cast<std::uint64_t>(number)) + unit;
+  }
+  std::string operator()(double number) const {
+    return (cell.exact ? decimal(number) : three_digits(number)) + unit;
+  }
+  std::string operator()(const std::string& text) const { return text; }
+};
+
+std::string text_of(const Cell& cell, const Column& column) {
+  const std::string_view around = cell.strong ? "**" : "";
+  std::string text(around);
+  text.append(std::visit(Shown{cell, column.unit}, cell.value)).append(around).append(cell.suffix);
+  return one_cell(text);
+}
+
+std::string text_of(const Heading& heading) {
+  return std::string(static_cast<std::size_t>(heading.level), '#') + ' ' + heading.text + '\n';
+}
+
+std::string text_of(const Paragraph& paragraph) { return paragraph.text + '\n'; }
+
+std::string text_of(const BulletList& list) {
+  std::string text;
+  for (const std::string& item : list.items) text += "- " + one_cell(item) + '\n';
   return text;
 }
 
-std::string three_digits(double value) {
-  const int before_point = value > 0 ? static_cast<int>(std::floor(std::log10(value))) + 1 : 1;
-  std::array<char, 340> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::fixed, std::max(0, 3 - before_point))
-                       .ptr;
-  return {buffer.data(), end};
+std::string text_of(const Table& table) {
+  std::string text = "|", rule = "|";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    text += ' ' + one_cell(table.columns[i].name) + " |";
+    rule += is_right_aligned(table, i) ? "---:|" : "---|";
+  }
+  text += '\n' + rule + '\n';
+  for (const std::vector<Cell>& row : table.rows) {
+    text += '|';
+    for (std::size_t i = 0; i < row.size(); ++i) text += ' ' + text_of(row[i], table.columns[i]) + " |";
+    text += '\n';
+  }
+  return text;
 }
 
-std::string one_cell(std::string_view text) {
-  std::string cell;
-  for (const char character : text)
-    cell += character == '|' ? std::string("\\|") : std::string(1, character == '\n' ? ' ' : character);
-  return cell;
+}  // namespace
+
+std::string markdown(const Document& document) {
+  std::string text;
+  for (const auto& block : document) {
+    if (!text.empty()) text += '\n';
+    text += std::visit([](const auto& one) { return text_of(one); }, block);
+  }
+  return text;
 }
 
 }  // namespace mssim

@@ -1,20 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <string_view>
+
+#include "output/tables/document.h"
 
 namespace mssim {
 
-/// What stands in the cells of a Markdown table.
-
-/// 4188004 as 4,188,004.
-std::string grouped(std::uint64_t number);
-
-/// Three significant digits, without an exponent.
-std::string three_digits(double value);
-
-/// Text that cannot end a cell or a line of the table.
-std::string one_cell(std::string_view text);
+/// The page as Markdown (with the tables of GitHub's), a blank line between blocks. Whole numbers are
+/// grouped, reals have three digits unless they are exact. What would end a cell or a line is escaped in
+/// cells and items, nowhere else.
+std::string markdown(const Document& document);
 
 }  // namespace mssim

@@ -1,19 +1,16 @@
 #include "output/tables/paper_table.h"
 
 #include <algorithm>
-#include <array>
-#include <optional>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
-#include "output/tables/csv.h"
-#include "output/tables/markdown.h"
+#include "output/tables/ratio_mark.h"
+#include "text/counted.h"
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {
 
-constexpr std::string_view nothing = "–";
 constexpr std::string_view baseline_configuration = "cpu-only";
 
 constexpr std::string_view how_to_read =
@@ -48,14 +45,6 @@ class Measured {
 
   const std::vector<Scene>& scenes() const { return scenes_; }
   const std::vector<const ResultRow*>& rows() const { return rows_; }
-  const ResultRow* find(const std::string& scene, const std::string& backend,
-                        const std::string& integrator) const {
-    const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const ResultRow* candidate) {
-      return candidate->scene == scene && candidate->backend == backend &&
-             candidate->integrator == integrator;
-    });
-    return row == rows_.end() ? nullptr : *row;
-  }
   bool has(const std::string& integrator) const {
     return std::any_of(rows_.begin(), rows_.end(),
                        [&](const ResultRow* row) { return row->integrator == integrator; });
@@ -87,146 +76,147 @@ Timing measured_timing(const ResultRow* row) {
   return row && counts(*row) ? Timing{row->ms_per_step, row->speedup_vs_serial} : Timing{};
 }
 
-std::string table_csv(const Measured& measured, const PaperLegend& legend, const PublishedTable& published) {
-  std::vector<std::string> header{"integrator", "configuration", "backend", "quantity"};
-  std::vector<std::string> nodes{"", "", "", "nodes"}, springs{"", "", "", "springs_published"};
+Table data_of(const Measured& measured, const PaperLegend& legend, const PublishedTable& published) {
+  Table table{{{"integrator"}, {"configuration"}, {"backend"}, {"quantity"}}, {}};
+  std::vector<Cell> nodes{{}, {}, {}, "nodes"}, springs{{}, {}, {}, "springs_published"};
   for (const Scene& scene : measured.scenes()) {
-    header.push_back(scene.name);
-    nodes.push_back(std::to_string(scene.nodes));
-    springs.push_back(std::to_string(scene.springs));
+    table.columns.push_back({scene.name});
+    nodes.emplace_back(scene.nodes);
+    springs.emplace_back(scene.springs);
   }
-  std::string csv = csv_line(header) + csv_line(nodes) + csv_line(springs);
+  table.rows = {std::move(nodes), std::move(springs)};
   for (const auto& integrator : legend.integrators)
     for (const auto& backend : legend.backends) {
       if (!measured.has(integrator.name, backend.name)) continue;
       const auto line = [&](std::string_view quantity, auto cell) {
-        std::vector<std::string> fields{integrator.name, backend.configuration, backend.name,
-                                        std::string(quantity)};
+        std::vector<Cell>& cells = table.rows.emplace_back();
+        cells = {integrator.name, backend.configuration, backend.name, quantity};
         for (const Scene& scene : measured.scenes())
-          fields.push_back(cell(scene, measured.find(scene.name, backend.name, integrator.name)));
-        csv += csv_line(fields);
+          cells.push_back(cell(scene, find_row(measured.rows(), scene.name, backend.name, integrator.name)));
       };
       const auto from_paper = [&](const Scene& scene) {
         return published_timing(published, integrator, backend.configuration, scene);
       };
-      line("published_ms",
-           [&](const Scene& scene, const ResultRow*) { return csv_number(from_paper(scene).ms); });
-      line("measured_ms",
-           [](const Scene&, const ResultRow* row) { return csv_number(measured_timing(row).ms); });
+      line("published_ms", [&](const Scene& scene, const ResultRow*) { return from_paper(scene).ms; });
+      line("measured_ms", [](const Scene&, const ResultRow* row) { return measured_timing(row).ms; });
       line("published_speedup",
-           [&](const Scene& scene, const ResultRow*) { return csv_number(from_paper(scene).speedup); });
+           [&](const Scene& scene, const ResultRow*) { return from_paper(scene).speedup; });
       line("measured_speedup",
-           [](const Scene&, const ResultRow* row) { return csv_number(measured_timing(row).speedup); });
-      line("status",
-           [](const Scene&, const ResultRow* row) { return row ? status_of(*row) : std::string(); });
+           [](const Scene&, const ResultRow* row) { return measured_timing(row).speedup; });
+      line("status", [](const Scene&, const ResultRow* row) { return row ? Cell(status_of(*row)) : Cell(); });
     }
-  return csv;
+  return table;
 }
 
-/// Empty for the configuration that the speed-ups are measured against.
-std::string speedup_suffix(const Timing& timing, std::string_view configuration) {
-  if (!timing.speedup || configuration == baseline_configuration) return {};
-  return std::string(" (").append(three_digits(*timing.speedup)).append("×)");
-}
-
-class Markdown {
+/// Makes the page, block by block.
+class Page {
  public:
-  Markdown(const Measured& measured, const PaperLegend& legend, const PublishedTable& published)
-      : measured_(measured), legend_(legend), published_(published) {}
+  Page(const Measured& measured, const PaperLegend& legend, const PublishedTable& published,
+       const Provenance& provenance)
+      : measured_(measured), legend_(legend), published_(published), provenance_(provenance) {}
 
-  std::string text(const Provenance& provenance) {
-    threads_ = provenance.threads;
-    out_ << "# " << published_.info().title << ", published and measured\n\n"
-         << measured_on(measured_.rows(), provenance);
-    add_legend();
-    for (const auto& integrator : legend_.integrators)
-      if (measured_.has(integrator.name)) add_block(integrator);
-    out_ << paragraph(legend_of_excess(shown_, threads_)) << paragraph(reason_without_speedups(shown_))
-         << rows_without_a_time(shown_);
-    return out_.str();
+  Document made() const {
+    Document page{Heading{1, std::string(published_.info().title) + ", published and measured"},
+                  measured_on(measured_.rows(), provenance_),
+                  Paragraph{std::string(how_to_read).append(published_.info().springs_counted) +
+                            " the unique ones, by inference from its numbers."},
+                  Paragraph{std::string(why_frozen) + (has_frozen() ? "" : " (`--integrator all`)") +
+                            " hold them as the paper seems to, and reproduce its ratio of costs."}};
+    for (const auto& integrator : legend_.integrators) {
+      if (!measured_.has(integrator.name)) continue;
+      const std::string evaluations =
+          counted(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation");
+      page.insert(page.end(), {Heading{2, integrator.name + ": " + evaluations +
+                                              " a step, beside the published " + integrator.paper_name},
+                               times(integrator)});
+    }
+    const std::vector<const ResultRow*> shown = shown_rows();
+    add_sentence(page, legend_of_ratios(page));
+    add_sentence(page, legend_of_excess(shown, provenance_.threads));
+    add_sentence(page, reason_without_speedups(shown));
+    add_rows_without_a_time(page, shown);
+    return page;
   }
 
  private:
-  void add_legend() {
-    const bool has_frozen =
-        std::any_of(legend_.integrators.begin(), legend_.integrators.end(),
-                    [&](const auto& row) { return row.name != row.paper_name && measured_.has(row.name); });
-    out_ << how_to_read << published_.info().springs_counted
-         << " the unique ones, by inference from its numbers.\n\n"
-         << why_frozen << (has_frozen ? "" : " (`--integrator all`)")
-         << " hold them as the paper seems to, and reproduce its ratio of costs.\n";
+  bool has_frozen() const {
+    return std::ranges::any_of(legend_.integrators, [&](const auto& integrator) {
+      return integrator.name != integrator.paper_name && measured_.has(integrator.name);
+    });
   }
 
-  void add_block(const PaperLegend::Integrator& integrator) {
-    out_ << "\n## " << integrator.name << ": " << integrator.force_evaluations << " force evaluation"
-         << (integrator.force_evaluations == 1 ? "" : "s") << " a step, beside the published "
-         << integrator.paper_name << "\n\n| nodes<br>springs |";
+  /// In the order of the tables.
+  std::vector<const ResultRow*> shown_rows() const {
+    std::vector<const ResultRow*> shown;
+    for (const auto& integrator : legend_.integrators)
+      for (const auto& backend : legend_.backends)
+        for (const Scene& scene : measured_.scenes())
+          if (const auto* row = find_row(measured_.rows(), scene.name, backend.name, integrator.name))
+            shown.push_back(row);
+    return shown;
+  }
+
+  Table times(const PaperLegend::Integrator& integrator) const {
+    Table table{{{"nodes\nsprings"}}, {}};
     for (const Scene& scene : measured_.scenes())
-      out_ << " " << grouped(scene.nodes) << "<br>" << grouped(scene.springs) << " |";
-    out_ << "\n|---|";
-    for (std::size_t i = 0; i < measured_.scenes().size(); ++i) out_ << "---:|";
-    out_ << "\n";
+      table.columns.push_back({grouped(scene.nodes) + '\n' + grouped(scene.springs), Align::right});
     for (const PaperConfiguration& configuration : paper_configurations) {
       bool published = false;
       for (const auto& backend : legend_.backends) {
         if (backend.configuration != configuration.name || !measured_.has(integrator.name, backend.name))
           continue;
-        if (!std::exchange(published, true)) add_published_line(integrator, configuration);
-        add_measured_line(integrator, backend);
+        if (!std::exchange(published, true)) table.rows.push_back(published_line(integrator, configuration));
+        table.rows.push_back(measured_line(integrator, backend));
       }
     }
+    return table;
   }
 
-  void add_published_line(const PaperLegend::Integrator& integrator,
-                          const PaperConfiguration& configuration) {
+  std::vector<Cell> published_line(const PaperLegend::Integrator& integrator,
+                                   const PaperConfiguration& configuration) const {
     bool any = false;
-    std::vector<std::string> cells;
+    std::vector<Cell> cells{{}};
     for (const Scene& scene : measured_.scenes()) {
       const Timing timing = published_timing(published_, integrator, configuration.name, scene);
       any |= timing.ms.has_value();
-      cells.emplace_back(nothing);
-      if (timing.ms) cells.back() = csv_number(*timing.ms) + speedup_suffix(timing, configuration.name);
+      Cell& cell = cells.emplace_back(timing.ms);
+      cell.exact = true;
+      if (timing.speedup && configuration.name != baseline_configuration)
+        cell.suffix = in_brackets(*timing.speedup);
     }
-    out_ << "| " << configuration.caption << ", *" << (any ? "published" : "not published") << "* |";
-    for (const std::string& cell : cells) out_ << " " << cell << " |";
-    out_ << "\n";
+    cells.front() = std::string(configuration.caption) + ", *" + (any ? "published" : "not published") + "*";
+    return cells;
   }
 
-  void add_measured_line(const PaperLegend::Integrator& integrator, const PaperLegend::Backend& backend) {
-    out_ << "| `" << backend.name << "`, **measured** |";
+  std::vector<Cell> measured_line(const PaperLegend::Integrator& integrator,
+                                  const PaperLegend::Backend& backend) const {
+    std::vector<Cell> cells{backend_label(measured_.rows(), backend.name, provenance_) + ", **measured**"};
     for (const Scene& scene : measured_.scenes()) {
-      const ResultRow* row = measured_.find(scene.name, backend.name, integrator.name);
-      if (row) shown_.push_back(row);
-      if (const Timing timing = measured_timing(row); timing.ms) {
-        out_ << " **" << three_digits(*timing.ms) << "**" << mark_of_excess(*row, threads_)
-             << speedup_suffix(timing, backend.configuration);
-      } else if (row) {
-        const std::string status = status_of(*row);
-        out_ << " " << one_cell(status.substr(0, status.find(':')));
-      } else {
-        out_ << " " << nothing;
-      }
-      out_ << " |";
+      const ResultRow* row = find_row(measured_.rows(), scene.name, backend.name, integrator.name);
+      const Timing timing = measured_timing(row);
+      Cell& cell = cells.emplace_back(measured_cell(row, timing.ms));
+      if (!timing.ms) continue;
+      cell.suffix = mark_of_excess(*row, provenance_.threads);
+      if (timing.speedup && backend.configuration != baseline_configuration)
+        cell.suffix.append(in_brackets(*timing.speedup)).append(mark_of_speedup(measured_.rows(), *row));
     }
-    out_ << "\n";
+    return cells;
   }
 
   const Measured& measured_;
   const PaperLegend& legend_;
   const PublishedTable& published_;
-  std::ostringstream out_;
-  std::vector<const ResultRow*> shown_;
-  int threads_ = 0;  // asked for
+  const Provenance& provenance_;
 };
 
 }  // namespace
 
-PaperTable paper_table(std::span<const ResultRow> rows, const PaperLegend& legend,
-                       const PublishedTable& published, const Provenance& provenance) {
+std::optional<ResultTable> paper_table(std::span<const ResultRow> rows, const PaperLegend& legend,
+                                       const PublishedTable& published, const Provenance& provenance) {
   const Measured measured(rows, published);
-  if (measured.rows().empty()) return {};
-  return {false, table_csv(measured, legend, published),
-          Markdown(measured, legend, published).text(provenance)};
+  if (measured.rows().empty()) return std::nullopt;
+  return ResultTable{std::string(published.info().name), data_of(measured, legend, published),
+                     Page(measured, legend, published, provenance).made()};
 }
 
 TableMaker paper_tables(PaperLegend legend, std::vector<PublishedTable> published) {
@@ -234,8 +224,7 @@ TableMaker paper_tables(PaperLegend legend, std::vector<PublishedTable> publishe
                                                                         const Provenance& provenance) {
     std::vector<ResultTable> tables;
     for (const PublishedTable& each : published)
-      if (PaperTable table = paper_table(rows, legend, each, provenance); !table.empty)
-        tables.push_back({std::string(each.info().name), std::move(table.csv), std::move(table.markdown)});
+      if (auto table = paper_table(rows, legend, each, provenance)) tables.push_back(std::move(*table));
     return tables;
   };
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,17 +30,12 @@ struct PaperLegend {
 
 /// A table of Hong et al. with our measurements in it, laid out as published: scenes are columns,
 /// configurations are lines, one block an integrator. Shown is what was measured: scenes, integrators and
-/// backends without a row are left out, and so are scenes that are not the table's.
-struct PaperTable {
-  bool empty = true;     ///< no row belongs into the table
-  std::string csv;       ///< for every integrator and backend the lines published_ms, measured_ms,
-                         ///< published_speedup, measured_speedup and status
-  std::string markdown;  ///< published and measured lines under one another, with a legend
-};
-
-/// Speed-ups are over one thread, published ones over CPU only and measured ones over `serial`.
-PaperTable paper_table(std::span<const ResultRow> rows, const PaperLegend& legend,
-                       const PublishedTable& published, const Provenance& provenance);
+/// backends without a row are left out, and so are scenes that are not the table's; none where no row belongs
+/// into the table. The data has, for every integrator and backend, the lines published_ms, measured_ms,
+/// published_speedup, measured_speedup and status. Speed-ups are over one thread, published ones over CPU
+/// only and measured ones over `serial`.
+std::optional<ResultTable> paper_table(std::span<const ResultRow> rows, const PaperLegend& legend,
+                                       const PublishedTable& published, const Provenance& provenance);
 
 /// Makes the paper_table of every published table that any row belongs into.
 TableMaker paper_tables(PaperLegend legend, std::vector<PublishedTable> published);

@@ -1,24 +1,30 @@
 #include "output/tables/race_table.h"
 
 #include <algorithm>
-#include <sstream>
+#include <optional>
 #include <string_view>
 #include <utility>
 
-#include "output/tables/csv.h"
-#include "output/tables/markdown.h"
+#include "output/tables/ratio_mark.h"
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {
 
 constexpr std::string_view how_to_read =
     "Springs that threads process at the same time add to the forces of nodes that they share: the data race "
-    "of "
-    "Figure 1 of Hong et al. (2016). Each line is a way to avoid it. All but `serial` and `openmp` step the "
-    "same "
-    "list of springs with the same layout, force and update, and differ in the accumulation alone. Times are "
-    "medians with their 95 % interval; *ratio* is how many times as fast as `serial` a way is, the median of "
-    "paired samples. *Same bits* says whether a run repeated gives the very same numbers.\n";
+    "of Figure 1 of Hong et al. (2016). Each line is a way to avoid it. All but `serial` and `openmp` step "
+    "the same list of springs with the same layout, force and update, and differ in the accumulation alone. "
+    "Times are medians with their 95 % interval; *ratio* is how many times as fast as `serial` a way is, the "
+    "median of paired samples. *Same bits* says whether a run repeated gives the very same numbers.";
+
+const std::vector<Column> columns{{"way"},
+                                  {"ms per step", Align::right},
+                                  {"interval", Align::right},
+                                  {"ratio", Align::right, "×"},
+                                  {"extra memory", Align::left},
+                                  {"springs computed", Align::left},
+                                  {"same bits", Align::left}};
 
 struct Line {
   const ResultRow* row;
@@ -34,55 +40,71 @@ std::vector<Line> lines_of(std::span<const ResultRow> rows, const std::vector<Ra
   return lines;
 }
 
-std::string as_csv(const std::vector<Line>& lines) {
-  std::string csv = csv_line({"scene", "nodes", "springs_unique", "integrator", "way", "threads",
-                              "ms_per_step", "ms_per_step_low", "ms_per_step_high", "speedup_vs_serial",
-                              "extra_memory", "springs_computed", "same_bits", "status"});
+Table data_of(const std::vector<Line>& lines) {
+  Table table;
   for (const auto& [row, legend] : lines)
-    csv += csv_line({row->scene, std::to_string(row->nodes), std::to_string(row->springs_unique),
-                     row->integrator, row->backend, std::to_string(row->threads),
-                     csv_number(row->ms_per_step), csv_number(row->ms_per_step_low),
-                     csv_number(row->ms_per_step_high), csv_number(row->speedup_vs_serial),
-                     legend->extra_memory, legend->springs_computed, legend->repeatable, status_of(*row)});
-  return csv;
+    table.add({{"scene", row->scene},
+               {"nodes", row->nodes},
+               {"springs_unique", row->springs_unique},
+               {"integrator", row->integrator},
+               {"way", row->backend},
+               {"threads", row->threads},
+               {"ms_per_step", row->ms_per_step},
+               {"ms_per_step_low", row->ms_per_step_low},
+               {"ms_per_step_high", row->ms_per_step_high},
+               {"speedup_vs_serial", row->speedup_vs_serial},
+               {"extra_memory", legend->extra_memory},
+               {"springs_computed", legend->springs_computed},
+               {"same_bits", legend->repeatable},
+               {"status", status_of(*row)}});
+  return table;
 }
 
-/// Time, interval and ratio, or why there are none.
-std::string timing_cells(const ResultRow& row) {
-  if (!counts(row) || !row.ms_per_step) {
-    const std::string status = status_of(row);
-    return one_cell(status.substr(0, status.find(':'))) + " | – | –";
+/// Time, interval and ratio, or why there are none; then what the legend says.
+std::vector<Cell> cells_of(const Line& line, RowPointers rows, const Provenance& provenance) {
+  const auto& [row, legend] = line;
+  const std::optional<double> ms = counts(*row) ? row->ms_per_step : std::nullopt;
+  Cell interval, ratio;
+  if (ms && row->ms_per_step_low && row->ms_per_step_high)
+    interval = three_digits(*row->ms_per_step_low) + " to " + three_digits(*row->ms_per_step_high);
+  if (ms && row->speedup_vs_serial) {
+    ratio = row->speedup_vs_serial;
+    ratio.suffix = mark_of_speedup(rows, *row);
   }
-  std::string cells = "**" + three_digits(*row.ms_per_step) + "** | ";
-  cells += row.ms_per_step_low && row.ms_per_step_high
-               ? three_digits(*row.ms_per_step_low) + " to " + three_digits(*row.ms_per_step_high)
-               : "–";
-  return cells + " | " + (row.speedup_vs_serial ? three_digits(*row.speedup_vs_serial) + "×" : "–");
+  return {backend_label(rows, row->backend, provenance),
+          measured_cell(row, ms),
+          interval,
+          ratio,
+          legend->extra_memory,
+          legend->springs_computed,
+          legend->repeatable};
 }
 
-std::string as_markdown(const std::vector<Line>& lines, const std::vector<RaceLegend>& ways,
-                        const Provenance& provenance) {
+Document page_of(const std::vector<Line>& lines, const std::vector<RaceLegend>& ways,
+                 const Provenance& provenance) {
   std::vector<const ResultRow*> rows;
   for (const Line& line : lines) rows.push_back(line.row);
-  std::ostringstream text;
-  text << "# Ways to avoid the data race of the springs\n\n" << measured_on(rows, provenance) << how_to_read;
+  Document page{Heading{1, "Ways to avoid the data race of the springs"}, measured_on(rows, provenance),
+                Paragraph{std::string(how_to_read)}};
   const ResultRow* block = nullptr;
-  for (const auto& [row, legend] : lines) {
-    if (!block || block->scene != row->scene || block->integrator != row->integrator)
-      text << "\n## " << row->scene << ", " << row->integrator << ": " << grouped(row->nodes) << " nodes, "
-           << grouped(row->springs_unique) << " springs\n\n"
-           << "| way | ms per step | interval | ratio | extra memory | springs computed | same bits |\n"
-              "|---|---:|---:|---:|---|---|---|\n";
-    block = row;
-    text << "| `" << row->backend << "` | " << timing_cells(*row) << " | " << legend->extra_memory << " | "
-         << legend->springs_computed << " | " << legend->repeatable << " |\n";
+  for (const Line& line : lines) {
+    const ResultRow& row = *line.row;
+    if (!block || block->scene != row.scene || block->integrator != row.integrator)
+      page.insert(page.end(), {Heading{2, row.scene + ", " + row.integrator + ": " + grouped(row.nodes) +
+                                              " nodes, " + grouped(row.springs_unique) + " springs"},
+                               Table{columns, {}}});
+    block = &row;
+    std::get<Table>(page.back()).rows.push_back(cells_of(line, rows, provenance));
   }
-  text << "\n## The ways\n\n";
+  BulletList descriptions;
   for (const RaceLegend& way : ways)
-    if (std::ranges::any_of(lines, [&](const Line& line) { return line.legend == &way; }))
-      text << "- `" << way.way << "`: " << way.description << "\n";
-  text << paragraph(reason_without_speedups(rows)) << rows_without_a_time(rows);
-  return text.str();
+    if (std::ranges::find(lines, &way, &Line::legend) != lines.end())
+      descriptions.items.push_back("`" + way.way + "`: " + way.description);
+  add_sentence(page, legend_of_ratios(page));
+  page.insert(page.end(), {Heading{2, "The ways"}, std::move(descriptions)});
+  add_sentence(page, reason_without_speedups(rows));
+  add_rows_without_a_time(page, rows);
+  return page;
 }
 
 }  // namespace
@@ -91,7 +113,7 @@ TableMaker race_tables(std::vector<RaceLegend> legend) {
   return [legend = std::move(legend)](std::span<const ResultRow> rows, const Provenance& provenance) {
     const std::vector<Line> lines = lines_of(rows, legend);
     std::vector<ResultTable> tables;
-    if (!lines.empty()) tables.push_back({"races", as_csv(lines), as_markdown(lines, legend, provenance)});
+    if (!lines.empty()) tables.push_back({"races", data_of(lines), page_of(lines, legend, provenance)});
     return tables;
   };
 }

@@ -2,35 +2,96 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 #include <utility>
 #include <vector>
 
-#include "output/tables/markdown.h"
+#include "output/tables/ratio_mark.h"
 #include "text/counted.h"
+#include "text/decimal.h"
 
 namespace mssim {
 
-std::string measured_on(std::span<const ResultRow* const> rows, const Provenance& provenance) {
+std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows) {
+  std::vector<const ResultRow*> pointers;
+  for (const ResultRow& row : rows) pointers.push_back(&row);
+  return pointers;
+}
+
+const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_view backend,
+                          std::string_view integrator) {
+  const auto row = std::ranges::find_if(rows, [&](const ResultRow* candidate) {
+    return candidate->scene == scene && candidate->backend == backend && candidate->integrator == integrator;
+  });
+  return row == rows.end() ? nullptr : *row;
+}
+
+std::string made_by(const Provenance& provenance) {
+  const BuildInfo& build = provenance.build;
+  return "mssim " + build.version + ", commit " + build.commit.substr(0, 12) +
+         (build.dirty ? " with uncommitted changes" : "") + "; " + provenance.started_utc;
+}
+
+Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
   std::set<std::string> devices;
   for (const ResultRow* row : rows)
     if (!row->device.empty() && row->device != "cpu") devices.insert(row->device);
-  std::ostringstream text;
-  text << "Measured on " << provenance.machine.cpu_model << " ("
-       << counted(static_cast<std::uint64_t>(provenance.machine.logical_cpus), "logical CPU") << ") with "
-       << counted(static_cast<std::uint64_t>(provenance.threads), "thread");
-  for (const std::string& device : devices) text << "; device " << device;
-  text << "; mssim " << provenance.build.version << ", commit " << provenance.build.commit.substr(0, 12)
-       << (provenance.build.dirty ? " with uncommitted changes" : "") << "; " << provenance.started_utc
-       << ".\n\n";
-  return text.str();
+  const auto number = [](int of, std::string_view noun) {
+    return counted(static_cast<std::uint64_t>(of), noun);
+  };
+  std::string text = "Measured on " + provenance.machine.cpu_model + " (" +
+                     number(provenance.machine.logical_cpus, "logical CPU") + ") with " +
+                     number(provenance.threads, "thread");
+  for (const std::string& device : devices) text += "; device " + device;
+  return {text + "; " + made_by(provenance) + "."};
+}
+
+std::string_view opencl_device(const ResultRow& row) {
+  const bool host = row.device == "cpu" || row.device.starts_with("cpu ");
+  return host ? std::string_view() : std::string_view(row.device);
+}
+
+std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance) {
+  std::string label = "`" + std::string(backend) + "`";
+  const auto row = std::ranges::find_if(rows, [&](const ResultRow* candidate) {
+    return candidate->backend == backend && !opencl_device(*candidate).empty();
+  });
+  if (row == rows.end()) return label;
+  label.append(" on ").append(opencl_device(**row));
+  // CPU drivers put the model of the processor into the name of their device.
+  const std::string& processor = provenance.machine.cpu_model;
+  if (!processor.empty() && (*row)->device.find(processor) != std::string::npos)
+    label += ", the same processor";
+  return label;
+}
+
+Cell measured_cell(const ResultRow* row, const std::optional<double>& value) {
+  if (row == nullptr) return {};
+  const std::string status = status_of(*row);
+  Cell cell = value ? Cell(*value) : Cell(status.substr(0, status.find(':')));
+  cell.strong = value.has_value();
+  return cell;
+}
+
+std::optional<double> ns_per_node(const ResultRow& row, const std::optional<double>& ms) {
+  if (!counts(row) || !ms) return std::nullopt;
+  return *ms * 1e6 / static_cast<double>(row.nodes);
+}
+
+Column scene_column(const ResultRow& row) { return {row.scene + '\n' + grouped(row.nodes), Align::right}; }
+
+std::string in_brackets(double ratio) { return " (" + three_digits(ratio) + "×)"; }
+
+std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row) {
+  const ResultRow* serial = find_row(rows, row.scene, "serial", row.integrator);
+  if (serial == nullptr || !serial->ms_per_step || !row.ms_per_step || !row.speedup_vs_serial) return "";
+  return mark_of_ratio(*row.speedup_vs_serial, *serial->ms_per_step, *row.ms_per_step);
 }
 
 std::string_view mark_of_excess(const ResultRow& row, int threads) {
   return exceeds(row, threads) ? " (!)" : "";
 }
 
-std::string legend_of_excess(std::span<const ResultRow* const> rows, int threads) {
+std::string legend_of_excess(RowPointers rows, int threads) {
   std::set<std::string> backends;
   for (const ResultRow* row : rows)
     if (exceeds(*row, threads)) backends.insert(row->backend + " (" + std::to_string(row->threads) + ")");
@@ -48,29 +109,26 @@ std::string reason_without_speedups(std::span<const std::string_view> backends) 
   return "speed-ups are missing, since serial is not among the backends; add it: --backend " + all;
 }
 
-std::string reason_without_speedups(std::span<const ResultRow* const> rows) {
+std::string reason_without_speedups(RowPointers rows) {
   std::vector<std::string_view> backends;
   for (const ResultRow* row : rows)
     if (std::ranges::find(backends, row->backend) == backends.end()) backends.emplace_back(row->backend);
   return reason_without_speedups(backends);
 }
 
-std::string paragraph(const std::string& sentence) { return sentence.empty() ? "" : "\n" + sentence + ".\n"; }
-
-std::string rows_without_a_time(std::span<const ResultRow* const> rows) {
+void add_rows_without_a_time(Document& page, RowPointers rows) {
   std::vector<std::pair<std::string, std::string>> remarks;  // reason, scenes
   for (const ResultRow* row : rows) {
     if (counts(*row)) continue;
-    const std::string reason =
-        "`" + row->backend + "`, `" + row->integrator + "`: " + one_cell(status_of(*row));
+    const std::string reason = "`" + row->backend + "`, `" + row->integrator + "`: " + status_of(*row);
     auto known = std::ranges::find(remarks, reason, &std::pair<std::string, std::string>::first);
     if (known == remarks.end()) known = remarks.insert(remarks.end(), {reason, ""});
     known->second += (known->second.empty() ? "`" : ", `") + row->scene + "`";
   }
-  if (remarks.empty()) return {};
-  std::string text = "\n## Rows without a time\n\n";
-  for (const auto& [reason, scenes] : remarks) text += "- " + reason + " (" + scenes + ")\n";
-  return text;
+  if (remarks.empty()) return;
+  BulletList list;
+  for (const auto& [reason, scenes] : remarks) list.items.push_back(reason + " (" + scenes + ")");
+  page.insert(page.end(), {Heading{2, "Rows without a time"}, std::move(list)});
 }
 
 }  // namespace mssim

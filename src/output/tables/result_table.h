@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,14 +10,15 @@
 
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
+#include "output/tables/document.h"
 
 namespace mssim {
 
-/// A table that is made of measured rows, for the files NAME.csv and NAME.md.
+/// A table that is made of measured rows.
 struct ResultTable {
   std::string name;
-  std::string csv;
-  std::string markdown;
+  Table data;     ///< for programs: the file NAME.csv
+  Document page;  ///< for people: the file NAME.md
 };
 
 /// Every name of such a table, and table2, which is made of what the scenes are.
@@ -28,27 +30,55 @@ using TableMaker =
     std::function<std::vector<ResultTable>(std::span<const ResultRow> rows, const Provenance& provenance)>;
 
 /// What tables of measured rows have in common.
+using RowPointers = std::span<const ResultRow* const>;
 
-/// One sentence for the top of a Markdown file: machine, threads, devices of the rows, program, time. Ends
-/// with a blank line.
-std::string measured_on(std::span<const ResultRow* const> rows, const Provenance& provenance);
+std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows);
+
+/// The row of a combination; null where there is none.
+const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_view backend,
+                          std::string_view integrator);
+
+/// Version, commit and time, without a full stop.
+std::string made_by(const Provenance& provenance);
+
+/// One sentence for the top of a page: machine, threads, devices of the rows, program, time.
+Paragraph measured_on(RowPointers rows, const Provenance& provenance);
+
+/// The name of a backend for a cell; with the OpenCL device that its rows ran on, and whether that is the
+/// processor of the machine.
+std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance);
+
+/// A device that is not what the backends of the host run on; empty for those.
+std::string_view opencl_device(const ResultRow& row);
+
+/// `value`, which was measured; where there is none, the first word of why. Nothing without a row.
+Cell measured_cell(const ResultRow* row, const std::optional<double>& value);
+
+/// Nanoseconds a node and step of `ms`, which is a time of the row; none where the row does not count.
+std::optional<double> ns_per_node(const ResultRow& row, const std::optional<double>& ms);
+
+/// The row's scene with its number of nodes, at the head of numbers.
+Column scene_column(const ResultRow& row);
+
+/// " (2.95×)"
+std::string in_brackets(double ratio);
+
+/// "†" where the row's speed-up contradicts its time and that of `serial` (ratio_mark.h); else empty.
+std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row);
 
 /// What stands behind the number of threads, or the time, of a row that took more processors than `threads`,
 /// which were asked for; nothing of others.
 std::string_view mark_of_excess(const ResultRow& row, int threads);
 
 /// What that mark means, and which backends have it; empty where none has.
-std::string legend_of_excess(std::span<const ResultRow* const> rows, int threads);
+std::string legend_of_excess(RowPointers rows, int threads);
 
 /// Why a table shows no speed-ups, and what to do, where serial is not one of the backends; else empty.
 std::string reason_without_speedups(std::span<const std::string_view> backends);
-std::string reason_without_speedups(std::span<const ResultRow* const> rows);
+std::string reason_without_speedups(RowPointers rows);
 
-/// A paragraph of a Markdown file with this sentence, after what stands before; empty without one.
-std::string paragraph(const std::string& sentence);
-
-/// The last section of a Markdown file: what became of those of the rows that do not count, one line for each
-/// reason with the scenes that it holds for. Empty where all count.
-std::string rows_without_a_time(std::span<const ResultRow* const> rows);
+/// Adds the last section of a page: what became of those of the rows that do not count, one item for each
+/// reason with the scenes that it holds for. Nothing where all count.
+void add_rows_without_a_time(Document& page, RowPointers rows);
 
 }  // namespace mssim

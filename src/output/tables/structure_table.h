@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 
-#include "bench/machine/provenance.h"
+#include "output/tables/result_table.h"
 
 namespace mssim {
 
@@ -19,14 +18,9 @@ struct StructureRow {
   double smallest_dihedral_angle_deg = 0;  ///< between two faces of a tetrahedron
 };
 
-/// Table 2 of Hong et al. with our meshes in it.
-struct StructureTable {
-  std::string csv;       ///< the columns of StructureRow, then paper_nodes, paper_springs, same_as_paper
-  std::string markdown;  ///< laid out as published: sizes are columns, a block of lines for each body
-};
-
-/// Rows of scenes that are not the paper's, which are named BODY-SIZE there, stay out of the Markdown. Throws
-/// CsvError when the published table cannot be read.
-StructureTable structure_table(std::span<const StructureRow> rows, const Provenance& provenance);
+/// Table 2 of Hong et al. with our meshes in it. The data has the columns of StructureRow, then paper_nodes,
+/// paper_springs, same_as_paper. Rows of scenes that are not the paper's, which are named BODY-SIZE there,
+/// stay out of the page. Throws CsvError when the published table cannot be read.
+ResultTable structure_table(std::span<const StructureRow> rows, const Provenance& provenance);
 
 }  // namespace mssim

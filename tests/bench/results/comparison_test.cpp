@@ -4,19 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "output/tables/comparison_table.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr double threshold = 0.05;
@@ -158,31 +155,6 @@ TEST(RunComparison, IsARegressionWhereARowIsSlowerOrLost) {
   EXPECT_TRUE(regression(row_of("openmp", 2)));
   EXPECT_TRUE(regression(failed_row("openmp", "failed: x")));
   EXPECT_THAT(compare({}, {}, threshold).rows, IsEmpty());
-}
-
-TEST(ComparisonTable, HoldsEveryRowInEveryFormat) {
-  const std::vector<ResultRow> base{row_of("openmp", 1), row_of("serial", 1), row_of("opencl", 1),
-                                    row_of("hybrid", 1, 0.3)};
-  const std::vector<ResultRow> next{row_of("openmp", 2), row_of("serial", 1),
-                                    failed_row("opencl", "failed: a | b"), row_of("hybrid", 1.01, 0.3)};
-  const RunComparison comparison = compare(base, next, threshold);
-  const std::string table = to_text(comparison, ComparisonFormat::table);
-  EXPECT_THAT(table, testing::ContainsRegex("cloth2500  openmp   semi-euler +1 +2 +2 .*slower"));
-  EXPECT_THAT(table, testing::ContainsRegex("hybrid .*undecided  [0-9]+ samples a side would decide"));
-  EXPECT_THAT(table, testing::ContainsRegex("all +3 +1"));
-  const std::string markdown = to_text(comparison, ComparisonFormat::markdown);
-  EXPECT_THAT(markdown, HasSubstr("| cloth2500 | `openmp` | semi-euler | 1.00 | 2.00 | 2.00 | "));
-  EXPECT_THAT(markdown, HasSubstr("| **slower** |"));
-  EXPECT_THAT(markdown, HasSubstr("| – | – | – | **lost**: failed: a \\| b |"));
-  const nlohmann::json json = nlohmann::json::parse(to_text(comparison, ComparisonFormat::json));
-  EXPECT_EQ(json["regression"], true);
-  EXPECT_EQ(json["threshold"], threshold);
-  ASSERT_EQ(json["rows"].size(), 4U);
-  EXPECT_EQ(json["rows"][1]["verdict"], "same");
-  EXPECT_EQ(json["rows"][2]["verdict"], "lost");
-  EXPECT_EQ(json["rows"][2]["ratio"], nullptr);
-  EXPECT_NEAR(json["rows"][0]["ratio"].get<double>(), 2, 1e-12);
-  EXPECT_EQ(json["geometric_means"][0]["backend"], "all");
 }
 
 }  // namespace

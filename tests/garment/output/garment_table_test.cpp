@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "garment/output/garment_csv.h"
+#include "output/tables/markdown.h"
+#include "output/tables/table_csv.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {
@@ -135,28 +137,27 @@ ResultTable table_of(const std::vector<ResultRow>& rows) {
 }
 
 TEST(GarmentTable, IsLaidOutAsTheFigure) {
-  const std::string markdown = table_of(garment_rows()).markdown;
-  EXPECT_THAT(markdown, HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads"));
-  EXPECT_THAT(markdown, HasSubstr("| milliseconds an iteration | small<br>1,000 | large<br>4,000 |\n"
-                                  "|---|---:|---:|\n"
-                                  "| without: `serial` | **0.250** | **2.00** |\n"
-                                  "| with: `openmp` | failed | **0.500** (4.00×) |\n"));
-  EXPECT_THAT(markdown, HasSubstr("| nanoseconds | small<br>1,000 | large<br>4,000 |\n"
-                                  "|---|---:|---:|\n"
-                                  "| without: `serial` | 250 | 500 |\n"
-                                  "| with: `openmp` | – | 125 |\n"));
-  EXPECT_THAT(markdown, HasSubstr("| without: `serial` | 500 s<br>2,000 | 4000 s<br>2,000 |\n"
-                                  "| with: `openmp` | 0.750 s<br>8,000 | 1000 s<br>2,000 |\n"));
-  EXPECT_THAT(markdown,
-              HasSubstr("## Rows without a time\n\n"
-                        "- `hybrid`, `semi-euler`: unsupported: no \\| garments (`large`, `small`)\n"
-                        "- `openmp`, `semi-euler`: failed: dressed, the garment did not come to "
-                        "rest (`small`)\n"));
-  EXPECT_EQ(markdown.find("cloth2500"), std::string::npos);
+  const std::string page = markdown(table_of(garment_rows()).page);
+  EXPECT_THAT(page, HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads"));
+  EXPECT_THAT(page, HasSubstr("| milliseconds an iteration | small<br>1,000 | large<br>4,000 |\n"
+                              "|---|---:|---:|\n"
+                              "| without: `serial` | **0.250** | **2.00** |\n"
+                              "| with: `openmp` | failed | **0.500** (4.00×) |\n"));
+  EXPECT_THAT(page, HasSubstr("| nanoseconds | small<br>1,000 | large<br>4,000 |\n"
+                              "|---|---:|---:|\n"
+                              "| without: `serial` | 250 | 500 |\n"
+                              "| with: `openmp` | – | 125 |\n"));
+  EXPECT_THAT(page, HasSubstr("| without: `serial` | 500 s<br>2,000 | 4000 s<br>2,000 |\n"
+                              "| with: `openmp` | 0.750 s<br>8,000 | 1000 s<br>2,000 |\n"));
+  EXPECT_THAT(page, HasSubstr("## Rows without a time\n\n"
+                              "- `hybrid`, `semi-euler`: unsupported: no \\| garments (`large`, `small`)\n"
+                              "- `openmp`, `semi-euler`: failed: dressed, the garment did not come to "
+                              "rest (`small`)\n"));
+  EXPECT_EQ(page.find("cloth2500"), std::string::npos);
 }
 
 TEST(GarmentTable, AsCsvHasALineAQuantity) {
-  EXPECT_EQ(table_of(garment_rows()).csv,
+  EXPECT_EQ(table_csv(table_of(garment_rows()).data),
             "backend,integrator,parallel,quantity,small,large\n"
             ",,,vertices,1000,4000\n"
             "serial,semi-euler,without,ms_per_iteration,0.25,2\n"

@@ -15,8 +15,10 @@
 #include "output/folders/result_folder.h"
 #include "output/tables/benchmark_json.h"
 #include "output/tables/csv.h"
+#include "output/tables/markdown.h"
 #include "output/tables/paper_table.h"
 #include "output/tables/published.h"
+#include "output/tables/table_csv.h"
 #include "output/tables/timings_csv.h"
 #include "platform/write_error.h"
 #include "tests/support/result_fixture.h"
@@ -174,10 +176,10 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
     EXPECT_EQ(text_of(folder() / "new/out/samples.csv"), samples_csv(rows));
     EXPECT_EQ(nlohmann::ordered_json::parse(text_of(folder() / "new/out/benchmark.json")),
               benchmark_json(rows, made_up_provenance()));
-    const PaperTable table =
+    const auto table =
         paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
-    EXPECT_EQ(text_of(folder() / "new/out/table1.csv"), table.csv);
-    EXPECT_EQ(text_of(folder() / "new/out/table1.md"), table.markdown);
+    EXPECT_EQ(text_of(folder() / "new/out/table1.csv"), table_csv(table.value().data));
+    EXPECT_EQ(text_of(folder() / "new/out/table1.md"), markdown(table.value().page));
   }
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder() / "new/out"))

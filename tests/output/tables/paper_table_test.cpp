@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/csv.h"
+#include "output/tables/markdown.h"
 #include "output/tables/published.h"
+#include "output/tables/table_csv.h"
 #include "platform/data_folder.h"
 #include "tests/support/result_fixture.h"
 
@@ -18,6 +19,17 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+
+ResultTable table_of(const std::vector<ResultRow>& rows,
+                     const Provenance& provenance = made_up_provenance()) {
+  return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), provenance).value();
+}
+
+std::string csv_of(const std::vector<ResultRow>& rows) { return table_csv(table_of(rows).data); }
+
+std::string page_of(const std::vector<ResultRow>& rows, const Provenance& provenance = made_up_provenance()) {
+  return markdown(table_of(rows, provenance).page);
+}
 
 TEST(Published, TimesEqualTheDataFileEverywhere) {
   const PublishedTable table = PublishedTable(published_table_kinds[0]);
@@ -54,10 +66,7 @@ TEST(Published, TableOfBodiesReadsToo) {
 }
 
 TEST(PaperTable, AsCsvHasPublishedAndMeasuredUnderOneAnother) {
-  const PaperTable table =
-      paper_table(table_rows(), legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
-  EXPECT_FALSE(table.empty);
-  EXPECT_EQ(table.csv,
+  EXPECT_EQ(csv_of(table_rows()),
             "integrator,configuration,backend,quantity,cloth2500,cloth350k\n"
             ",,,nodes,2500,350000\n"
             ",,,springs_published,29004,4188004\n"
@@ -88,9 +97,7 @@ TEST(PaperTable, AsCsvHasPublishedAndMeasuredUnderOneAnother) {
 }
 
 TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
-  const std::string text =
-      paper_table(table_rows(), legend, PublishedTable(published_table_kinds[0]), made_up_provenance())
-          .markdown;
+  const std::string text = page_of(table_rows());
   EXPECT_THAT(text,
               HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads; device Some device; mssim "
                         "0.1.0, commit 0123456789ab with uncommitted changes; 2026-01-31T12:00:00Z."));
@@ -105,7 +112,7 @@ TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
                               "| GPU, *published* | 1.827 (10.7×) | 115.015 (23.8×) |\n"
                               "| `opencl`, **measured** | failed | – |\n"
                               "| GPU + multi-thread CPU, *not published* | – | – |\n"
-                              "| `hybrid`, **measured** | **0.0500** (2.00×) | – |\n"));
+                              "| `hybrid` on Some device, **measured** | **0.0500** (2.00×) | – |\n"));
   EXPECT_THAT(text,
               HasSubstr("- `opencl`, `semi-euler`: failed: step 3 \\| node 7 is not finite (`cloth2500`)\n"));
   EXPECT_THAT(text, HasSubstr("Inferred from those times, not stated in the paper"));
@@ -115,49 +122,55 @@ TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
 TEST(PaperTable, ShowsNoTimeThatWasNotVerified) {
   std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
   rows[0].verified = false;
-  const PaperTable table =
-      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
-  EXPECT_THAT(table.markdown, HasSubstr("| `openmp`, **measured** | failed |"));
-  EXPECT_THAT(table.csv, Not(HasSubstr("0.0125")));
+  EXPECT_THAT(page_of(rows), HasSubstr("| `openmp`, **measured** | failed |"));
+  EXPECT_THAT(csv_of(rows), Not(HasSubstr("0.0125")));
 }
 
 TEST(PaperTable, MarksTimesOnMoreProcessorsThanWereAskedFor) {
   Provenance provenance = made_up_provenance();
   std::vector<ResultRow> rows = table_rows();
   for (ResultRow& row : rows) row.threads = row.backend == "hybrid" ? 2 : 1;
-  const auto text = [&] {
-    return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), provenance).markdown;
-  };
+  const auto text = [&] { return page_of(rows, provenance); };
   EXPECT_THAT(text(), Not(HasSubstr("(!)")));
   provenance.threads = 1;
-  EXPECT_THAT(text(), HasSubstr("| `hybrid`, **measured** | **0.0500** (!) (2.00×) | – |\n"));
+  EXPECT_THAT(text(), HasSubstr("| `hybrid` on Some device, **measured** | **0.0500** (!) (2.00×) | – |\n"));
   EXPECT_THAT(text(), HasSubstr("| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"));
   EXPECT_THAT(text(), HasSubstr("\n(!) on more processors than the 1 asked for, since its device cannot be "
                                 "divided: hybrid (2).\n"));
 }
 
+TEST(PaperTable, NamesTheDeviceThatIsTheProcessor) {
+  std::vector<ResultRow> rows = table_rows();
+  rows[2].device = "pthread-A Processor";
+  EXPECT_THAT(page_of(rows),
+              HasSubstr("| `hybrid` on pthread-A Processor, the same processor, **measured** |"));
+}
+
+TEST(PaperTable, MarksARatioThatItsTimesContradict) {
+  std::vector<ResultRow> rows = table_rows();
+  EXPECT_THAT(page_of(rows), Not(HasSubstr("†")));
+  rows[1].speedup_vs_serial = 0.9;
+  EXPECT_THAT(page_of(rows), HasSubstr("| `openmp`, **measured** | **0.0125** (0.900×)† | – |\n"));
+  EXPECT_THAT(page_of(rows), HasSubstr("\n\n† the two times shown contradict this ratio: "));
+}
+
 TEST(PaperTable, SaysWhyThereAreNoSpeedUps) {
-  const auto text = [](const std::vector<ResultRow>& rows) {
-    return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).markdown;
-  };
-  EXPECT_THAT(text({measured_row("openmp", 0.0125, std::nullopt), measured_row("hybrid", 1, std::nullopt)}),
-              HasSubstr("\nspeed-ups are missing, since serial is not among the backends; add it: --backend "
-                        "serial,openmp,hybrid.\n"));
-  EXPECT_THAT(text(table_rows()), Not(HasSubstr("missing")));
+  EXPECT_THAT(
+      page_of({measured_row("openmp", 0.0125, std::nullopt), measured_row("hybrid", 1, std::nullopt)}),
+      HasSubstr("\nspeed-ups are missing, since serial is not among the backends; add it: --backend "
+                "serial,openmp,hybrid.\n"));
+  EXPECT_THAT(page_of(table_rows()), Not(HasSubstr("missing")));
 }
 
 TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
   std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
   rows[0].integrator = "rk4-frozen";
-  const PaperTable table =
-      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
-  EXPECT_THAT(table.csv, HasSubstr("rk4-frozen,multi-thread-cpu,openmp,published_ms,7.94\n"));
-  EXPECT_THAT(table.markdown,
+  EXPECT_THAT(csv_of(rows), HasSubstr("rk4-frozen,multi-thread-cpu,openmp,published_ms,7.94\n"));
+  EXPECT_THAT(page_of(rows),
               HasSubstr("## rk4-frozen: 1 force evaluation a step, beside the published rk4\n"));
-  EXPECT_THAT(table.markdown, Not(HasSubstr("--integrator all")));
+  EXPECT_THAT(page_of(rows), Not(HasSubstr("--integrator all")));
   rows[0].integrator = "rk4";
-  const std::string real =
-      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).markdown;
+  const std::string real = page_of(rows);
   EXPECT_THAT(real, HasSubstr("## rk4: 4 force evaluations a step, beside the published rk4\n"));
   EXPECT_THAT(real, HasSubstr("--integrator all"));
 }
@@ -165,8 +178,8 @@ TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
 TEST(PaperTable, OfOtherScenesIsEmpty) {
   std::vector<ResultRow> rows{measured_row("serial", 1, 1.0)};
   rows[0].springs_published = 29000;
-  EXPECT_TRUE(
-      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).empty);
+  EXPECT_FALSE(
+      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).has_value());
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "output/tables/markdown.h"
+#include "output/tables/table_csv.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {
@@ -34,7 +36,7 @@ ResultTable table_of(const std::vector<ResultRow>& rows) {
 
 TEST(RaceTable, AsCsvHasTimesRatiosAndWhatAWayCosts) {
   EXPECT_EQ(
-      table_of(race_rows()).csv,
+      table_csv(table_of(race_rows()).data),
       "scene,nodes,springs_unique,integrator,way,threads,ms_per_step,ms_per_step_low,ms_per_step_high,"
       "speedup_vs_serial,extra_memory,springs_computed,same_bits,status\n"
       "cloth2500,2500,14502,semi-euler,serial,2,1.5,0.75,3,1,none,once,yes,ok\n"
@@ -44,25 +46,33 @@ TEST(RaceTable, AsCsvHasTimesRatiosAndWhatAWayCosts) {
 }
 
 TEST(RaceTable, AsMarkdownHasABlockASceneAndALineAWay) {
-  const std::string markdown = table_of(race_rows()).markdown;
-  EXPECT_THAT(markdown, HasSubstr("## cloth2500, semi-euler: 2,500 nodes, 14,502 springs\n"));
-  EXPECT_THAT(markdown, HasSubstr("## box, semi-euler"));
+  const std::string page = markdown(table_of(race_rows()).page);
+  EXPECT_THAT(page, HasSubstr("## cloth2500, semi-euler: 2,500 nodes, 14,502 springs\n"));
+  EXPECT_THAT(page, HasSubstr("## box, semi-euler"));
   EXPECT_THAT(
-      markdown,
+      page,
       HasSubstr("| `gather` | **0.750** | 0.375 to 1.50 | 2.00× | 32 bytes a spring | twice | yes |\n"));
-  EXPECT_THAT(markdown, HasSubstr("| `atomic` | failed | – | – | none | once | no |\n"));
-  EXPECT_THAT(markdown, HasSubstr("- `atomic`, `semi-euler`: failed: step 3 \\| node 7"));
-  EXPECT_THAT(markdown, HasSubstr("- `gather`: each node sums\n"));
-  EXPECT_THAT(markdown, HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads"));
-  EXPECT_THAT(markdown, Not(HasSubstr("hybrid")));
+  EXPECT_THAT(page, HasSubstr("| `atomic` | failed | – | – | none | once | no |\n"));
+  EXPECT_THAT(page, HasSubstr("- `atomic`, `semi-euler`: failed: step 3 \\| node 7"));
+  EXPECT_THAT(page, HasSubstr("- `gather`: each node sums\n"));
+  EXPECT_THAT(page, HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads"));
+  EXPECT_THAT(page, Not(HasSubstr("hybrid")));
 }
 
 TEST(RaceTable, ShowsNoTimeThatWasNotVerified) {
   std::vector<ResultRow> rows{measured_row("gather", 0.75, 2.0)};
   rows[0].verified = false;
   const ResultTable table = table_of(rows);
-  EXPECT_THAT(table.markdown, HasSubstr("| `gather` | failed | – | – |"));
-  EXPECT_THAT(table.csv, HasSubstr("failed: not verified"));
+  EXPECT_THAT(markdown(table.page), HasSubstr("| `gather` | failed | – | – |"));
+  EXPECT_THAT(table_csv(table.data), HasSubstr("failed: not verified"));
+}
+
+TEST(RaceTable, MarksARatioThatItsTimesContradict) {
+  std::vector<ResultRow> rows = race_rows();
+  EXPECT_THAT(markdown(table_of(rows).page), Not(HasSubstr("†")));
+  rows[1].speedup_vs_serial = 0.923;
+  EXPECT_THAT(markdown(table_of(rows).page), HasSubstr("| `gather` | **0.750** | 0.375 to 1.50 | 0.923×† |"));
+  EXPECT_THAT(markdown(table_of(rows).page), HasSubstr("|\n\n† the two times shown contradict this ratio: "));
 }
 
 TEST(RaceTable, IsNotMadeOfOtherBackends) {

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "output/tables/markdown.h"
+#include "output/tables/table_csv.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {
@@ -37,7 +39,7 @@ ResultTable table_of(const std::vector<ResultRow>& rows) {
 }
 
 TEST(ScalingTable, AsCsvHasNanosecondsANodeAndTheRatioToTheSameBackendsBase) {
-  EXPECT_EQ(table_of(scaling_rows()).csv,
+  EXPECT_EQ(table_csv(table_of(scaling_rows()).data),
             "integrator,backend,scene,nodes,ms_per_step,ns_per_node,ns_per_node_low,ns_per_node_high,"
             "ratio_to_small,status\n"
             "semi-euler,serial,small,1000,0.5,500,250,1000,1,ok\n"
@@ -47,19 +49,19 @@ TEST(ScalingTable, AsCsvHasNanosecondsANodeAndTheRatioToTheSameBackendsBase) {
 }
 
 TEST(ScalingTable, AsMarkdownHasAColumnASceneAndALineABackend) {
-  const std::string markdown = table_of(scaling_rows()).markdown;
-  EXPECT_THAT(markdown, HasSubstr("| backend | small<br>1,000 | large<br>4,000,000 |\n"));
-  EXPECT_THAT(markdown, HasSubstr("| `serial` | **500** (1.00×) | **750** (1.50×) |\n"));
-  EXPECT_THAT(markdown, HasSubstr("| `openmp` | **250** (1.00×) | unsupported |\n"));
-  EXPECT_THAT(markdown, HasSubstr("- `openmp`, `semi-euler`: unsupported: too large (`large`)\n"));
+  const std::string page = markdown(table_of(scaling_rows()).page);
+  EXPECT_THAT(page, HasSubstr("| backend | small<br>1,000 | large<br>4,000,000 |\n"));
+  EXPECT_THAT(page, HasSubstr("| `serial` | **500** (1.00×) | **750** (1.50×) |\n"));
+  EXPECT_THAT(page, HasSubstr("| `openmp` | **250** (1.00×) | unsupported |\n"));
+  EXPECT_THAT(page, HasSubstr("- `openmp`, `semi-euler`: unsupported: too large (`large`)\n"));
 }
 
 TEST(ScalingTable, HasNoRatioWhereTheBaseHasNoTime) {
   std::vector<ResultRow> rows = scaling_rows();
   rows[0].verified = false;
   const ResultTable table = table_of(rows);
-  EXPECT_THAT(table.markdown, HasSubstr("| `serial` | failed | **750** |\n"));
-  EXPECT_THAT(table.csv, HasSubstr("serial,large,4000000,3000,750,375,1500,,ok\n"));
+  EXPECT_THAT(markdown(table.page), HasSubstr("| `serial` | failed | **750** |\n"));
+  EXPECT_THAT(table_csv(table.data), HasSubstr("serial,large,4000000,3000,750,375,1500,,ok\n"));
   EXPECT_TRUE(scaling_tables("small")({}, made_up_provenance()).empty());
 }
 

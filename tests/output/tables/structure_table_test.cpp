@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "output/tables/markdown.h"
 #include "output/tables/published_bodies.h"
+#include "output/tables/table_csv.h"
 
 namespace mssim {
 namespace {
@@ -28,7 +30,7 @@ const std::vector<StructureRow> rows{{"box-small", 700, 4307, 12921, 3256, 4.25}
                                      {"my-own", 4, 6, 18, 1, 70.5}};
 
 TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
-  EXPECT_EQ(structure_table(rows, {}).csv,
+  EXPECT_EQ(table_csv(structure_table(rows, {}).data),
             "scene,nodes,springs_unique,springs_published,tetrahedra,smallest_dihedral_angle_deg,paper_nodes,"
             "paper_springs,same_as_paper\n"
             "box-small,700,4307,12921,3256,4.25,700,12921,true\n"
@@ -37,16 +39,15 @@ TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
 }
 
 TEST(StructureTable, AsMarkdownShowsOnlyThePapersBodiesAndSaysWhichDiffer) {
-  const std::string markdown = structure_table(rows, {}).markdown;
+  const std::string page = markdown(structure_table(rows, {}).page);
   EXPECT_THAT(
-      markdown,
-      HasSubstr("| box | small | 700 | **700** | 12,921 | **12,921** | 4,307 | 3,256 | 4.25° | yes |"));
+      page, HasSubstr("| box | small | 700 | **700** | 12,921 | **12,921** | 4,307 | 3,256 | 4.25° | yes |"));
   EXPECT_THAT(
-      markdown,
+      page,
       HasSubstr(
           "| torus | large | 1,977 | **1,977** | 39,033 | **39,036** | 13,012 | 10,000 | 1.50° | **no** |"));
-  EXPECT_THAT(markdown, HasSubstr("three times the unique edges, by inference"));
-  EXPECT_THAT(markdown, Not(HasSubstr("my-own")));
+  EXPECT_THAT(page, HasSubstr("three times the unique edges, by inference"));
+  EXPECT_THAT(page, Not(HasSubstr("my-own")));
 }
 
 }  // namespace
