@@ -1,5 +1,5 @@
 /* What the kernels that dress a garment (dressing_step.cl, dressing_joints.cl) do with its nodes, which lie
- * in rows (PanelSheet in src/garment/stepping/panel_sheet.h). An array of vectors is three planes, x, y and
+ * in rows (PanelGrid in src/garment/stepping/panel_grid.h). An array of vectors is three planes, x, y and
  * z.
  *
  * A work-group takes a block of rows. On a GPU its work-items share the nodes, one a Real, and meet at
@@ -21,15 +21,15 @@ typedef struct {
   __global const float* stiffness;    /* [direction][row] N/m */
   Rules rules;
   int plane; /* floats from one component, or direction, to the next */
-} Sheet;
+} PanelGrid;
 
 #if MSSIM_LANES == 1
 /* What the items of the group have written so far is there for all of them. */
-#define meet() barrier(CLK_GLOBAL_MEM_FENCE)
+#define block_barrier() barrier(CLK_GLOBAL_MEM_FENCE)
 #define first_lane(a) (a)
 #define to_index(a) convert_int(a)
 #else
-#define meet()
+#define block_barrier()
 #define first_lane(a) (a).s0
 #define to_index(a) MSSIM_PASTE(convert_int, MSSIM_LANES)(a)
 #endif
@@ -69,13 +69,13 @@ MSSIM_INLINE void store_one(Vector value, __global float* to, int plane) {
 typedef struct {
   int row; /* of the block */
   int at;  /* float of the first */
-} Site;
-MSSIM_INLINE int sites_of_row(Block block) { return (block->columns + MSSIM_LANES - 1) / MSSIM_LANES; }
-MSSIM_INLINE Site site_at(int number, Block block) {
-  Site site;
-  site.row = number / sites_of_row(block);
-  site.at = block->first + site.row * block->stride + number % sites_of_row(block) * MSSIM_LANES;
-  return site;
+} Tile;
+MSSIM_INLINE int tiles_of_row(Block block) { return (block->columns + MSSIM_LANES - 1) / MSSIM_LANES; }
+MSSIM_INLINE Tile tile_at(int number, Block block) {
+  Tile tile;
+  tile.row = number / tiles_of_row(block);
+  tile.at = block->first + tile.row * block->stride + number % tiles_of_row(block) * MSSIM_LANES;
+  return tile;
 }
 
 /* What a spring to nodes at `away` does, N. */
@@ -86,16 +86,15 @@ MSSIM_INLINE Vector spring_force(Vector away, Real rest, float stiffness) {
 }
 
 /* Loop 1: of each direction the spring that a node owns, and the one that ends at it. */
-MSSIM_INLINE Vector spring_forces(Site site, Block block, const Sheet* sheet) {
-  const Vector own = load_vector(sheet->position + site.at, sheet->plane);
+MSSIM_INLINE Vector spring_forces(Tile tile, Block block, const PanelGrid* grid) {
+  const Vector own = load_vector(grid->position + tile.at, grid->plane);
   Vector sum = no_vector();
   for (int d = 0; d < stencil_directions; ++d) {
     const int offset = stencil_rows[d] * block->stride + stencil_columns[d];
-    __global const float* rest = sheet->rest + d * sheet->plane + site.at;
-    __global const float* stiffness =
-        sheet->stiffness + d * sheet->rules->spring_rows + block->row + site.row;
-    const Vector next = load_vector_anywhere(sheet->position + site.at + offset, sheet->plane);
-    const Vector last = load_vector_anywhere(sheet->position + site.at - offset, sheet->plane);
+    __global const float* rest = grid->rest + d * grid->plane + tile.at;
+    __global const float* stiffness = grid->stiffness + d * grid->rules->spring_rows + block->row + tile.row;
+    const Vector next = load_vector_anywhere(grid->position + tile.at + offset, grid->plane);
+    const Vector last = load_vector_anywhere(grid->position + tile.at - offset, grid->plane);
     sum = plus(sum, spring_force(minus(next, own), load_aligned(rest), *stiffness));
     sum = plus(sum, spring_force(minus(last, own), load_lanes(rest - offset), stiffness[-stencil_rows[d]]));
   }
@@ -127,95 +126,95 @@ MSSIM_INLINE Mask touch_body(Block block, __global const float* pixels, float fr
   return inside & (after.stuck > 0.0f);
 }
 
-/* Loops 1, 2 and 4 for a site. */
-MSSIM_INLINE void update_site(Site site, Block block, __global const float* pixels, int draping,
-                              const Sheet* sheet) {
-  Rules rules = sheet->rules;
-  const int plane = sheet->plane;
+/* Loops 1, 2 and 4 for a tile. */
+MSSIM_INLINE void update_tile(Tile tile, Block block, __global const float* pixels, int draping,
+                              const PanelGrid* grid) {
+  Rules rules = grid->rules;
+  const int plane = grid->plane;
   __constant struct DressingPhase* phase = draping ? &rules->draping : &rules->seaming;
-  const Real inverse_mass = load_aligned(sheet->inverse_mass + site.at);
+  const Real inverse_mass = load_aligned(grid->inverse_mass + tile.at);
   const Mask real = inverse_mass > 0.0f;
-  Vector x = load_vector(sheet->position + site.at, plane);
-  Vector v = load_vector(sheet->velocity + site.at, plane);
-  Vector a = node_acceleration_unfused(times(inverse_mass, spring_forces(site, block, sheet)), v,
+  Vector x = load_vector(grid->position + tile.at, plane);
+  Vector v = load_vector(grid->velocity + tile.at, plane);
+  Vector a = node_acceleration_unfused(times(inverse_mass, spring_forces(tile, block, grid)), v,
                                        (Real)(phase->damping), (Real)(phase->gravity));
-  if (!draping) a = plus(a, load_vector(sheet->pull + site.at, plane));
+  if (!draping) a = plus(a, load_vector(grid->pull + tile.at, plane));
   v = times_plus((Real)(rules->dt), where(real, a, no_vector()), v);
   Real free = inverse_mass;
   if (block->body.columns > 0)
     free = select(free, (Real)(0.0f), touch_body(block, pixels, phase->friction, real, &x, &v, rules));
-  store_aligned(free, sheet->free + site.at);
-  store_vector(v, sheet->velocity + site.at, plane);
-  store_vector(x, sheet->moved + site.at, plane);
+  store_aligned(free, grid->free + tile.at);
+  store_vector(v, grid->velocity + tile.at, plane);
+  store_vector(x, grid->moved + tile.at, plane);
 }
 
 /* Loop 5, as src/garment/stepping/panel_correction-inl.h has it in C++, which also says what holds the two
  * together.
  *
- * Springs of a direction, from a site to rows below, which have no node in common. */
-MSSIM_INLINE void correct_springs(int at, int direction, Block block, const Sheet* sheet) {
-  const int plane = sheet->plane, far_at = at + block->stride + stencil_columns[direction];
+ * Springs of a direction, from a tile to rows below, which have no node in common. */
+MSSIM_INLINE void correct_springs(int at, int direction, Block block, const PanelGrid* grid) {
+  const int plane = grid->plane, far_at = at + block->stride + stencil_columns[direction];
   const Vector d =
-      minus(load_vector_anywhere(sheet->moved + far_at, plane), load_vector(sheet->moved + at, plane));
+      minus(load_vector_anywhere(grid->moved + far_at, plane), load_vector(grid->moved + at, plane));
   const Real squared = dot_product(d, d);
-  const Real limit = load_aligned(sheet->rest + direction * plane + at) * sheet->rules->correction_limit;
+  const Real limit = load_aligned(grid->rest + direction * plane + at) * grid->rules->correction_limit;
   const Mask acts = elongation_excess(squared, limit) > 0.0f;
   if (!any_lane(acts)) return;
-  const Vector own = load_vector(sheet->velocity + at, plane);
-  const Vector far = load_vector_anywhere(sheet->velocity + far_at, plane);
-  const Real own_free = load_aligned(sheet->free + at), far_free = load_lanes(sheet->free + far_at);
+  const Vector own = load_vector(grid->velocity + at, plane);
+  const Vector far = load_vector_anywhere(grid->velocity + far_at, plane);
+  const Real own_free = load_aligned(grid->free + at), far_free = load_lanes(grid->free + far_at);
   Real impulse = elongation_impulse(squared, dot_product(minus(far, own), d), limit,
-                                    (Real)(sheet->rules->correction_rate), own_free + far_free);
+                                    (Real)(grid->rules->correction_rate), own_free + far_free);
   impulse = select((Real)(0.0f), impulse, acts);
-  store_vector(times_plus(own_free * impulse, d, own), sheet->velocity + at, plane);
-  store_vector_anywhere(times_plus(-(far_free * impulse), d, far), sheet->velocity + far_at, plane);
+  store_vector(times_plus(own_free * impulse, d, own), grid->velocity + at, plane);
+  store_vector_anywhere(times_plus(-(far_free * impulse), d, far), grid->velocity + far_at, plane);
 }
 
 /* One spring along a row that is longer than its limit. */
-MSSIM_INLINE void correct_along_row(int at, const Sheet* sheet) {
-  const int plane = sheet->plane;
-  const Vector d = minus(load_one(sheet->moved + at + 1, plane), load_one(sheet->moved + at, plane));
-  const Vector own = load_one(sheet->velocity + at, plane), far = load_one(sheet->velocity + at + 1, plane);
-  const Real own_free = (Real)(sheet->free[at]), far_free = (Real)(sheet->free[at + 1]);
+MSSIM_INLINE void correct_along_row(int at, const PanelGrid* grid) {
+  const int plane = grid->plane;
+  const Vector d = minus(load_one(grid->moved + at + 1, plane), load_one(grid->moved + at, plane));
+  const Vector own = load_one(grid->velocity + at, plane), far = load_one(grid->velocity + at + 1, plane);
+  const Real own_free = (Real)(grid->free[at]), far_free = (Real)(grid->free[at + 1]);
   const Real impulse = elongation_impulse(dot_product(d, d), dot_product(minus(far, own), d),
-                                          (Real)(sheet->rest[at] * sheet->rules->correction_limit),
-                                          (Real)(sheet->rules->correction_rate), own_free + far_free);
-  store_one(times_plus(own_free * impulse, d, own), sheet->velocity + at, plane);
-  store_one(times_plus(-(far_free * impulse), d, far), sheet->velocity + at + 1, plane);
+                                          (Real)(grid->rest[at] * grid->rules->correction_limit),
+                                          (Real)(grid->rules->correction_rate), own_free + far_free);
+  store_one(times_plus(own_free * impulse, d, own), grid->velocity + at, plane);
+  store_one(times_plus(-(far_free * impulse), d, far), grid->velocity + at + 1, plane);
 }
 
 /* The springs along rows, of a row one after the other: MSSIM_LANES of them are looked at together, and those
  * that are too long, few mostly, are corrected in order. */
-MSSIM_INLINE void correct_rows(Block block, int forwards, const Sheet* sheet) {
-  const int plane = sheet->plane, sites = sites_of_row(block);
+MSSIM_INLINE void correct_rows(Block block, int forwards, const PanelGrid* grid) {
+  const int plane = grid->plane, tiles = tiles_of_row(block);
   for (int row = item; row < block->rows; row += items)
-    for (int i = 0; i < sites; ++i) {
-      const int site = forwards ? i : sites - 1 - i;
-      const int at = block->first + row * block->stride + site * MSSIM_LANES;
+    for (int i = 0; i < tiles; ++i) {
+      const int tile = forwards ? i : tiles - 1 - i;
+      const int at = block->first + row * block->stride + tile * MSSIM_LANES;
       const Vector d =
-          minus(load_vector_anywhere(sheet->moved + at + 1, plane), load_vector(sheet->moved + at, plane));
-      const Real limit = load_aligned(sheet->rest + at) * sheet->rules->correction_limit;
+          minus(load_vector_anywhere(grid->moved + at + 1, plane), load_vector(grid->moved + at, plane));
+      const Real limit = load_aligned(grid->rest + at) * grid->rules->correction_limit;
       const Real excess = elongation_excess(dot_product(d, d), limit);
       if (!any_lane(excess > 0.0f)) continue;
       float excesses[MSSIM_LANES];
       store_lanes(excess, excesses);
       for (int k = 0; k < MSSIM_LANES; ++k) {
         const int lane = forwards ? k : MSSIM_LANES - 1 - k;
-        if (excesses[lane] > 0.0f) correct_along_row(at + lane, sheet);
+        if (excesses[lane] > 0.0f) correct_along_row(at + lane, grid);
       }
     }
 }
 
 /* The springs of a direction between two rows, the upper of which is a block's, or stands before it (-1). */
-MSSIM_INLINE void correct_between_rows(Block block, int row, int direction, const Sheet* sheet) {
+MSSIM_INLINE void correct_between_rows(Block block, int row, int direction, const PanelGrid* grid) {
   const int start = block->first + row * block->stride;
   for (int column = item * MSSIM_LANES; column < block->columns; column += items * MSSIM_LANES)
-    correct_springs(start + column, direction, block, sheet);
+    correct_springs(start + column, direction, block, grid);
 }
 
 /* The springs of a direction between all rows of a block. On a GPU an item takes a line of them, from the
  * first row to the last, which has no node in common with another line. */
-MSSIM_INLINE void correct_lines(Block block, int direction, int forwards, const Sheet* sheet) {
+MSSIM_INLINE void correct_diagonals(Block block, int direction, int forwards, const PanelGrid* grid) {
   const int rows = block->rows - 1;
 #if MSSIM_LANES == 1
   for (int line = item; line < block->columns + rows; line += items)
@@ -223,30 +222,30 @@ MSSIM_INLINE void correct_lines(Block block, int direction, int forwards, const 
       const int row = forwards ? k : rows - 1 - k, right = stencil_columns[direction];
       const int column = line + right * row - (right > 0 ? rows : 0);
       if (column >= 0 && column < block->columns)
-        correct_springs(block->first + row * block->stride + column, direction, block, sheet);
+        correct_springs(block->first + row * block->stride + column, direction, block, grid);
     }
 #else
-  for (int k = 0; k < rows; ++k) correct_between_rows(block, forwards ? k : rows - 1 - k, direction, sheet);
+  for (int k = 0; k < rows; ++k) correct_between_rows(block, forwards ? k : rows - 1 - k, direction, grid);
 #endif
 }
 
 /* A sweep of loop 5 over the springs within a block, in the order of correction_order.h. */
-MSSIM_INLINE void correct_block(Block block, int forwards, const Sheet* sheet) {
+MSSIM_INLINE void correct_block(Block block, int forwards, const PanelGrid* grid) {
   for (int i = 0; i < limited_directions; ++i) {
     const int direction = forwards ? i : limited_directions - 1 - i;
     if (direction == 0)
-      correct_rows(block, forwards, sheet);
+      correct_rows(block, forwards, grid);
     else
-      correct_lines(block, direction, forwards, sheet);
-    meet();
+      correct_diagonals(block, direction, forwards, grid);
+    block_barrier();
   }
 }
 
 /* The same over the springs between a block and the one before it. */
-MSSIM_INLINE void correct_seam_of_blocks(Block block, int forwards, const Sheet* sheet) {
+MSSIM_INLINE void correct_seam_of_blocks(Block block, int forwards, const PanelGrid* grid) {
   for (int i = 1; i < limited_directions; ++i) {
-    correct_between_rows(block, -1, forwards ? i : limited_directions - i, sheet);
-    meet();
+    correct_between_rows(block, -1, forwards ? i : limited_directions - i, grid);
+    block_barrier();
   }
 }
 
@@ -263,5 +262,5 @@ MSSIM_INLINE Vector moved_on(Vector x, Vector* v, Mask is_free, Rules rules) {
       __global float *velocity, __global float *pull, __global const float *inverse_mass,       \
       __global float *free, __global const float *rest, __global const float *stiffness,        \
       __global struct DressingState *state
-#define sheet_of_arguments \
+#define grid_of_arguments \
   { position, moved, velocity, pull, inverse_mass, free, rest, stiffness, rules, rules->plane }

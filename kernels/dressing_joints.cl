@@ -23,15 +23,15 @@ MSSIM_INLINE AtJoint load_at_joint(__global const float* array, Joint joint, int
 
 /* The way from the joint's node to the point that it is sewn to. */
 MSSIM_INLINE Vector gap_of(AtJoint at, Joint joint) {
-  const Real share = (joint->share);
-  const Vector gap = {joint_gap(at.node.x, at.first.x, at.second.x, share),
-                      joint_gap(at.node.y, at.first.y, at.second.y, share),
-                      joint_gap(at.node.z, at.first.z, at.second.z, share)};
+  const Real fraction = (joint->fraction);
+  const Vector gap = {joint_gap(at.node.x, at.first.x, at.second.x, fraction),
+                      joint_gap(at.node.y, at.first.y, at.second.y, fraction),
+                      joint_gap(at.node.z, at.first.z, at.second.z, fraction)};
   return gap;
 }
-MSSIM_INLINE struct JointEnds ends_of(Joint joint, const Sheet* sheet) {
-  return joint_ends((joint->share), (sheet->inverse_mass[joint->node]), (sheet->inverse_mass[joint->first]),
-                    (sheet->inverse_mass[joint->second]));
+MSSIM_INLINE struct JointEnds ends_of(Joint joint, const PanelGrid* grid) {
+  return joint_ends((joint->fraction), (grid->inverse_mass[joint->node]), (grid->inverse_mass[joint->first]),
+                    (grid->inverse_mass[joint->second]));
 }
 
 /* Adds to an array what an impulse gives the nodes of a joint, one after the other: the ends of an edge may
@@ -48,56 +48,56 @@ MSSIM_INLINE void add_at_joint(struct JointEnds ends, Vector impulse, __global f
 
 /* After loop 5, which would open it again: the ends of a sewn joint move as one but for what closes its gap.
  */
-MSSIM_INLINE void close_joint(Joint joint, const Sheet* sheet) {
-  const struct JointEnds ends = ends_of(joint, sheet);
-  const Real mobility = joint_mobility(ends, (joint->share));
+MSSIM_INLINE void close_joint(Joint joint, const PanelGrid* grid) {
+  const struct JointEnds ends = ends_of(joint, grid);
+  const Real mobility = joint_mobility(ends, (joint->fraction));
   if (mobility == 0.0f) return;
-  const Vector gap = gap_of(load_at_joint(sheet->moved, joint, sheet->plane), joint);
-  const Vector gap_rate = gap_of(load_at_joint(sheet->velocity, joint, sheet->plane), joint);
+  const Vector gap = gap_of(load_at_joint(grid->moved, joint, grid->plane), joint);
+  const Vector gap_rate = gap_of(load_at_joint(grid->velocity, joint, grid->plane), joint);
   const Real rate =
-      closing_rate(sqrt(dot_product(gap, gap)), (sheet->rules->closing_most), (sheet->rules->closing_speed));
+      closing_rate(sqrt(dot_product(gap, gap)), (grid->rules->closing_most), (grid->rules->closing_speed));
   const Vector impulse = {closing_impulse(gap.x, gap_rate.x, rate, mobility),
                           closing_impulse(gap.y, gap_rate.y, rate, mobility),
                           closing_impulse(gap.z, gap_rate.z, rate, mobility)};
-  add_at_joint(ends, impulse, sheet->velocity, joint, sheet->plane);
+  add_at_joint(ends, impulse, grid->velocity, joint, grid->plane);
 }
 
 /* Loop 3 for an open joint: draws it together, or sews it where it is near enough; returns whether it has. */
-MSSIM_INLINE int pull_joint(Joint joint, int steps, const Sheet* sheet) {
-  Rules rules = sheet->rules;
-  const Vector gap = gap_of(load_at_joint(sheet->position, joint, sheet->plane), joint);
+MSSIM_INLINE int pull_joint(Joint joint, int steps, const PanelGrid* grid) {
+  Rules rules = grid->rules;
+  const Vector gap = gap_of(load_at_joint(grid->position, joint, grid->plane), joint);
   const Real distance = sqrt(dot_product(gap, gap));
   if (distance < rules->sewn_gap) return 1;
   const Real force =
       seam_force(rules->seam_force, steps * rules->doublings_per_step, joint->length, joint->strength);
-  add_at_joint(ends_of(joint, sheet), times(force / distance, gap), sheet->pull, joint, sheet->plane);
+  add_at_joint(ends_of(joint, grid), times(force / distance, gap), grid->pull, joint, grid->plane);
   return 0;
 }
 
 /* Loop 3 of the step that comes: sews the joints that are near enough, and sets what the others do. */
 MSSIM_INLINE void pull_joints(const Joints* joints, int steps, __global struct DressingState* state,
-                              const Sheet* sheet) {
-  Rules rules = sheet->rules;
+                              const PanelGrid* grid) {
+  Rules rules = grid->rules;
   for (int i = item; i < rules->joint_nodes; i += items)
-    store_one(no_vector(), sheet->pull + joints->nodes[i], sheet->plane);
-  meet();
+    store_one(no_vector(), grid->pull + joints->nodes[i], grid->plane);
+  block_barrier();
   for (int level = 0; level < rules->joint_levels; ++level) {
     for (int j = (level > 0 ? joints->level_ends[level - 1] : 0) + item; j < joints->level_ends[level];
          j += items)
-      if (!joints->sewn[j] && pull_joint(joints->all + j, steps, sheet)) {
+      if (!joints->sewn[j] && pull_joint(joints->all + j, steps, grid)) {
         joints->sewn[j] = 1;
         atomic_dec(&state->still_open);
       }
-    meet();
+    block_barrier();
   }
 }
 
-MSSIM_INLINE void close_sewn_joints(const Joints* joints, const Sheet* sheet) {
-  for (int level = 0; level < sheet->rules->joint_levels; ++level) {
+MSSIM_INLINE void close_sewn_joints(const Joints* joints, const PanelGrid* grid) {
+  for (int level = 0; level < grid->rules->joint_levels; ++level) {
     for (int j = (level > 0 ? joints->level_ends[level - 1] : 0) + item; j < joints->level_ends[level];
          j += items)
-      if (joints->sewn[j]) close_joint(joints->all + j, sheet);
-    meet();
+      if (joints->sewn[j]) close_joint(joints->all + j, grid);
+    block_barrier();
   }
 }
 
@@ -109,16 +109,16 @@ MSSIM_INLINE void close_sewn_joints(const Joints* joints, const Sheet* sheet) {
 
 /* Before the first step. */
 __kernel void begin_joints(SHEET, JOINTS) {
-  const Sheet sheet = sheet_of_arguments;
+  const PanelGrid grid = grid_of_arguments;
   const Joints joints = joints_of_arguments;
-  pull_joints(&joints, 0, state, &sheet);
+  pull_joints(&joints, 0, state, &grid);
 }
 
 /* The end of a step. */
 __kernel void step_joints(SHEET, JOINTS) {
-  const Sheet sheet = sheet_of_arguments;
+  const PanelGrid grid = grid_of_arguments;
   const Joints joints = joints_of_arguments;
-  close_sewn_joints(&joints, &sheet);
+  close_sewn_joints(&joints, &grid);
   for (int i = item; i < rules->joint_nodes; i += items) {
     const int at = nodes[i];
     Vector v = load_one(velocity + at, rules->plane);
@@ -128,7 +128,7 @@ __kernel void step_joints(SHEET, JOINTS) {
   }
   const int was_draping = state->draping, steps = state->steps + 1, open_joints = state->still_open;
   const int closed = open_joints == 0 || steps >= rules->longest_seaming;
-  meet();
+  block_barrier();
   if (item == 0) {
     state->steps = steps;
     state->open_joints = closed ? 0 : open_joints;
@@ -141,5 +141,5 @@ __kernel void step_joints(SHEET, JOINTS) {
   if (closed)
     for (int j = item; j < rules->joints; j += items) sewn[j] = 1;
   else
-    pull_joints(&joints, steps, state, &sheet);
+    pull_joints(&joints, steps, state, &grid);
 }

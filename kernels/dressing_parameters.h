@@ -47,7 +47,7 @@ struct DressingJoint {
   int node;
   int first;
   int second;
-  float share;
+  float fraction;
   float length; /* m */
   float strength;
 };

@@ -7,33 +7,33 @@
  */
 
 __kernel void update_velocities(SHEET, Block blocks, __global const float* pixels, int correct) {
-  const Sheet sheet = sheet_of_arguments;
+  const PanelGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
-  const int sites = block->rows * sites_of_row(block), draping = state->draping;
-  for (int i = item; i < sites; i += items) update_site(site_at(i, block), block, pixels, draping, &sheet);
-  meet();
-  if (correct) correct_block(block, 1, &sheet);
+  const int tiles = block->rows * tiles_of_row(block), draping = state->draping;
+  for (int i = item; i < tiles; i += items) update_tile(tile_at(i, block), block, pixels, draping, &grid);
+  block_barrier();
+  if (correct) correct_block(block, 1, &grid);
 }
 
 __kernel void correct_between_blocks(SHEET, Block blocks, int forwards_and_back) {
-  const Sheet sheet = sheet_of_arguments;
+  const PanelGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
   if (!block->joins) return;
-  correct_seam_of_blocks(block, 1, &sheet);
-  if (forwards_and_back) correct_seam_of_blocks(block, 0, &sheet);
+  correct_seam_of_blocks(block, 1, &grid);
+  if (forwards_and_back) correct_seam_of_blocks(block, 0, &grid);
 }
 
 /* Nodes at joints are where they belong after step_joints only. */
 __kernel void correct_blocks(SHEET, Block blocks, __global const int* at_joint, int backwards, int forwards,
                              int move) {
-  const Sheet sheet = sheet_of_arguments;
+  const PanelGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
-  if (backwards) correct_block(block, 0, &sheet);
-  if (forwards) correct_block(block, 1, &sheet);
+  if (backwards) correct_block(block, 0, &grid);
+  if (forwards) correct_block(block, 1, &grid);
   if (!move) return;
-  const int sites = block->rows * sites_of_row(block);
-  for (int i = item; i < sites; i += items) {
-    const int at = site_at(i, block).at;
+  const int tiles = block->rows * tiles_of_row(block);
+  for (int i = item; i < tiles; i += items) {
+    const int at = tile_at(i, block).at;
     const Mask is_free = (load_aligned(inverse_mass + at) > 0.0f) & (load_aligned_mask(at_joint + at) == 0);
     Vector v = load_vector(velocity + at, rules->plane);
     const Vector x = moved_on(load_vector(moved + at, rules->plane), &v, is_free, rules);

@@ -2,7 +2,7 @@
  * CPU. The kernels themselves are generated from the table of integrators
  * (src/backends/opencl/grid_program.cpp) and follow this text.
  *
- * The layout is that of BandLayout (src/backends/layouts/band_sheet.h): the rows are cut into MSSIM_LANES
+ * The layout is that of BandLayout (src/backends/layouts/band_grid.h): the rows are cut into MSSIM_LANES
  * bands of `height` rows, lane b holds band b, and a pair is
  *
  *     [column][row -2 .. height + 1][x y z u v w][lane],
@@ -17,7 +17,7 @@
  *
  * No spring points back, so that a stage may write over what it gathers from: half the memory, which decides
  * the speed of a cloth that fills a cache. Columns of another work-item, which may be written already, are
- * gathered from its part's ghosts, and each pair has ghosts of its own, whatever memory it shares.
+ * gathered from its partition's ghosts, and each pair has ghosts of its own, whatever memory it shares.
  */
 #define row_floats (6 * MSSIM_LANES)
 
@@ -27,7 +27,7 @@ typedef MSSIM_PASTE(uint, MSSIM_LANES) Rows;
 typedef struct {
   size_t first; /* offset in a pair */
   Mask free;    /* is a node of the cloth and not pinned */
-} Site;
+} Tile;
 
 static inline size_t column_floats(Shape grid) { return (size_t)(grid->height + 4) * row_floats; }
 /* Offset of row 0 of a column in a pair. */
@@ -37,28 +37,30 @@ static inline size_t column_start(size_t column, Shape grid) {
 
 /* The columns of a work-item. */
 typedef struct {
-  int number, count; /* of this part, and of all */
+  int number, count; /* of this partition, and of all */
   int first, end;    /* columns; at least two */
-} Part;
-static inline Part part_of(int number, int count, Shape grid) {
-  Part part = {number, count, (int)((long)grid->columns * number / count),
-               (int)((long)grid->columns * (number + 1) / count)};
-  return part;
+} Partition;
+static inline Partition partition_of(int number, int count, Shape grid) {
+  Partition partition = {number, count, (int)((long)grid->columns * number / count),
+                         (int)((long)grid->columns * (number + 1) / count)};
+  return partition;
 }
 
-/* The ghosts of a pair: [part][column first - 2, first - 1, end, end + 1], columns as in a pair. */
-static inline __global float* ghosts_of(int pair, __global float* ghosts, const Part* part, Shape grid) {
-  return ghosts + (size_t)pair * part->count * 4 * column_floats(grid);
+/* The ghosts of a pair: [partition][column first - 2, first - 1, end, end + 1], columns as in a pair. */
+static inline __global float* ghosts_of(int pair, __global float* ghosts, const Partition* partition,
+                                        Shape grid) {
+  return ghosts + (size_t)pair * partition->count * 4 * column_floats(grid);
 }
-static inline __global float* ghost(__global float* ghosts, int part, int number, Shape grid) {
-  return ghosts + (size_t)(4 * part + number) * column_floats(grid) + 2 * row_floats;
+static inline __global float* ghost(__global float* ghosts, int partition, int number, Shape grid) {
+  return ghosts + (size_t)(4 * partition + number) * column_floats(grid) + 2 * row_floats;
 }
 
-/* Row 0 of a column that the part gathers. */
+/* Row 0 of a column that the partition gathers. */
 static inline __global const float* gathered_column(int column, __global const float* pair,
-                                                    __global float* ghosts, const Part* part, Shape grid) {
-  if (column < part->first) return ghost(ghosts, part->number, column - part->first + 2, grid);
-  if (column >= part->end) return ghost(ghosts, part->number, column - part->end + 2, grid);
+                                                    __global float* ghosts, const Partition* partition,
+                                                    Shape grid) {
+  if (column < partition->first) return ghost(ghosts, partition->number, column - partition->first + 2, grid);
+  if (column >= partition->end) return ghost(ghosts, partition->number, column - partition->end + 2, grid);
   return pair + column_start(column, grid);
 }
 
@@ -72,18 +74,18 @@ static inline void store_vector(Vector value, __global float* to) {
   store_aligned(value.z, to + 2 * MSSIM_LANES);
 }
 
-/* The site's own vectors in a pair. */
-static inline Vector load_position(__global const float* pair, Site site, Shape grid) {
-  return load_vector(pair + site.first);
+/* The tile's own vectors in a pair. */
+static inline Vector load_position(__global const float* pair, Tile tile, Shape grid) {
+  return load_vector(pair + tile.first);
 }
-static inline Vector load_velocity(__global const float* pair, Site site, Shape grid) {
-  return load_vector(pair + site.first + 3 * MSSIM_LANES);
+static inline Vector load_velocity(__global const float* pair, Tile tile, Shape grid) {
+  return load_vector(pair + tile.first + 3 * MSSIM_LANES);
 }
-static inline void store_position(Vector value, __global float* pair, Site site, Shape grid) {
-  store_vector(value, pair + site.first);
+static inline void store_position(Vector value, __global float* pair, Tile tile, Shape grid) {
+  store_vector(value, pair + tile.first);
 }
-static inline void store_velocity(Vector value, __global float* pair, Site site, Shape grid) {
-  store_vector(value, pair + site.first + 3 * MSSIM_LANES);
+static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape grid) {
+  store_vector(value, pair + tile.first + 3 * MSSIM_LANES);
 }
 
 /* The nodes of a row. column: where its row 0 begins. */
@@ -107,13 +109,13 @@ static inline size_t sums_floats(Shape grid) { return (size_t)grid->height * 3 *
 
 /* `sums` are three columns, used in turn. */
 static inline Column column_at(int column, __global const float* pair, __global float* ghosts,
-                               __global float* sums, const Part* part, Shape grid) {
+                               __global float* sums, const Partition* partition, Shape grid) {
   const bool has_next = column + 1 < grid->columns, has_next_2 = column + 2 < grid->columns;
   const uint rows = grid->rows;
   Column at;
-  at.here = gathered_column(column, pair, ghosts, part, grid);
-  at.next = gathered_column(column + 1, pair, ghosts, part, grid);
-  at.next_2 = gathered_column(column + 2, pair, ghosts, part, grid);
+  at.here = gathered_column(column, pair, ghosts, partition, grid);
+  at.next = gathered_column(column + 1, pair, ghosts, partition, grid);
+  at.next_2 = gathered_column(column + 2, pair, ghosts, partition, grid);
   at.on_here = sums + column % 3 * sums_floats(grid);
   at.on_next = sums + (column + 1) % 3 * sums_floats(grid);
   at.on_next_2 = sums + (column + 2) % 3 * sums_floats(grid);
@@ -210,9 +212,9 @@ static inline void copy_column(__global const float* from, __global float* to, S
 }
 
 /* Makes a column that is written ready to be gathered: repeats the rows at the ends of the bands in the halo
- * rows of their neighbours, and the column in the ghosts of the parts beside this one. */
-static inline void finish_column(int column, __global float* pair, __global float* ghosts, const Part* part,
-                                 Shape grid) {
+ * rows of their neighbours, and the column in the ghosts of the partitions beside this one. */
+static inline void finish_column(int column, __global float* pair, __global float* ghosts,
+                                 const Partition* partition, Shape grid) {
   __global float* start = pair + column_start(column, grid);
   const int height = grid->height * row_floats;
   for (int i = 0; i < 2 * row_floats; i += MSSIM_LANES) {
@@ -220,8 +222,8 @@ static inline void finish_column(int column, __global float* pair, __global floa
                   start - 2 * row_floats + i);
     store_aligned(from_lane_after(load_aligned(start + i)), start + height + i);
   }
-  if (column < part->first + 2 && part->number > 0)
-    copy_column(start, ghost(ghosts, part->number - 1, column - part->first + 2, grid), grid);
-  if (column >= part->end - 2 && part->number + 1 < part->count)
-    copy_column(start, ghost(ghosts, part->number + 1, column - part->end + 2, grid), grid);
+  if (column < partition->first + 2 && partition->number > 0)
+    copy_column(start, ghost(ghosts, partition->number - 1, column - partition->first + 2, grid), grid);
+  if (column >= partition->end - 2 && partition->number + 1 < partition->count)
+    copy_column(start, ghost(ghosts, partition->number + 1, column - partition->end + 2, grid), grid);
 }

@@ -1,5 +1,5 @@
 /* What the stage kernels of a grid have in common where a work-item owns one node, gathers the forces of all
- * its springs and runs the stage's lines on it: the shape that suits a GPU. The kernels themselves are
+ * its springs and runs the stage's assignments on it: the shape that suits a GPU. The kernels themselves are
  * generated from the tables of integrators and of the stencil (src/backends/opencl/grid_program.cpp) and
  * follow this text.
  *
@@ -12,17 +12,17 @@ typedef struct {
   int row, column;
   int first; /* offset of the node in a plane */
   Mask free; /* is a node of the cloth and not pinned */
-} Site;
+} Tile;
 
-/* pin_rows[row] is the line of `pins` that belongs to the row, or negative where the row has no pinned node.
- * pins[line][column] is -1 for a pinned node, 0 for a free one. */
-static inline Site site_at(int row, int column, Shape grid, __global const int* restrict pin_rows,
+/* pin_masks[row] is the mask of `pins` that belongs to the row, or negative where the row has no pinned node.
+ * pins[mask][column] is -1 for a pinned node, 0 for a free one. */
+static inline Tile tile_at(int row, int column, Shape grid, __global const int* restrict pin_masks,
                            __global const int* restrict pins) {
-  Site site = {row, column, (row + 2) * grid->stride + 16 + column,
+  Tile tile = {row, column, (row + 2) * grid->stride + 16 + column,
                row < grid->rows && column < grid->columns};
-  int line = row < grid->rows ? pin_rows[row] : -1;
-  if (line >= 0) site.free &= pins[line * grid->stride + column] == 0;
-  return site;
+  int mask = row < grid->rows ? pin_masks[row] : -1;
+  if (mask >= 0) tile.free &= pins[mask * grid->stride + column] == 0;
+  return tile;
 }
 
 static inline Vector load_vector(__global const float* from, int plane) {
@@ -35,29 +35,29 @@ static inline void store_vector(Vector value, __global float* to, int plane) {
   to[2 * plane] = value.z;
 }
 
-/* The site's own vectors in a pair. */
-static inline Vector load_position(__global const float* pair, Site site, Shape grid) {
-  return load_vector(pair + site.first, grid->plane);
+/* The tile's own vectors in a pair. */
+static inline Vector load_position(__global const float* pair, Tile tile, Shape grid) {
+  return load_vector(pair + tile.first, grid->plane);
 }
-static inline Vector load_velocity(__global const float* pair, Site site, Shape grid) {
-  return load_vector(pair + site.first + 3 * grid->plane, grid->plane);
+static inline Vector load_velocity(__global const float* pair, Tile tile, Shape grid) {
+  return load_vector(pair + tile.first + 3 * grid->plane, grid->plane);
 }
-static inline void store_position(Vector value, __global float* pair, Site site, Shape grid) {
-  store_vector(value, pair + site.first, grid->plane);
+static inline void store_position(Vector value, __global float* pair, Tile tile, Shape grid) {
+  store_vector(value, pair + tile.first, grid->plane);
 }
-static inline void store_velocity(Vector value, __global float* pair, Site site, Shape grid) {
-  store_vector(value, pair + site.first + 3 * grid->plane, grid->plane);
+static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape grid) {
+  store_vector(value, pair + tile.first + 3 * grid->plane, grid->plane);
 }
 
-/* The node `down` rows below the site and `right` columns to its right. */
-static inline Node load_node(__global const float* restrict pair, Site site, int down, int right,
+/* The node `down` rows below the tile and `right` columns to its right. */
+static inline Node load_node(__global const float* restrict pair, Tile tile, int down, int right,
                              Shape grid) {
-  __global const float* from = pair + site.first + down * grid->stride + right;
+  __global const float* from = pair + tile.first + down * grid->stride + right;
   Node node = {load_vector(from, grid->plane), load_vector(from + 3 * grid->plane, grid->plane)};
   return node;
 }
 
-static inline Mask is_on_cloth(Site site, int down, int right, Shape grid) {
-  return (site.column + right >= 0) & (site.column + right < grid->columns) & (site.row + down >= 0) &
-         (site.row + down < grid->rows);
+static inline Mask is_on_cloth(Tile tile, int down, int right, Shape grid) {
+  return (tile.column + right >= 0) & (tile.column + right < grid->columns) & (tile.row + down >= 0) &
+         (tile.row + down < grid->rows);
 }

@@ -1,14 +1,14 @@
 /* What a joint of a seam does to the three nodes at its ends, written once in the common subset of C++ and
- * OpenCL C: a node, and the first and the second node of the edge that it is sewn to, at `share` of the way
- * from first to second. Where it is sewn to a node, that is the first, and the share 0.
+ * OpenCL C: a node, and the first and the second node of the edge that it is sewn to, at `fraction` of the
+ * way from first to second. Where it is sewn to a node, that is the first, and the fraction 0.
  *
  * Text for many number types like body_contact.h.
  */
 
 /* One coordinate of the way from the node to the point that it is sewn to; of positions its gap, of
  * velocities the gap's rate. */
-MSSIM_LAW joint_gap(Real node, Real first, Real second, Real share) {
-  return first + share * (second - first) - node;
+MSSIM_LAW joint_gap(Real node, Real first, Real second, Real fraction) {
+  return first + fraction * (second - first) - node;
 }
 
 /* By how much an impulse on the node, and its opposite on the point, change the velocities of the three, per
@@ -16,19 +16,19 @@ MSSIM_LAW joint_gap(Real node, Real first, Real second, Real share) {
 MSSIM_STRUCT(JointEnds) { Real node, first, second; };
 
 /* From their inverse masses. */
-MSSIM_GIVES(JointEnds) joint_ends(Real share, Real node, Real first, Real second) {
+MSSIM_GIVES(JointEnds) joint_ends(Real fraction, Real node, Real first, Real second) {
   MSSIM_OF(JointEnds) ends;
-  Real one = share - share + 1.0f;
+  Real one = fraction - fraction + 1.0f;
   ends.node = node;
-  ends.first = -(one - share) * first;
-  ends.second = -share * second;
+  ends.first = -(one - fraction) * first;
+  ends.second = -fraction * second;
   return ends;
 }
 
 /* By how much an impulse changes the gap's rate, 1/kg; 0 where none of the three can move. */
-MSSIM_LAW joint_mobility(MSSIM_OF(JointEnds) ends, Real share) {
-  Real one = share - share + 1.0f;
-  return ends.node - ((one - share) * ends.first + share * ends.second);
+MSSIM_LAW joint_mobility(MSSIM_OF(JointEnds) ends, Real fraction) {
+  Real one = fraction - fraction + 1.0f;
+  return ends.node - ((one - fraction) * ends.first + fraction * ends.second);
 }
 
 /* The force that draws an open joint together, N: of constant size while its gap closes, growing with time.

@@ -1,9 +1,9 @@
 /* What the stage kernels of a tetrahedral body have in common. The kernels themselves are generated from the
- * table of integrators (src/backends/opencl/mesh_program.cpp) and follow this text: a work-item takes sites
+ * table of integrators (src/backends/opencl/mesh_program.cpp) and follow this text: a work-item takes tiles
  * of MSSIM_LANES nodes, one after the other, and every node gathers the forces of all its springs.
  *
  * A pair is an array of records (records.h). The springs are those of a sliced graph (SlicedGraph in
- * src/backends/layouts/sliced_graph.h), in slices of MSSIM_SLICE nodes: of MSSIM_LANES where a site has
+ * src/backends/layouts/sliced_graph.h), in slices of MSSIM_SLICE nodes: of MSSIM_LANES where a tile has
  * several nodes, of some multiple where it has one. Their constants are per unit of node mass.
  */
 typedef struct {
@@ -20,42 +20,42 @@ typedef const Mesh* Shape;
 typedef struct {
   size_t first; /* the first one's number */
   Mask free;
-} Site;
+} Tile;
 
-static inline Site site_at(uint number, const Mesh* mesh) {
-  Site site;
-  site.first = (size_t)number * MSSIM_LANES;
-  site.free = load_aligned_mask(mesh->held + site.first) == 0;
-  return site;
+static inline Tile tile_at(uint number, const Mesh* mesh) {
+  Tile tile;
+  tile.first = (size_t)number * MSSIM_LANES;
+  tile.free = load_aligned_mask(mesh->held + tile.first) == 0;
+  return tile;
 }
 
-#define own_record(lane) site.first + (lane)
-static inline Node load_node(__global const float* restrict pair, Site site) {
+#define own_record(lane) tile.first + (lane)
+static inline Node load_node(__global const float* restrict pair, Tile tile) {
   return load_records(pair, own_record);
 }
 
-/* The site's own vectors in a pair. */
-static inline Vector load_position(__global const float* pair, Site site, Shape mesh) {
-  return load_node(pair, site).x;
+/* The tile's own vectors in a pair. */
+static inline Vector load_position(__global const float* pair, Tile tile, Shape mesh) {
+  return load_node(pair, tile).x;
 }
-static inline Vector load_velocity(__global const float* pair, Site site, Shape mesh) {
-  return load_node(pair, site).v;
+static inline Vector load_velocity(__global const float* pair, Tile tile, Shape mesh) {
+  return load_node(pair, tile).v;
 }
-static inline void store_position(Vector value, __global float* pair, Site site, Shape mesh) {
-  store_quads(value, pair + record_floats * site.first, record_floats);
+static inline void store_position(Vector value, __global float* pair, Tile tile, Shape mesh) {
+  store_quads(value, pair + record_floats * tile.first, record_floats);
 }
-static inline void store_velocity(Vector value, __global float* pair, Site site, Shape mesh) {
-  store_quads(value, pair + record_floats * site.first + 4, record_floats);
+static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape mesh) {
+  store_quads(value, pair + record_floats * tile.first + 4, record_floats);
 }
 
-/* The forces of all springs on the site's nodes, m/s^2. Where a lane has fewer springs than its slice has
+/* The forces of all springs on the tile's nodes, m/s^2. Where a lane has fewer springs than its slice has
  * entries, the node is its own neighbour, at no distance, and whatever comes of it is left out. */
 #define neighbour_record(lane) neighbour[lane]
-static inline Vector gather_springs(__global const float* restrict pair, Site site, Node node,
+static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node,
                                     const Mesh* mesh) {
-  const Real stiffness = load_aligned(mesh->stiffness + site.first);
-  const Real damping = load_aligned(mesh->damping + site.first);
-  const size_t slice = site.first / MSSIM_SLICE, lane = site.first % MSSIM_SLICE;
+  const Real stiffness = load_aligned(mesh->stiffness + tile.first);
+  const Real damping = load_aligned(mesh->damping + tile.first);
+  const size_t slice = tile.first / MSSIM_SLICE, lane = tile.first % MSSIM_SLICE;
   const uint end = mesh->first_entry[slice + 1];
   Vector sum = no_vector();
   for (uint entry = mesh->first_entry[slice]; entry < end; ++entry) {

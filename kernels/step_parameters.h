@@ -3,5 +3,5 @@
  */
 struct StepParameters {
   struct Surroundings surroundings;
-  float coefficients[4][4][5]; /* of the integrator, [stage][line][term], dt included */
+  float coefficients[4][4][5]; /* of the integrator, [stage][assignment][term], dt included */
 };

@@ -22,7 +22,7 @@ inline NearestPoint nearest_point(const Vec3<float>& p, const Vec3<float>& a, co
                                   const Vec3<float>& c) {
   const Vec3<float> ab = b - a, ac = c - a, ap = p - a;
   // An edge without length is its first point.
-  const auto share = [](float part, float whole) { return whole > 0 ? part / whole : 0; };
+  const auto fraction = [](float part, float whole) { return whole > 0 ? part / whole : 0; };
   // Relative to a: differences of neighbours are small numbers, and their roundings too.
   const auto at = [&](float of_b, float of_c) {
     const float of_a = std::max(1 - of_b - of_c, 0.0F);
@@ -34,22 +34,22 @@ inline NearestPoint nearest_point(const Vec3<float>& p, const Vec3<float>& a, co
   const float bp_ab = dot(ab, bp), bp_ac = dot(ac, bp);
   if (bp_ab >= 0 && bp_ac <= bp_ab) return at(1, 0);
   const float area_c = ap_ab * bp_ac - bp_ab * ap_ac;
-  if (area_c <= 0 && ap_ab >= 0 && bp_ab <= 0) return at(share(ap_ab, ap_ab - bp_ab), 0);
+  if (area_c <= 0 && ap_ab >= 0 && bp_ab <= 0) return at(fraction(ap_ab, ap_ab - bp_ab), 0);
   const Vec3<float> cp = p - c;
   const float cp_ab = dot(ab, cp), cp_ac = dot(ac, cp);
   if (cp_ac >= 0 && cp_ab <= cp_ac) return at(0, 1);
   const float area_b = cp_ab * ap_ac - ap_ab * cp_ac;
-  if (area_b <= 0 && ap_ac >= 0 && cp_ac <= 0) return at(0, share(ap_ac, ap_ac - cp_ac));
+  if (area_b <= 0 && ap_ac >= 0 && cp_ac <= 0) return at(0, fraction(ap_ac, ap_ac - cp_ac));
   const float area_a = bp_ab * cp_ac - cp_ab * bp_ac;
   const float along_b = bp_ac - bp_ab, along_c = cp_ab - cp_ac;
   if (area_a <= 0 && along_b >= 0 && along_c >= 0) {
-    const float of_c = share(along_b, along_b + along_c);
+    const float of_c = fraction(along_b, along_b + along_c);
     NearestPoint nearest = at(1 - of_c, of_c);
     nearest.weight[0] = 0;  // 1 - (1 - c) - c need not be
     return nearest;
   }
   const float whole = area_a + area_b + area_c;
-  return at(share(area_b, whole), share(area_c, whole));
+  return at(fraction(area_b, whole), fraction(area_c, whole));
 }
 
 }  // namespace mssim

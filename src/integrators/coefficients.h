@@ -11,17 +11,17 @@
 namespace mssim {
 
 /// coefficient * dt^dt_power of every term, evaluated once in double and rounded once to Real:
-/// [stage][line][term], so that the loops multiply by one number.
+/// [stage][assignment][term], so that the loops multiply by one number.
 template <class Real>
-using Coefficients = std::array<std::array<std::array<Real, max_terms>, max_lines>, max_stages>;
+using Coefficients = std::array<std::array<std::array<Real, max_terms>, max_assignments>, max_stages>;
 
 template <class Real>
 Coefficients<Real> coefficients_of(const Integrator& integrator, double dt_s) {
   Coefficients<Real> result{};
   for (std::size_t s = 0; s < max_stages; ++s)
-    for (std::size_t l = 0; l < max_lines; ++l)
+    for (std::size_t l = 0; l < max_assignments; ++l)
       for (std::size_t t = 0; t < max_terms; ++t) {
-        const Term& term = integrator.stages[s].lines[l].terms[t];
+        const Term& term = integrator.stages[s].assignments[l].terms[t];
         result[s][l][t] = static_cast<Real>(term.coefficient * std::pow(dt_s, term.dt_power));
       }
   return result;

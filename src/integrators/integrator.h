@@ -32,16 +32,16 @@ inline constexpr std::size_t max_terms = 5;
 
 /// out = sum of the terms. Lines run in order, later ones see earlier results.
 /// The first term is the large one; it is added last, so that a position is rounded once.
-struct Line {
+struct Assignment {
   Slot out = Slot::a;
   std::array<Term, max_terms> terms{};
 };
-inline constexpr std::size_t max_lines = 4;
+inline constexpr std::size_t max_assignments = 4;
 
-/// Acceleration at `gather`, then the lines.
+/// Acceleration at `gather`, then the assignments.
 struct Stage {
   Pair gather = Pair::state;
-  std::array<Line, max_lines> lines{};
+  std::array<Assignment, max_assignments> assignments{};
 };
 inline constexpr std::size_t max_stages = 4;
 
@@ -60,22 +60,22 @@ constexpr std::size_t index(Pair pair) { return static_cast<std::size_t>(pair); 
 constexpr Slot position_slot(Pair pair) { return static_cast<Slot>(2 * index(pair)); }
 constexpr Slot velocity_slot(Pair pair) { return static_cast<Slot>(2 * index(pair) + 1); }
 
-constexpr std::size_t term_count(const Line& line) {
+constexpr std::size_t term_count(const Assignment& assignment) {
   std::size_t count = 0;
-  while (count < max_terms && line.terms[count].coefficient != 0) ++count;
+  while (count < max_terms && assignment.terms[count].coefficient != 0) ++count;
   return count;
 }
 
-constexpr std::size_t line_count(const Stage& stage) {
+constexpr std::size_t assignment_count(const Stage& stage) {
   std::size_t count = 0;
-  while (count < max_lines && term_count(stage.lines[count]) > 0) ++count;
+  while (count < max_assignments && term_count(stage.assignments[count]) > 0) ++count;
   return count;
 }
 
 /// Does the stage write this slot?
 constexpr bool writes(const Stage& stage, Slot slot) {
-  for (const Line& line : stage.lines)
-    if (term_count(line) > 0 && line.out == slot) return true;
+  for (const Assignment& assignment : stage.assignments)
+    if (term_count(assignment) > 0 && assignment.out == slot) return true;
   return false;
 }
 
@@ -86,10 +86,10 @@ constexpr bool writes(const Stage& stage, Pair pair) {
 /// Does the stage need the slot's value from memory, because a line reads it before one has written it?
 /// The gathered pair is read by the force in any case.
 constexpr bool reads(const Stage& stage, Slot slot) {
-  for (const Line& line : stage.lines) {
-    for (std::size_t t = 0; t < term_count(line); ++t)
-      if (line.terms[t].slot == slot) return true;
-    if (term_count(line) > 0 && line.out == slot) return false;
+  for (const Assignment& assignment : stage.assignments) {
+    for (std::size_t t = 0; t < term_count(assignment); ++t)
+      if (assignment.terms[t].slot == slot) return true;
+    if (term_count(assignment) > 0 && assignment.out == slot) return false;
   }
   return false;
 }

@@ -40,10 +40,10 @@ bool is_stable(const Integrator& integrator, double dt_s, const ModeBound& bound
   // From the stiffest mode downwards, each a fifth softer; the last, a millionth as stiff, moves as in free
   // flight.
   constexpr int modes = 63;
-  double share = 1;
-  for (int mode = 0; mode < modes; ++mode, share *= 0.8) {
-    const double damping = bound.viscous_damping + share * (bound.damping - bound.viscous_damping);
-    if (!(amplification(integrator, dt_s, share * bound.stiffness, damping) <= 1 + tolerated_growth))
+  double fraction = 1;
+  for (int mode = 0; mode < modes; ++mode, fraction *= 0.8) {
+    const double damping = bound.viscous_damping + fraction * (bound.damping - bound.viscous_damping);
+    if (!(amplification(integrator, dt_s, fraction * bound.stiffness, damping) <= 1 + tolerated_growth))
       return false;
   }
   return true;

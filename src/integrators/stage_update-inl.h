@@ -1,16 +1,16 @@
-/// The pointwise part of a stage, unrolled from the integrator table: the only place where its lines are
-/// executed on the host. Text without an include guard, because vector code has to compile it once per
+/// The pointwise part of a stage, unrolled from the integrator table: the only place where its assignments
+/// are executed on the host. Text without an include guard, because vector code has to compile it once per
 /// instruction set, inside a namespace of that set. The includer defines MSSIM_INLINE and, for its `Vector`
 /// and `Real`,
 ///   mul_add(Real, Vector, Vector), Vector + Vector, Real * Vector,
 /// and has included integrators/coefficients.h.
 
 /// One line: the sum of its terms, the last first, so that the large first term is added last.
-template <std::size_t row, std::size_t stage, std::size_t line, class Vector, class Real>
+template <std::size_t row, std::size_t stage, std::size_t assignment, class Vector, class Real>
 MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coefficients) {
-  constexpr Line terms = integrators[row].stages[stage].lines[line];
+  constexpr Assignment terms = integrators[row].stages[stage].assignments[assignment];
   constexpr std::size_t count = term_count(terms);
-  const auto& factor = coefficients[stage][line];
+  const auto& factor = coefficients[stage][assignment];
   Vector sum = factor[count - 1] * value[index(terms.terms[count - 1].slot)];
   if constexpr (count > 4) sum = mul_add(factor[3], value[index(terms.terms[3].slot)], sum);
   if constexpr (count > 3) sum = mul_add(factor[2], value[index(terms.terms[2].slot)], sum);
@@ -23,7 +23,7 @@ MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coe
   return sum;
 }
 
-/// All lines of a stage at one node (or one vector of nodes).
+/// All assignments of a stage at one node (or one vector of nodes).
 /// load(slot) -> Vector reads memory, store(slot, Vector) writes it, contact(x, v) acts on the new state at
 /// the end of the last stage. `x` and `v` are the gathered pair's values, `a` the acceleration found with
 /// them.
@@ -32,7 +32,7 @@ template <std::size_t row, std::size_t stage, class Vector, class Real, class Lo
 MSSIM_INLINE void update_stage(const Coefficients<Real>& coefficients, const Vector& x, const Vector& v,
                                const Vector& a, Load load, Store store, Contact contact) {
   constexpr Stage table = integrators[row].stages[stage];
-  constexpr std::size_t lines = line_count(table);
+  constexpr std::size_t assignments = assignment_count(table);
   Vector value[slot_kinds];
   const auto fetch = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
     constexpr Slot slot = static_cast<Slot>(i);
@@ -52,9 +52,9 @@ MSSIM_INLINE void update_stage(const Coefficients<Real>& coefficients, const Vec
   value[index(velocity_slot(table.gather))] = v;
   value[index(Slot::a)] = a;
   [&]<std::size_t... l>(std::index_sequence<l...>) MSSIM_INLINE_LAMBDA {
-    ((value[index(table.lines[l].out)] = sum_terms<row, stage, l>(value, coefficients)), ...);
+    ((value[index(table.assignments[l].out)] = sum_terms<row, stage, l>(value, coefficients)), ...);
   }
-  (std::make_index_sequence<lines>{});
+  (std::make_index_sequence<assignments>{});
   if constexpr (stage + 1 == integrators[row].stage_count)
     contact(value[index(Slot::x_next)], value[index(Slot::v_next)]);
   [&]<std::size_t... i>(std::index_sequence<i...>) MSSIM_INLINE_LAMBDA {

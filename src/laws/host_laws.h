@@ -40,9 +40,9 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
 /// The way from a joint's node to the point that it is sewn to: kernels/joint_law.h for vectors.
 template <class Real>
 inline Vec3<Real> joint_gap(const Vec3<Real>& node, const Vec3<Real>& first, const Vec3<Real>& second,
-                            Real share) {
-  return {joint_gap(node.x, first.x, second.x, share), joint_gap(node.y, first.y, second.y, share),
-          joint_gap(node.z, first.z, second.z, share)};
+                            Real fraction) {
+  return {joint_gap(node.x, first.x, second.x, fraction), joint_gap(node.y, first.y, second.y, fraction),
+          joint_gap(node.z, first.z, second.z, fraction)};
 }
 
 }  // namespace mssim

@@ -24,7 +24,7 @@ namespace mssim {
 /// confidence intervals).
 struct Look {
   std::size_t pairs;  ///< when it is due
-  double share;       ///< of the error that a single look might make
+  double fraction;    ///< of the error that a single look might make
 };
 
 /// Pairs of the first look. With half of the error ten are the fewest that can be significant at 1 % though

@@ -34,15 +34,15 @@ RatioEstimate ratio_of(std::span<const double> base, std::span<const double> nex
   return estimate_of(rank_sum_shift(x, y), rank_sum_test(x, y));
 }
 
-RatioEstimate paired_ratio(std::span<const double> base, std::span<const double> next, double share) {
+RatioEstimate paired_ratio(std::span<const double> base, std::span<const double> next, double fraction) {
   if (base.size() != next.size())
     throw std::invalid_argument("paired ratios need as many times on each side");
   std::vector<double> differences = logarithms(next);
   const std::vector<double> logs = logarithms(base);
   for (std::size_t i = 0; i < logs.size(); ++i) differences[i] -= logs[i];
   RatioEstimate estimate =
-      estimate_of(signed_rank_shift(differences, share * usual_error), signed_rank_test(differences));
-  estimate.p = std::min(1., estimate.p / share);
+      estimate_of(signed_rank_shift(differences, fraction * usual_error), signed_rank_test(differences));
+  estimate.p = std::min(1., estimate.p / fraction);
   return estimate;
 }
 

@@ -21,7 +21,7 @@ RatioEstimate ratio_of(std::span<const double> base, std::span<const double> nex
 /// estimate may make, where it is one of several (looks.h): the interval misses in share times 5 % of the
 /// cases, and p is what the test gives over the share. Throws like ratio_of(), and for samples of unequal
 /// length.
-RatioEstimate paired_ratio(std::span<const double> base, std::span<const double> next, double share = 1);
+RatioEstimate paired_ratio(std::span<const double> base, std::span<const double> next, double fraction = 1);
 
 /// The geometric mean. Throws like ratio_of().
 double geometric_mean(std::span<const double> ratios);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/layouts/band_sheet.h"
+#include "backends/layouts/band_grid.h"
 #include "backends/openmp/openmp.h"
 #include "backends/openmp/step_bands.h"
 #include "backends/spring_list/serial.h"
@@ -296,10 +296,10 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverManyStepsAPassTakes) {
     const System system = low_cloth(rows, columns);
     const auto& grid = std::get<GridPatch>(system.topology);
     const auto state_after = [&](std::size_t threads, std::size_t steps_per_pass) {
-      BandSheet sheet(system, grid, integrator(), dt_s, kernel.lanes, threads, steps_per_pass);
-      sheet.set_state(system.start);
-      kernel.step(sheet, steps_with_a_bounce + 1);  // the last pass is a short one
-      return sheet.state();
+      BandGrid bands(system, grid, integrator(), dt_s, kernel.lanes, threads, steps_per_pass);
+      bands.set_state(system.start);
+      kernel.step(bands, steps_with_a_bounce + 1);  // the last pass is a short one
+      return bands.state();
     };
     const State expected = state_after(1, 1);
     // A strip may hang in the air again by now.
@@ -335,7 +335,7 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
   System system = solid_block(9, 9, 9);
   system.floor.height = 0.49;
   const auto alone = make_openmp(system, integrator(), dt_s, {1, ""});
-  // More threads than cores, with lots for each, and other work on all cores.
+  // More threads than cores, with chunks for each, and other work on all cores.
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   const auto crowd =
       make_openmp(system, integrator(), dt_s, {static_cast<int>(std::min(3 * cores, 16U)), ""});

@@ -122,7 +122,7 @@ TEST(IntegratorTable, NamesEachOnceAndCountsItsStages) {
   for (const Integrator& integrator : integrators) {
     EXPECT_EQ(find_integrator(integrator.name), &integrator);
     for (std::size_t s = 0; s < max_stages; ++s)
-      EXPECT_EQ(line_count(integrator.stages[s]) > 0, s < integrator.stage_count)
+      EXPECT_EQ(assignment_count(integrator.stages[s]) > 0, s < integrator.stage_count)
           << integrator.name << " " << s;
     EXPECT_TRUE(writes(integrator.stages[integrator.stage_count - 1], Slot::x_next)) << integrator.name;
     EXPECT_TRUE(writes(integrator.stages[integrator.stage_count - 1], Slot::v_next)) << integrator.name;

@@ -71,8 +71,10 @@ TEST(LargestStableDt, SeparatesDecayFromGrowthForEveryIntegrator) {
     const double tolerated = 1 + tolerated_growth;
     bool grows = false;
     for (int i = 1; i <= 1000; ++i) {
-      const double share = i * 1e-3, k = share * bound.stiffness, c = 1 + share * (bound.damping - 1);
-      EXPECT_LE(amplification(integrator, 0.999 * dt, k, c), tolerated) << integrator.name << " at " << share;
+      const double fraction = i * 1e-3, k = fraction * bound.stiffness,
+                   c = 1 + fraction * (bound.damping - 1);
+      EXPECT_LE(amplification(integrator, 0.999 * dt, k, c), tolerated)
+          << integrator.name << " at " << fraction;
       grows |= amplification(integrator, 1.001 * dt, k, c) > tolerated;
     }
     EXPECT_TRUE(grows) << integrator.name;

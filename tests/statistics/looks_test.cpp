@@ -17,7 +17,7 @@ TEST(Looks, AreTakenAfterHalfAsManyMoreEachTime) {
 TEST(Looks, BetweenTwoAreTheNextOne) {
   for (const std::size_t pairs : {11UL, 12UL, 14UL, 15UL}) {
     EXPECT_EQ(look_at(pairs).pairs, 15U);
-    EXPECT_DOUBLE_EQ(look_at(pairs).share, 1. / 6);
+    EXPECT_DOUBLE_EQ(look_at(pairs).fraction, 1. / 6);
   }
   EXPECT_EQ(look_at(1).pairs, first_look_pairs);
 }
@@ -26,7 +26,7 @@ TEST(Looks, SpendTheWholeErrorHoweverManyThereAre) {
   double spent = 0;
   int number = 0;
   for (std::size_t pairs = 1; pairs < 1'000'000; pairs = look_at(pairs).pairs + 1) {
-    spent += look_at(pairs).share;
+    spent += look_at(pairs).fraction;
     ++number;
     EXPECT_NEAR(spent, 1 - 1. / (number + 1), 1e-12);
   }

@@ -92,9 +92,9 @@ class Person {
     const BodyMeasures m;
     const EllipseSection hip = section_of_girth(m.hip.height, m.hip.girth, m.hip_aspect, 0, -0.006);
     // Up from the crotch, wide early and deep late, as on the mannequin.
-    const auto seat = [&](double share, double width, double depth) {
-      const double z = -0.006 * share;
-      return EllipseSection{m.crotch_height + share * (m.hip.height - m.crotch_height), width * hip.x_min,
+    const auto seat = [&](double fraction, double width, double depth) {
+      const double z = -0.006 * fraction;
+      return EllipseSection{m.crotch_height + fraction * (m.hip.height - m.crotch_height), width * hip.x_min,
                             width * hip.x_max, z - depth * hip.half_depth(), z + depth * hip.half_depth()};
     };
     return {seat(0, 0.45, 0.30),
@@ -118,8 +118,8 @@ class Person {
     const BodyMeasures m;
     const double thigh_axis = m.thigh_gap / 2 + m.thigh.girth / ellipse_perimeter(1, thigh_aspect);
     const auto section = [&](double height, double girth, double aspect, double z) {
-      const double share = (m.thigh.height - height) / (m.thigh.height - m.ankle.height);
-      return section_of_girth(height, girth, aspect, thigh_axis + share * (m.stance / 2 - thigh_axis), z);
+      const double fraction = (m.thigh.height - height) / (m.thigh.height - m.ankle.height);
+      return section_of_girth(height, girth, aspect, thigh_axis + fraction * (m.stance / 2 - thigh_axis), z);
     };
     return {section(0.03, 0.25, 1.2, 0), section(m.ankle.height, m.ankle.girth, 1.15, -0.002),
             section(0.16, 0.25, 1.05, -0.006), section(0.32, 0.36, 1.05, -0.012),
@@ -147,8 +147,8 @@ class Person {
   /// About a cone, with a ball at either end.
   static double cone(const Vec3d& p, const Vec3d& from, double radius, const Vec3d& to, double end_radius) {
     const Vec3d along = to - from;
-    const double share = std::clamp(dot(p - from, along) / dot(along, along), 0.0, 1.0);
-    return length(p - from - share * along) - (radius + share * (end_radius - radius));
+    const double fraction = std::clamp(dot(p - from, along) / dot(along, along), 0.0, 1.0);
+    return length(p - from - fraction * along) - (radius + fraction * (end_radius - radius));
   }
 
   double arm(const Vec3d& p) const {

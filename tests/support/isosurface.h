@@ -49,8 +49,8 @@ inline Surface isosurface(const DistanceField& field, const FieldBox& box) {
     const auto [found, is_new] = on_edge.try_emplace(edge, surface.points.size());
     if (is_new) {
       // Not too near a corner: no triangle is without area.
-      const double share = std::clamp(value[inner] / (value[inner] - value[outer]), 0.05, 0.95);
-      surface.points.push_back(place[inner] + share * (place[outer] - place[inner]));
+      const double fraction = std::clamp(value[inner] / (value[inner] - value[outer]), 0.05, 0.95);
+      surface.points.push_back(place[inner] + fraction * (place[outer] - place[inner]));
     }
     return found->second;
   };

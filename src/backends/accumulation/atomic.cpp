@@ -20,7 +20,7 @@ class Atomic {
   void prepare(const Team& team) { list_.clear_forces(team.begin(list_.nodes()), team.end(list_.nodes())); }
 
   void add(const Team& team, Pair gather) {
-    for (const Spring& spring : team.share_of(list_.springs())) {
+    for (const Spring& spring : team.slice_of(list_.springs())) {
       const Vec3<float> force = list_.force_of(spring, gather);
       add_atomically(list_.force(spring.first), force);
       add_atomically(list_.force(spring.second), -1.0F * force);

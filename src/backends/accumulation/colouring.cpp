@@ -15,7 +15,7 @@ class Colouring {
   void add(const Team& team, Pair gather) {
     for (std::size_t colour = 0; colour < colouring_.colours(); ++colour) {
       if (colour > 0) team.barrier.wait();
-      for (const Spring& spring : team.share_of(colouring_.of_colour(colour)))
+      for (const Spring& spring : team.slice_of(colouring_.of_colour(colour)))
         list_.add_force(spring, list_.force_of(spring, gather));
     }
   }

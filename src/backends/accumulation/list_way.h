@@ -20,11 +20,11 @@ struct Team {
   std::size_t threads;
   SpinBarrier& barrier;
 
-  /// Where this thread's share of `count` things begins; the next thread's begins where it ends.
+  /// Where this thread's slice of `count` things begins; the next thread's begins where it ends.
   std::size_t begin(std::size_t count) const { return count * thread / threads; }
   std::size_t end(std::size_t count) const { return count * (thread + 1) / threads; }
   template <class T>
-  std::span<const T> share_of(std::span<const T> all) const {
+  std::span<const T> slice_of(std::span<const T> all) const {
     return all.subspan(begin(all.size()), end(all.size()) - begin(all.size()));
   }
 };
@@ -36,7 +36,7 @@ struct Team {
 /// - prepare(team), while others may still be in the last stage's `finish` and update: it writes only what no
 ///   other thread touches there, and reads no node;
 /// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
-/// - finish(team), after all have added: completes the forces of this thread's share of the nodes.
+/// - finish(team), after all have added: completes the forces of this thread's slice of the nodes.
 template <class Accumulation>
 class ListWay final : public Backend {
  public:

@@ -32,7 +32,7 @@ class LockPerNode {
   void prepare(const Team& team) { list_.clear_forces(team.begin(list_.nodes()), team.end(list_.nodes())); }
 
   void add(const Team& team, Pair gather) {
-    for (const Spring& spring : team.share_of(list_.springs())) {
+    for (const Spring& spring : team.slice_of(list_.springs())) {
       const Vec3<float> force = list_.force_of(spring, gather);
       {
         const std::lock_guard lock(locks_[spring.first]);

@@ -15,7 +15,7 @@ class ThreadPrivate {
 
   void add(const Team& team, Pair gather) {
     std::vector<Vec3<float>>& forces = forces_[team.thread];
-    for (const Spring& spring : team.share_of(list_.springs())) {
+    for (const Spring& spring : team.slice_of(list_.springs())) {
       const Vec3<float> force = list_.force_of(spring, gather);
       forces[spring.first] += force;
       forces[spring.second] -= force;

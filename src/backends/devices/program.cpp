@@ -34,17 +34,17 @@ bool uses_pair(const Stage& stage, Pair pair) {
          reads(stage, velocity_slot(pair));
 }
 
-/// A line's sum, the last term first, so that the large first term is added last.
-std::string sum_of_terms(const Line& line, std::size_t stage, std::size_t number) {
+/// The sum of an assignment, the last term first, so that the large first term is added last.
+std::string sum_of_terms(const Assignment& assignment, std::size_t stage, std::size_t number) {
   const auto factor = [&](std::size_t term) {
     return "(Real)(step->coefficients[" + std::to_string(stage) + "][" + std::to_string(number) + "][" +
            std::to_string(term) + "])";
   };
-  const std::size_t last = term_count(line) - 1;
-  std::string sum = "times(" + factor(last) + ", " + name(line.terms[last].slot) + ")";
+  const std::size_t last = term_count(assignment) - 1;
+  std::string sum = "times(" + factor(last) + ", " + name(assignment.terms[last].slot) + ")";
   for (std::size_t term = last; term-- > 1;)
-    sum = "times_plus(" + factor(term) + ", " + name(line.terms[term].slot) + ", " + sum + ")";
-  if (last > 0) sum = "plus(" + name(line.terms[0].slot) + ", " + sum + ")";
+    sum = "times_plus(" + factor(term) + ", " + name(assignment.terms[term].slot) + ", " + sum + ")";
+  if (last > 0) sum = "plus(" + name(assignment.terms[0].slot) + ", " + sum + ")";
   return sum;
 }
 
@@ -60,7 +60,7 @@ bool writes_stored(const StoredStage& stage, Pair stored) {
 std::string access(const StoredStage& stage, const char* what, Slot slot, const std::string& value = "") {
   const bool velocity = index(slot) % 2 == 1;
   return std::string(what) + (velocity ? "_velocity(" : "_position(") + value +
-         name_of(stage, static_cast<Pair>(index(slot) / 2)) + ", site, shape)";
+         name_of(stage, static_cast<Pair>(index(slot) / 2)) + ", tile, shape)";
 }
 
 }  // namespace
@@ -88,10 +88,10 @@ std::string update_text(const StoredStage& stored_stage) {
   std::ostringstream text;
   text << "\n/* " << integrator.name << ", stage " << number << " */\n"
        << "MSSIM_INLINE void update_" << number << "(" << pair_parameters(stored_stage)
-       << "Site site, Node node, Vector spring_forces, Shape shape, __constant struct StepParameters* step) "
+       << "Tile tile, Node node, Vector spring_forces, Shape shape, __constant struct StepParameters* step) "
           "{\n"
        << "  Vector " << name(x) << " = node.x, " << name(v) << " = node.v;\n"
-       << "  Vector a = acceleration(spring_forces, node.v, site.free, step);\n";
+       << "  Vector a = acceleration(spring_forces, node.v, tile.free, step);\n";
   for (std::size_t i = 0; i < slot_kinds; ++i)
     if (const Slot slot = static_cast<Slot>(i); slot != Slot::a && slot != x && slot != v) {
       if (i < memory_slots && reads(stage, slot))
@@ -99,12 +99,12 @@ std::string update_text(const StoredStage& stored_stage) {
       else if (writes(stage, slot))
         text << "  Vector " << name(slot) << ";\n";
     }
-  for (std::size_t line = 0; line < line_count(stage); ++line)
-    text << "  " << name(stage.lines[line].out) << " = " << sum_of_terms(stage.lines[line], number, line)
-         << ";\n";
+  for (std::size_t assignment = 0; assignment < assignment_count(stage); ++assignment)
+    text << "  " << name(stage.assignments[assignment].out) << " = "
+         << sum_of_terms(stage.assignments[assignment], number, assignment) << ";\n";
   if (number + 1 == integrator.stage_count)
     text << "  touch_floor(&" << name(Slot::x_next) << ", &" << name(Slot::v_next)
-         << ", site.free, &step->surroundings);\n";
+         << ", tile.free, &step->surroundings);\n";
   for (std::size_t i = 0; i < memory_slots; ++i)
     if (const Slot slot = static_cast<Slot>(i); writes(stage, slot))
       text << "  " << access(stored_stage, "store", slot, name(slot) + ", ") << ";\n";

@@ -44,9 +44,10 @@ std::string pair_names_of(const StoredStage& stage);
 /// The name by which the stage's kernel knows `pair`.
 std::string name_of(const StoredStage& stage, Pair pair);
 
-/// `update_N`: the lines of stage N for the nodes of a site, once their springs are summed. It takes the
-/// pairs, the site, its nodes, the spring forces per mass, the shape of the topology and the step parameters,
-/// and asks the topology for Site, Shape, load_position, load_velocity, store_position and store_velocity.
+/// `update_N`: the assignments of stage N for the nodes of a tile, once their springs are summed. It takes
+/// the pairs, the tile, its nodes, the spring forces per mass, the shape of the topology and the step
+/// parameters, and asks the topology for Tile, Shape, load_position, load_velocity, store_position and
+/// store_velocity.
 std::string update_text(const StoredStage& stage);
 
 /// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).

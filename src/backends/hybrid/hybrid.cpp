@@ -38,7 +38,7 @@ class Hybrid final : public Backend {
   }
 
   void set_state(const State& state) override {
-    write_records(state, nodes_.packed.place, device_.pair(present_).data());
+    write_records(state, nodes_.packed.slot, device_.pair(present_).data());
   }
 
   void step(int count) override {
@@ -48,7 +48,7 @@ class Hybrid final : public Backend {
     take_steps(count);
   }
 
-  State state() const override { return read_records(device_.pair(present_).data(), nodes_.packed.place); }
+  State state() const override { return read_records(device_.pair(present_).data(), nodes_.packed.slot); }
 
   std::string device() const override { return device_.queue().label(); }
   /// Of the host or the device, whichever takes more: they take turns.

@@ -10,7 +10,7 @@
 namespace mssim {
 
 /// What a stage reads and writes, as mapped: `pairs` by role, records of eight floats (kernels/records.h) for
-/// each place; `forces` as PackedSprings places them, four floats each.
+/// each slot; `forces` as PackedSprings places them, four floats each.
 struct MappedNodes {
   std::array<float*, pair_kinds> pairs{};
   const float* forces = nullptr;
@@ -19,7 +19,7 @@ struct MappedNodes {
 /// The vector code for one instruction set.
 struct NodeKernel {
   const char* instruction_set;  ///< Highway's name for it
-  /// Sums the forces at the nodes of the slices [begin, end) and runs the lines of a stage.
+  /// Sums the forces at the nodes of the slices [begin, end) and runs the assignments of a stage.
   void (*integrate)(const HostNodes& nodes, const MappedNodes& mapped, std::size_t stage, std::size_t begin,
                     std::size_t end);
 };

@@ -14,8 +14,8 @@ std::size_t units_at_a_time(int lanes) { return lanes == 1 ? 1 : PackedSprings::
 
 SpringDevice::SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
                            const OpenclDevice& device, int lanes, DeviceMemory memory)
-    : lots_(packed.unit_count() / units_at_a_time(lanes), device, lanes), queue_(device, memory) {
-  const std::size_t pair_floats = packed.places() * record_floats;
+    : chunks_(packed.unit_count() / units_at_a_time(lanes), device, lanes), queue_(device, memory) {
+  const std::size_t pair_floats = packed.slots() * record_floats;
   const std::size_t force_floats = 4 * (packed.unit_count() + 1);
   std::vector<std::uint64_t> buffers(stored.size(), pair_floats * sizeof(float));
   buffers.insert(buffers.end(),
@@ -59,8 +59,8 @@ void SpringDevice::make_launch(const System& system, const PackedSprings& packed
   kernel.setArg(3, entries_->buffer());
   kernel.setArg(4, materials_->buffer());
   kernel.setArg(5, static_cast<cl_uint>(packed.unit_count()));
-  kernel.setArg(6, static_cast<cl_uint>(lots_.per_item));
-  launch_ = {kernel, lots_.items};
+  kernel.setArg(6, static_cast<cl_uint>(chunks_.per_item));
+  launch_ = {kernel, chunks_.items};
 }
 
 void SpringDevice::compute_forces(Pair stored) {

@@ -30,7 +30,7 @@ class SpringDevice {
   SpringDevice& operator=(const SpringDevice&) = delete;
 
   const DeviceQueue& queue() const { return queue_; }
-  /// The records of a stored pair, [places][record_floats].
+  /// The records of a stored pair, [slots][record_floats].
   std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }
   /// Forces as PackedSprings places them, four floats each, N.
   const float* forces() const { return host_forces_.data(); }
@@ -41,7 +41,7 @@ class SpringDevice {
  private:
   void make_launch(const System& system, const PackedSprings& packed, int lanes);
 
-  OpenclLots lots_;
+  OpenclChunks chunks_;
   DeviceQueue queue_;
   std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are stored
   std::array<std::span<float>, pair_kinds> host_pairs_;               // as mapped

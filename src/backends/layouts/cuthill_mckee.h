@@ -26,7 +26,7 @@ struct Adjacency {
 /// An order of the nodes in which neighbours stand near each other, so that what a node gathers lies in few
 /// cache lines: breadth first from a node at the rim of its connected component, the neighbours of each node
 /// by ascending degree, and each component backwards (E. Cuthill and J. McKee, 1969; A. George, 1971).
-/// Components follow each other in the order of their lowest node. Returns the node at each place: [nodes], a
+/// Components follow each other in the order of their lowest node. Returns the node at each slot: [nodes], a
 /// permutation.
 std::vector<std::uint32_t> reverse_cuthill_mckee(std::size_t nodes, std::span<const Spring> springs);
 

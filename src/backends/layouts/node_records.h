@@ -14,10 +14,10 @@ namespace mssim {
 /// gather instructions on separate components.
 constexpr std::size_t record_floats = 8;
 
-/// Writes the record of every node: node i's is number `place[i]`. Rounds to float.
-void write_records(const State& state, std::span<const std::uint32_t> place, float* records);
+/// Writes the record of every node: node i's is number `slot[i]`. Rounds to float.
+void write_records(const State& state, std::span<const std::uint32_t> slot, float* records);
 
 /// What `write_records` wrote, or a backend since.
-State read_records(const float* records, std::span<const std::uint32_t> place);
+State read_records(const float* records, std::span<const std::uint32_t> slot);
 
 }  // namespace mssim

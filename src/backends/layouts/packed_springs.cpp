@@ -16,7 +16,7 @@
 namespace mssim {
 namespace {
 
-/// A spring from its first end on, between places.
+/// A spring from its first end on, between slots.
 struct Unit {
   std::uint32_t kind, second;
   float rest_length;
@@ -24,7 +24,7 @@ struct Unit {
   auto operator<=>(const Unit&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-/// The scene's node at each place, and for each scene's node how far ahead it is: the end of a spring that is
+/// The scene's node at each slot, and for each scene's node how far ahead it is: the end of a spring that is
 /// further ahead is its first.
 struct NodeOrder {
   std::vector<std::uint32_t> scene_node, rank;
@@ -61,24 +61,23 @@ NodeOrder node_order(const System& system) {
 /// as long on a large cloth.
 class SpringsByFirstEnd {
  public:
-  SpringsByFirstEnd(const System& system, const std::vector<std::uint32_t>& place,
+  SpringsByFirstEnd(const System& system, const std::vector<std::uint32_t>& slot,
                     const std::vector<std::uint32_t>& rank)
-      : springs_(system.springs), place_(place), rank_(rank), begin_(place.size() + 1, 0) {
-    for (const Spring& spring : springs_) ++begin_[place_[ends_of(spring).first] + 1];
+      : springs_(system.springs), slot_(slot), rank_(rank), begin_(slot.size() + 1, 0) {
+    for (const Spring& spring : springs_) ++begin_[slot_[ends_of(spring).first] + 1];
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     order_.resize(springs_.size());
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::uint32_t s = 0; s < springs_.size(); ++s)
-      order_[next[place_[ends_of(springs_[s]).first]]++] = s;
+    for (std::uint32_t s = 0; s < springs_.size(); ++s) order_[next[slot_[ends_of(springs_[s]).first]]++] = s;
   }
 
-  /// Those that begin at a place: by kind, then by their second ends; none at a place without a node.
-  void get(std::size_t place, std::vector<Unit>& units) const {
+  /// Those that begin at a slot: by kind, then by their second ends; none at a slot without a node.
+  void get(std::size_t slot, std::vector<Unit>& units) const {
     units.clear();
-    if (place + 1 >= begin_.size()) return;
-    for (std::size_t i = begin_[place]; i < begin_[place + 1]; ++i) {
+    if (slot + 1 >= begin_.size()) return;
+    for (std::size_t i = begin_[slot]; i < begin_[slot + 1]; ++i) {
       const Spring& spring = springs_[order_[i]];
-      units.push_back({spring.kind, place_[ends_of(spring).second], spring.rest_length});
+      units.push_back({spring.kind, slot_[ends_of(spring).second], spring.rest_length});
     }
     std::sort(units.begin(), units.end());
   }
@@ -91,21 +90,21 @@ class SpringsByFirstEnd {
   }
 
   const std::vector<Spring>& springs_;
-  const std::vector<std::uint32_t>&place_, &rank_;
+  const std::vector<std::uint32_t>&slot_, &rank_;
   std::vector<std::uint32_t> begin_;  // [nodes + 1]
   std::vector<std::uint32_t> order_;  // [springs]
 };
 
 }  // namespace
 
-PackedSprings::PackedSprings(const System& system) : place(system.nodes()) {
+PackedSprings::PackedSprings(const System& system) : slot(system.nodes()) {
   constexpr std::size_t largest = std::numeric_limits<std::uint32_t>::max() / slice_nodes;
   if (system.springs.size() > largest)
     throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
                       " springs; hybrid supports at most " + std::to_string(largest));
   NodeOrder order = node_order(system);
   scene_node = std::move(order.scene_node);
-  for (std::uint32_t i = 0; i < scene_node.size(); ++i) place[scene_node[i]] = i;
+  for (std::uint32_t i = 0; i < scene_node.size(); ++i) slot[scene_node[i]] = i;
   scene_node.resize((scene_node.size() + slice_nodes - 1) / slice_nodes * slice_nodes, no_node);
 
   pack_units(system, order.rank);
@@ -113,11 +112,11 @@ PackedSprings::PackedSprings(const System& system) : place(system.nodes()) {
 }
 
 void PackedSprings::pack_units(const System& system, const std::vector<std::uint32_t>& rank) {
-  const SpringsByFirstEnd springs(system, place, rank);
+  const SpringsByFirstEnd springs(system, slot, rank);
   constexpr std::uint32_t no_kind = std::numeric_limits<std::uint32_t>::max();
   std::array<std::vector<Unit>, slice_nodes> of_node;
   first_entry.push_back(0);
-  for (std::uint32_t slice = 0; slice < places() / slice_nodes; ++slice) {
+  for (std::uint32_t slice = 0; slice < slots() / slice_nodes; ++slice) {
     for (std::size_t i = 0; i < slice_nodes; ++i) springs.get(slice * slice_nodes + i, of_node[i]);
     std::array<std::size_t, slice_nodes> next{};
     while (true) {
@@ -150,7 +149,7 @@ void PackedSprings::list_subtracted() {
           visit(unit[0], static_cast<std::uint32_t>(entry * slice_nodes + force_place(i)));
       }
   };
-  std::vector<std::uint32_t> received(places(), 0);
+  std::vector<std::uint32_t> received(slots(), 0);
   for_each_force([&](std::uint32_t node, std::uint32_t) { ++received[node]; });
   first_subtracted.push_back(0);
   for (auto node = received.begin(); node != received.end(); node += list_nodes)

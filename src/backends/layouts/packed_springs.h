@@ -29,8 +29,8 @@ struct PackedSprings {
   static constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
   static constexpr float empty_unit = -1;
 
-  std::vector<std::uint32_t> scene_node;  ///< [places] the scene's number of the node, or no_node at the end
-  std::vector<std::uint32_t> place;       ///< [nodes] where the scene's node stands
+  std::vector<std::uint32_t> scene_node;  ///< [slots] the scene's number of the node, or no_node at the end
+  std::vector<std::uint32_t> slot;        ///< [nodes] where the scene's node stands
 
   std::vector<std::uint32_t> first_entry;  ///< [slices + 1], the last one is the number of entries
   /// What the units of an entry share.
@@ -39,11 +39,11 @@ struct PackedSprings {
     std::uint32_t kind;  // index into System::materials
   };
   std::vector<Entry> entries;
-  /// [entries][second node, rest length][16]: places, and the bits of a float, m. Where a node has fewer
+  /// [entries][second node, rest length][16]: slots, and the bits of a float, m. Where a node has fewer
   /// units than its slice has entries, the node itself and empty_unit: such a unit must give no force.
   std::vector<std::uint32_t> units;
 
-  /// [places / 4 + 1]: where the list of each four nodes begins, and the end of the last one.
+  /// [slots / 4 + 1]: where the list of each four nodes begins, and the end of the last one.
   std::vector<std::uint32_t> first_subtracted;
   /// [..][4] in turn for each of four nodes: where a force lies that is to be subtracted, since the node is
   /// the second end. The list of a node with fewer than the others of its four ends with no_force().
@@ -52,11 +52,11 @@ struct PackedSprings {
   /// Throws Unsupported for more springs than 32 bits number.
   explicit PackedSprings(const System& system);
 
-  std::size_t places() const { return scene_node.size(); }  ///< slices() * slice_nodes
+  std::size_t slots() const { return scene_node.size(); }  ///< slices() * slice_nodes
   std::size_t slices() const { return first_entry.size() - 1; }
   std::size_t unit_count() const { return entries.size() * slice_nodes; }
 
-  /// Forces lie by entries, sixteen after each other, as (x, y, z, 0) each; this is the place among the
+  /// Forces lie by entries, sixteen after each other, as (x, y, z, 0) each; this is the slot among the
   /// sixteen. Nodes 0, 4, 8 and 12 first, then 1, 5 and so on: that is where transpositions of vectors within
   /// each four elements put them, from components to forces on the device and back on the host.
   static constexpr std::size_t force_place(std::size_t node) { return node % 4 * 4 + node / 4; }

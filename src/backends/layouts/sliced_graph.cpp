@@ -25,14 +25,14 @@ std::vector<std::uint32_t> kind_of_nodes(const System& system) {
 }
 
 struct Neighbour {
-  std::uint32_t place;
+  std::uint32_t slot;
   float rest_length;
 };
 
 }  // namespace
 
 SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
-    : lanes(slice_lanes), place(system.nodes()) {
+    : lanes(slice_lanes), slot(system.nodes()) {
   if (system.springs.size() > no_node / 2)
     throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
                       " springs; a sliced graph holds at most 2147483647");
@@ -48,21 +48,21 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
     std::stable_sort(scene_node.begin() + static_cast<std::ptrdiff_t>(begin),
                      scene_node.begin() + static_cast<std::ptrdiff_t>(std::min(begin + window, nodes())),
                      [&](std::uint32_t a, std::uint32_t b) { return degree[a] > degree[b]; });
-  for (std::uint32_t i = 0; i < nodes(); ++i) place[scene_node[i]] = i;
+  for (std::uint32_t i = 0; i < nodes(); ++i) slot[scene_node[i]] = i;
   scene_node.resize((nodes() + lanes - 1) / lanes * lanes, no_node);
 
-  std::vector<std::vector<Neighbour>> springs(places());
-  for (std::uint32_t node = 0; node < nodes(); ++node) springs[place[node]].reserve(degree[node]);
+  std::vector<std::vector<Neighbour>> springs(slots());
+  for (std::uint32_t node = 0; node < nodes(); ++node) springs[slot[node]].reserve(degree[node]);
   for (const Spring& spring : system.springs) {
-    springs[place[spring.first]].push_back({place[spring.second], spring.rest_length});
-    springs[place[spring.second]].push_back({place[spring.first], spring.rest_length});
+    springs[slot[spring.first]].push_back({slot[spring.second], spring.rest_length});
+    springs[slot[spring.second]].push_back({slot[spring.first], spring.rest_length});
   }
   first_entry.assign(1, 0);
-  for (std::size_t begin = 0; begin < places(); begin += lanes) {
+  for (std::size_t begin = 0; begin < slots(); begin += lanes) {
     std::size_t largest = 0;
     for (std::size_t i = begin; i < begin + lanes; ++i) {
       std::sort(springs[i].begin(), springs[i].end(),
-                [](const Neighbour& a, const Neighbour& b) { return a.place < b.place; });
+                [](const Neighbour& a, const Neighbour& b) { return a.slot < b.slot; });
       largest = std::max(largest, springs[i].size());
     }
     first_entry.push_back(first_entry.back() + static_cast<std::uint32_t>(largest));
@@ -70,10 +70,10 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
 
   neighbour.resize(entries() * lanes);
   stiffness_rest.assign(entries() * lanes, empty_entry);
-  stiffness.assign(places(), 0);
-  damping.assign(places(), 0);
-  held.assign(places(), 0);
-  for (std::size_t i = 0; i < places(); ++i) {
+  stiffness.assign(slots(), 0);
+  damping.assign(slots(), 0);
+  held.assign(slots(), 0);
+  for (std::size_t i = 0; i < slots(); ++i) {
     const std::size_t slice = i / lanes;
     for (std::size_t e = first_entry[slice]; e < first_entry[slice + 1]; ++e)
       neighbour[e * lanes + i % lanes] = static_cast<std::uint32_t>(i);
@@ -86,12 +86,12 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
       const SpringConstants spring(material, static_cast<double>(other.rest_length), mass);
       stiffness[i] = spring.stiffness;
       damping[i] = spring.damping;
-      neighbour[element] = other.place;
+      neighbour[element] = other.slot;
       stiffness_rest[element] = spring.stiffness_rest;
       element += lanes;
     }
   }
-  for (const std::uint32_t pin : system.pins) held[place[pin]] = 1;
+  for (const std::uint32_t pin : system.pins) held[slot[pin]] = 1;
 }
 
 }  // namespace mssim

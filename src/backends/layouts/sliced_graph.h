@@ -28,22 +28,22 @@ struct SlicedGraph {
   static constexpr float empty_entry = -1;
 
   std::size_t lanes = 0;                  ///< nodes in a slice
-  std::vector<std::uint32_t> scene_node;  ///< [places] the scene's number of the node, or no_node
-  std::vector<std::uint32_t> place;       ///< [nodes] where the scene's node stands
+  std::vector<std::uint32_t> scene_node;  ///< [slots] the scene's number of the node, or no_node
+  std::vector<std::uint32_t> slot;        ///< [nodes] where the scene's node stands
   std::vector<std::uint32_t>
       first_entry;                       ///< [slices + 1] of the slice; the last one is the number of entries
-  std::vector<std::uint32_t> neighbour;  ///< [entries][lanes] places
+  std::vector<std::uint32_t> neighbour;  ///< [entries][lanes] slots
   std::vector<float> stiffness_rest;     ///< [entries][lanes] stiffness * rest length / mass, m/s^2
-  std::vector<float> stiffness;          ///< [places] 1/s^2, of all springs of the node
-  std::vector<float> damping;            ///< [places] 1/s
-  std::vector<std::uint32_t> held;       ///< [places] 1 where nothing may move: pinned, or no node; else 0
+  std::vector<float> stiffness;          ///< [slots] 1/s^2, of all springs of the node
+  std::vector<float> damping;            ///< [slots] 1/s
+  std::vector<std::uint32_t> held;       ///< [slots] 1 where nothing may move: pinned, or no node; else 0
 
   /// Throws Unsupported where springs of unlike materials meet in a node, and for more springs than 32 bits
   /// number from both ends.
   SlicedGraph(const System& system, std::size_t slice_lanes);
 
-  std::size_t nodes() const { return place.size(); }
-  std::size_t places() const { return scene_node.size(); }  ///< slices() * lanes
+  std::size_t nodes() const { return slot.size(); }
+  std::size_t slots() const { return scene_node.size(); }  ///< slices() * lanes
   std::size_t slices() const { return first_entry.size() - 1; }
   std::size_t entries() const { return first_entry.back(); }
 };

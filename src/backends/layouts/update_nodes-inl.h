@@ -35,7 +35,7 @@ HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeL
                              const Lanes3& pull, Mask free, const Coefficients<float>& coefficients,
                              const Surroundings& surroundings) {
   constexpr Stage table = integrators[method].stages[stage];
-  // What is held is at rest; without acceleration every line gives it back as it was.
+  // What is held is at rest; without acceleration every assignment gives it back as it was.
   const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping),
                                                 Lanes(surroundings.gravity)));
 

@@ -20,75 +20,77 @@ static_assert(grid_stencil.size() == 6 && is(grid_stencil[0], 1, 0, structural) 
 /// Both ends of every spring of the stencil, each for itself.
 std::string gather_springs_text() {
   std::ostringstream text;
-  text << "static inline Vector gather_springs(__global const float* restrict pair, Site site, Node node, "
+  text << "static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node, "
           "Shape grid) {\n"
           "  Vector sum = no_vector(), on_other = no_vector();\n";
   for (const GridSpring& spring : grid_stencil)
     for (const int end : {1, -1}) {
       const std::string other =
           std::to_string(end * spring.rows) + ", " + std::to_string(end * spring.columns);
-      text << "  add_spring(&sum, &on_other, node, load_node(pair, site, " << other
-           << ", grid), is_on_cloth(site, " << other << ", grid), " << grid_spring_kinds[spring.kind].name
+      text << "  add_spring(&sum, &on_other, node, load_node(pair, tile, " << other
+           << ", grid), is_on_cloth(tile, " << other << ", grid), " << grid_spring_kinds[spring.kind].name
            << ", grid);\n";
     }
   text << "  return sum;\n}\n";
   return text.str();
 }
 
-/// "update_N(pairs, site, node, ", to which the forces are added.
+/// "update_N(pairs, tile, node, ", to which the forces are added.
 std::string update_call(const StoredStage& stage) {
-  return "update_" + std::to_string(stage.number) + "(" + pair_names_of(stage) + "site, node, ";
+  return "update_" + std::to_string(stage.number) + "(" + pair_names_of(stage) + "tile, node, ";
 }
 
 std::string nodes_kernel_text(const StoredStage& stage) {
   const std::string gathered = name_of(stage, stage.stage().gather);
   std::ostringstream text;
-  text << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
-       << "__constant struct StepParameters* step,\n    __constant struct GridParameters* grid, "
-          "__global const int* restrict pin_rows,\n    __global const int* restrict pins) {\n"
-          "  const Site site = site_at((int)get_global_id(1), (int)get_global_id(0), grid, pin_rows, pins);\n"
-       << "  const Node node = load_node(" << gathered << ", site, 0, 0, grid);\n"
-       << "  " << update_call(stage) << "gather_springs(" << gathered << ", site, node, grid), grid, step);\n"
-       << "}\n";
+  text
+      << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
+      << "__constant struct StepParameters* step,\n    __constant struct GridParameters* grid, "
+         "__global const int* restrict pin_masks,\n    __global const int* restrict pins) {\n"
+         "  const Tile tile = tile_at((int)get_global_id(1), (int)get_global_id(0), grid, pin_masks, pins);\n"
+      << "  const Node node = load_node(" << gathered << ", tile, 0, 0, grid);\n"
+      << "  " << update_call(stage) << "gather_springs(" << gathered << ", tile, node, grid), grid, step);\n"
+      << "}\n";
   return text.str();
 }
 
 /// The ghosts of a pair. The state's and those of `next` change roles after every step.
 std::string ghosts_of(Pair pair) {
   return "ghosts_of(" + std::to_string(index(pair)) + (index(pair) < 2 ? " ^ swapped" : "") +
-         ", ghosts, &part, grid)";
+         ", ghosts, &partition, grid)";
 }
 
 std::string bands_kernel_text(const StoredStage& stage) {
   const Pair gather = stage.stage().gather;
   std::ostringstream text;
-  text << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
-       << "__global float* ghosts, int swapped, __constant struct StepParameters* step,\n"
-          "    __constant struct GridParameters* grid, __global const int* restrict free_lines,\n"
-          "    __global const int* restrict is_free, __global float* restrict sums) {\n"
-          "  const Part part = part_of((int)get_global_id(0), (int)get_global_size(0), grid);\n"
-          "  sums += part.number * 3 * sums_floats(grid);\n"
-          "  int column = max(part.first - 2, 0);\n"
-          "  clear_sums(sums, column, grid);\n"
-          "  for (; column < part.end; ++column) {\n"
-       << "    const Column at = column_at(column, " << name_of(stage, gather) << ", " << ghosts_of(gather)
-       << ", sums, &part, grid);\n"
-          "    __global const int* line = is_free + free_lines[column] * grid->height * MSSIM_LANES;\n"
-          "    Carry carry = begin_column(&at, grid);\n"
-          "    for (int row = 0; row < grid->height; ++row) {\n"
-          "      const Node node = load_node(at.here, row);\n"
-          "      const Vector forces = walk_row(&at, node, row, &carry, grid);\n"
-          "      if (column < part.first) continue;\n"
-          "      const Site site = {column_start(column, grid) + row * row_floats,\n"
-          "                         load_aligned_mask(line + row * MSSIM_LANES)};\n"
-       << "      " << update_call(stage) << "forces, grid, step);\n"
-       << "    }\n"
-          "    end_column(&at, &carry, grid);\n"
-          "    if (column < part.first) continue;\n";
+  text
+      << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
+      << "__global float* ghosts, int swapped, __constant struct StepParameters* step,\n"
+         "    __constant struct GridParameters* grid, __global const int* restrict free_masks,\n"
+         "    __global const int* restrict is_free, __global float* restrict sums) {\n"
+         "  const Partition partition = partition_of((int)get_global_id(0), (int)get_global_size(0), grid);\n"
+         "  sums += partition.number * 3 * sums_floats(grid);\n"
+         "  int column = max(partition.first - 2, 0);\n"
+         "  clear_sums(sums, column, grid);\n"
+         "  for (; column < partition.end; ++column) {\n"
+      << "    const Column at = column_at(column, " << name_of(stage, gather) << ", " << ghosts_of(gather)
+      << ", sums, &partition, grid);\n"
+         "    __global const int* mask = is_free + free_masks[column] * grid->height * MSSIM_LANES;\n"
+         "    Carry carry = begin_column(&at, grid);\n"
+         "    for (int row = 0; row < grid->height; ++row) {\n"
+         "      const Node node = load_node(at.here, row);\n"
+         "      const Vector forces = walk_row(&at, node, row, &carry, grid);\n"
+         "      if (column < partition.first) continue;\n"
+         "      const Tile tile = {column_start(column, grid) + row * row_floats,\n"
+         "                         load_aligned_mask(mask + row * MSSIM_LANES)};\n"
+      << "      " << update_call(stage) << "forces, grid, step);\n"
+      << "    }\n"
+         "    end_column(&at, &carry, grid);\n"
+         "    if (column < partition.first) continue;\n";
   for (std::size_t i = 0; i < pair_kinds; ++i)
     if (const Pair pair = static_cast<Pair>(i); writes_to_gather(stage.integrator, stage.number, pair))
       text << "    finish_column(column, " << name_of(stage, pair) << ", " << ghosts_of(pair)
-           << ", &part, grid);\n";
+           << ", &partition, grid);\n";
   text << "  }\n}\n";
   return text.str();
 }

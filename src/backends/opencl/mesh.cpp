@@ -17,9 +17,9 @@ namespace {
 
 PairLayout record_layout(const SlicedGraph& graph) {
   PairLayout pair;
-  pair.floats = record_floats * graph.places();
+  pair.floats = record_floats * graph.slots();
   pair.component = {0, 1, 2, 4, 5, 6};
-  for (const std::uint32_t place : graph.place) pair.node.push_back(record_floats * place);
+  for (const std::uint32_t slot : graph.slot) pair.node.push_back(record_floats * slot);
   return pair;
 }
 
@@ -29,9 +29,9 @@ class OpenclMesh final : public OpenclStages {
              DeviceMemory memory, int lanes, const SlicedGraph& graph)
       : OpenclStages(system, integrator, dt_s, device, memory, Storage::separate, record_layout(graph),
                      {graph.neighbour.size() * sizeof(cl_uint), graph.neighbour.size() * sizeof(float)}) {
-    const std::size_t sites = graph.places() / static_cast<std::size_t>(lanes);
-    const OpenclLots lots(sites, device, lanes);
-    const MeshParameters parameters{static_cast<cl_uint>(sites), static_cast<cl_uint>(lots.per_item)};
+    const std::size_t tiles = graph.slots() / static_cast<std::size_t>(lanes);
+    const OpenclChunks chunks(tiles, device, lanes);
+    const MeshParameters parameters{static_cast<cl_uint>(tiles), static_cast<cl_uint>(chunks.per_item)};
     add_argument(std::span(&parameters, 1));
     add_argument(std::span(graph.first_entry));
     add_argument(std::span(graph.neighbour));
@@ -39,7 +39,7 @@ class OpenclMesh final : public OpenclStages {
     add_argument(std::span(graph.stiffness));
     add_argument(std::span(graph.damping));
     add_argument(std::span(graph.held));
-    prepare(mesh_program_text(integrator, lanes), lots.items, system.start);
+    prepare(mesh_program_text(integrator, lanes), chunks.items, system.start);
   }
 };
 

@@ -18,13 +18,13 @@ std::string kernel_text(const StoredStage& stage) {
           "    __global const float* restrict stiffness, __global const float* restrict damping,\n"
           "    __global const int* restrict held) {\n"
           "  const Mesh mesh = {first_entry, neighbour, stiffness_rest, stiffness, damping, held};\n"
-          "  const uint first = (uint)get_global_id(0) * parameters->sites_per_item;\n"
-          "  const uint end = min(first + parameters->sites_per_item, parameters->sites);\n"
+          "  const uint first = (uint)get_global_id(0) * parameters->tiles_per_item;\n"
+          "  const uint end = min(first + parameters->tiles_per_item, parameters->tiles);\n"
           "  for (uint number = first; number < end; ++number) {\n"
-          "    const Site site = site_at(number, &mesh);\n"
-       << "    const Node node = load_node(" << gathered << ", site);\n"
-       << "    update_" << number << "(" << pair_names_of(stage) << "site, node, gather_springs(" << gathered
-       << ", site, node, &mesh), &mesh, step);\n"
+          "    const Tile tile = tile_at(number, &mesh);\n"
+       << "    const Node node = load_node(" << gathered << ", tile);\n"
+       << "    update_" << number << "(" << pair_names_of(stage) << "tile, node, gather_springs(" << gathered
+       << ", tile, node, &mesh), &mesh, step);\n"
        << "  }\n"
           "}\n";
   return text.str();

@@ -70,21 +70,21 @@ const OpenclBuffer<float>& OpenclStages::arrays(Pair pair, bool swapped) const {
 }
 
 void OpenclStages::set_state(const State& state) {
-  const auto put = [&](std::span<float> memory, std::size_t place, std::size_t node) {
+  const auto put = [&](std::span<float> memory, std::size_t offset, std::size_t node) {
     const Vec3d &x = state.position[node], &v = state.velocity[node];
     const std::array values{x.x, x.y, x.z, v.x, v.y, v.z};
     for (std::size_t i = 0; i < values.size(); ++i)
-      memory[place + layout_.component[i]] = static_cast<float>(values[i]);
+      memory[offset + layout_.component[i]] = static_cast<float>(values[i]);
   };
   opencl_call<std::runtime_error>([&] {
     arrays(Pair::state, swapped_).write(queue_.commands(), [&](std::span<float> memory) {
       for (std::size_t node = 0; node < layout_.node.size(); ++node) put(memory, layout_.node[node], node);
-      for (const auto& [place, node] : layout_.copies) put(memory, place, node);
+      for (const auto& [offset, node] : layout_.copies) put(memory, offset, node);
     });
     if (!ghosts_) return;
     ghosts_->write(queue_.commands(), [&](std::span<float> memory) {
       const std::size_t first = index(role(Pair::state, swapped_)) * layout_.ghost_floats;
-      for (const auto& [place, node] : layout_.ghosts) put(memory, first + place, node);
+      for (const auto& [offset, node] : layout_.ghosts) put(memory, first + offset, node);
     });
   });
 }

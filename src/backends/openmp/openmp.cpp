@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "backends/layouts/band_sheet.h"
+#include "backends/layouts/band_grid.h"
 #include "backends/openmp/sliced_bodies.h"
 #include "backends/openmp/step_bands.h"
 #include "backends/openmp/step_slices.h"
@@ -16,20 +16,20 @@ class OpenMpGrid final : public Backend {
  public:
   OpenMpGrid(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
              std::size_t threads, const BandKernel& kernel)
-      : kernel_(kernel), sheet_(system, grid, integrator, dt_s, kernel_.lanes, threads) {
-    sheet_.set_state(system.start);
+      : kernel_(kernel), bands_(system, grid, integrator, dt_s, kernel_.lanes, threads) {
+    bands_.set_state(system.start);
   }
 
-  void set_state(const State& state) override { sheet_.set_state(state); }
-  State state() const override { return sheet_.state(); }
-  void step(int count) override { kernel_.step(sheet_, count); }
+  void set_state(const State& state) override { bands_.set_state(state); }
+  State state() const override { return bands_.state(); }
+  void step(int count) override { kernel_.step(bands_, count); }
   std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
-  int threads() const override { return static_cast<int>(sheet_.parts.size()); }
-  int steps_per_pass() const override { return static_cast<int>(sheet_.steps_per_pass); }
+  int threads() const override { return static_cast<int>(bands_.partitions.size()); }
+  int steps_per_pass() const override { return static_cast<int>(bands_.steps_per_pass); }
 
  private:
   BandKernel kernel_;
-  BandSheet sheet_;
+  BandGrid bands_;
 };
 
 /// Bodies in slices.

@@ -9,7 +9,7 @@
 namespace mssim {
 
 /// The harness's own multi-threaded CPU code for cloths and bodies: vectors over bands of a cloth
-/// (backends/layouts/band_sheet.h) or over slices of bodies (sliced_bodies.h), fused stages, columns or
+/// (backends/layouts/band_grid.h) or over slices of bodies (sliced_bodies.h), fused stages, columns or
 /// slices split over OpenMP threads, the same bits for every number of threads. Throws Unsupported for a
 /// garment, and for bodies in whose nodes springs of different materials meet.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,

@@ -18,12 +18,12 @@ namespace mssim {
 /// integrator and one dt.
 struct SlicedBodies {
   /// Slices [begin, end), what a thread takes at a time.
-  struct Lot {
+  struct Chunk {
     std::size_t begin, end;
   };
 
   std::size_t lanes = 0;
-  std::vector<std::uint32_t> place;        ///< SlicedGraph::place
+  std::vector<std::uint32_t> slot;         ///< SlicedGraph::slot
   std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
   /// [entries][2][lanes] in one stream: where the neighbours' records start, in units of offset_floats and as
   /// std::uint32_t, then SlicedGraph::stiffness_rest.
@@ -36,7 +36,7 @@ struct SlicedBodies {
   Coefficients<float> coefficients{};
   Surroundings surroundings{};
   std::size_t threads = 1;
-  std::vector<Lot> lots;                       ///< of about the same work
+  std::vector<Chunk> chunks;                   ///< of about the same work
   std::array<AlignedArray, pair_kinds> pairs;  ///< [slices][lanes][record_floats]; empty where not stored
   std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
 

@@ -3,16 +3,16 @@
 #include <cstddef>
 #include <vector>
 
-#include "backends/layouts/band_sheet.h"
+#include "backends/layouts/band_grid.h"
 #include "backends/vectors/instruction_sets.h"
 
 namespace mssim {
 
 /// The vector code for one instruction set.
 struct BandKernel {
-  std::size_t lanes;                          ///< floats in a vector: BandLayout::lanes must equal it
-  const char* instruction_set;                ///< Highway's name for it
-  void (*step)(BandSheet& sheet, int count);  ///< takes `count` steps
+  std::size_t lanes;                         ///< floats in a vector: BandLayout::lanes must equal it
+  const char* instruction_set;               ///< Highway's name for it
+  void (*step)(BandGrid& bands, int count);  ///< takes `count` steps
 };
 
 /// The kernels for the instruction sets of this processor, at least one, the best first.

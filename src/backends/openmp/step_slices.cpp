@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Some microseconds: about as long as a lot takes.
+/// Some microseconds: about as long as a chunk takes.
 constexpr int spins = 300;
 
 /// Acceleration that the springs of a slice's nodes give them, neighbour by neighbour in the order of
@@ -55,19 +55,19 @@ HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::s
 }
 
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void step_lot(const SlicedBodies& bodies, const Pairs& base, SlicedBodies::Lot lot) {
-  for (std::size_t slice = lot.begin; slice < lot.end; ++slice)
+HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, SlicedBodies::Chunk chunk) {
+  for (std::size_t slice = chunk.begin; slice < chunk.end; ++slice)
     step_slice<method, stage>(bodies, base, slice);
 }
 
-/// Works on a lot in the stage that the ticket's phase stands for.
+/// Works on a chunk in the stage that the ticket's phase stands for.
 template <std::size_t method>
 HWY_INLINE void work_on(const SlicedBodies& bodies, const ChunkTickets::Ticket& ticket) {
   constexpr std::size_t stages = integrators[method].stage_count;
   Pairs base = bodies.base;
   if (ticket.phase / stages % 2 != 0) std::swap(base[index(Pair::state)], base[index(Pair::next)]);
   for_each_stage<method>([&](auto stage) HWY_ATTR {
-    if (ticket.phase % stages == stage) step_lot<method, stage>(bodies, base, bodies.lots[ticket.chunk]);
+    if (ticket.phase % stages == stage) step_chunk<method, stage>(bodies, base, bodies.chunks[ticket.chunk]);
   });
 }
 
@@ -77,8 +77,8 @@ HWY_INLINE void take_steps(SlicedBodies& bodies, int count) {
   // the last bit for any number of threads.
   constexpr std::size_t stages = integrators[method].stage_count;
   const auto phases = static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(stages);
-  if (phases == 0 || bodies.lots.empty()) return;
-  ChunkTickets tickets(static_cast<std::uint32_t>(bodies.lots.size()),
+  if (phases == 0 || bodies.chunks.empty()) return;
+  ChunkTickets tickets(static_cast<std::uint32_t>(bodies.chunks.size()),
                        static_cast<std::uint32_t>(bodies.threads));
   std::uint32_t opened = 1;  // only whoever has finished a phase touches it
   tickets.open();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "integrators/coefficients.h"
-#include "integrators/host_lines.h"
+#include "integrators/host_stages.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -48,7 +48,7 @@ class SpringList {
   }
   /// What has been added up for a node, N, for those who add in another way.
   Vec3<Real>& force(std::size_t node) { return force_[node]; }
-  /// The table's lines for nodes first .. last - 1, once all forces are complete.
+  /// The table's assignments for nodes first .. last - 1, once all forces are complete.
   template <std::size_t method, std::size_t stage>
   void update_nodes(std::size_t first, std::size_t last);
   /// Ends a step: what the last stage wrote becomes the state.

@@ -40,11 +40,11 @@ class ThreadsMutex final : public Backend {
 
  private:
   void run(std::size_t thread, int count, std::barrier<>& together) {
-    const auto share = [&](std::size_t all, std::size_t part) { return all * part / threads_; };
-    const std::size_t first_node = share(list_.nodes(), thread), last_node = share(list_.nodes(), thread + 1);
+    const auto bound = [&](std::size_t all, std::size_t part) { return all * part / threads_; };
+    const std::size_t first_node = bound(list_.nodes(), thread), last_node = bound(list_.nodes(), thread + 1);
     const auto springs = list_.springs().subspan(
-        share(list_.springs().size(), thread),
-        share(list_.springs().size(), thread + 1) - share(list_.springs().size(), thread));
+        bound(list_.springs().size(), thread),
+        bound(list_.springs().size(), thread + 1) - bound(list_.springs().size(), thread));
     with_integrator(integrator_, [&](auto method) {
       for (int step = 0; step < count; ++step) {
         for_each_stage<method>([&](auto stage) {

@@ -8,7 +8,7 @@ namespace mssim {
 namespace {
 
 RatioEstimate ratio_at_look(const PairedTimes& times) {
-  return paired_ratio(times.base_ms, times.new_ms, look_at(times.base_ms.size()).share);
+  return paired_ratio(times.base_ms, times.new_ms, look_at(times.base_ms.size()).fraction);
 }
 
 }  // namespace

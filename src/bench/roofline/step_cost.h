@@ -30,13 +30,13 @@ inline constexpr std::size_t flops_per_spring = 6 + 10 + 7 + 3 + 6;
 /// beforehand: viscous damping (3 products, 3 sums) and gravity (1 sum).
 inline constexpr std::size_t flops_per_acceleration = 3 + 3 + 1;
 
-/// Of the pointwise lines of a stage, for one node: in each of three components a product for every term
-/// whose factor is not 1, and a sum between terms.
+/// Of the pointwise assignments of a stage, for one node: in each of three components a product for every
+/// term whose factor is not 1, and a sum between terms.
 constexpr std::size_t line_flops(const Stage& stage) {
   std::size_t count = 0;
-  for (const Line& line : stage.lines) {
-    for (std::size_t t = 0; t < term_count(line); ++t) {
-      const bool multiplies = line.terms[t].coefficient != 1 || line.terms[t].dt_power != 0;
+  for (const Assignment& assignment : stage.assignments) {
+    for (std::size_t t = 0; t < term_count(assignment); ++t) {
+      const bool multiplies = assignment.terms[t].coefficient != 1 || assignment.terms[t].dt_power != 0;
       count += std::size_t{multiplies} + std::size_t{t > 0};
     }
   }

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "backends/spring_list/serial.h"
-#include "integrators/host_lines.h"
+#include "integrators/host_stages.h"
 
 namespace mssim {
 namespace {

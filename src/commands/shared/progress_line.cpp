@@ -45,10 +45,10 @@ void ProgressLine::update(const std::string& activity, double done) {
   if (!terminal_) return;
   shown_ = std::chrono::steady_clock::now();
   // Scenes take about the same time, whatever their size: samples are so long.
-  const double share = (static_cast<double>(begun_ - 1) + done) / static_cast<double>(scenes_);
+  const double fraction = (static_cast<double>(begun_ - 1) + done) / static_cast<double>(scenes_);
   const double elapsed = std::chrono::duration<double>(shown_ - start_).count();
   std::cerr << clear_line << scene_ << ": " << activity;
-  if (share > 0.02) std::cerr << ", about " << clock_text(elapsed * (1 - share) / share) << " left";
+  if (fraction > 0.02) std::cerr << ", about " << clock_text(elapsed * (1 - fraction) / fraction) << " left";
   std::cerr << std::flush;
 }
 

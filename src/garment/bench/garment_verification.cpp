@@ -87,10 +87,10 @@ class StretchErrors {
   }
 
   /// What a share of all errors, of all nodes in all stretches, stays below.
-  double quantile(double share) const {
+  double quantile(double fraction) const {
     std::vector<double> all;
     for (const std::vector<double>& of_node : errors_) all.insert(all.end(), of_node.begin(), of_node.end());
-    return mssim::quantile(std::move(all), share);
+    return mssim::quantile(std::move(all), fraction);
   }
 
   /// Of the state after the last step.

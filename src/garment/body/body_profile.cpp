@@ -54,8 +54,8 @@ BodyProfile::BodyProfile(const Surface& surface, std::string name)
 }
 
 std::size_t BodyProfile::slice_of(double y) const {
-  const double share = (y - lowest_) / (highest_ - lowest_);
-  const auto slice = static_cast<std::size_t>(share * static_cast<double>(slices_.size()));
+  const double fraction = (y - lowest_) / (highest_ - lowest_);
+  const auto slice = static_cast<std::size_t>(fraction * static_cast<double>(slices_.size()));
   return std::min(slice, slices_.size() - 1);
 }
 

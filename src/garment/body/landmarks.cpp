@@ -33,8 +33,8 @@ Landmark extreme(const Girth& girth, const Search& search, double crotch, double
     least = sign * *there;
   }
   const bool shows = best > 0 && best < steps;
-  const double share = shows ? search.low + (search.high - search.low) * best / steps : search.usual;
-  return {crotch * share, girth(crotch * share), !shows};
+  const double fraction = shows ? search.low + (search.high - search.low) * best / steps : search.usual;
+  return {crotch * fraction, girth(crotch * fraction), !shows};
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace mssim {
 namespace {
 
-double between(double from, double to, double share) { return from + (to - from) * share; }
+double between(double from, double to, double fraction) { return from + (to - from) * fraction; }
 
 /// Sections of the torso and of the leg at x > 0. What the measures do not say is in proportion to the
 /// reference body's.
@@ -38,9 +38,9 @@ class Figure {
 
     // Shoulders and neck, above the bust in shares of its height above the waist.
     const double rise = m_.bust.height - m_.waist.height;
-    const auto above_bust = [&](double share, double girth, double aspect, double z) {
+    const auto above_bust = [&](double fraction, double girth, double aspect, double z) {
       sections.push_back(
-          section_of_girth(m_.bust.height + share * rise, girth * m_.bust.girth, aspect, 0, z));
+          section_of_girth(m_.bust.height + fraction * rise, girth * m_.bust.girth, aspect, 0, z));
     };
     above_bust(0.22, 0.985, 0.62, 0.000);
     above_bust(0.37, 0.91, 0.51, -0.008);
@@ -90,7 +90,7 @@ class Figure {
 
  private:
   struct SeatPart {
-    double share;         ///< of the way from the crotch up to the hip
+    double fraction;      ///< of the way from the crotch up to the hip
     double width, depth;  ///< of the hip's
   };
   /// Wide early, so that the outline runs from the thighs into the hip without a dent; deep late, so that
@@ -104,8 +104,8 @@ class Figure {
   static constexpr double waist_aspect = 0.78;
 
   EllipseSection seat_section(const SeatPart& part) const {
-    const double back = -0.044 * hip_.half_width() * part.share;
-    return {between(m_.crotch_height, m_.hip.height, part.share), part.width * hip_.x_min,
+    const double back = -0.044 * hip_.half_width() * part.fraction;
+    return {between(m_.crotch_height, m_.hip.height, part.fraction), part.width * hip_.x_min,
             part.width * hip_.x_max, part.depth * hip_.z_min + back, part.depth * hip_.z_max + back};
   }
 
@@ -135,9 +135,10 @@ class Figure {
     if (nearest->x_min >= least) return;
     double needed = m_.stance;
     for (const EllipseSection& section : leg) {
-      const double share = std::min(share_of_leg(section.height), 1.0);
-      if (share > 0)
-        needed = std::max(needed, 2 * (least + section.half_width() - (1 - share) * thigh_axis_) / share);
+      const double fraction = std::min(share_of_leg(section.height), 1.0);
+      if (fraction > 0)
+        needed =
+            std::max(needed, 2 * (least + section.half_width() - (1 - fraction) * thigh_axis_) / fraction);
     }
     throw InputError("the body's stance is " + shown(m_.stance) +
                      " m, and its legs would touch at the height " + shown(nearest->height) +

@@ -23,8 +23,8 @@ std::uint64_t edge_name(std::uint32_t a, std::uint32_t b) {
 
 /// Where the plane cuts an edge of which one end is below it.
 PlanPoint crossing(const Vec3d& below, const Vec3d& above, double y) {
-  const double share = (y - below.y) / (above.y - below.y);
-  return {below.x + share * (above.x - below.x), below.z + share * (above.z - below.z)};
+  const double fraction = (y - below.y) / (above.y - below.y);
+  return {below.x + fraction * (above.x - below.x), below.z + fraction * (above.z - below.z)};
 }
 
 std::vector<CutTriangle> cut_triangles(const Surface& surface, std::span<const std::uint32_t> triangles,

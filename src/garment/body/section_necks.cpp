@@ -39,7 +39,7 @@ class Outline {
   double length(const Stretch& s) const { return between(length_, s); }
   /// What the stretch and its chord enclose, as a share of what the loop does; negative where the chord runs
   /// outside.
-  double share(const Stretch& s) const {
+  double fraction(const Stretch& s) const {
     return (between(twice_area_, s) + cross(points_[s.last], points_[s.first])) / twice_area_.back();
   }
   bool is_on_one_side(const Stretch& s) const {
@@ -69,8 +69,8 @@ std::optional<Stretch> narrowest(const SectionLoop& loop) {
       for (const Stretch& stretch : {Stretch{i, j}, Stretch{j, i}}) {
         const double length = outline.length(stretch);
         if (length < least_outline || chord >= least * length) continue;
-        const double share = outline.share(stretch);
-        if (!(share > 0 && share <= small_part) || !outline.is_on_one_side(stretch)) continue;
+        const double fraction = outline.fraction(stretch);
+        if (!(fraction > 0 && fraction <= small_part) || !outline.is_on_one_side(stretch)) continue;
         least = chord / length;
         found = stretch;
       }

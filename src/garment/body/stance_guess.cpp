@@ -88,18 +88,18 @@ double toes_ahead(const Surface& body) {
   constexpr double foot = 0.05, shin_low = 0.08, shin_high = 0.2;  // of the height, above the floor
   double foot_low = HUGE_VAL, foot_high = -HUGE_VAL, shin_back = HUGE_VAL, shin_front = -HUGE_VAL;
   for (const Vec3d& point : body.points) {
-    const double share = (point.y - box.low.y) / height;
-    if (share <= foot) {
+    const double fraction = (point.y - box.low.y) / height;
+    if (fraction <= foot) {
       foot_low = std::min(foot_low, point.z);
       foot_high = std::max(foot_high, point.z);
-    } else if (share >= shin_low && share <= shin_high) {
+    } else if (fraction >= shin_low && fraction <= shin_high) {
       shin_back = std::min(shin_back, point.z);
       shin_front = std::max(shin_front, point.z);
     }
   }
   const double ahead = foot_high - shin_front, behind = shin_back - foot_low;
-  const double share = (ahead - behind) / (foot_high - foot_low);
-  return std::isfinite(share) ? share : 0;
+  const double fraction = (ahead - behind) / (foot_high - foot_low);
+  return std::isfinite(fraction) ? fraction : 0;
 }
 
 /// The angle, in degrees, between the legs' middles and the sideways axis; the median over the gaps.

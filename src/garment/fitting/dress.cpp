@@ -11,12 +11,12 @@ namespace mssim {
 namespace {
 
 /// Distance that a share of the nodes has moved less than, m.
-double moved(const State& before, const State& after, double share) {
+double moved(const State& before, const State& after, double fraction) {
   std::vector<double> distances;
   distances.reserve(after.position.size());
   for (std::size_t i = 0; i < after.position.size(); ++i)
     distances.push_back(length(after.position[i] - before.position[i]));
-  return quantile(std::move(distances), share);
+  return quantile(std::move(distances), fraction);
 }
 
 /// Delivers the frames of a dressing in their order.
@@ -71,7 +71,7 @@ DressingResult dress(DressingBackend& backend, const System& system, double dt_s
     if (backend.progress().draping) result.seamed_at = backend.progress().seamed_at;
     // A window that began with open seams, or that was cut short, says nothing about how a sewn garment
     // rests.
-    result.settled = was_draping && whole_window && moved(result.state, state, rule.share) < rule.distance;
+    result.settled = was_draping && whole_window && moved(result.state, state, rule.fraction) < rule.distance;
     result.state = std::move(state);
     goes_on = on_window(result.state, result.iterations) && !result.settled && result.iterations < longest;
     if (!goes_on || delivery.due() == result.iterations) delivery.deliver(result.state, result.iterations);

@@ -14,7 +14,7 @@ namespace mssim {
 struct SettlingRule {
   double window_s = 0.05;    ///< of simulated time
   double distance = 0.0005;  ///< m that nodes may move within it
-  double share = 0.99;       ///< of the nodes that must move less
+  double fraction = 0.99;    ///< of the nodes that must move less
   double longest_s = 4;      ///< of simulated time, seaming included
 };
 

@@ -60,7 +60,7 @@ class PiercedPanel {
       const auto begin = std::ranges::lower_bound(triangles_, from - widest_, {}, by_left);
       const auto end = std::ranges::upper_bound(begin, triangles_.end(), to, {}, by_left);
       count += static_cast<std::size_t>(std::count_if(begin, end, [&](const Triangle& triangle) {
-        return boxes_meet(edge, triangle) && runs_through(edge, triangle);
+        return boxes_overlap(edge, triangle) && runs_through(edge, triangle);
       }));
     }
     return count;
@@ -77,7 +77,7 @@ class PiercedPanel {
   }
   double leftmost(const Triangle& triangle) const { return range(triangle, &Vec3d::x)[0]; }
 
-  bool boxes_meet(const Edge& edge, const Triangle& triangle) const {
+  bool boxes_overlap(const Edge& edge, const Triangle& triangle) const {
     return std::ranges::all_of(std::array{&Vec3d::x, &Vec3d::y, &Vec3d::z}, [&](double Vec3d::*axis) {
       const auto along = range(edge, axis), across = range(triangle, axis);
       return along[0] <= across[1] && across[0] <= along[1];

@@ -58,7 +58,7 @@ double turn(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 }
 
 /// Is there a point common to both? On one line, their boxes decide.
-bool meet(const Segment& a, const Segment& b) {
+bool intersect(const Segment& a, const Segment& b) {
   const auto apart = [](double a1, double a2, double b1, double b2) {
     return std::max(a1, a2) < std::min(b1, b2) || std::max(b1, b2) < std::min(a1, a2);
   };
@@ -95,7 +95,7 @@ void require_simple_boundary(const PatternPiece& piece) {
       const Segment &a = outline[i], &b = outline[j];
       const std::size_t apart = a.number < b.number ? b.number - a.number : a.number - b.number;
       if (apart == 1 || apart + 1 == count) continue;
-      if (meet(a, b)) refuse(piece, a, b);
+      if (intersect(a, b)) refuse(piece, a, b);
     }
 }
 

@@ -52,8 +52,8 @@ Vec3d Curve::at(double fraction) const {
   if (fraction >= 1) return last();
   const double arc = fraction * length();
   const std::size_t i = point_after(arc);
-  const double share = (arc - arcs_[i - 1]) / (arcs_[i] - arcs_[i - 1]);
-  return points_[i - 1] + share * (points_[i] - points_[i - 1]);
+  const double t = (arc - arcs_[i - 1]) / (arcs_[i] - arcs_[i - 1]);
+  return points_[i - 1] + t * (points_[i] - points_[i - 1]);
 }
 
 std::pair<Curve, Curve> Curve::split(double fraction) const {

@@ -13,8 +13,8 @@ double lack_of_width(const BodyProfile& profile, const JeansMeasures& jeans) {
   constexpr double air = 0.03, step = 0.01;  // m
   double lack = 0;
   for (double y = jeans.hem_height; y <= jeans.knee_height; y += step) {
-    const double share = (y - jeans.hem_height) / (jeans.knee_height - jeans.hem_height);
-    const double width = (1 - share) * jeans.hem + share * jeans.knee;
+    const double fraction = (y - jeans.hem_height) / (jeans.knee_height - jeans.hem_height);
+    const double width = (1 - fraction) * jeans.hem + fraction * jeans.knee;
     lack = std::max(lack, thicker_leg(profile, y).value_or(0) + air - width);
   }
   return lack;

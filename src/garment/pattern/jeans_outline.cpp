@@ -94,8 +94,8 @@ class Drafting {
  private:
   /// A quarter of the jeans at a height from hip to waist.
   double width_at(double y) const {
-    const double share = (y - m_.hip_height) / (m_.waist_height - m_.hip_height);
-    const double ease = (1 - share) * m_.hip_ease + share * m_.waist_ease;
+    const double fraction = (y - m_.hip_height) / (m_.waist_height - m_.hip_height);
+    const double ease = (1 - fraction) * m_.hip_ease + fraction * m_.waist_ease;
     const double girth = m_.girth(y);
     if (!(girth > 0.2 && girth < 5))
       throw InputError("jeans: the body's girth at the height " + shown(y) + " m is " + shown(girth) +

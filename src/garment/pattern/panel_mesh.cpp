@@ -27,9 +27,9 @@ LineEnds line_ends(const PatternPiece& piece, std::string_view what, std::uint32
   GridLine last{};
   const auto go_on_to = [&](const GridLine& next) {
     for (std::uint32_t i = last.index + 1; i <= next.index; ++i) {
-      const double share = static_cast<double>(i - last.index) / (next.index - last.index);
-      ends.first.push_back(last.first + share * (next.first - last.first));
-      ends.second.push_back(last.second + share * (next.second - last.second));
+      const double fraction = static_cast<double>(i - last.index) / (next.index - last.index);
+      ends.first.push_back(last.first + fraction * (next.first - last.first));
+      ends.second.push_back(last.second + fraction * (next.second - last.second));
     }
     last = next;
   };

@@ -85,9 +85,9 @@ void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const Pane
 std::vector<double> node_masses(const PanelMesh& mesh, const PanelCloth& cloth) {
   std::vector<double> masses(mesh.nodes.size(), 0);
   for_each_cell(mesh, [&](std::size_t node) {
-    const double share = 0.25 * cell_area(mesh, node) * cloth.area_density;
+    const double fraction = 0.25 * cell_area(mesh, node) * cloth.area_density;
     for (const std::size_t corner : {node, node + 1, node + mesh.columns, node + mesh.columns + 1})
-      masses[corner] += share;
+      masses[corner] += fraction;
   });
   const double mean = area_of(mesh) * cloth.area_density / static_cast<double>(masses.size());
   const std::size_t band_begin = mesh.node(mesh.rows - waistband_rows(mesh, cloth.waistband), 0);

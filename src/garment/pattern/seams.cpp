@@ -68,11 +68,11 @@ Joint place_at(const StretchNodes& coarser, double fraction) {
   const double arc = fraction * coarser.arcs.back();
   const auto after = std::upper_bound(coarser.arcs.begin() + 1, coarser.arcs.end() - 1, arc);
   const auto second = static_cast<std::size_t>(after - coarser.arcs.begin()), first = second - 1;
-  const double share = (arc - coarser.arcs[first]) / (coarser.arcs[second] - coarser.arcs[first]);
+  const double on_edge = (arc - coarser.arcs[first]) / (coarser.arcs[second] - coarser.arcs[first]);
   Joint joint;
-  joint.edge_first = coarser.nodes[share < 1 - near_a_node ? first : second];
-  joint.edge_second = coarser.nodes[share > near_a_node ? second : first];
-  joint.edge_share = joint.edge_first == joint.edge_second ? 0 : share;
+  joint.edge_first = coarser.nodes[on_edge < 1 - near_a_node ? first : second];
+  joint.edge_second = coarser.nodes[on_edge > near_a_node ? second : first];
+  joint.edge_share = joint.edge_first == joint.edge_second ? 0 : on_edge;
   return joint;
 }
 

@@ -18,8 +18,8 @@ struct AtJoint {
 };
 
 template <class Real>
-Vec3<Real> joint_gap(const AtJoint<Vec3<Real>>& at, Real share) {
-  return joint_gap(at.node, at.first, at.second, share);
+Vec3<Real> joint_gap(const AtJoint<Vec3<Real>>& at, Real fraction) {
+  return joint_gap(at.node, at.first, at.second, fraction);
 }
 
 /// What an impulse on the node, and its opposite on the point, gives the three.
@@ -34,24 +34,26 @@ template <class Real>
 std::optional<AtJoint<Vec3<Real>>> pull_of_joint(const Dressing& rules, const Joint& joint, double time_s,
                                                  const AtJoint<Vec3<Real>>& x,
                                                  const AtJoint<Real>& inverse_mass) {
-  const auto share = static_cast<Real>(joint.edge_share);
-  const Vec3<Real> gap = joint_gap(x, share);
+  const auto fraction = static_cast<Real>(joint.edge_share);
+  const Vec3<Real> gap = joint_gap(x, fraction);
   const Real distance = std::sqrt(dot(gap, gap));
   if (distance < static_cast<Real>(rules.sewn_gap)) return std::nullopt;
   const double force =
       seam_force(rules.seam_force, time_s / rules.seam_force_doubling_s, joint.length, joint.strength);
-  return spread(joint_ends(share, inverse_mass.node, inverse_mass.first, inverse_mass.second),
+  return spread(joint_ends(fraction, inverse_mass.node, inverse_mass.first, inverse_mass.second),
                 static_cast<Real>(force) / distance * gap);
 }
 
 /// Changes of the velocities of the three (m/s) after which a sewn joint's gap closes and does nothing else.
 template <class Real>
-AtJoint<Vec3<Real>> closing_of_joint(const ClosingRule<Real>& rule, Real share, const AtJoint<Vec3<Real>>& x,
-                                     const AtJoint<Vec3<Real>>& v, const AtJoint<Real>& inverse_mass) {
-  const JointEnds<Real> ends = joint_ends(share, inverse_mass.node, inverse_mass.first, inverse_mass.second);
-  const Real mobility = joint_mobility(ends, share);
+AtJoint<Vec3<Real>> closing_of_joint(const ClosingRule<Real>& rule, Real fraction,
+                                     const AtJoint<Vec3<Real>>& x, const AtJoint<Vec3<Real>>& v,
+                                     const AtJoint<Real>& inverse_mass) {
+  const JointEnds<Real> ends =
+      joint_ends(fraction, inverse_mass.node, inverse_mass.first, inverse_mass.second);
+  const Real mobility = joint_mobility(ends, fraction);
   if (mobility == 0) return {};
-  const Vec3<Real> gap = joint_gap(x, share), gap_rate = joint_gap(v, share);
+  const Vec3<Real> gap = joint_gap(x, fraction), gap_rate = joint_gap(v, fraction);
   const Real rate = closing_rate(std::sqrt(dot(gap, gap)), rule.most, rule.speed);
   return spread(ends, {closing_impulse(gap.x, gap_rate.x, rate, mobility),
                        closing_impulse(gap.y, gap_rate.y, rate, mobility),

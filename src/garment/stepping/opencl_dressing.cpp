@@ -24,7 +24,7 @@ class OpenclDressing final : public DressingBackend {
   OpenclDressing(const System& system, const OpenclDevice& device, DeviceMemory memory,
                  const DressingShape& shape, const OpenclPanels& panels)
       : garment_(std::get<Garment>(system.topology)),
-        place_(panels.place),
+        offset_(panels.offset),
         plane_(panels.inverse_mass.size()),
         queue_(device, memory),
         position_(queue_.zeros<float>(3 * plane_)),
@@ -90,21 +90,21 @@ class OpenclDressing final : public DressingBackend {
   /// The launches of a step, whose arguments are set once and for all.
   void make_launches(const OpenclPanels& panels, const DressingShape& shape, std::uint32_t sweeps) {
     const std::vector<float> nothing(3 * plane_);
-    const std::vector<cl::Buffer> sheet{kept(std::span<const DressingParameters>(&panels.parameters, 1)),
-                                        position_.buffer(),
-                                        kept(nothing),  // moved
-                                        velocity_.buffer(),
-                                        kept(nothing),  // pull
-                                        kept(panels.inverse_mass),
-                                        kept(panels.inverse_mass),  // free
-                                        kept(panels.rest),
-                                        kept(panels.stiffness),
-                                        progress_.buffer()};
+    const std::vector<cl::Buffer> grid{kept(std::span<const DressingParameters>(&panels.parameters, 1)),
+                                       position_.buffer(),
+                                       kept(nothing),  // moved
+                                       velocity_.buffer(),
+                                       kept(nothing),  // pull
+                                       kept(panels.inverse_mass),
+                                       kept(panels.inverse_mass),  // free
+                                       kept(panels.rest),
+                                       kept(panels.stiffness),
+                                       progress_.buffer()};
     const auto launch = [&](const cl::Program& program, const char* name, std::size_t groups,
                             std::size_t items, const auto&... arguments) {
       Launch made{cl::Kernel(program, name), {cl::NDRange(groups * items), cl::NDRange(items)}};
       cl_uint argument = 0;
-      for (const cl::Buffer& buffer : sheet) made.kernel.setArg(argument++, buffer);
+      for (const cl::Buffer& buffer : grid) made.kernel.setArg(argument++, buffer);
       (made.kernel.setArg(argument++, arguments), ...);
       return made;
     };
@@ -137,19 +137,19 @@ class OpenclDressing final : public DressingBackend {
 
   void put(const std::vector<Vec3d>& vectors, const OpenclBuffer<float>& buffer) {
     buffer.write(queue_.commands(), [&](std::span<float> planes) {
-      for (std::size_t i = 0; i < place_.size(); ++i) {
+      for (std::size_t i = 0; i < offset_.size(); ++i) {
         const auto value = vec3_cast<float>(vectors[i]);
-        planes[place_[i]] = value.x;
-        planes[plane_ + place_[i]] = value.y;
-        planes[2 * plane_ + place_[i]] = value.z;
+        planes[offset_[i]] = value.x;
+        planes[plane_ + offset_[i]] = value.y;
+        planes[2 * plane_ + offset_[i]] = value.z;
       }
     });
   }
   std::vector<Vec3d> taken(const OpenclBuffer<float>& buffer) const {
     const auto planes = buffer.map(queue_.commands(), CL_MAP_READ);
     std::vector<Vec3d> vectors;
-    vectors.reserve(place_.size());
-    for (const std::size_t at : place_)
+    vectors.reserve(offset_.size());
+    for (const std::size_t at : offset_)
       vectors.push_back(
           vec3_cast<double>(Vec3<float>{planes[at], planes[plane_ + at], planes[2 * plane_ + at]}));
     buffer.unmap(queue_.commands(), planes, CL_MAP_READ);
@@ -158,8 +158,8 @@ class OpenclDressing final : public DressingBackend {
   }
 
   const Garment& garment_;
-  std::vector<std::size_t> place_;  ///< [nodes] float of a node
-  std::size_t plane_;               ///< floats of a component
+  std::vector<std::size_t> offset_;  ///< [nodes] float of a node
+  std::size_t plane_;                ///< floats of a component
   DeviceQueue queue_;
   OpenclBuffer<float> position_, velocity_;  ///< [3][plane]
   OpenclBuffer<cl_int> sewn_;                ///< [joints]

@@ -8,7 +8,7 @@
 #include "backends/devices/program.h"
 #include "backends/interface/backend.h"
 #include "garment/stepping/dressing_rules.h"
-#include "garment/stepping/panel_sheet.h"
+#include "garment/stepping/panel_grid.h"
 #include "garment/stepping/panel_stencil.h"
 
 namespace mssim {
@@ -53,10 +53,10 @@ DressingParameters parameters_of(const System& system, const Dressing& rules, do
 }
 
 /// For each joint its level: after the levels of all joints before it that it has a node in common with.
-std::vector<std::size_t> levels_of(const std::vector<PanelSheet::Joint>& joints) {
+std::vector<std::size_t> levels_of(const std::vector<PanelGrid::Joint>& joints) {
   std::map<std::size_t, std::size_t> next;  // the first level that is free at a node
   std::vector<std::size_t> levels;
-  for (const PanelSheet::Joint& joint : joints) {
+  for (const PanelGrid::Joint& joint : joints) {
     const std::size_t level = std::max({next[joint.node], next[joint.first], next[joint.second]});
     next[joint.node] = next[joint.first] = next[joint.second] = level + 1;
     levels.push_back(level);
@@ -70,35 +70,35 @@ OpenclPanels::OpenclPanels(const System& system, double dt_s) {
   const auto& garment = std::get<Garment>(system.topology);
   if (garment.touching)
     throw Unsupported("opencl dresses without collisions between layers; serial and openmp have them");
-  const PanelSheet sheet(system);
-  const std::size_t plane = sheet.inverse_mass.size();
+  const PanelGrid grid(system);
+  const std::size_t plane = grid.inverse_mass.size();
   if (plane * panel_stencil.size() > std::numeric_limits<cl_int>::max())
     throw Unsupported(
         "the garment needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit "
         "offsets reach");
   parameters = parameters_of(system, garment.dressing, dt_s);
   parameters.plane = static_cast<int>(plane);
-  place = sheet.place;
-  inverse_mass.assign(sheet.inverse_mass.data(), sheet.inverse_mass.data() + plane);
-  for (const AlignedArray& lengths : sheet.rest)
+  offset = grid.offset;
+  inverse_mass.assign(grid.inverse_mass.data(), grid.inverse_mass.data() + plane);
+  for (const AlignedArray& lengths : grid.rest)
     rest.insert(rest.end(), lengths.data(), lengths.data() + plane);
 
   std::vector<std::size_t> first_row;  // [panels] among the stiffnesses
   std::size_t rows = 0;
-  for (const PanelSheet::Panel& panel : sheet.panels) {
+  for (const PanelGrid::Panel& panel : grid.panels) {
     first_row.push_back(rows + rows_before);
     rows += rows_before + panel.rows;
   }
   parameters.spring_rows = static_cast<int>(rows);
   stiffness.assign(panel_stencil.size() * rows, 0);
   for (std::size_t d = 0; d < panel_stencil.size(); ++d)
-    for (std::size_t p = 0; p < sheet.panels.size(); ++p)
-      std::ranges::copy(sheet.panels[p].stiffness[d],
+    for (std::size_t p = 0; p < grid.panels.size(); ++p)
+      std::ranges::copy(grid.panels[p].stiffness[d],
                         stiffness.begin() + static_cast<std::ptrdiff_t>(d * rows + first_row[p]));
 
   std::map<const BodyMaps*, std::size_t> first_pixel;
-  for (const PanelSheet::Block& block : sheet.blocks) {
-    const PanelSheet::Panel& panel = sheet.panels[block.panel];
+  for (const PanelGrid::Block& block : grid.blocks) {
+    const PanelGrid::Panel& panel = grid.panels[block.panel];
     DressingBlock own{static_cast<int>(panel.first + block.begin * panel.stride),
                       static_cast<int>(block.end - block.begin),
                       static_cast<int>(panel.columns),
@@ -117,15 +117,15 @@ OpenclPanels::OpenclPanels(const System& system, double dt_s) {
   }
 
   at_joint.assign(plane, 0);
-  const std::vector<std::size_t> levels = levels_of(sheet.joints);
+  const std::vector<std::size_t> levels = levels_of(grid.joints);
   const std::size_t level_count = levels.empty() ? 0 : std::ranges::max(levels) + 1;
   for (std::size_t level = 0; level < level_count; ++level) {
     for (std::size_t j = 0; j < levels.size(); ++j) {
       if (levels[j] != level) continue;
-      const PanelSheet::Joint& joint = sheet.joints[j];
+      const PanelGrid::Joint& joint = grid.joints[j];
       const mssim::Joint& rule = garment.joints[j];
       joints.push_back({static_cast<int>(joint.node), static_cast<int>(joint.first),
-                        static_cast<int>(joint.second), joint.share, static_cast<float>(rule.length),
+                        static_cast<int>(joint.second), joint.fraction, static_cast<float>(rule.length),
                         static_cast<float>(rule.strength)});
       for (const std::size_t node : {joint.node, joint.first, joint.second}) {
         if (at_joint[node] == 0) joint_nodes.push_back(static_cast<cl_int>(node));

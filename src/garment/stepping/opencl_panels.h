@@ -16,7 +16,7 @@ namespace mssim {
 
 /// A garment as the kernels of a dressing have it (kernels/dressing_parameters.h): what stays constant.
 struct OpenclPanels {
-  /// Throws Unsupported like PanelSheet, where layers touch each other and where the kernels' 32-bit offsets
+  /// Throws Unsupported like PanelGrid, where layers touch each other and where the kernels' 32-bit offsets
   /// do not reach; std::invalid_argument where the springs are not those of the panels.
   OpenclPanels(const System& system, double dt_s);
 
@@ -24,7 +24,7 @@ struct OpenclPanels {
   std::vector<std::uint64_t> buffer_bytes() const;
 
   DressingParameters parameters{};
-  std::vector<std::size_t> place;  ///< [nodes] float of a node
+  std::vector<std::size_t> offset;  ///< [nodes] float of a node
   std::vector<DressingBlock> blocks;
   std::vector<BodyPixel> pixels;      ///< of all layers
   std::vector<float> inverse_mass;    ///< [plane]

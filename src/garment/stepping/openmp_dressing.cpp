@@ -17,7 +17,7 @@ class OpenMpDressing final : public DressingBackend {
       : kernel_(kernel),
         dressing_{system,
                   std::get<Garment>(system.topology),
-                  PanelSheet(system),
+                  PanelGrid(system),
                   threads,
                   dt_s,
                   layer_collision(system, std::get<Garment>(system.topology), static_cast<int>(threads))} {
@@ -25,13 +25,13 @@ class OpenMpDressing final : public DressingBackend {
   }
 
   void set_state(const State& state) override {
-    dressing_.sheet.set_state(state);
+    dressing_.grid.set_state(state);
     dressing_.steps = 0;
     dressing_.progress = first_progress(dressing_.garment, state);
   }
   void step(int count) override { kernel_.step(dressing_, count); }
   State state() const override {
-    State state = dressing_.sheet.state();
+    State state = dressing_.grid.state();
     state.draped = dressing_.progress.draping;
     return state;
   }

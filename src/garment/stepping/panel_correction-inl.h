@@ -29,66 +29,66 @@ HWY_INLINE Mask is_elongated(Lanes length_squared, Lanes limit) {
 
 /// The springs of a direction between two rows of nodes, a vector of them side by side: no two have a node in
 /// common.
-HWY_INLINE void correct_between_rows(PanelSheet& sheet, const PanelSheet::Panel& panel, std::size_t row,
+HWY_INLINE void correct_between_rows(PanelGrid& grid, const PanelGrid::Panel& panel, std::size_t row,
                                      std::size_t direction, const CorrectionRule<float>& rule) {
   const auto offset =
       static_cast<std::size_t>(static_cast<std::ptrdiff_t>(panel.stride) + panel_stencil[direction].columns);
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
     const std::size_t at = panel.first + row * panel.stride + column, other = at + offset;
-    const Lanes3 d = load_unaligned(sheet.moved, other) - load(sheet.moved, at);
+    const Lanes3 d = load_unaligned(grid.moved, other) - load(grid.moved, at);
     const Lanes squared = dot(d, d);
-    const Lanes limit = Lanes(hn::Load(FloatTag(), sheet.rest[direction].data() + at)) * Lanes(rule.limit);
+    const Lanes limit = Lanes(hn::Load(FloatTag(), grid.rest[direction].data() + at)) * Lanes(rule.limit);
     const Mask acts = is_elongated(squared, limit);
     if (HWY_LIKELY(hn::AllFalse(FloatTag(), acts))) continue;
-    const Lanes own_free = hn::Load(FloatTag(), sheet.free.data() + at);
-    const Lanes other_free = hn::LoadU(FloatTag(), sheet.free.data() + other);
-    const Lanes3 own = load(sheet.velocity, at), far = load_unaligned(sheet.velocity, other);
+    const Lanes own_free = hn::Load(FloatTag(), grid.free.data() + at);
+    const Lanes other_free = hn::LoadU(FloatTag(), grid.free.data() + other);
+    const Lanes3 own = load(grid.velocity, at), far = load_unaligned(grid.velocity, other);
     const Lanes impulse = keep(acts, elongation_impulse(squared, dot(far - own, d), limit,
                                                         Lanes(rule.rate_per_s), own_free + other_free));
-    store(sheet.velocity, at, mul_add(own_free * impulse, d, own));
+    store(grid.velocity, at, mul_add(own_free * impulse, d, own));
     const Lanes3 after = far - (other_free * impulse) * d;
-    hn::StoreU(after.x.v, FloatTag(), sheet.velocity.x.data() + other);
-    hn::StoreU(after.y.v, FloatTag(), sheet.velocity.y.data() + other);
-    hn::StoreU(after.z.v, FloatTag(), sheet.velocity.z.data() + other);
+    hn::StoreU(after.x.v, FloatTag(), grid.velocity.x.data() + other);
+    hn::StoreU(after.y.v, FloatTag(), grid.velocity.y.data() + other);
+    hn::StoreU(after.z.v, FloatTag(), grid.velocity.z.data() + other);
   }
 }
 
 /// One spring of a row that is longer than its limit, from the node at a float to the next.
-inline void correct_along_row(PanelSheet& sheet, std::size_t at, const CorrectionRule<float>& rule) {
-  const Vec3<float> d = sheet.moved.at(at + 1) - sheet.moved.at(at);
-  const Vec3<float> own = sheet.velocity.at(at), far = sheet.velocity.at(at + 1);
-  const float own_free = sheet.free.data()[at], far_free = sheet.free.data()[at + 1];
+inline void correct_along_row(PanelGrid& grid, std::size_t at, const CorrectionRule<float>& rule) {
+  const Vec3<float> d = grid.moved.at(at + 1) - grid.moved.at(at);
+  const Vec3<float> own = grid.velocity.at(at), far = grid.velocity.at(at + 1);
+  const float own_free = grid.free.data()[at], far_free = grid.free.data()[at + 1];
   const float impulse =
-      mssim::elongation_impulse(dot(d, d), dot(far - own, d), sheet.rest[0].data()[at] * rule.limit,
+      mssim::elongation_impulse(dot(d, d), dot(far - own, d), grid.rest[0].data()[at] * rule.limit,
                                 rule.rate_per_s, own_free + far_free);
-  sheet.velocity.put(at, own + own_free * impulse * d);
-  sheet.velocity.put(at + 1, far - far_free * impulse * d);
+  grid.velocity.put(at, own + own_free * impulse * d);
+  grid.velocity.put(at + 1, far - far_free * impulse * d);
 }
 
 /// The springs along a row, one after the other: a vector of them is looked at together, and those that are
 /// too long, few mostly, are corrected in order.
-HWY_INLINE void correct_row(PanelSheet& sheet, const PanelSheet::Panel& panel, std::size_t row,
+HWY_INLINE void correct_row(PanelGrid& grid, const PanelGrid::Panel& panel, std::size_t row,
                             const CorrectionRule<float>& rule, bool forwards) {
   const std::size_t lanes = lane_count(), vectors = (panel.columns + lanes - 1) / lanes;
   for (std::size_t i = 0; i < vectors; ++i) {
     const std::size_t at = panel.first + row * panel.stride + lanes * (forwards ? i : vectors - 1 - i);
-    const Lanes3 d = load_unaligned(sheet.moved, at + 1) - load(sheet.moved, at);
-    const Lanes limit = Lanes(hn::Load(FloatTag(), sheet.rest[0].data() + at)) * Lanes(rule.limit);
+    const Lanes3 d = load_unaligned(grid.moved, at + 1) - load(grid.moved, at);
+    const Lanes limit = Lanes(hn::Load(FloatTag(), grid.rest[0].data() + at)) * Lanes(rule.limit);
     const Mask acts = is_elongated(dot(d, d), limit);
     if (HWY_LIKELY(hn::AllFalse(FloatTag(), acts))) continue;
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(FloatTag(), acts, bits);
     for (std::size_t k = 0; k < lanes; ++k) {
       const std::size_t lane = forwards ? k : lanes - 1 - k;
-      if ((bits[lane / 8] >> (lane % 8) & 1) != 0) correct_along_row(sheet, at + lane, rule);
+      if ((bits[lane / 8] >> (lane % 8) & 1) != 0) correct_along_row(grid, at + lane, rule);
     }
   }
 }
 
 /// The springs within a block.
-HWY_INLINE void correct_block(PanelSheet& sheet, const PanelSheet::Block& block,
+HWY_INLINE void correct_block(PanelGrid& grid, const PanelGrid::Block& block,
                               const CorrectionRule<float>& rule, bool forwards) {
-  const PanelSheet::Panel& panel = sheet.panels[block.panel];
+  const PanelGrid::Panel& panel = grid.panels[block.panel];
   for (std::size_t i = 0; i < limited_directions; ++i) {
     const std::size_t direction = forwards ? i : limited_directions - 1 - i;
     const std::size_t rows =
@@ -96,19 +96,19 @@ HWY_INLINE void correct_block(PanelSheet& sheet, const PanelSheet::Block& block,
     for (std::size_t k = 0; k < rows; ++k) {
       const std::size_t row = block.begin + (forwards ? k : rows - 1 - k);
       if (direction == 0)
-        correct_row(sheet, panel, row, rule, forwards);
+        correct_row(grid, panel, row, rule, forwards);
       else
-        correct_between_rows(sheet, panel, row, direction, rule);
+        correct_between_rows(grid, panel, row, direction, rule);
     }
   }
 }
 
 /// The springs between a block and the one before it.
-HWY_INLINE void correct_seam_of_blocks(PanelSheet& sheet, const PanelSheet::Block& block,
+HWY_INLINE void correct_seam_of_blocks(PanelGrid& grid, const PanelGrid::Block& block,
                                        const CorrectionRule<float>& rule, bool forwards) {
-  const PanelSheet::Panel& panel = sheet.panels[block.panel];
+  const PanelGrid::Panel& panel = grid.panels[block.panel];
   for (std::size_t i = 1; i < limited_directions; ++i)
-    correct_between_rows(sheet, panel, block.begin - 1, forwards ? i : limited_directions - i, rule);
+    correct_between_rows(grid, panel, block.begin - 1, forwards ? i : limited_directions - i, rule);
 }
 
 }  // namespace mssim::HWY_NAMESPACE

@@ -15,7 +15,7 @@
 #include "backends/vectors/lanes-inl.h"
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_rules.h"
-#include "garment/stepping/panel_sheet.h"
+#include "garment/stepping/panel_grid.h"
 #include "garment/stepping/panel_stencil.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -47,8 +47,8 @@ struct StepRule {
 /// for each direction, with an empty vector on both sides.
 class ForceScratch {
  public:
-  explicit ForceScratch(const PanelSheet& sheet) {
-    for (const PanelSheet::Panel& panel : sheet.panels) widest_ = std::max(widest_, panel.stride);
+  explicit ForceScratch(const PanelGrid& grid) {
+    for (const PanelGrid::Panel& panel : grid.panels) widest_ = std::max(widest_, panel.stride);
     widest_ += 2 * side;
     forces_ = Float3Arrays(panel_stencil.size() * rows * widest_);
   }
@@ -69,16 +69,16 @@ class ForceScratch {
 };
 
 /// The forces of all springs that a row owns.
-HWY_INLINE void compute_forces(const PanelSheet& sheet, const PanelSheet::Panel& panel, std::size_t row,
+HWY_INLINE void compute_forces(const PanelGrid& grid, const PanelGrid::Panel& panel, std::size_t row,
                                ForceScratch& scratch) {
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
     const std::size_t at = panel.first + row * panel.stride + column;
-    const Lanes3 own = load(sheet.position, at);
+    const Lanes3 own = load(grid.position, at);
     for (std::size_t d = 0; d < panel_stencil.size(); ++d) {
       const std::ptrdiff_t offset =
           panel_stencil[d].rows * static_cast<std::ptrdiff_t>(panel.stride) + panel_stencil[d].columns;
-      const Lanes3 away = load_unaligned(sheet.position, at + static_cast<std::size_t>(offset)) - own;
-      const Lanes rest = hn::Load(FloatTag(), sheet.rest[d].data() + at);
+      const Lanes3 away = load_unaligned(grid.position, at + static_cast<std::size_t>(offset)) - own;
+      const Lanes rest = hn::Load(FloatTag(), grid.rest[d].data() + at);
       const Lanes stiffness(panel.stiffness[d][row]);
       const Lanes pull = spring_pull(dot(away, away), Lanes(0.0F), stiffness, stiffness * rest, Lanes(0.0F));
       const Mask exists = hn::Gt(rest.v, hn::Zero(FloatTag()));
@@ -133,54 +133,54 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
 }
 
 /// Takes down a vector of nodes, with positions and velocities after the body has been met.
-HWY_INLINE void meet_body(PanelSheet& sheet, const PanelSheet::Panel& panel, const StepRule& rule,
-                          std::size_t at, Lanes3 x, Lanes3 v) {
-  const Lanes inverse_mass = hn::Load(FloatTag(), sheet.inverse_mass.data() + at);
+HWY_INLINE void collide_with_body(PanelGrid& grid, const PanelGrid::Panel& panel, const StepRule& rule,
+                                  std::size_t at, Lanes3 x, Lanes3 v) {
+  const Lanes inverse_mass = hn::Load(FloatTag(), grid.inverse_mass.data() + at);
   const Mask real = hn::Gt(inverse_mass.v, hn::Zero(FloatTag()));
   Lanes free = inverse_mass;
   if (panel.body != nullptr) free = select(touch_body(*panel.body, rule, real, x, v), Lanes(0.0F), free);
-  hn::Store(free.v, FloatTag(), sheet.free.data() + at);
-  store(sheet.velocity, at, v);
-  store(sheet.moved, at, x);
+  hn::Store(free.v, FloatTag(), grid.free.data() + at);
+  store(grid.velocity, at, v);
+  store(grid.moved, at, x);
 }
 
 /// The same for a block whose layers have met each other.
-HWY_INLINE void meet_body(PanelSheet& sheet, const PanelSheet::Block& block, const StepRule& rule) {
-  const PanelSheet::Panel& panel = sheet.panels[block.panel];
+HWY_INLINE void collide_with_body(PanelGrid& grid, const PanelGrid::Block& block, const StepRule& rule) {
+  const PanelGrid::Panel& panel = grid.panels[block.panel];
   for (std::size_t row = block.begin; row < block.end; ++row)
     for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
       const std::size_t at = panel.first + row * panel.stride + column;
-      meet_body(sheet, panel, rule, at, load(sheet.moved, at), load(sheet.velocity, at));
+      collide_with_body(grid, panel, rule, at, load(grid.moved, at), load(grid.velocity, at));
     }
 }
 
 /// Loops 1, 2 and 4 for the nodes of a block: from the positions of the block and of two rows on either side
 /// to its velocities, its moved positions and what may still move; where layers touch, to its velocities.
-HWY_INLINE void update_velocities(PanelSheet& sheet, const PanelSheet::Block& block, const StepRule& rule,
+HWY_INLINE void update_velocities(PanelGrid& grid, const PanelGrid::Block& block, const StepRule& rule,
                                   ForceScratch& scratch) {
-  const PanelSheet::Panel& panel = sheet.panels[block.panel];
+  const PanelGrid::Panel& panel = grid.panels[block.panel];
   scratch.clear();
   const std::size_t before = std::min<std::size_t>(block.begin, 2);
   for (std::size_t row = block.begin - before; row < block.begin; ++row)
-    compute_forces(sheet, panel, row, scratch);
+    compute_forces(grid, panel, row, scratch);
   const Lanes dt(rule.dt), gravity(rule.phase.gravity), damping(rule.phase.damping);
   for (std::size_t row = block.begin; row < block.end; ++row) {
-    compute_forces(sheet, panel, row, scratch);
+    compute_forces(grid, panel, row, scratch);
     for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
       const std::size_t at = panel.first + row * panel.stride + column;
-      const Lanes inverse_mass = hn::Load(FloatTag(), sheet.inverse_mass.data() + at);
+      const Lanes inverse_mass = hn::Load(FloatTag(), grid.inverse_mass.data() + at);
       const Mask real = hn::Gt(inverse_mass.v, hn::Zero(FloatTag()));
-      const Lanes3 x = load(sheet.position, at);
-      Lanes3 v = load(sheet.velocity, at);
+      const Lanes3 x = load(grid.position, at);
+      Lanes3 v = load(grid.velocity, at);
       Lanes3 a =
           node_acceleration_unfused(inverse_mass * force_on(scratch, row, column), v, damping, gravity);
-      if (rule.has_joints) a = a + load(sheet.pull, at);
+      if (rule.has_joints) a = a + load(grid.pull, at);
       v = mul_add(dt, keep(real, a), v);
       if (!rule.layers_touch) {
-        meet_body(sheet, panel, rule, at, x, v);
+        collide_with_body(grid, panel, rule, at, x, v);
       } else {
-        store(sheet.velocity, at, v);
-        store(sheet.moved, at, x);
+        store(grid.velocity, at, v);
+        store(grid.moved, at, x);
       }
     }
   }

@@ -12,7 +12,7 @@
 #include "garment/stepping/correction_order.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/layer_collision.h"
-#include "integrators/host_lines.h"
+#include "integrators/host_stages.h"
 
 namespace mssim {
 namespace {
@@ -69,7 +69,7 @@ class SerialDressing final : public DressingBackend {
       add_joint_forces();
       update_velocities();
       collide_layers();
-      meet_body();
+      collide_with_body();
       correct_velocities();
       close_sewn_joints();
       move();
@@ -152,7 +152,7 @@ class SerialDressing final : public DressingBackend {
         });
   }
 
-  void meet_body() {  // loop 4, too
+  void collide_with_body() {  // loop 4, too
     const Real push = static_cast<Real>(rules_.push_speed);
     free_ = inverse_mass_;
     for (const GarmentPanel& panel : garment_.panels) {

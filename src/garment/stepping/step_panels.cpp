@@ -21,54 +21,53 @@ HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
 /// Blocks of one thread.
-struct Share {
+struct BlockRange {
   std::size_t begin, end;
 };
 
 /// Loop 6 for a block.
-HWY_INLINE void move_block(PanelSheet& sheet, const PanelSheet::Block& block, Lanes dt, const Floor& floor) {
-  const PanelSheet::Panel& panel = sheet.panels[block.panel];
+HWY_INLINE void move_block(PanelGrid& grid, const PanelGrid::Block& block, Lanes dt, const Floor& floor) {
+  const PanelGrid::Panel& panel = grid.panels[block.panel];
   const std::size_t first = panel.first + block.begin * panel.stride;
   const std::size_t last = panel.first + block.end * panel.stride;
   const Lanes height(static_cast<float>(floor.height));
   for (std::size_t at = first; at < last; at += lane_count()) {
-    Lanes3 v = load(sheet.velocity, at), x = mul_add(dt, v, load(sheet.moved, at));
-    const Mask real = hn::Gt(hn::Load(FloatTag(), sheet.inverse_mass.data() + at), hn::Zero(FloatTag()));
+    Lanes3 v = load(grid.velocity, at), x = mul_add(dt, v, load(grid.moved, at));
+    const Mask real = hn::Gt(hn::Load(FloatTag(), grid.inverse_mass.data() + at), hn::Zero(FloatTag()));
     const Mask under = hn::And(real, hn::Lt(x.y.v, height.v));
     touch_floor(under, height, Lanes(static_cast<float>(floor.restitution)),
                 Lanes(static_cast<float>(floor.friction)), x, v);
-    store(sheet.position, at, x);
-    store(sheet.velocity, at, v);
+    store(grid.position, at, x);
+    store(grid.velocity, at, v);
   }
 }
 
 /// Limits what over-elongated springs do, in the order of correction_order.h: a thread's own blocks, and the
 /// springs between each of them and the block before it, which is done when all have passed the barrier.
-HWY_INLINE void correct(PanelSheet& sheet, const CorrectionRule<float>& rule, std::uint32_t sweeps,
-                        Share share, SpinBarrier& barrier) {
+HWY_INLINE void correct(PanelGrid& grid, const CorrectionRule<float>& rule, std::uint32_t sweeps,
+                        BlockRange range, SpinBarrier& barrier) {
   for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
     const bool forwards = sweep % 2 == 0;
     if (forwards) {
-      for (std::size_t b = share.begin; b < share.end; ++b) correct_block(sheet, sheet.blocks[b], rule, true);
+      for (std::size_t b = range.begin; b < range.end; ++b) correct_block(grid, grid.blocks[b], rule, true);
       barrier.wait();
     }
-    for (std::size_t b = share.begin; b < share.end; ++b)
-      if (sheet.blocks[b].begin != 0) correct_seam_of_blocks(sheet, sheet.blocks[b], rule, forwards);
+    for (std::size_t b = range.begin; b < range.end; ++b)
+      if (grid.blocks[b].begin != 0) correct_seam_of_blocks(grid, grid.blocks[b], rule, forwards);
     if (!forwards) {
       barrier.wait();
-      for (std::size_t b = share.begin; b < share.end; ++b)
-        correct_block(sheet, sheet.blocks[b], rule, false);
+      for (std::size_t b = range.begin; b < range.end; ++b) correct_block(grid, grid.blocks[b], rule, false);
     }
   }
 }
 
 /// What the first thread does between two steps.
 void end_step(PanelDressing& dressing) {
-  PanelSheet& sheet = dressing.sheet;
+  PanelGrid& grid = dressing.grid;
   const Dressing& rules = dressing.garment.dressing;
   ++dressing.steps;
   if (!ends_seaming(rules, dressing.progress, dressing.steps, dressing.dt_s)) return;
-  std::fill(sheet.sewn.begin(), sheet.sewn.end(), std::uint8_t{1});
+  std::fill(grid.sewn.begin(), grid.sewn.end(), std::uint8_t{1});
   dressing.progress = {0, true, dressing.steps};
 }
 
@@ -76,13 +75,13 @@ void end_step(PanelDressing& dressing) {
 struct Worker {
   Worker(const PanelDressing& dressing, std::size_t number, std::size_t threads, SpinBarrier& of_all)
       : thread(number),
-        share{number * dressing.sheet.blocks.size() / threads,
-              (number + 1) * dressing.sheet.blocks.size() / threads},
-        scratch(dressing.sheet),
+        range{number * dressing.grid.blocks.size() / threads,
+              (number + 1) * dressing.grid.blocks.size() / threads},
+        scratch(dressing.grid),
         barrier(of_all) {}
 
   std::size_t thread;
-  Share share;
+  BlockRange range;
   ForceScratch scratch;
   SpinBarrier& barrier;
 };
@@ -122,44 +121,44 @@ void accelerate(PanelDressing& dressing, Worker& worker) {
     if (worker.thread == 0) pull_joints(dressing);
     worker.barrier.wait();
   }
-  for (std::size_t b = worker.share.begin; b < worker.share.end; ++b)
-    update_velocities(dressing.sheet, dressing.sheet.blocks[b], rule, worker.scratch);
+  for (std::size_t b = worker.range.begin; b < worker.range.end; ++b)
+    update_velocities(dressing.grid, dressing.grid.blocks[b], rule, worker.scratch);
 }
 
 /// What is left of a step.
 void move(PanelDressing& dressing, const Worker& worker) {
-  PanelSheet& sheet = dressing.sheet;
+  PanelGrid& grid = dressing.grid;
   const Dressing& rules = dressing.garment.dressing;
-  const Share share = worker.share;
+  const BlockRange range = worker.range;
   const StepRule rule = step_rule(dressing);
   if (rule.layers_touch)
-    for (std::size_t b = share.begin; b < share.end; ++b) meet_body(sheet, sheet.blocks[b], rule);
+    for (std::size_t b = range.begin; b < range.end; ++b) collide_with_body(grid, grid.blocks[b], rule);
   const std::uint32_t sweeps = correction_sweeps(rules);
   if (sweeps == 0) worker.barrier.wait();
-  correct(sheet, correction_rule<float>(rules, dressing.dt_s), sweeps, share, worker.barrier);
+  correct(grid, correction_rule<float>(rules, dressing.dt_s), sweeps, range, worker.barrier);
   worker.barrier.wait();
   if (worker.thread == 0) {
     close_sewn_joints(dressing);
     end_step(dressing);
   }
   worker.barrier.wait();
-  for (std::size_t b = share.begin; b < share.end; ++b)
-    move_block(sheet, sheet.blocks[b], Lanes(rule.dt), dressing.system.floor);
+  for (std::size_t b = range.begin; b < range.end; ++b)
+    move_block(grid, grid.blocks[b], Lanes(rule.dt), dressing.system.floor);
   worker.barrier.wait();
 }
 
 /// Layers of the garment collide.
 void collide_layers(PanelDressing& dressing) {
-  PanelSheet& sheet = dressing.sheet;
+  PanelGrid& grid = dressing.grid;
   dressing.layers->collide(
       dressing.dt_s,
       [&](std::size_t node) {
-        const std::size_t at = sheet.place[node];
-        return NodeState{sheet.moved.at(at), sheet.velocity.at(at)};
+        const std::size_t at = grid.offset[node];
+        return NodeState{grid.moved.at(at), grid.velocity.at(at)};
       },
       [&](std::size_t node, const NodeState& state) {
-        sheet.moved.put(sheet.place[node], state.position);
-        sheet.velocity.put(sheet.place[node], state.velocity);
+        grid.moved.put(grid.offset[node], state.position);
+        grid.velocity.put(grid.offset[node], state.velocity);
       });
 }
 

@@ -40,7 +40,7 @@ struct RandomStage {
         for (std::size_t i = 0; i < 3; ++i) force(entry, node)[i] = number();
       }
     for (std::size_t pair = 0; pair < pair_kinds; ++pair) {
-      pairs[pair] = AlignedArray(nodes.packed.places() * record_floats);
+      pairs[pair] = AlignedArray(nodes.packed.slots() * record_floats);
       for (std::size_t i = 0; i < pairs[pair].size(); ++i)
         if (i % 4 != 3) pairs[pair].data()[i] = 1 + number();
       mapped.pairs[pair] = pairs[pair].data();
@@ -77,7 +77,7 @@ TEST_P(EachNodeKernel, AddsAForceAtTheFirstEndSubtractsItAtTheSecondAndTakesTheS
     system.floor.height = -10;
     RandomStage stage(system, integrators[0]);
     const PackedSprings& packed = stage.nodes.packed;
-    std::vector<Vec3d> force(packed.places());
+    std::vector<Vec3d> force(packed.slots());
     for (std::size_t entry = 0; entry < packed.entries.size(); ++entry)
       for (std::size_t i = 0; i < PackedSprings::slice_nodes; ++i) {
         const float* f = stage.force(entry, i);
@@ -93,10 +93,10 @@ TEST_P(EachNodeKernel, AddsAForceAtTheFirstEndSubtractsItAtTheSecondAndTakesTheS
     stage.mapped.pairs[index(Pair::state)] = stage.pairs[index(Pair::state)].data();
     kernel.integrate(stage.nodes, stage.mapped, 0, 0, packed.slices());
     for (std::uint32_t node = 0; node < system.nodes(); ++node) {
-      const std::size_t at = packed.place[node] * record_floats;
+      const std::size_t at = packed.slot[node] * record_floats;
       const bool held = std::find(system.pins.begin(), system.pins.end(), node) != system.pins.end();
       const float *old = before.data() + at, *next = stage.mapped.pairs[index(Pair::next)] + at;
-      const Vec3d f = force[packed.place[node]];
+      const Vec3d f = force[packed.slot[node]];
       for (std::size_t i = 0; i < 3; ++i) {
         const double spring = (i == 0 ? f.x : i == 1 ? f.y : f.z) / system.node_mass[node];
         const double a =

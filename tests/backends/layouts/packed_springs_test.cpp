@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
 
-/// The unit of a slice's node in an entry, in places.
+/// The unit of a slice's node in an entry, in slots.
 struct Unit {
   std::uint32_t first, second, kind;
   float rest_length;
@@ -81,10 +81,10 @@ TEST_P(EachSystem, PacksEverySpringOnceInEntriesOfOneSliceAndKind) {
 
 TEST_P(EachSystem, ListsEveryForceAtItsSecondEndOnce) {
   constexpr std::size_t list_nodes = PackedSprings::list_nodes;
-  std::vector<std::size_t> node_at(slice_nodes);  // by the place of the force
+  std::vector<std::size_t> node_at(slice_nodes);  // by the slot of the force
   for (std::size_t node = 0; node < slice_nodes; ++node) node_at[PackedSprings::force_place(node)] = node;
   std::vector<int> listed(packed.unit_count(), 0);
-  for (std::size_t list = 0; list < packed.places() / list_nodes; ++list)
+  for (std::size_t list = 0; list < packed.slots() / list_nodes; ++list)
     for (std::size_t i = packed.first_subtracted[list] * list_nodes;
          i < packed.first_subtracted[list + 1] * list_nodes; ++i) {
       const std::uint32_t force = packed.subtracted[i];
@@ -100,12 +100,12 @@ TEST_P(EachSystem, ListsEveryForceAtItsSecondEndOnce) {
 }
 
 TEST_P(EachSystem, NumbersEveryNodeOnce) {
-  ASSERT_EQ(packed.places() % slice_nodes, 0U);
-  ASSERT_LT(packed.places(), system.nodes() + slice_nodes);
-  for (std::size_t place = system.nodes(); place < packed.places(); ++place)
-    EXPECT_EQ(packed.scene_node[place], PackedSprings::no_node);
+  ASSERT_EQ(packed.slots() % slice_nodes, 0U);
+  ASSERT_LT(packed.slots(), system.nodes() + slice_nodes);
+  for (std::size_t slot = system.nodes(); slot < packed.slots(); ++slot)
+    EXPECT_EQ(packed.scene_node[slot], PackedSprings::no_node);
   for (std::uint32_t node = 0; node < system.nodes(); ++node)
-    EXPECT_EQ(packed.scene_node[packed.place[node]], node);
+    EXPECT_EQ(packed.scene_node[packed.slot[node]], node);
 }
 
 TEST(PackedSprings, HaveFewEmptyUnitsInABody) {

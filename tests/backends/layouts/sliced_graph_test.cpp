@@ -31,14 +31,14 @@ std::vector<Spring> shuffled(std::vector<Spring> springs, std::size_t nodes) {
   return springs;
 }
 
-/// Largest distance between the two ends of a spring, by their places in the order.
+/// Largest distance between the two ends of a spring, by their slots in the order.
 std::uint32_t bandwidth(const std::vector<Spring>& springs, const std::vector<std::uint32_t>& order) {
-  std::vector<std::uint32_t> place(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  std::vector<std::uint32_t> slot(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) slot[order[i]] = i;
   std::uint32_t largest = 0;
   for (const Spring& spring : springs)
-    largest = std::max(largest, std::max(place[spring.first], place[spring.second]) -
-                                    std::min(place[spring.first], place[spring.second]));
+    largest = std::max(largest, std::max(slot[spring.first], slot[spring.second]) -
+                                    std::min(slot[spring.first], slot[spring.second]));
   return largest;
 }
 
@@ -110,14 +110,14 @@ TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThat
                                static_cast<double>(spring.rest_length) / system.node_mass[node]);
     for (std::size_t slice = 0; slice < graph.slices(); ++slice)
       for (std::size_t lane = 0; lane < graph.lanes; ++lane) {
-        const std::size_t place = slice * graph.lanes + lane;
+        const std::size_t slot = slice * graph.lanes + lane;
         std::uint32_t last = 0;
         for (std::size_t e = graph.first_entry[slice]; e < graph.first_entry[slice + 1]; ++e) {
           const std::size_t element = e * graph.lanes + lane;
           if (graph.stiffness_rest[element] < 0) continue;
           ASSERT_LT(graph.neighbour[element], graph.nodes());
-          ASSERT_NE(graph.scene_node[place], SlicedGraph::no_node);
-          const std::pair spring{graph.scene_node[place], graph.scene_node[graph.neighbour[element]]};
+          ASSERT_NE(graph.scene_node[slot], SlicedGraph::no_node);
+          const std::pair spring{graph.scene_node[slot], graph.scene_node[graph.neighbour[element]]};
           EXPECT_TRUE(found.emplace(spring, graph.stiffness_rest[element]).second)
               << "a spring appears twice";
           EXPECT_GE(graph.neighbour[element], last) << "the order of sums is that of the numbers";
@@ -128,9 +128,9 @@ TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThat
     for (const Spring& spring : system.springs)
       for (const std::uint32_t node : {spring.first, spring.second}) {
         const SpringMaterial& material = system.materials[spring.kind];
-        EXPECT_EQ(graph.stiffness[graph.place[node]],
+        EXPECT_EQ(graph.stiffness[graph.slot[node]],
                   static_cast<float>(material.stiffness / system.node_mass[node]));
-        EXPECT_EQ(graph.damping[graph.place[node]],
+        EXPECT_EQ(graph.damping[graph.slot[node]],
                   static_cast<float>(material.damping / system.node_mass[node]));
       }
   }
@@ -139,41 +139,41 @@ TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThat
 TEST_P(SlicedGraphOfLanes, FillsUpSlicesWithWhatFeelsNothingAndDoesNotMove) {
   for (const System& system : bodies()) {
     const SlicedGraph graph(system, GetParam());
-    EXPECT_EQ(graph.places(), graph.slices() * graph.lanes);
-    EXPECT_LT(graph.places() - graph.nodes(), graph.lanes);
-    std::vector<std::size_t> degree(graph.places(), 0);
+    EXPECT_EQ(graph.slots(), graph.slices() * graph.lanes);
+    EXPECT_LT(graph.slots() - graph.nodes(), graph.lanes);
+    std::vector<std::size_t> degree(graph.slots(), 0);
     for (std::size_t slice = 0; slice < graph.slices(); ++slice) {
       std::size_t largest = 0;
       for (std::size_t lane = 0; lane < graph.lanes; ++lane) {
-        const std::size_t place = slice * graph.lanes + lane;
+        const std::size_t slot = slice * graph.lanes + lane;
         bool empty = false;
         for (std::size_t e = graph.first_entry[slice]; e < graph.first_entry[slice + 1]; ++e) {
           const std::size_t element = e * graph.lanes + lane;
           if (graph.stiffness_rest[element] < 0) {
             empty = true;
             EXPECT_EQ(graph.stiffness_rest[element], SlicedGraph::empty_entry);
-            EXPECT_EQ(graph.neighbour[element], place);
+            EXPECT_EQ(graph.neighbour[element], slot);
           } else {
             EXPECT_FALSE(empty) << "empty entries come last";
-            ++degree[place];
+            ++degree[slot];
           }
         }
-        largest = std::max(largest, degree[place]);
+        largest = std::max(largest, degree[slot]);
       }
       EXPECT_EQ(largest, graph.first_entry[slice + 1] - graph.first_entry[slice]) << "no entry for nobody";
     }
-    std::vector<std::uint32_t> held(graph.places(), 0);
-    for (const std::uint32_t pin : system.pins) held[graph.place[pin]] = 1;
+    std::vector<std::uint32_t> held(graph.slots(), 0);
+    for (const std::uint32_t pin : system.pins) held[graph.slot[pin]] = 1;
     std::vector<std::uint32_t> nodes;
-    for (std::size_t place = 0; place < graph.places(); ++place) {
-      if (graph.scene_node[place] != SlicedGraph::no_node) {
-        nodes.push_back(graph.scene_node[place]);
-        EXPECT_EQ(graph.place[graph.scene_node[place]], place);
+    for (std::size_t slot = 0; slot < graph.slots(); ++slot) {
+      if (graph.scene_node[slot] != SlicedGraph::no_node) {
+        nodes.push_back(graph.scene_node[slot]);
+        EXPECT_EQ(graph.slot[graph.scene_node[slot]], slot);
         continue;
       }
-      EXPECT_GE(place, graph.nodes());
-      EXPECT_EQ(degree[place], 0U);
-      held[place] = 1;
+      EXPECT_GE(slot, graph.nodes());
+      EXPECT_EQ(degree[slot], 0U);
+      held[slot] = 1;
     }
     EXPECT_TRUE(is_permutation(nodes, system.nodes()));
     EXPECT_EQ(graph.held, held);
@@ -204,16 +204,17 @@ TEST(SlicedBodies, GiveEverySliceToOneLotInFairShares) {
   for (const std::size_t threads : {1U, 2U, 3U, 7U, 46U, 1000U}) {
     const SlicedBodies bodies(system, integrators[0], 1e-4, 16, threads);
     ASSERT_EQ(bodies.threads, std::min(threads, bodies.slices()));
-    ASSERT_EQ(bodies.lots.size(), std::min(4 * threads, bodies.slices()));
+    ASSERT_EQ(bodies.chunks.size(), std::min(4 * threads, bodies.slices()));
     std::size_t next = 0;
-    for (const SlicedBodies::Lot& lot : bodies.lots) {
-      EXPECT_EQ(lot.begin, next);
-      next = lot.end;
+    for (const SlicedBodies::Chunk& chunk : bodies.chunks) {
+      EXPECT_EQ(chunk.begin, next);
+      next = chunk.end;
       if (threads > 2) continue;  // a slice more or less is then a large share
-      const auto entries = static_cast<double>(bodies.first_entry[lot.end] - bodies.first_entry[lot.begin]);
-      EXPECT_NEAR(
-          entries * static_cast<double>(bodies.lots.size()) / static_cast<double>(bodies.first_entry.back()),
-          1, 0.25);
+      const auto entries =
+          static_cast<double>(bodies.first_entry[chunk.end] - bodies.first_entry[chunk.begin]);
+      EXPECT_NEAR(entries * static_cast<double>(bodies.chunks.size()) /
+                      static_cast<double>(bodies.first_entry.back()),
+                  1, 0.25);
     }
     EXPECT_EQ(next, bodies.slices());
   }

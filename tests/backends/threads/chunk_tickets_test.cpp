@@ -54,7 +54,7 @@ TEST(ChunkTickets, GiveEveryChunkOfEveryPhaseToOneThreadAndFinishAPhaseBeforeThe
 }
 
 TEST(ChunkTickets, NeedNoLeader) {
-  for (const std::uint32_t threads : {1U, 2U, 3U, 7U}) {  // seven: shares without a chunk
+  for (const std::uint32_t threads : {1U, 2U, 3U, 7U}) {  // seven: ranges without a chunk
     SCOPED_TRACE(std::to_string(threads) + " threads");
     ChunkTickets tickets(chunks, threads);
     Ledger ledger;

@@ -157,7 +157,7 @@ TEST(SequentialPairs, HaveThePOfTheirTestOverTheShareOfTheLook) {
   for (const std::size_t rounds : {10UL, 12UL, 22UL, 109UL}) {
     const PairedTimes times = pairs_of(rounds, 1.02, 0.05);
     EXPECT_DOUBLE_EQ(compare_pairs(times, threshold).ratio->p,
-                     std::min(1., p_of(times) / look_at(rounds).share));
+                     std::min(1., p_of(times) / look_at(rounds).fraction));
   }
 }
 
@@ -177,7 +177,7 @@ TEST(SequentialPairs, RarelyDifferFromThemselvesAtAnyLook) {
         const Look look = look_at(rounds);
         if (look.pairs != rounds && rounds != end) continue;
         const double p = p_of(first(all, rounds));
-        alarm |= p / look.share < significance;
+        alarm |= p / look.fraction < significance;
         alone |= p < significance;
       }
       alarms += alarm;
@@ -209,7 +209,7 @@ TEST(SequentialPairs, HoldTheTrueRatioAtAllLooks) {
 
 /// Rounds that a comparison takes on average, and the share that ends with a verdict.
 struct Study {
-  double rounds = 0, share = 0;
+  double rounds = 0, fraction = 0;
 };
 
 Study study_of(double factor, double noise, Verdict verdict) {
@@ -218,7 +218,7 @@ Study study_of(double factor, double noise, Verdict verdict) {
   for (unsigned seed = 1; seed <= studies; ++seed) {
     const PairedTimes known = until_settled(pairs_of(400, factor, noise, seed));
     study.rounds += static_cast<double>(known.base_ms.size()) / studies;
-    study.share += compare_pairs(known, threshold).verdict == verdict ? 1. / studies : 0;
+    study.fraction += compare_pairs(known, threshold).verdict == verdict ? 1. / studies : 0;
   }
   return study;
 }
@@ -226,26 +226,26 @@ Study study_of(double factor, double noise, Verdict verdict) {
 TEST(SequentialPairs, FindTenPercentWithinFewRounds) {
   // Evenly spread noise of plus and minus 5 %, so a deviation of 2.9 %.
   const Study slower = study_of(1.1, 0.05, Verdict::slower);
-  EXPECT_GE(slower.share, 0.99);
+  EXPECT_GE(slower.fraction, 0.99);
   EXPECT_LE(slower.rounds, 15);
   const Study same = study_of(1, 0.05, Verdict::same);
-  EXPECT_GE(same.share, 0.97);
+  EXPECT_GE(same.fraction, 0.97);
   EXPECT_LE(same.rounds, 15);
 }
 
 TEST(SequentialPairs, FindTenPercentInNoiseOfAsMuch) {
   const Study slower = study_of(1.1, 0.1, Verdict::slower);
-  EXPECT_GE(slower.share, 0.98);
+  EXPECT_GE(slower.fraction, 0.98);
   EXPECT_LE(slower.rounds, 45);
-  EXPECT_LE(study_of(1, 0.1, Verdict::slower).share, 0.005);
-  EXPECT_LE(study_of(1, 0.1, Verdict::faster).share, 0.005);
+  EXPECT_LE(study_of(1, 0.1, Verdict::slower).fraction, 0.005);
+  EXPECT_LE(study_of(1, 0.1, Verdict::faster).fraction, 0.005);
 }
 
 TEST(SequentialPairs, StopWhereAChangeOfFifteenPercentIsPlain) {
   // Pairs that spread by 3 %, 1.147 times as long: a case that was once measured for 300 s to an interval
   // from 1.113 to 1.182.
   const Study study = study_of(1.147, 0.052, Verdict::slower);
-  EXPECT_GE(study.share, 0.99);
+  EXPECT_GE(study.fraction, 0.99);
   EXPECT_LE(study.rounds, 12);
 }
 

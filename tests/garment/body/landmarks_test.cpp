@@ -86,8 +86,8 @@ TEST(JeansForBody, AreThoseOfTheReferenceBodyAndWideEnoughForAnyLeg) {
   thin_ankle.ankle.girth = 0.12;
   const JeansMeasures wide = jeans_for_body(profile, thin_ankle);
   for (double y = wide.hem_height; y < wide.knee_height; y += 0.01) {
-    const double share = (y - wide.hem_height) / (wide.knee_height - wide.hem_height);
-    EXPECT_GT((1 - share) * wide.hem + share * wide.knee, thicker_leg(profile, y).value() + 0.02) << y;
+    const double fraction = (y - wide.hem_height) / (wide.knee_height - wide.hem_height);
+    EXPECT_GT((1 - fraction) * wide.hem + fraction * wide.knee, thicker_leg(profile, y).value() + 0.02) << y;
   }
 }
 

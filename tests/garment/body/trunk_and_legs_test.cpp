@@ -26,11 +26,11 @@ Surface block(const Vec3d& low, const Vec3d& high) {
 Surface without_arms() { return body_with_arms({.triangles = 6'000, .arms = false}); }
 
 /// That both bodies measure the same wherever trousers need it, to a share.
-void expect_same_measures(const BodyProfile& profile, const BodyProfile& expected, double share) {
+void expect_same_measures(const BodyProfile& profile, const BodyProfile& expected, double fraction) {
   EXPECT_NEAR(profile.crotch_height(), expected.crotch_height(), 0.02);
   for (const double y : {0.82, 0.86, 0.95, 1.04, 1.08}) {
-    EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), share * expected.hull_girth(y)) << y;
-    EXPECT_NEAR(profile.half_width(y), expected.half_width(y), share * expected.half_width(y)) << y;
+    EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), fraction * expected.hull_girth(y)) << y;
+    EXPECT_NEAR(profile.half_width(y), expected.half_width(y), fraction * expected.half_width(y)) << y;
     EXPECT_NEAR(profile.front(y), expected.front(y), 0.006) << y;
     EXPECT_NEAR(profile.back(y), expected.back(y), 0.006) << y;
   }
@@ -38,7 +38,7 @@ void expect_same_measures(const BodyProfile& profile, const BodyProfile& expecte
     EXPECT_NEAR(profile.leg_middle(y).x, expected.leg_middle(y).x, 0.004) << y;
     for (const int side : {-1, 1})
       EXPECT_NEAR(profile.leg_girth(y, side), expected.leg_girth(y, side),
-                  share * expected.leg_girth(y, side))
+                  fraction * expected.leg_girth(y, side))
           << y << " side " << side;
   }
 }
@@ -51,15 +51,15 @@ INSTANTIATE_TEST_SUITE_P(Triangles, PersonsArms, testing::Values(1'600, 6'000, 2
 TEST_P(PersonsArms, DoNotCount) {
   const BodyProfile expected(body_with_arms({.triangles = GetParam(), .arms = false}));
   EXPECT_FALSE(expected.trunk_and_legs().left_out);
-  const double share = GetParam() < 5'000 ? 0.04 : 0.015;
-  EXPECT_NEAR(expected.hull_girth(0.86), 0.98, 0.98 * share);
-  EXPECT_NEAR(expected.hull_girth(1.04), 0.74, 0.74 * share);
+  const double fraction = GetParam() < 5'000 ? 0.04 : 0.015;
+  EXPECT_NEAR(expected.hull_girth(0.86), 0.98, 0.98 * fraction);
+  EXPECT_NEAR(expected.hull_girth(1.04), 0.74, 0.74 * fraction);
   EXPECT_NEAR(expected.leg_girth(0.46, 1), 0.37, 0.37 * 0.03);
   for (const double angle : {8.0, 12.0, 40.0}) {
     SCOPED_TRACE(angle);
     const Surface person = body_with_arms({.triangles = GetParam(), .arm_angle_degrees = angle});
     const BodyProfile profile(person);
-    expect_same_measures(profile, expected, share);
+    expect_same_measures(profile, expected, fraction);
     const TrunkAndLegs& body = profile.trunk_and_legs();
     ASSERT_TRUE(body.left_out);
     EXPECT_GT(body.left_out->high, 1.1);
@@ -118,7 +118,7 @@ TEST(TrunkAndLegs, AreWithoutAnArmWhoseHandRestsOnTheHip) {
 
 TEST_P(PersonsArms, DoNotCountWhereHandsRestAgainstTheHip) {
   const BodyProfile expected(body_with_arms({.triangles = GetParam(), .arms = false}));
-  const double share = GetParam() < 5'000 ? 0.045 : 0.03;
+  const double fraction = GetParam() < 5'000 ? 0.045 : 0.03;
   for (const double angle : {4.0, 5.0, 6.0}) {
     SCOPED_TRACE(angle);
     const BodyProfile profile(body_with_arms({.triangles = GetParam(), .arm_angle_degrees = angle}));
@@ -129,7 +129,7 @@ TEST_P(PersonsArms, DoNotCountWhereHandsRestAgainstTheHip) {
     EXPECT_NO_THROW(validate_surface(profile.trunk_and_legs().surface, "trunk and legs"));
     // With the hands it would be 1.12 m.
     for (const double y : {0.82, 0.86, 0.90, 0.95, 1.0, 1.04})
-      EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), share * expected.hull_girth(y)) << y;
+      EXPECT_NEAR(profile.hull_girth(y), expected.hull_girth(y), fraction * expected.hull_girth(y)) << y;
     for (const int side : {-1, 1})
       EXPECT_NEAR(profile.leg_girth(0.7, side), expected.leg_girth(0.7, side), 0.03) << side;
   }

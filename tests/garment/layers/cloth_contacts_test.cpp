@@ -78,10 +78,11 @@ struct BruteForce {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
       const Vec3d side = at(j) - at(i);
-      const double share = std::clamp(dot(p - at(i), side) / dot(side, side), 0.0, 1.0);
-      const double far = length(p - at(i) - share * side);
+      const double fraction = std::clamp(dot(p - at(i), side) / dot(side, side), 0.0, 1.0);
+      const double far = length(p - at(i) - fraction * side);
       if (far < distance - 1e-12)
-        *this = {far, false, on_border(panel, corners[share == 1 ? j : i], corners[share == 0 ? i : j]), 0};
+        *this = {far, false, on_border(panel, corners[fraction == 1 ? j : i], corners[fraction == 0 ? i : j]),
+                 0};
     }
   }
   static BruteForce of(const LayeredCloth& cloth, std::uint32_t node, const GarmentPanel& other) {

@@ -25,8 +25,8 @@ double x_at(const Curve& curve, double y) {
   const auto& points = curve.points();
   for (std::size_t i = 1; i < points.size(); ++i)
     if (points[i].y >= y) {
-      const double share = (y - points[i - 1].y) / (points[i].y - points[i - 1].y);
-      return points[i - 1].x + share * (points[i].x - points[i - 1].x);
+      const double fraction = (y - points[i - 1].y) / (points[i].y - points[i - 1].y);
+      return points[i - 1].x + fraction * (points[i].x - points[i - 1].x);
     }
   return points.back().x;
 }
@@ -69,8 +69,8 @@ TEST(JeansDraft, WaistAndHipAreTheBodysWithOffsetAndEase) {
       double width = 0;
       for (const JeansOutline* half : {&draft.front, &draft.back})
         width += x_at(half->centre, y) - x_at(half->outer, y);
-      const double share = (y - measures.hip_height) / (measures.waist_height - measures.hip_height);
-      EXPECT_NEAR(2 * width, body.girth(y) + offset + share * measures.waist_ease, 0.015)
+      const double fraction = (y - measures.hip_height) / (measures.waist_height - measures.hip_height);
+      EXPECT_NEAR(2 * width, body.girth(y) + offset + fraction * measures.waist_ease, 0.015)
           << hip << " at " << y;
     }
   }

@@ -61,12 +61,12 @@ TEST(Seams, TheFinerSideIsJoinedToEdgesOfTheCoarserOne) {
     const std::vector<Joint> joints = pair.join(seam);
     ASSERT_EQ(joints.size(), 5U);
     const std::array<std::uint32_t, 5> first{1, 1, 3, 5, 7}, second{1, 3, 5, 7, 7};
-    const std::array<double, 5> share{0, 0.75, 0.5, 0.25, 0};
+    const std::array<double, 5> fraction{0, 0.75, 0.5, 0.25, 0};
     for (std::uint32_t i = 0; i < 5; ++i) {
       EXPECT_EQ(joints[i].node, 8 + 2 * i);
       EXPECT_EQ(joints[i].edge_first, first[i]);
       EXPECT_EQ(joints[i].edge_second, second[i]);
-      EXPECT_NEAR(joints[i].edge_share, share[i], 1e-12);
+      EXPECT_NEAR(joints[i].edge_share, fraction[i], 1e-12);
     }
     EXPECT_NEAR(total_length(joints), 1, 1e-12);
   }

@@ -67,7 +67,7 @@ TEST(Drape, MapsInsideTheSphereLetItIn) {
 /// What all steps in which a state has more energy than the one before add, over what the others take.
 struct EnergyBalance {
   double gained = 0, lost = 0;
-  double share() const { return gained / lost; }
+  double fraction() const { return gained / lost; }
 };
 
 /// Of steps after the seams have closed.
@@ -88,13 +88,13 @@ EnergyBalance draped(const System& system, double dt_s, int steps) {
 
 TEST(Drape, StepsInWhichEnergyGrowsAddLittle) {
   const EnergyBalance sheet = draped(sheet_above_sphere(0.003), sheet_dt_s, 4000);
-  EXPECT_LT(sheet.share(), 0.05);
-  RecordProperty("sheet", std::to_string(sheet.share()));
+  EXPECT_LT(sheet.fraction(), 0.05);
+  RecordProperty("sheet", std::to_string(sheet.fraction()));
   // Jeans come to rest 1,617 steps after their seams have closed.
   const DressingCase jeans("jeans4k");
   const EnergyBalance balance = draped(jeans.system, jeans.dt_s(), 1617);
-  EXPECT_LT(balance.share(), 0.05) << balance.gained << " J of " << balance.lost;
-  RecordProperty("jeans", std::to_string(balance.share()));
+  EXPECT_LT(balance.fraction(), 0.05) << balance.gained << " J of " << balance.lost;
+  RecordProperty("jeans", std::to_string(balance.fraction()));
 }
 
 TEST(Drape, OnABodyGivesTheSameBitsForAnyNumberOfThreads) {

@@ -100,20 +100,20 @@ TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
   system.floor.height = -0.02;
   garment_in(system).dressing.seam_force = 0;
   garment_in(system).dressing.seaming_damping = 0;
-  for (const double share : {0.0, 0.5}) {
-    garment_in(system).dressing.seaming_gravity = share;
+  for (const double fraction : {0.0, 0.5}) {
+    garment_in(system).dressing.seaming_gravity = fraction;
     const auto single = make_serial_dressing(system, semi_euler, dt_s);
     const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 2);
     for (Backend* backend : std::initializer_list<Backend*>{single.get(), vectors.get()}) {
       backend->step(100);
       // Semi-implicit Euler falls dt^2 g n (n + 1) / 2.
-      EXPECT_NEAR(backend->state().position[0].y, -share * 9.81 * dt_s * dt_s * 100 * 101 / 2, 1e-6);
+      EXPECT_NEAR(backend->state().position[0].y, -fraction * 9.81 * dt_s * dt_s * 100 * 101 / 2, 1e-6);
       backend->step(1000);
       const State state = backend->state();
       const auto lowest = std::ranges::min(state.position, {}, &Vec3d::y).y;
       // Free, a half of gravity would take them 67 mm down by now.
-      EXPECT_GE(lowest, share > 0 ? -0.02 : -1e-5);
-      EXPECT_LT(lowest, share > 0 ? -1e-3 : 1e-5);
+      EXPECT_GE(lowest, fraction > 0 ? -0.02 : -1e-5);
+      EXPECT_LT(lowest, fraction > 0 ? -1e-3 : 1e-5);
     }
   }
 }

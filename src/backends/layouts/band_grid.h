@@ -38,7 +38,7 @@ struct BandLayout {
   std::size_t row_floats() const { return components * lanes; }
   std::size_t column_floats() const { return (height + 2 * halo) * row_floats(); }
   /// Floats from a column's start to the x of the node in a row of the cloth.
-  std::size_t place(std::size_t row) const { return (row % height + halo) * row_floats() + row / height; }
+  std::size_t offset(std::size_t row) const { return (row % height + halo) * row_floats() + row / height; }
   /// Floats of one column of forces: rows 0 .. height, three components. The last row is scratch.
   std::size_t force_floats() const { return (height + 1) * 3 * lanes; }
 };
@@ -64,7 +64,7 @@ inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * sta
 /// The columns of one thread, and on each side ghost columns that repeat the neighbours': two for each stage
 /// under way. The thread computes what stages but the last do there a second time, and so needs nobody until
 /// the last is through.
-struct BandPart {
+struct BandPartition {
   std::size_t first = 0;   ///< column of the cloth
   std::size_t count = 0;   ///< columns that are the thread's own
   std::size_t ghosts = 0;  ///< on each side
@@ -75,7 +75,7 @@ struct BandPart {
   AlignedArray forces;                     ///< [stages_under_way][3][force_floats], columns under way
 
   /// Place of a column of the cloth in `pins` and in the state; first - ghosts <= column.
-  std::size_t place(std::size_t column) const { return column + ghosts - first; }
+  std::size_t local(std::size_t column) const { return column + ghosts - first; }
   float* column(const BandLayout& layout, Pair stored, std::size_t column) {
     return pairs[index(stored)].data() + offset(layout, stored, column);
   }
@@ -85,32 +85,32 @@ struct BandPart {
 
  private:
   std::size_t offset(const BandLayout& layout, Pair stored, std::size_t column) const {
-    return (stored == Pair::state ? place(column) : column % ring_columns) * layout.column_floats();
+    return (stored == Pair::state ? local(column) : column % ring_columns) * layout.column_floats();
   }
 };
 
 /// What the vector code needs to take steps: one cloth, one integrator, one dt.
-struct BandSheet {
+struct BandGrid {
   BandLayout layout;
   const Integrator* integrator = nullptr;
   Coefficients<float> coefficients{};
   std::vector<SpringConstants> springs;  ///< [kinds]
   Surroundings surroundings{};
   std::size_t steps_per_pass = 1;  ///< steps under way at once
-  std::vector<BandPart> parts;
+  std::vector<BandPartition> partitions;
 
-  /// Cuts the cloth for `lanes` lanes and at most `threads` parts. Arrays stay untouched until set_state.
-  /// `steps_in_a_pass`: chosen by the size of the cloth unless given; their stages must not be more than
-  /// stages_under_way.
-  BandSheet(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-            std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass = {});
-  /// Spreads the state over the parts, each by a thread of its own, ghosts, halos and dummies included.
+  /// Cuts the cloth for `lanes` lanes and at most `threads` partitions. Arrays stay untouched until
+  /// set_state. `steps_in_a_pass`: chosen by the size of the cloth unless given; their stages must not be
+  /// more than stages_under_way.
+  BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
+           std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass = {});
+  /// Spreads the state over the partitions, each by a thread of its own, ghosts, halos and dummies included.
   void set_state(const State& state);
   State state() const;
 
  private:
   double spacing_ = 0;  ///< m, places the dummies
-  void fill_part(BandPart& part, const State& state) const;
+  void fill_partition(BandPartition& partition, const State& state) const;
 };
 
 }  // namespace mssim

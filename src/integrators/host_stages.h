@@ -10,8 +10,8 @@
 
 namespace mssim {
 
-/// The integrator table's lines and the floor for one node at a time on the host: Real is float or double, a
-/// vector is a Vec3<Real>. Code that handles several nodes in one vector register has its own.
+/// The integrator table's assignments and the floor for one node at a time on the host: Real is float or
+/// double, a vector is a Vec3<Real>. Code that handles several nodes in one vector register has its own.
 
 #define MSSIM_INLINE [[gnu::always_inline]] inline
 #define MSSIM_INLINE_LAMBDA __attribute__((always_inline))

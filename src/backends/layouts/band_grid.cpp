@@ -1,4 +1,4 @@
-#include "backends/layouts/band_sheet.h"
+#include "backends/layouts/band_grid.h"
 
 #include <unistd.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t halo = BandLayout::halo;
 
-/// Threads recompute two columns a stage and side; a part narrower than this would be mostly that.
+/// Threads recompute two columns a stage and side; a partition narrower than this would be mostly that.
 std::size_t narrowest_part(const Integrator& integrator) { return 2 * halo * integrator.stage_count; }
 
 /// Steps to take in one pass. A state that the last-level cache holds (the half of it that one may count on)
@@ -19,7 +19,8 @@ std::size_t narrowest_part(const Integrator& integrator) { return 2 * halo * int
 /// nodes. From memory, as many as there is room for among the stages under way: semi-euler was 1.9 times as
 /// fast with four at a million nodes and 1.8 times with columns of 4,000 rows. Ghost columns must stay a
 /// small share.
-std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator, std::size_t parts) {
+std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator,
+                               std::size_t partitions) {
   constexpr long usual_cache = 16L << 20;  // bytes, where the system does not say
   constexpr std::size_t columns_per_stage = 16;
   const long found = sysconf(_SC_LEVEL3_CACHE_SIZE);
@@ -27,7 +28,7 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
   const std::size_t steps = stages_under_way / integrator.stage_count;
   const bool fits = layout.columns * layout.column_floats() * sizeof(float) <= cache / 2;
   const bool narrow =
-      parts > 1 && layout.columns / parts < columns_per_stage * steps * integrator.stage_count;
+      partitions > 1 && layout.columns / partitions < columns_per_stage * steps * integrator.stage_count;
   return fits || narrow ? 1 : steps;
 }
 
@@ -39,8 +40,8 @@ BandLayout::BandLayout(const GridPatch& grid, std::size_t lane_count)
       columns(grid.columns),
       height(std::max(halo, (rows + lanes - 1) / lanes)) {}
 
-BandSheet::BandSheet(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-                     std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass)
+BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
+                   std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass)
     : layout(grid, lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
@@ -50,39 +51,41 @@ BandSheet::BandSheet(const System& system, const GridPatch& grid, const Integrat
   for (const GridSpringKind kind : {structural, shear, bending})
     springs.emplace_back(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass);
 
-  parts.resize(
+  partitions.resize(
       std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, layout.columns / narrowest_part(method))));
-  steps_per_pass = steps_in_a_pass.value_or(steps_per_pass_for(layout, method, parts.size()));
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    BandPart& part = parts[p];
-    part.first = layout.columns * p / parts.size();
-    part.count = layout.columns * (p + 1) / parts.size() - part.first;
-    part.ghosts = halo * method.stage_count * steps_per_pass;
-    const std::size_t columns = part.ghosts + part.count + part.ghosts;
+  steps_per_pass = steps_in_a_pass.value_or(steps_per_pass_for(layout, method, partitions.size()));
+  for (std::size_t p = 0; p < partitions.size(); ++p) {
+    BandPartition& partition = partitions[p];
+    partition.first = layout.columns * p / partitions.size();
+    partition.count = layout.columns * (p + 1) / partitions.size() - partition.first;
+    partition.ghosts = halo * method.stage_count * steps_per_pass;
+    const std::size_t columns = partition.ghosts + partition.count + partition.ghosts;
     for (const Pair pair : stored_pairs(method, Storage::in_place))
-      part.pairs[index(pair)] =
+      partition.pairs[index(pair)] =
           AlignedArray((pair == Pair::state ? columns : ring_columns) * layout.column_floats());
-    part.forces = AlignedArray(stages_under_way * 3 * layout.force_floats());
-    part.pins.resize(columns);
+    partition.forces = AlignedArray(stages_under_way * 3 * layout.force_floats());
+    partition.pins.resize(columns);
   }
   for (const std::uint32_t node : system.pins) {
     const std::size_t row = node / layout.columns, column = node % layout.columns;
-    for (BandPart& part : parts) {
-      if (column + part.ghosts < part.first || part.place(column) >= part.pins.size()) continue;
+    for (BandPartition& partition : partitions) {
+      if (column + partition.ghosts < partition.first || partition.local(column) >= partition.pins.size())
+        continue;
       const Vec3<float> position = vec3_cast<float>(system.start.position[node]);
-      part.pins[part.place(column)].push_back({layout.place(row), {position.x, position.y, position.z}});
+      partition.pins[partition.local(column)].push_back(
+          {layout.offset(row), {position.x, position.y, position.z}});
     }
   }
 }
 
-void BandSheet::fill_part(BandPart& part, const State& state) const {
+void BandGrid::fill_partition(BandPartition& partition, const State& state) const {
   const auto reach = static_cast<std::ptrdiff_t>(halo);
   const auto rows = static_cast<std::ptrdiff_t>(layout.rows);
   const auto height = static_cast<std::ptrdiff_t>(layout.height);
-  const std::size_t begin = part.first - std::min(part.first, part.ghosts);
-  const std::size_t end = std::min(part.first + part.count + part.ghosts, layout.columns);
+  const std::size_t begin = partition.first - std::min(partition.first, partition.ghosts);
+  const std::size_t end = std::min(partition.first + partition.count + partition.ghosts, layout.columns);
   for (std::size_t column = begin; column < end; ++column) {
-    float* out = part.column(layout, Pair::state, column);
+    float* out = partition.column(layout, Pair::state, column);
     for (std::ptrdiff_t r = -reach; r < height + reach; ++r, out += layout.row_floats())
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {
         const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lane) * height + r;
@@ -103,21 +106,21 @@ void BandSheet::fill_part(BandPart& part, const State& state) const {
   }
 }
 
-void BandSheet::set_state(const State& state) {
-#pragma omp parallel for num_threads(static_cast <int>(parts.size())) schedule(static, 1)
-  for (std::size_t p = 0; p < parts.size(); ++p) fill_part(parts[p], state);
+void BandGrid::set_state(const State& state) {
+#pragma omp parallel for num_threads(static_cast <int>(partitions.size())) schedule(static, 1)
+  for (std::size_t p = 0; p < partitions.size(); ++p) fill_partition(partitions[p], state);
 }
 
-State BandSheet::state() const {
+State BandGrid::state() const {
   State state;
   const std::size_t nodes = layout.rows * layout.columns;
   state.position.resize(nodes);
   state.velocity.resize(nodes);
-  for (const BandPart& part : parts)
-    for (std::size_t c = part.first; c < part.first + part.count; ++c) {
-      const float* column = part.column(layout, Pair::state, c);
+  for (const BandPartition& partition : partitions)
+    for (std::size_t c = partition.first; c < partition.first + partition.count; ++c) {
+      const float* column = partition.column(layout, Pair::state, c);
       for (std::size_t row = 0; row < layout.rows; ++row) {
-        const float* in = column + layout.place(row);
+        const float* in = column + layout.offset(row);
         const std::size_t node = row * layout.columns + c, step = layout.lanes;
         state.position[node] = vec3_cast<double>(Vec3<float>{in[0], in[step], in[2 * step]});
         state.velocity[node] = vec3_cast<double>(Vec3<float>{in[3 * step], in[4 * step], in[5 * step]});

@@ -1,4 +1,4 @@
-#include "garment/stepping/panel_sheet.h"
+#include "garment/stepping/panel_grid.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -35,7 +35,7 @@ std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::u
 
 }  // namespace
 
-PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
+PanelGrid::PanelGrid(const System& system) : offset(system.nodes()) {
   const auto& garment = std::get<Garment>(system.topology);
   std::size_t floats = 0;
   for (const GarmentPanel& panel : garment.panels) {
@@ -46,7 +46,7 @@ PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
     floats += (panel.rows + 2 * empty_rows) * stride;
     for (std::uint32_t row = 0; row < panel.rows; ++row)
       for (std::uint32_t column = 0; column < panel.columns; ++column)
-        place[panel.node(row, column)] = panels.back().first + row * stride + column;
+        offset[panel.node(row, column)] = panels.back().first + row * stride + column;
     const std::vector<std::uint32_t> begins = correction_blocks(panel);
     for (std::size_t block = 0; block + 1 < begins.size(); ++block)
       blocks.push_back({panels.size() - 1, begins[block], begins[block + 1]});
@@ -60,13 +60,13 @@ PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
   for (AlignedArray& lengths : rest) lengths = AlignedArray(floats);
 
   for (std::size_t i = 0; i < system.nodes(); ++i)
-    inverse_mass.data()[place[i]] = static_cast<float>(1 / system.node_mass[i]);
-  for (const std::uint32_t pin : system.pins) inverse_mass.data()[place[pin]] = 0;
+    inverse_mass.data()[offset[i]] = static_cast<float>(1 / system.node_mass[i]);
+  for (const std::uint32_t pin : system.pins) inverse_mass.data()[offset[pin]] = 0;
   for (const Spring& spring : system.springs) {
     std::uint32_t owner = spring.first, other = spring.second;
     const GarmentPanel& panel = garment.panel_of(std::min(owner, other));
     const std::size_t direction = direction_of(panel, owner, other);
-    rest[direction].data()[place[owner]] = spring.rest_length;
+    rest[direction].data()[offset[owner]] = spring.rest_length;
     const std::size_t row = (owner - panel.first_node) / panel.columns;
     const auto number = static_cast<std::size_t>(&panel - garment.panels.data());
     float& stiffness = panels[number].stiffness[direction][row];
@@ -77,22 +77,22 @@ PanelSheet::PanelSheet(const System& system) : place(system.nodes()) {
     stiffness = own;
   }
   for (const mssim::Joint& joint : garment.joints)
-    joints.push_back({place[joint.node], place[joint.edge_first], place[joint.edge_second],
+    joints.push_back({offset[joint.node], offset[joint.edge_first], offset[joint.edge_second],
                       static_cast<float>(joint.edge_share)});
   set_state(system.start);
 }
 
-void PanelSheet::set_state(const State& state) {
-  for (std::size_t i = 0; i < place.size(); ++i) {
-    position.put(place[i], vec3_cast<float>(state.position[i]));
-    velocity.put(place[i], vec3_cast<float>(state.velocity[i]));
+void PanelGrid::set_state(const State& state) {
+  for (std::size_t i = 0; i < offset.size(); ++i) {
+    position.put(offset[i], vec3_cast<float>(state.position[i]));
+    velocity.put(offset[i], vec3_cast<float>(state.velocity[i]));
   }
   sewn.assign(joints.size(), state.draped ? 1 : 0);
 }
 
-State PanelSheet::state() const {
+State PanelGrid::state() const {
   State state;
-  for (const std::size_t at : place) {
+  for (const std::size_t at : offset) {
     state.position.push_back(vec3_cast<double>(position.at(at)));
     state.velocity.push_back(vec3_cast<double>(velocity.at(at)));
   }

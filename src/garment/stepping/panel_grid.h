@@ -31,7 +31,7 @@ struct Float3Arrays {
 /// beside one with nodes ends in the same row. Two empty rows stand before and after each panel: no neighbour
 /// of a node lies outside the arrays. What is no node has no inverse mass, and what is no spring no rest
 /// length.
-struct PanelSheet {
+struct PanelGrid {
   struct Panel {
     std::size_t rows, columns, stride;
     std::size_t first;  ///< float of row 0, column 0
@@ -45,19 +45,19 @@ struct PanelSheet {
   };
   struct Joint {
     std::size_t node, first, second;  ///< floats
-    float share;                      ///< of the edge
+    float fraction;                   ///< of the edge
   };
 
   /// Throws Unsupported where springs of one row and direction differ in stiffness, and std::invalid_argument
   /// where the springs are not those of the panels.
-  explicit PanelSheet(const System& system);
+  explicit PanelGrid(const System& system);
 
   void set_state(const State& state);
   State state() const;
 
   std::vector<Panel> panels;
   std::vector<Block> blocks;
-  std::vector<std::size_t> place;  ///< [nodes] float of a node
+  std::vector<std::size_t> offset;  ///< [nodes] float of a node
 
   Float3Arrays position;  ///< at the beginning of a step
   Float3Arrays moved;     ///< where contact has moved it to within the step
