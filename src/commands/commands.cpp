@@ -45,7 +45,7 @@ constexpr std::array<Command, 7> table{{
      "mssim compare results/yesterday results/today", declare_compare},
     {"measure", "Measure a person's surface, and write a scene of jeans for it",
      "mssim measure scan.obj --scene my.json", declare_measure},
-    {"list", "List scenes, suites, backends, ways, integrators, devices or a schema",
+    {"list", "List scenes, suites, backends, methods, integrators, devices or a schema",
      "mssim list scenes --format csv", declare_list},
     {"help", "Show this page, or the page of a command", "mssim help bench", declare_help},
 }};

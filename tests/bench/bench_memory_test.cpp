@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/accumulation/race_ways.h"
+#include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
 #include "integrators/integrators.h"
 #include "tests/support/cloth_system.h"
@@ -41,8 +41,8 @@ double growth_during(Act&& act) {
 
 std::vector<BackendInfo> backends_and_ways() {
   std::vector<BackendInfo> all(backends().begin(), backends().end());
-  for (const RaceWay& way : race_ways())
-    if (!find_backend(way.backend.name)) all.push_back(way.backend);
+  for (const AccumulationMethod& method : accumulation_methods())
+    if (!find_backend(method.backend.name)) all.push_back(method.backend);
   return all;
 }
 

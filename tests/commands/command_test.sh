@@ -97,10 +97,10 @@ status=0
 [ "$status" -eq 3 ] || fail "an unavailable backend that was asked for gives $status"
 grep -q '^mssim: cloth2500, opencl, semi-euler: unavailable: ' "$work/out" || fail "stderr does not say what is unavailable: $(cat "$work/out")"
 
-# The ways to avoid the data race: those asked for, and the base of the ratios where it is one of them.
+# The methods to avoid the data race: those asked for, and the base of the ratios where it is one of them.
 "$mssim" bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races" >"$work/out" 2>"$work/err" ||
   fail "races exits with $?"
-[ "$(wc -l <"$work/races/races.csv")" -eq 5 ] || fail "races.csv has not four ways: $(cat "$work/races/races.csv")"
+[ "$(wc -l <"$work/races/races.csv")" -eq 5 ] || fail "races.csv has not four methods: $(cat "$work/races/races.csv")"
 [ "$(grep -c ',yes,ok$' "$work/races/races.csv")" -eq 4 ] || fail "races.csv: $(cat "$work/races/races.csv")"
 [ -s "$work/races/races.md" ] || fail "races.md is missing"
 [ ! -e "$work/races/table1.csv" ] || fail "races make Table 1"
@@ -115,7 +115,7 @@ done
 "$mssim" list scenes --format csv | grep '^cloth350k,cloth,350000,2094002,4188004,' >/dev/null || fail "list scenes"
 [ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 5 ] || fail "list integrators"
 "$mssim" list backends | grep '^hybrid ' >/dev/null || fail "list backends"
-"$mssim" list ways --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list ways"
+"$mssim" list methods --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list methods"
 "$mssim" list suites --format csv | grep '^scaling,true,false,"cloth40k, .* and cloth16m",' >/dev/null || fail "list suites"
 "$mssim" bench --help | tr -s '\n ' ' ' | grep 'tables stands for table1, table2 and table3' >/dev/null || fail "bench --help does not say what tables is"
 "$mssim" list schema | cmp - "$2/scenes/scene.schema.json" || fail "list schema"

@@ -1,7 +1,7 @@
 #include <atomic>
 
-#include "backends/accumulation/list_way.h"
-#include "backends/accumulation/ways.h"
+#include "backends/accumulation/list_method.h"
+#include "backends/accumulation/methods.h"
 
 namespace mssim {
 namespace {
@@ -37,7 +37,7 @@ class Atomic {
 
 std::unique_ptr<Backend> make_atomic(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  return make_list_way<Atomic>(system, integrator, dt_s, options);
+  return make_list_method<Atomic>(system, integrator, dt_s, options);
 }
 
 }  // namespace mssim

@@ -1,6 +1,6 @@
-#include "backends/accumulation/list_way.h"
+#include "backends/accumulation/list_method.h"
+#include "backends/accumulation/methods.h"
 #include "backends/accumulation/spring_colouring.h"
-#include "backends/accumulation/ways.h"
 
 namespace mssim {
 namespace {
@@ -31,7 +31,7 @@ class Colouring {
 
 std::unique_ptr<Backend> make_colouring(const System& system, const Integrator& integrator, double dt_s,
                                         const ExecutionOptions& options) {
-  return make_list_way<Colouring>(system, integrator, dt_s, options);
+  return make_list_method<Colouring>(system, integrator, dt_s, options);
 }
 
 }  // namespace mssim

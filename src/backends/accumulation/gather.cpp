@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "backends/accumulation/list_way.h"
-#include "backends/accumulation/ways.h"
+#include "backends/accumulation/list_method.h"
+#include "backends/accumulation/methods.h"
 
 namespace mssim {
 namespace {
@@ -49,7 +49,7 @@ class Gather {
 
 std::unique_ptr<Backend> make_gather(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  return make_list_way<Gather>(system, integrator, dt_s, options);
+  return make_list_method<Gather>(system, integrator, dt_s, options);
 }
 
 }  // namespace mssim

@@ -3,8 +3,8 @@
 #include <thread>
 #include <vector>
 
-#include "backends/accumulation/list_way.h"
-#include "backends/accumulation/ways.h"
+#include "backends/accumulation/list_method.h"
+#include "backends/accumulation/methods.h"
 
 namespace mssim {
 namespace {
@@ -54,7 +54,7 @@ class LockPerNode {
 
 std::unique_ptr<Backend> make_lock_per_node(const System& system, const Integrator& integrator, double dt_s,
                                             const ExecutionOptions& options) {
-  return make_list_way<LockPerNode>(system, integrator, dt_s, options);
+  return make_list_method<LockPerNode>(system, integrator, dt_s, options);
 }
 
 }  // namespace mssim

@@ -1,7 +1,7 @@
 #include <vector>
 
-#include "backends/accumulation/list_way.h"
-#include "backends/accumulation/ways.h"
+#include "backends/accumulation/list_method.h"
+#include "backends/accumulation/methods.h"
 
 namespace mssim {
 namespace {
@@ -42,7 +42,7 @@ class ThreadPrivate {
 
 std::unique_ptr<Backend> make_thread_private(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options) {
-  return make_list_way<ThreadPrivate>(system, integrator, dt_s, options);
+  return make_list_method<ThreadPrivate>(system, integrator, dt_s, options);
 }
 
 }  // namespace mssim

@@ -15,8 +15,10 @@ using Property = cl_device_partition_property;
 /// What asks the driver for a part of `count` compute units, in the way that leaves it least choice; none
 /// where it knows none.
 std::optional<std::vector<Property>> request_for(const cl::Device& device, int count) {
-  const std::vector<Property> ways = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
-  const auto offers = [&](Property way) { return std::ranges::find(ways, way) != ways.end(); };
+  const std::vector<Property> properties = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
+  const auto offers = [&](Property property) {
+    return std::ranges::find(properties, property) != properties.end();
+  };
   if (offers(CL_DEVICE_PARTITION_BY_COUNTS))
     return std::vector<Property>{CL_DEVICE_PARTITION_BY_COUNTS, count, CL_DEVICE_PARTITION_BY_COUNTS_LIST_END,
                                  0};

@@ -112,7 +112,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
                " (see mssim list suites); tables stands for table1, table2 and table3",
            one_of("suite", names))
       .value_name("NAME");
-  arguments.add_list("--backend", options->backends, "Backends, or ways with --suite races (default: all)")
+  arguments.add_list("--backend", options->backends, "Backends, or methods with --suite races (default: all)")
       .value_name("NAME,...");
   arguments
       .add_list("--integrator", options->integrators,

@@ -4,7 +4,7 @@
 #include <array>
 #include <iterator>
 
-#include "backends/accumulation/race_ways.h"
+#include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
 #include "garment/output/garment_table.h"
 #include "integrators/integrators.h"
@@ -42,7 +42,7 @@ std::vector<const BackendInfo*> all_backends() {
 
 std::vector<const BackendInfo*> all_race_ways() {
   std::vector<const BackendInfo*> rows;
-  for (const RaceWay& way : race_ways()) rows.push_back(&way.backend);
+  for (const AccumulationMethod& method : accumulation_methods()) rows.push_back(&method.backend);
   return rows;
 }
 
@@ -68,10 +68,10 @@ TableMaker tables_of_the_papers() {
 
 TableMaker table_of_races() {
   std::vector<RaceLegend> legend;
-  for (const RaceWay& way : race_ways())
-    legend.push_back({std::string(way.backend.name), std::string(way.backend.description),
-                      std::string(way.extra_memory), std::string(way.springs_computed),
-                      std::string(name_of(way.repeatable))});
+  for (const AccumulationMethod& method : accumulation_methods())
+    legend.push_back({std::string(method.backend.name), std::string(method.backend.description),
+                      std::string(method.extra_memory), std::string(method.springs_computed),
+                      std::string(name_of(method.repeatable))});
   return race_tables(std::move(legend));
 }
 
@@ -84,7 +84,7 @@ constexpr std::array<Suite, 6> table{{
     {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
     {"races",
-     "what it costs to avoid the data race of the springs, way by way (mssim list ways)",
+     "what it costs to avoid the data race of the springs, method by method (mssim list methods)",
      false,
      true,
      race_scenes,

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/accumulation/race_ways.h"
+#include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
 #include "backends/devices/offer.h"
 #include "commands/bench/suites.h"
@@ -88,14 +88,14 @@ Table list_backends(const ExecutionOptions& options) {
   return table;
 }
 
-Table list_ways(const ExecutionOptions& /*options*/) {
+Table list_methods(const ExecutionOptions& /*options*/) {
   Table table;
-  for (const RaceWay& way : race_ways())
-    table.add({{"way", way.backend.name},
-               {"extra_memory", way.extra_memory},
-               {"springs_computed", way.springs_computed},
-               {"same_bits", name_of(way.repeatable)},
-               {"description", way.backend.description}});
+  for (const AccumulationMethod& method : accumulation_methods())
+    table.add({{"method", method.backend.name},
+               {"extra_memory", method.extra_memory},
+               {"springs_computed", method.springs_computed},
+               {"same_bits", name_of(method.repeatable)},
+               {"description", method.backend.description}});
   return table;
 }
 
@@ -145,7 +145,7 @@ struct Subject {
 constexpr std::array<Subject, 6> subjects{{{"scenes", list_scenes},
                                            {"suites", list_suites},
                                            {"backends", list_backends},
-                                           {"ways", list_ways},
+                                           {"methods", list_methods},
                                            {"integrators", list_integrators},
                                            {"devices", list_devices}}};
 

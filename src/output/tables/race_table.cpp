@@ -13,12 +13,14 @@ namespace {
 
 constexpr std::string_view how_to_read =
     "Springs that threads process at the same time add to the forces of nodes that they share: the data race "
-    "of Figure 1 of Hong et al. (2016). Each line is a way to avoid it. All but `serial` and `openmp` step "
+    "of Figure 1 of Hong et al. (2016). Each line is a method to avoid it. All but `serial` and `openmp` "
+    "step "
     "the same list of springs with the same layout, force and update, and differ in the accumulation alone. "
-    "Times are medians with their 95 % interval; *ratio* is how many times as fast as `serial` a way is, the "
+    "Times are medians with their 95 % interval; *ratio* is how many times as fast as `serial` a method is, "
+    "the "
     "median of paired samples. *Same bits* says whether a run repeated gives the very same numbers.";
 
-const std::vector<Column> columns{{"way"},
+const std::vector<Column> columns{{"method"},
                                   {"ms per step", Align::right},
                                   {"interval", Align::right},
                                   {"ratio", Align::right, "×"},
@@ -34,7 +36,7 @@ struct Line {
 std::vector<Line> lines_of(std::span<const ResultRow> rows, const std::vector<RaceLegend>& legend) {
   std::vector<Line> lines;
   for (const ResultRow& row : rows) {
-    const auto found = std::ranges::find(legend, row.backend, &RaceLegend::way);
+    const auto found = std::ranges::find(legend, row.backend, &RaceLegend::method);
     if (found != legend.end()) lines.push_back({&row, &*found});
   }
   return lines;
@@ -47,7 +49,7 @@ Table data_of(const std::vector<Line>& lines) {
                {"nodes", row->nodes},
                {"springs_unique", row->springs_unique},
                {"integrator", row->integrator},
-               {"way", row->backend},
+               {"method", row->backend},
                {"threads", row->threads},
                {"ms_per_step", row->ms_per_step},
                {"ms_per_step_low", row->ms_per_step_low},
@@ -80,11 +82,11 @@ std::vector<Cell> cells_of(const Line& line, RowPointers rows, const Provenance&
           legend->repeatable};
 }
 
-Document page_of(const std::vector<Line>& lines, const std::vector<RaceLegend>& ways,
+Document page_of(const std::vector<Line>& lines, const std::vector<RaceLegend>& methods,
                  const Provenance& provenance) {
   std::vector<const ResultRow*> rows;
   for (const Line& line : lines) rows.push_back(line.row);
-  Document page{Heading{1, "Ways to avoid the data race of the springs"}, measured_on(rows, provenance),
+  Document page{Heading{1, "Methods to avoid the data race of the springs"}, measured_on(rows, provenance),
                 Paragraph{std::string(how_to_read)}};
   const ResultRow* block = nullptr;
   for (const Line& line : lines) {
@@ -97,11 +99,11 @@ Document page_of(const std::vector<Line>& lines, const std::vector<RaceLegend>& 
     std::get<Table>(page.back()).rows.push_back(cells_of(line, rows, provenance));
   }
   BulletList descriptions;
-  for (const RaceLegend& way : ways)
-    if (std::ranges::find(lines, &way, &Line::legend) != lines.end())
-      descriptions.items.push_back("`" + way.way + "`: " + way.description);
+  for (const RaceLegend& method : methods)
+    if (std::ranges::find(lines, &method, &Line::legend) != lines.end())
+      descriptions.items.push_back("`" + method.method + "`: " + method.description);
   add_sentence(page, legend_of_ratios(page));
-  page.insert(page.end(), {Heading{2, "The ways"}, std::move(descriptions)});
+  page.insert(page.end(), {Heading{2, "The methods"}, std::move(descriptions)});
   add_sentence(page, reason_without_speedups(rows));
   add_rows_without_a_time(page, rows);
   return page;

@@ -19,7 +19,7 @@
 #include "tests/support/cloth_system.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/largest_distance.h"
-#include "tests/support/opencl_ways.h"
+#include "tests/support/opencl_variants.h"
 #include "tests/support/solid_system.h"
 
 namespace mssim {
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachBackendAndWidth, OpenclKernels,
 
 TEST_P(OpenclKernels, TakeAFewStepsLikeTheReference) {
   const auto [hybrid, lanes] = GetParam();
-  const OpenclWay way{hybrid, lanes};
+  const OpenclVariant way{hybrid, lanes};
   // In arrays of the host's own: the simulator's are not aligned to vectors.
   const DeviceInMemory copied = ways_to_memory().front();
   // Bands of two rows and a last one that is not full.

@@ -15,7 +15,7 @@
 #include "backends/spring_list/serial.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
-#include "tests/support/opencl_ways.h"
+#include "tests/support/opencl_variants.h"
 #include "tests/support/solid_system.h"
 
 namespace mssim {
@@ -29,7 +29,7 @@ class EachWidthAndIntegrator : public testing::TestWithParam<std::tuple<bool, in
  protected:
   const Integrator& integrator() const { return *find_integrator(std::get<2>(GetParam()).name); }
   std::unique_ptr<Backend> make(const System& system) const {
-    return OpenclWay{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator(), dt_s);
+    return OpenclVariant{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator(), dt_s);
   }
 };
 
@@ -156,7 +156,7 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
   for (const Integrator& integrator : integrators)
     for (const int lanes : {1, most_opencl_lanes}) {
       const Reference reference = run_reference(system, integrator, dt_s);
-      const auto hybrid = OpenclWay{true, lanes}.make(system, integrator, dt_s);
+      const auto hybrid = OpenclVariant{true, lanes}.make(system, integrator, dt_s);
       const Verification verification = verify(*hybrid, system, reference, dt_s);
       EXPECT_FALSE(verification.failure) << integrator.name << ": " << verification.failure.value_or("");
     }
@@ -165,7 +165,7 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
 TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
   const System system = solid_block(7, 5, 6);
   for (const Integrator& integrator : integrators) {
-    const auto run = [&](const OpenclWay& way) {
+    const auto run = [&](const OpenclVariant& way) {
       const auto backend = way.make(system, integrator, dt_s);
       backend->step(30);
       return backend->state().position;
@@ -182,7 +182,7 @@ TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
 TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
   const System system = two_solid_blocks();
   for (const Integrator& integrator : integrators)
-    for (const OpenclWay way : {OpenclWay{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
+    for (const OpenclVariant way : {OpenclVariant{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
       std::vector<State> found;
       for (const DeviceInMemory& memory : ways_to_memory()) {
         const auto backend = way.make_in(memory, system, integrator, dt_s);

@@ -20,7 +20,7 @@
 #include "model/grid_patch.h"
 #include "model/system.h"
 #include "tests/support/largest_distance.h"
-#include "tests/support/opencl_ways.h"
+#include "tests/support/opencl_variants.h"
 
 namespace mssim {
 namespace {
@@ -127,8 +127,8 @@ const std::array<std::pair<const char*, Method>, 5> methods{{{"semi-euler", semi
                                                              {"midpoint-frozen", frozen},
                                                              {"rk4-frozen", frozen}}};
 
-std::vector<OpenclWay> ways() {
-  std::vector<OpenclWay> all{{true, most_opencl_lanes, 1}, {true, most_opencl_lanes, 3}};
+std::vector<OpenclVariant> variants() {
+  std::vector<OpenclVariant> all{{true, most_opencl_lanes, 1}, {true, most_opencl_lanes, 3}};
   for (const int lanes : opencl_lanes) all.push_back({false, lanes});
   return all;
 }
@@ -151,16 +151,16 @@ TEST(OpenclBackends, AgreeWithTheTextbookMethodsInDoubleOnEveryGrid) {
       State expected = system.start;
       for (int i = 0; i < steps; ++i) expected = method(system, expected, dt);
       const double moved_by = largest_distance(expected.position, system.start.position);
-      for (const OpenclWay& way : ways()) {
-        const auto backend = way.make(system, *find_integrator(name), dt);
+      for (const OpenclVariant& variant : variants()) {
+        const auto backend = variant.make(system, *find_integrator(name), dt);
         backend->step(steps - 1);
         backend->step(1);
         const State found = backend->state();
         // Each step rounds a position of up to 1 m to float (6e-8) a few times.
         EXPECT_LT(largest_distance(found.position, expected.position), 5e-6)
-            << way.name() << ", " << name << ", " << rows << " x " << columns;
+            << variant.name() << ", " << name << ", " << rows << " x " << columns;
         EXPECT_LT(largest_distance(found.velocity, expected.velocity), 5e-4)
-            << way.name() << ", " << name << ", " << rows << " x " << columns;
+            << variant.name() << ", " << name << ", " << rows << " x " << columns;
         EXPECT_GT(moved_by, 1e-3);
       }
     }
@@ -170,14 +170,15 @@ TEST(OpenclBackends, AgreeWithTheTextbookMethodsInDoubleOnEveryGrid) {
 TEST(OpenclBackends, LeaveEveryPinnedNodeExactlyWhereItStarted) {
   const System system = rippled_cloth(9, 11);
   for (const Integrator& integrator : integrators)
-    for (const OpenclWay& way : ways()) {
-      const auto backend = way.make(system, integrator, 2e-4);
+    for (const OpenclVariant& variant : variants()) {
+      const auto backend = variant.make(system, integrator, 2e-4);
       backend->step(50);
       const State found = backend->state();
       for (const std::uint32_t pin : system.pins) {
         EXPECT_EQ(found.position[pin], system.start.position[pin])
-            << way.name() << ", " << integrator.name << ", node " << pin;
-        EXPECT_EQ(found.velocity[pin], Vec3d{}) << way.name() << ", " << integrator.name << ", node " << pin;
+            << variant.name() << ", " << integrator.name << ", node " << pin;
+        EXPECT_EQ(found.velocity[pin], Vec3d{})
+            << variant.name() << ", " << integrator.name << ", node " << pin;
       }
     }
 }
@@ -187,15 +188,15 @@ TEST(OpenclBackends, LetAFreeSheetFallByTheIntegratorsOwnRecurrence) {
   constexpr int steps = 100;
   const System system = flat_cloth(5, 19, 1.0);
   for (const Integrator& integrator : integrators)
-    for (const OpenclWay& way : ways()) {
-      const auto backend = way.make(system, integrator, dt);
+    for (const OpenclVariant& variant : variants()) {
+      const auto backend = variant.make(system, integrator, dt);
       backend->step(steps);
       const State found = backend->state();
       // Semi-implicit Euler uses the new speed: sum of i from 1 to n in place of n^2/2.
       const double n = steps, travel = integrator.name == "semi-euler" ? n * (n + 1) / 2 : n * n / 2;
       for (std::size_t node = 0; node < system.nodes(); ++node) {
         EXPECT_NEAR(found.position[node].y, 1.0 - travel * system.gravity * dt * dt, 2e-6)
-            << way.name() << ", " << integrator.name << ", node " << node;
+            << variant.name() << ", " << integrator.name << ", node " << node;
         EXPECT_NEAR(found.position[node].x, system.start.position[node].x, 2e-6);
         EXPECT_NEAR(found.position[node].z, system.start.position[node].z, 2e-6);
         EXPECT_NEAR(found.velocity[node].y, -n * system.gravity * dt, 1e-5);
@@ -216,15 +217,15 @@ TEST(OpenclBackends, PutFreeNodesBackOntoTheFloorAndLeavePinnedOnesBelowIt) {
   system.pins = {20};
   system.start.velocity[20] = {};
   for (const Integrator& integrator : integrators)
-    for (const OpenclWay& way : ways()) {
-      const auto backend = way.make(system, integrator, 1e-3);
+    for (const OpenclVariant& variant : variants()) {
+      const auto backend = variant.make(system, integrator, 1e-3);
       backend->step(1);
       const State found = backend->state();
       const auto expect_velocity = [&](std::size_t node, const Vec3d& expected) {
         EXPECT_LT(largest_distance({found.velocity[node]}, {expected}), 1e-6)
-            << way.name() << ", " << integrator.name << ", node " << node;
+            << variant.name() << ", " << integrator.name << ", node " << node;
       };
-      EXPECT_EQ(found.position[0].y, 0.25) << way.name() << ", " << integrator.name;
+      EXPECT_EQ(found.position[0].y, 0.25) << variant.name() << ", " << integrator.name;
       // The normal speed changes by 3 m/s, so that friction takes 0.6 m/s of the 5 m/s.
       expect_velocity(0, {3 * 0.88, 1, 4 * 0.88});
       expect_velocity(53, {3 * 0.88, 1, 4 * 0.88});
@@ -241,23 +242,23 @@ TEST(OpenclBackends, PutFreeNodesBackOntoTheFloorAndLeavePinnedOnesBelowIt) {
 
 TEST(OpenclBackends, StartAgainFromTheStateTheyAreGiven) {
   const System system = rippled_cloth(9, 11);
-  for (const OpenclWay& way : ways()) {
-    const auto backend = way.make(system, integrators.front(), 2e-4);
+  for (const OpenclVariant& variant : variants()) {
+    const auto backend = variant.make(system, integrators.front(), 2e-4);
     backend->step(7);
     const State first = backend->state();
     backend->step(4);
     backend->set_state(system.start);
     backend->step(7);
-    EXPECT_EQ(backend->state().position, first.position) << way.name();
-    EXPECT_EQ(backend->state().velocity, first.velocity) << way.name();
+    EXPECT_EQ(backend->state().position, first.position) << variant.name();
+    EXPECT_EQ(backend->state().velocity, first.velocity) << variant.name();
   }
 }
 
 TEST(OpenclBackends, GiveTheSameBitsWithAnyNumberOfLanesOrThreads) {
   const System system = rippled_cloth(21, 35);
   for (const Integrator& integrator : integrators) {
-    const auto run = [&](const OpenclWay& way) {
-      const auto backend = way.make(system, integrator, 2e-4);
+    const auto run = [&](const OpenclVariant& variant) {
+      const auto backend = variant.make(system, integrator, 2e-4);
       backend->step(30);
       return backend->state().position;
     };
@@ -289,10 +290,10 @@ TEST(OpenclBackends, GiveTheSameBitsForAnyNumberOfComputeUnitsThatShareACloth) {
 TEST(OpenclBackends, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
   const System system = rippled_cloth(21, 35);
   for (const Integrator& integrator : integrators)
-    for (const OpenclWay way : {OpenclWay{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
+    for (const OpenclVariant variant : {OpenclVariant{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
       std::vector<State> found;
       for (const DeviceInMemory& memory : ways_to_memory()) {
-        const auto backend = way.make_in(memory, system, integrator, 2e-4);
+        const auto backend = variant.make_in(memory, system, integrator, 2e-4);
         backend->step(7);
         backend->set_state(system.start);
         EXPECT_EQ(backend->state().position, system.start.position) << memory.name << ", " << integrator.name;

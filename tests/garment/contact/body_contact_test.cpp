@@ -11,7 +11,7 @@
 #include "backends/devices/program.h"
 #include "laws/host_laws.h"
 #include "tests/support/contact_fixture.h"
-#include "tests/support/opencl_ways.h"
+#include "tests/support/opencl_variants.h"
 
 namespace mssim {
 namespace {

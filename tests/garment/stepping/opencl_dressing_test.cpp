@@ -13,7 +13,7 @@
 #include "integrators/integrators.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/largest_distance.h"
-#include "tests/support/opencl_ways.h"
+#include "tests/support/opencl_variants.h"
 
 namespace mssim {
 namespace {

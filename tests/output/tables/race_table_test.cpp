@@ -15,9 +15,9 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::vector<RaceLegend> ways{{"serial", "one thread", "none", "once", "yes"},
-                                   {"gather", "each node sums", "32 bytes a spring", "twice", "yes"},
-                                   {"atomic", "atomic adds", "none", "once", "no"}};
+const std::vector<RaceLegend> methods{{"serial", "one thread", "none", "once", "yes"},
+                                      {"gather", "each node sums", "32 bytes a spring", "twice", "yes"},
+                                      {"atomic", "atomic adds", "none", "once", "no"}};
 
 std::vector<ResultRow> race_rows() {
   std::vector<ResultRow> rows{measured_row("serial", 1.5, 1.0), measured_row("gather", 0.75, 2.0),
@@ -28,7 +28,7 @@ std::vector<ResultRow> race_rows() {
 }
 
 ResultTable table_of(const std::vector<ResultRow>& rows) {
-  const std::vector<ResultTable> tables = race_tables(ways)(rows, made_up_provenance());
+  const std::vector<ResultTable> tables = race_tables(methods)(rows, made_up_provenance());
   EXPECT_EQ(tables.size(), 1U);
   EXPECT_EQ(tables.front().name, "races");
   return tables.front();
@@ -37,7 +37,7 @@ ResultTable table_of(const std::vector<ResultRow>& rows) {
 TEST(RaceTable, AsCsvHasTimesRatiosAndWhatAWayCosts) {
   EXPECT_EQ(
       table_csv(table_of(race_rows()).data),
-      "scene,nodes,springs_unique,integrator,way,threads,ms_per_step,ms_per_step_low,ms_per_step_high,"
+      "scene,nodes,springs_unique,integrator,method,threads,ms_per_step,ms_per_step_low,ms_per_step_high,"
       "speedup_vs_serial,extra_memory,springs_computed,same_bits,status\n"
       "cloth2500,2500,14502,semi-euler,serial,2,1.5,0.75,3,1,none,once,yes,ok\n"
       "cloth2500,2500,14502,semi-euler,gather,2,0.75,0.375,1.5,2,32 bytes a spring,twice,yes,ok\n"
@@ -76,7 +76,8 @@ TEST(RaceTable, MarksARatioThatItsTimesContradict) {
 }
 
 TEST(RaceTable, IsNotMadeOfOtherBackends) {
-  EXPECT_TRUE(race_tables(ways)(std::vector{measured_row("hybrid", 1, 1.0)}, made_up_provenance()).empty());
+  EXPECT_TRUE(
+      race_tables(methods)(std::vector{measured_row("hybrid", 1, 1.0)}, made_up_provenance()).empty());
 }
 
 }  // namespace

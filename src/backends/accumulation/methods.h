@@ -6,8 +6,9 @@
 
 namespace mssim {
 
-/// Ways to let threads add spring forces to the nodes that springs share. All step the plain spring list with
-/// options.threads threads (list_way.h) and differ in the accumulation alone; race_ways.h has the table.
+/// Methods to let threads add spring forces to the nodes that springs share. All step the plain spring list
+/// with options.threads threads (list_method.h) and differ in the accumulation alone; accumulation_methods.h
+/// has the table.
 
 /// A lock a node, taken for each end of each spring.
 std::unique_ptr<Backend> make_lock_per_node(const System& system, const Integrator& integrator, double dt_s,

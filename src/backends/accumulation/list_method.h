@@ -29,7 +29,7 @@ struct Team {
   }
 };
 
-/// The plain spring list stepped by several threads. All ways to avoid the data race of Hong et al.'s
+/// The plain spring list stepped by several threads. All methods to avoid the data race of Hong et al.'s
 /// Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that they
 /// differ in the accumulation alone. An Accumulation is made of (const System&, SpringList<float>&,
 /// std::size_t threads), and in every stage each thread calls, with its Team:
@@ -38,9 +38,9 @@ struct Team {
 /// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
 /// - finish(team), after all have added: completes the forces of this thread's slice of the nodes.
 template <class Accumulation>
-class ListWay final : public Backend {
+class ListMethod final : public Backend {
  public:
-  ListWay(const System& system, const Integrator& integrator, double dt_s, int threads)
+  ListMethod(const System& system, const Integrator& integrator, double dt_s, int threads)
       : list_(system, integrator, dt_s),
         integrator_(integrator),
         threads_(threads),
@@ -86,11 +86,11 @@ class ListWay final : public Backend {
   Accumulation accumulation_;
 };
 
-/// What the table of ways holds for an accumulation.
+/// What the table of methods holds for an accumulation.
 template <class Accumulation>
-std::unique_ptr<Backend> make_list_way(const System& system, const Integrator& integrator, double dt_s,
-                                       const ExecutionOptions& options) {
-  return std::make_unique<ListWay<Accumulation>>(system, integrator, dt_s, options.threads);
+std::unique_ptr<Backend> make_list_method(const System& system, const Integrator& integrator, double dt_s,
+                                          const ExecutionOptions& options) {
+  return std::make_unique<ListMethod<Accumulation>>(system, integrator, dt_s, options.threads);
 }
 
 }  // namespace mssim

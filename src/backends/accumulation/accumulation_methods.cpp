@@ -1,8 +1,8 @@
-#include "backends/accumulation/race_ways.h"
+#include "backends/accumulation/accumulation_methods.h"
 
 #include <array>
 
-#include "backends/accumulation/ways.h"
+#include "backends/accumulation/methods.h"
 #include "backends/backends.h"
 #include "backends/spring_list/threads_mutex.h"
 
@@ -13,15 +13,15 @@ constexpr MemoryUse with_private_arrays{.node = 17, .pair_node = 24, .thread_nod
 constexpr MemoryUse with_coloured_copy{.node = 25, .pair_node = 24, .spring = 20};
 constexpr MemoryUse with_both_ends{.node = 33, .pair_node = 24, .spring = 32};
 
-/// A way that steps the plain list.
-constexpr RaceWay of_list(std::string_view name, std::string_view description, auto make,
-                          const MemoryUse& memory, std::string_view extra_memory,
-                          std::string_view springs_computed, Repeatable repeatable) {
+/// A method that steps the plain list.
+constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, auto make,
+                                     const MemoryUse& memory, std::string_view extra_memory,
+                                     std::string_view springs_computed, Repeatable repeatable) {
   return {{name, "", description, false, make, memory, memory}, extra_memory, springs_computed, repeatable};
 }
 
-const std::array<RaceWay, 8>& table() {
-  static const std::array<RaceWay, 8> rows{{
+const std::array<AccumulationMethod, 8>& table() {
+  static const std::array<AccumulationMethod, 8> rows{{
       {*find_backend("serial"), "none", "once", Repeatable::always},
       of_list("mutex-per-group",
               "one lock for all nodes, taken to add the forces of 512 springs (threads-mutex)",
@@ -56,6 +56,6 @@ std::string_view name_of(Repeatable repeatable) {
   return "";
 }
 
-std::span<const RaceWay> race_ways() { return table(); }
+std::span<const AccumulationMethod> accumulation_methods() { return table(); }
 
 }  // namespace mssim

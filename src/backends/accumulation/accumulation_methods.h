@@ -7,15 +7,15 @@
 
 namespace mssim {
 
-/// When a way gives the same bits again.
+/// When a method gives the same bits again.
 enum class Repeatable { never, at_same_threads, always };
 
 /// In words, for tables.
 std::string_view name_of(Repeatable repeatable);
 
-/// A row of the TABLE of ways to avoid the data race of Hong et al.'s Figure 1: springs that threads process
-/// at the same time add to the forces of nodes that they share.
-struct RaceWay {
+/// A row of the TABLE of methods to avoid the data race of Hong et al.'s Figure 1: springs that threads
+/// process at the same time add to the forces of nodes that they share.
+struct AccumulationMethod {
   BackendInfo backend;
   std::string_view extra_memory;      ///< besides what `serial` holds
   std::string_view springs_computed;  ///< how often in each stage
@@ -25,6 +25,6 @@ struct RaceWay {
 /// The TABLE, in the order of every listing and result: `serial`, which has no race, is the base of the
 /// ratios, and `openmp` what comes out when the layout is changed too. What stands between them differs from
 /// `serial` in the accumulation alone. These are no backends of `mssim run`: they exist to be compared.
-std::span<const RaceWay> race_ways();
+std::span<const AccumulationMethod> accumulation_methods();
 
 }  // namespace mssim

@@ -22,7 +22,7 @@ inline constexpr std::array opencl_lanes{1, 4, 8, 16};
 #endif
 inline constexpr int most_opencl_lanes = opencl_lanes.back();
 
-/// The first OpenCL device, as if host memory were no more to it, and a way to use it.
+/// The first OpenCL device, as if host memory were no more to it, and a variant to use it.
 struct DeviceInMemory {
   const char* name;
   OpenclDevice device;
@@ -32,19 +32,19 @@ struct DeviceInMemory {
 /// All that the first OpenCL device can be tested with: every driver can do less than it does.
 inline std::vector<DeviceInMemory> ways_to_memory() {
   const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
-  std::vector<DeviceInMemory> ways{{"copied", device, DeviceMemory::copy}};
+  std::vector<DeviceInMemory> variants{{"copied", device, DeviceMemory::copy}};
   for (const auto& [name, host_memory] : {std::pair{"the device's own, mapped", HostMemory::none},
                                           {"the host's, mapped", HostMemory::mapped},
                                           {"fine-grained", HostMemory::fine_grained}}) {
     if (host_memory > device.host_memory) break;
-    ways.push_back({name, device, DeviceMemory::shared});
-    ways.back().device.host_memory = host_memory;
+    variants.push_back({name, device, DeviceMemory::shared});
+    variants.back().device.host_memory = host_memory;
   }
-  return ways;
+  return variants;
 }
 
-/// A backend that uses the first OpenCL device, in one way of running it.
-struct OpenclWay {
+/// A backend that uses the first OpenCL device, in one variant of running it.
+struct OpenclVariant {
   bool hybrid;
   int lanes;        ///< 1 is what a GPU runs
   int threads = 2;  ///< hybrid's

@@ -1,6 +1,6 @@
-// Every way to avoid the data race of the springs against the double-precision reference, for every
+// Every method to avoid the data race of the springs against the double-precision reference, for every
 // integrator.
-#include "backends/accumulation/race_ways.h"
+#include "backends/accumulation/accumulation_methods.h"
 
 #include <gtest/gtest.h>
 
@@ -26,10 +26,10 @@ constexpr std::array<int, 4> thread_counts{1, 2, 3, 5};
 
 class EachWayAndIntegrator : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
  protected:
-  const RaceWay& way() const { return race_ways()[std::get<0>(GetParam())]; }
+  const AccumulationMethod& method() const { return accumulation_methods()[std::get<0>(GetParam())]; }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
-    return way().backend.make(system, integrator(), dt_s, {threads, ""});
+    return method().backend.make(system, integrator(), dt_s, {threads, ""});
   }
   State after(const System& system, int threads, int steps) const {
     const auto simulation = make(system, threads);
@@ -39,10 +39,10 @@ class EachWayAndIntegrator : public testing::TestWithParam<std::tuple<std::size_
 };
 
 INSTANTIATE_TEST_SUITE_P(Tables, EachWayAndIntegrator,
-                         testing::Combine(testing::Range(std::size_t{0}, race_ways().size()),
+                         testing::Combine(testing::Range(std::size_t{0}, accumulation_methods().size()),
                                           testing::Range(std::size_t{0}, integrators.size())),
                          [](const auto& test) {
-                           std::string name(race_ways()[std::get<0>(test.param)].backend.name);
+                           std::string name(accumulation_methods()[std::get<0>(test.param)].backend.name);
                            name += "__" + std::string(integrators[std::get<1>(test.param)].name);
                            std::ranges::replace(name, '-', '_');
                            return name;
@@ -68,7 +68,7 @@ TEST_P(EachWayAndIntegrator, TakesMoreThreadsThanThereAreNodesOrSprings) {
 }
 
 TEST_P(EachWayAndIntegrator, GivesTheSameBitsAgainWhereItSaysSo) {
-  if (way().repeatable == Repeatable::never) return;
+  if (method().repeatable == Repeatable::never) return;
   constexpr int steps = 50;
   for (const System& system : {cloth_system(40, 31), solid_block(5, 6, 7)}) {
     const State alone = after(system, 1, steps);
@@ -76,7 +76,7 @@ TEST_P(EachWayAndIntegrator, GivesTheSameBitsAgainWhereItSaysSo) {
       const State once = after(system, threads, steps), again = after(system, threads, steps);
       EXPECT_EQ(once.position, again.position) << threads << " threads";
       EXPECT_EQ(once.velocity, again.velocity) << threads << " threads";
-      if (way().repeatable != Repeatable::always) continue;
+      if (method().repeatable != Repeatable::always) continue;
       EXPECT_EQ(once.position, alone.position) << threads << " threads";
       EXPECT_EQ(once.velocity, alone.velocity) << threads << " threads";
     }
@@ -85,7 +85,7 @@ TEST_P(EachWayAndIntegrator, GivesTheSameBitsAgainWhereItSaysSo) {
 
 TEST_P(EachWayAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
   const System system = cloth_system(12, 19);
-  const auto simulation = make(system, 1);  // with one thread every way adds in one order
+  const auto simulation = make(system, 1);  // with one thread every method adds in one order
   simulation->step(7);
   const State once = simulation->state();
   simulation->set_state(system.start);
@@ -98,13 +98,14 @@ TEST_P(EachWayAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
 
 TEST(RaceWays, BeginWithTheSerialBaseAndHaveNamesOfTheirOwn) {
   std::set<std::string_view> names;
-  for (const RaceWay& way : race_ways()) {
-    EXPECT_TRUE(names.insert(way.backend.name).second) << way.backend.name;
-    EXPECT_FALSE(way.extra_memory.empty() || way.springs_computed.empty() || way.backend.description.empty());
-    EXPECT_FALSE(name_of(way.repeatable).empty());
+  for (const AccumulationMethod& method : accumulation_methods()) {
+    EXPECT_TRUE(names.insert(method.backend.name).second) << method.backend.name;
+    EXPECT_FALSE(method.extra_memory.empty() || method.springs_computed.empty() ||
+                 method.backend.description.empty());
+    EXPECT_FALSE(name_of(method.repeatable).empty());
   }
-  EXPECT_EQ(race_ways().front().backend.name, "serial");
-  EXPECT_EQ(race_ways().back().backend.name, "openmp");
+  EXPECT_EQ(accumulation_methods().front().backend.name, "serial");
+  EXPECT_EQ(accumulation_methods().back().backend.name, "openmp");
 }
 
 /// A spring as something that can be counted.
