@@ -15,7 +15,7 @@ enum class VelocityCorrection : std::uint8_t {
 
 /// What dressing takes beside springs: everything about one step that is no property of the cloth. The step
 /// is Vassilev's Algorithm 1; ARCHITECTURE.md says where it goes beyond what was published.
-struct Dressing {
+struct DressingSettings {
   /// While the seams close there is no friction and, by default, no gravity: the panels would fall before
   /// they hold.
   double seam_force = 4;               ///< N per metre of seam at first

@@ -49,7 +49,7 @@ struct Garment {
   std::vector<std::string> seams;  ///< names
   std::vector<Joint> joints;
   std::vector<Vec3d> flat;  ///< [nodes] m, z = 0: in the pattern, where y is the height at which it is worn
-  Dressing dressing;
+  DressingSettings dressing;
   /// [layers] The body as the panels of each layer meet it; layers beyond the last one meet it as that does.
   /// Empty: nothing to dress.
   std::vector<std::shared_ptr<const BodyMaps>> body_maps;

@@ -32,7 +32,7 @@ std::string volume_switch(double largest_volume_m3) {
 
 }  // namespace
 
-TetMesh surface_mesh(const SurfaceBody& body) {
+TetMesh surface_mesh(const SurfaceShape& body) {
   const std::string name = body.file.string();
   if (!(body.unit_m > 0) || !std::isfinite(body.unit_m))
     throw InputError(name + ": a unit of the file is " + decimal(body.unit_m) + " m; give a positive number");

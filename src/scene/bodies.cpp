@@ -26,7 +26,7 @@ constexpr std::size_t most_bodies = 10'000;
 /// ordinary numbers in single precision.
 constexpr double shortest_spring = 1e-7, longest_spring = 1e6;
 
-const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.body); }
+const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.content); }
 
 void visit_body(FieldVisitor& fields, BodySpec& body) {
   visit_shape_fields(fields, body);
@@ -162,7 +162,7 @@ void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const Meshed
 }  // namespace
 
 void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
-  BodiesSpec& bodies = spec.body.emplace<BodiesSpec>();
+  BodiesSpec& bodies = spec.content.emplace<BodiesSpec>();
   fields.number(
       {"density_kg_per_m3", "Mass per volume, kg/m^3; the mass of a body is spread evenly over its nodes."},
       bodies.density_kg_per_m3, from(1e-3, 1e6));

@@ -119,7 +119,7 @@ SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folde
 
 /// The body of it whose shape is meant. Throws SceneError unless it has one of its own.
 BodySpec first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
-  const auto* bodies = std::get_if<BodiesSpec>(&scene.body);
+  const auto* bodies = std::get_if<BodiesSpec>(&scene.content);
   if (bodies == nullptr)
     throw SceneError("the scene \"" + printable(shape.name) +
                      "\" has no bodies whose shape could be taken: name one that has");

@@ -23,7 +23,7 @@ constexpr double in_plane_share = 0.5;
 /// and at this slope it is 0.44.
 constexpr double steepest_ripple = 0.1;
 
-const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.body); }
+const ClothSpec& cloth_of(const SceneSpec& spec) { return std::get<ClothSpec>(spec.content); }
 
 void visit_pins(FieldVisitor& fields, ClothPins& pins) {
   fields.integer({"row", "The row that is pinned, counted from 0."}, pins.row, 0, 999'999);
@@ -96,7 +96,7 @@ class Ripple {
 }  // namespace
 
 void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
-  ClothSpec& cloth = spec.body.emplace<ClothSpec>();
+  ClothSpec& cloth = spec.content.emplace<ClothSpec>();
   fields.integer({"rows", "Number of rows (along z); rows times columns must be below 2^32."}, cloth.rows, 2,
                  1'000'000);
   fields.integer({"columns", "Number of columns (along x)."}, cloth.columns, 2, 1'000'000);

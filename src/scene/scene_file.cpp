@@ -116,7 +116,7 @@ SceneSpec load_scene(const std::filesystem::path& file) { return parse_scene(fil
 std::vector<std::filesystem::path> files_of(const SceneSpec& spec) {
   std::vector<std::filesystem::path> files{spec.file};
   const auto add = [&](const std::string& name) { files.push_back(spec.file.parent_path() / name); };
-  if (const auto* bodies = std::get_if<BodiesSpec>(&spec.body))
+  if (const auto* bodies = std::get_if<BodiesSpec>(&spec.content))
     for (const BodySpec& body : bodies->list) {
       if (const auto* surface = std::get_if<SurfaceFile>(&body.shape)) add(surface->file);
       if (const auto* mesh = std::get_if<MeshFiles>(&body.shape)) {
@@ -126,7 +126,7 @@ std::vector<std::filesystem::path> files_of(const SceneSpec& spec) {
       if (const auto* shape = std::get_if<ShapeOfScene>(&body.shape); shape && is_path_of_scene(shape->name))
         add(shape->name);
     }
-  if (const auto* garment = std::get_if<GarmentSpec>(&spec.body))
+  if (const auto* garment = std::get_if<GarmentSpec>(&spec.content))
     if (const auto* body = std::get_if<BodyFile>(&garment->body)) add(body->file);
   return files;
 }
@@ -136,7 +136,7 @@ std::vector<SceneSpec> shipped_scenes() {
   std::vector<std::pair<Key, SceneSpec>> scenes;
   for (std::string& name : names_in_folder()) {
     SceneSpec spec = load_scene(file_of(name));
-    Key key(spec.body.index(), stated_counts(spec).value_or(SceneCounts{}).nodes, std::move(name));
+    Key key(spec.content.index(), stated_counts(spec).value_or(SceneCounts{}).nodes, std::move(name));
     scenes.emplace_back(std::move(key), std::move(spec));
   }
   std::ranges::sort(scenes, {}, &std::pair<Key, SceneSpec>::first);

@@ -35,7 +35,7 @@ constexpr std::array<SceneKind, 3> kinds{{
      visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, garment_counts,
      build_garment_scene},
 }};
-static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::body)>);
+static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::content)>);
 
 SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
   if (const auto per_spring = kind_of(spec).published_per_spring)
@@ -49,7 +49,7 @@ std::string pointer_to_kind(const SceneSpec& spec) { return "/" + std::string(ki
 
 std::span<const SceneKind> scene_kinds() { return kinds; }
 
-const SceneKind& kind_of(const SceneSpec& spec) { return kinds.at(spec.body.index()); }
+const SceneKind& kind_of(const SceneSpec& spec) { return kinds.at(spec.content.index()); }
 
 std::optional<SceneCounts> stated_counts(const SceneSpec& spec) {
   const auto stated = kind_of(spec).stated(spec);

@@ -16,7 +16,7 @@ namespace mssim {
 struct SceneKind {
   std::string_view name;  ///< value of the file's `kind`, and the key of the section that describes the body
   std::string_view description;  ///< of that section, in the schema
-  /// Names the section's fields, with their targets in spec.body, which it sets to its alternative.
+  /// Names the section's fields, with their targets in spec.content, which it sets to its alternative.
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
   /// Checks what one field alone cannot show. Throws SceneError.
   void (*check)(const SceneSpec& spec);

@@ -97,7 +97,7 @@ TEST_P(EachOtherBackendAndIntegrator, StaysAsNearToTheReferenceAsTheSpringList) 
 
 TEST_P(EachBackendAndIntegrator, HoldsPinsExactlyWhereverTheyAre) {
   SceneSpec spec = cloth_spec(20, 23);
-  std::get<ClothSpec>(spec.body).pins = ClothPins{13, 5};
+  std::get<ClothSpec>(spec.content).pins = ClothPins{13, 5};
   const System system = build_system(spec);
   ASSERT_GE(system.pins.size(), 5U);
   const auto simulation = make(system);
@@ -257,7 +257,7 @@ constexpr int steps_with_a_bounce = 300;
 /// A cloth that meets the floor in that time.
 System low_cloth(std::uint32_t rows, std::uint32_t columns) {
   SceneSpec spec = cloth_spec(rows, columns);
-  std::get<ClothSpec>(spec.body).ceiling_height_m = 0.0035;
+  std::get<ClothSpec>(spec.content).ceiling_height_m = 0.0035;
   return build_system(spec);
 }
 

@@ -21,7 +21,7 @@ bool is_cheap_name(const std::string& name) { return name == "box-small" || is_p
 
 /// A garment as coarse as one can be that still has all its parts; of any other scene nothing changes.
 void make_coarse(SceneSpec& spec) {
-  auto* const garment = std::get_if<GarmentSpec>(&spec.body);
+  auto* const garment = std::get_if<GarmentSpec>(&spec.content);
   if (garment == nullptr) return;
   constexpr std::uint32_t jeans_nodes = 300, most_rows = 9;
   if (auto* const form = std::get_if<MannequinBody>(&garment->body)) {
@@ -38,9 +38,9 @@ void make_coarse(SceneSpec& spec) {
 
 /// No shape has to be meshed by TetGen that is not small, and no body has to be read from a file.
 bool may_count(const SceneSpec& spec) {
-  if (const auto* garment = std::get_if<GarmentSpec>(&spec.body))
+  if (const auto* garment = std::get_if<GarmentSpec>(&spec.content))
     return std::holds_alternative<MannequinBody>(garment->body);
-  const auto* bodies = std::get_if<BodiesSpec>(&spec.body);
+  const auto* bodies = std::get_if<BodiesSpec>(&spec.content);
   if (bodies == nullptr) return true;
   constexpr std::size_t most_bodies = 8;
   return bodies->list.size() <= most_bodies &&
@@ -53,8 +53,8 @@ bool may_count(const SceneSpec& spec) {
 /// Small, and without a run of TetGen.
 bool may_build(const SceneSpec& spec) {
   constexpr std::uint64_t most_nodes = 100;
-  if (std::holds_alternative<GarmentSpec>(spec.body)) return true;
-  const auto* bodies = std::get_if<BodiesSpec>(&spec.body);
+  if (std::holds_alternative<GarmentSpec>(spec.content)) return true;
+  const auto* bodies = std::get_if<BodiesSpec>(&spec.content);
   if (bodies == nullptr) return counts_of(spec).nodes <= most_nodes;
   return std::all_of(bodies->list.begin(), bodies->list.end(),
                      [](const BodySpec& body) { return std::holds_alternative<MeshFiles>(body.shape); });
@@ -100,7 +100,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto system = unless_refused<SceneError>([&] { return build_system(*spec); });
   if (!system) return 0;
   check(*system);
-  if (std::holds_alternative<ClothSpec>(spec->body))
+  if (std::holds_alternative<ClothSpec>(spec->content))
     require(
         *stated && (*stated)->nodes == system->nodes() && (*stated)->springs_unique == system->springs.size(),
         "a cloth has the counts that its file states");

@@ -46,9 +46,9 @@ struct BodyNodes {
 std::vector<BodyNodes> bodies_in(const SceneSpec& spec) {
   std::vector<BodyNodes> bodies;
   std::size_t first = 0;
-  for (const BodySpec& body : std::get<BodiesSpec>(spec.body).list) {
+  for (const BodySpec& body : std::get<BodiesSpec>(spec.content).list) {
     SceneSpec alone = spec;
-    std::get<BodiesSpec>(alone.body).list = {body};
+    std::get<BodiesSpec>(alone.content).list = {body};
     bodies.push_back({first, counts_of(alone).nodes});
     first += bodies.back().count;
   }
@@ -72,7 +72,7 @@ TEST(BodyScenes, OfSeveralBodiesHaveExactlyThePublishedCounts) {
   for (std::size_t record = 0; record < table.size(); ++record)
     published.emplace(table.count(record, 2), table.count(record, 3));
   for (const SceneSpec& spec : body_scenes())
-    if (std::get<BodiesSpec>(spec.body).list.size() > 1) {
+    if (std::get<BodiesSpec>(spec.content).list.size() > 1) {
       const SceneCounts counts = counts_of(spec);
       ours.emplace(counts.nodes, counts.springs_published.value());
       EXPECT_EQ(spec.name, "bodies" + std::to_string(counts.nodes));
@@ -84,7 +84,7 @@ TEST(BodyScenes, OfSeveralBodiesHaveExactlyThePublishedCounts) {
 TEST(LeastCounts, AreTheNodesOfAMeshBeforeItIsMadeAndNoMoreThanItsSprings) {
   for (const SceneSpec& spec : body_scenes()) {
     SceneCounts least;
-    for (const BodySpec& body : std::get<BodiesSpec>(spec.body).list) {
+    for (const BodySpec& body : std::get<BodiesSpec>(spec.content).list) {
       const SceneCounts counts = least_counts(body.shape, spec.file.parent_path());
       least.nodes += counts.nodes;
       least.springs_unique += counts.springs_unique;
@@ -117,7 +117,7 @@ TEST(BodyScenes, AreBuiltAsStatedAndCounted) {
 TEST(BodyScenes, StartApartAboveTheFloorAndEachInAWayOfItsOwn) {
   for (const SceneSpec& spec : body_scenes()) {
     const System system = build_system(spec);
-    const auto& list = std::get<BodiesSpec>(spec.body).list;
+    const auto& list = std::get<BodiesSpec>(spec.content).list;
     const std::vector<BodyNodes> bodies = bodies_in(spec);
     std::vector<double> radius, drop;
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -278,7 +278,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadBodies{"\"one.node\"", "\"two.node\"", "/bodies/list/0", "two.node"},
                     // The name of a file may hold what a terminal would obey.
                     BadBodies{"\"one.node\"", "\"two\\u007f\\u009b31m.node\"", "/bodies/list/0",
-                              "two\\u007f\\u009b31m.node is missing"},
+                              "two\\u007f\\u009b31m.node: there is no such file"},
                     BadBodies{"\"one.ele\"", "\"one.node\"", "/bodies/list/0", "one.node"},
                     BadBodies{"\"density_kg_per_m3\": 1000", "\"density_kg_per_m3\": 0",
                               "/bodies/density_kg_per_m3", "is 0"}));

@@ -79,8 +79,8 @@ TEST(ClothScenes, ThatAreLargerThanTheLargestPublishedOneDifferFromItInRowsAndCo
   for (SceneSpec spec : cloth_scenes()) {
     if (counts_of(spec).nodes <= counts_of(published).nodes) continue;
     ++larger;
-    ClothSpec& cloth = std::get<ClothSpec>(spec.body);
-    const ClothSpec& smaller = std::get<ClothSpec>(published.body);
+    ClothSpec& cloth = std::get<ClothSpec>(spec.content);
+    const ClothSpec& smaller = std::get<ClothSpec>(published.content);
     EXPECT_EQ(spec.dt_s, published.dt_s) << spec.name;
     EXPECT_EQ(cloth.spacing_m, smaller.spacing_m) << spec.name;
     EXPECT_EQ(cloth.areal_density_kg_per_m2, smaller.areal_density_kg_per_m2) << spec.name;
@@ -136,7 +136,7 @@ TEST(ClothScenes, StartInMotionAndStrainedByAFewPercentAtMost) {
 
 TEST(BuildCloth, PlacesTheNodesRowByRowUnderTheCeiling) {
   SceneSpec spec = cloth_spec(3, 5);
-  ClothSpec& cloth = std::get<ClothSpec>(spec.body);
+  ClothSpec& cloth = std::get<ClothSpec>(spec.content);
   cloth.ripple = {0, 0.1, 0};
   const System system = build_cloth(spec);
   ASSERT_EQ(system.nodes(), 15U);
@@ -164,12 +164,12 @@ TEST(BuildCloth, TakesOverThePhysics) {
 
 TEST(BuildCloth, PinsEverySoManyColumnsAndTheLastOfOneRow) {
   SceneSpec spec = cloth_spec(3, 12);
-  std::get<ClothSpec>(spec.body).pins = ClothPins{1, 5};
+  std::get<ClothSpec>(spec.content).pins = ClothPins{1, 5};
   const System system = build_cloth(spec);
   EXPECT_THAT(system.pins, testing::ElementsAre(12, 17, 22, 23));
   for (const std::uint32_t pin : system.pins)
     EXPECT_EQ(system.start.position[pin], (Vec3d{(pin - 12) * 0.01, 1, 0.01}));
-  std::get<ClothSpec>(spec.body).pins.reset();
+  std::get<ClothSpec>(spec.content).pins.reset();
   EXPECT_THAT(build_cloth(spec).pins, testing::IsEmpty());
 }
 

@@ -54,7 +54,7 @@ TEST_F(SceneFile, GivesEveryFieldItsValue) {
   EXPECT_EQ(spec.floor.height, 0);
   EXPECT_EQ(spec.floor.restitution, 0.3);
   EXPECT_EQ(spec.floor.friction, 0.4);
-  const ClothSpec& cloth = std::get<ClothSpec>(spec.body);
+  const ClothSpec& cloth = std::get<ClothSpec>(spec.content);
   EXPECT_EQ(cloth.rows, 50U);
   EXPECT_EQ(cloth.columns, 50U);
   EXPECT_EQ(cloth.spacing_m, 0.01);
@@ -81,12 +81,12 @@ TEST_F(SceneFile, LeavesAnAutomaticDtEmpty) {
 TEST_F(SceneFile, MayLeaveOutPinsAndSchema) {
   std::string text = with_change(good, R"("pins": {"row": 0, "every_columns": 10},)", "");
   text = with_change(text, R"("$schema": "scene.schema.json",)", "");
-  EXPECT_FALSE(std::get<ClothSpec>(load_scene(write(text)).body).pins);
+  EXPECT_FALSE(std::get<ClothSpec>(load_scene(write(text)).content).pins);
 }
 
 TEST_F(SceneFile, TakesWholeNumbersInAnyNotation) {
   EXPECT_EQ(
-      std::get<ClothSpec>(load_scene(write(with_change(good, "\"rows\": 50", "\"rows\": 5e1"))).body).rows,
+      std::get<ClothSpec>(load_scene(write(with_change(good, "\"rows\": 50", "\"rows\": 5e1"))).content).rows,
       50U);
 }
 

@@ -25,7 +25,7 @@ inline SceneSpec cloth_spec(std::uint32_t rows, std::uint32_t columns) {
   spec.gravity_m_per_s2 = 9.81;
   spec.viscous_damping_per_s = 0.1;
   spec.floor = {0, 0.3, 0.4};
-  spec.body = cloth;
+  spec.content = cloth;
   return spec;
 }
 
@@ -36,7 +36,7 @@ inline System cloth_system(std::uint32_t rows, std::uint32_t columns) {
 /// A flat sheet at rest, without pins, at `height_m`.
 inline SceneSpec sheet_spec(std::uint32_t rows, std::uint32_t columns, double height_m) {
   SceneSpec spec = cloth_spec(rows, columns);
-  auto& cloth = std::get<ClothSpec>(spec.body);
+  auto& cloth = std::get<ClothSpec>(spec.content);
   cloth.pins.reset();
   cloth.ripple = {0, 1, 0};
   cloth.ceiling_height_m = height_m;
@@ -46,7 +46,7 @@ inline SceneSpec sheet_spec(std::uint32_t rows, std::uint32_t columns, double he
 /// A rippled cloth without pins, gravity, damping by the air: nothing outside the cloth acts on it.
 inline System lone_cloth(std::uint32_t rows, std::uint32_t columns) {
   SceneSpec spec = cloth_spec(rows, columns);
-  std::get<ClothSpec>(spec.body).pins.reset();
+  std::get<ClothSpec>(spec.content).pins.reset();
   spec.gravity_m_per_s2 = 0;
   spec.viscous_damping_per_s = 0;
   return build_system(spec);

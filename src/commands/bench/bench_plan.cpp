@@ -97,7 +97,7 @@ void require_distinct_names(const std::vector<SceneSpec>& scenes) {
 }
 
 void require_traceable(const SceneSpec& spec) {
-  if (std::holds_alternative<GarmentSpec>(spec.body))
+  if (std::holds_alternative<GarmentSpec>(spec.content))
     throw UsageError("--trace cannot be used with " + spec.name +
                      ", which is a garment: its verification is not a continuous motion; leave --trace out");
   if (const auto problem = trace_name_problem(spec.name + ".h5"))

@@ -8,8 +8,8 @@
 namespace mssim {
 
 SceneSize size_of(const SceneSpec& spec, const SceneCounts& counts) {
-  return {counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.body),
-          std::holds_alternative<GarmentSpec>(spec.body)};
+  return {counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.content),
+          std::holds_alternative<GarmentSpec>(spec.content)};
 }
 
 PlannedScene planned_scene(SceneSpec spec, const BenchSettings& settings) {

@@ -150,7 +150,7 @@ int measure_scene(const MeasureOptions& options) {
                      " is a scene, not an .obj or .stl file, and says how its body stands: leave out --unit, "
                      "--up, --facing, --close-holes and --scene");
   const SceneSpec spec = find_scene(options.body);
-  const auto* garment = std::get_if<GarmentSpec>(&spec.body);
+  const auto* garment = std::get_if<GarmentSpec>(&spec.content);
   if (garment == nullptr)
     throw UsageError(spec.name +
                      " is a scene without a body to dress: give a garment's, or an .obj or .stl file");

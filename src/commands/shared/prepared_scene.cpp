@@ -18,7 +18,7 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
   return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
          std::to_string(counts.springs_unique) + " springs where the scene states " +
          std::to_string(stated->nodes) + " and " + std::to_string(stated->springs_unique) +
-         (std::holds_alternative<GarmentSpec>(spec.body)
+         (std::holds_alternative<GarmentSpec>(spec.content)
               ? ": another body, or another pattern, makes other panels; state what they have"
               : ": another TetGen, or another file, makes another mesh");
 }

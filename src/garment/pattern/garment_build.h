@@ -18,7 +18,7 @@ namespace mssim {
 struct PatternPanel {
   PatternPiece piece;
   PanelGrid grid{};
-  PanelCloth cloth{};
+  PanelMaterial cloth{};
   PanelPlacement placement{};
   std::uint32_t layer = 0;
 };

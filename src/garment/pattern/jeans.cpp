@@ -91,7 +91,7 @@ JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes) {
   return best;
 }
 
-GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelCloth& cloth,
+GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelMaterial& cloth,
                              const LegAxis& leg_axis) {
   const JeansDraft draft = draft_jeans(measures);
   const JeansGrid grid = jeans_grid(draft, nodes);

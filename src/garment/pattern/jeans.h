@@ -29,7 +29,7 @@ using LegAxis = std::function<double(double)>;
 /// six seams ("outer left", "outer right", "inner left", "inner right", "centre front", "centre back"), of
 /// `cloth`, with about as many nodes as wanted. The wearer looks to +z, its left is +x. Throws InputError as
 /// draft_jeans and jeans_grid do.
-GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelCloth& cloth,
+GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelMaterial& cloth,
                              const LegAxis& leg_axis);
 
 }  // namespace mssim

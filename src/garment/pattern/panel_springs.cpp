@@ -26,7 +26,7 @@ void for_each_cell(const PanelMesh& mesh, Visit visit) {
 
 }  // namespace
 
-void require_cloth(const std::string& panel, const PanelCloth& cloth) {
+void require_cloth(const std::string& panel, const PanelMaterial& cloth) {
   const auto require = [&](double value, bool zero_too, const char* what) {
     if (!std::isfinite(value) || value < 0 || (value == 0 && !zero_too))
       throw InputError(panel + ": " + what + " is " + shown(value) + "; give a number " +
@@ -62,7 +62,7 @@ std::uint32_t waistband_rows(const PanelMesh& mesh, const Waistband& waistband) 
   return rows;
 }
 
-void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const PanelCloth& cloth,
+void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const PanelMaterial& cloth,
                     std::vector<Spring>& springs, std::vector<SpringMaterial>& materials) {
   const auto first_material = static_cast<std::uint32_t>(materials.size());
   materials.insert(materials.end(), {cloth.structural, cloth.shear, cloth.bending});
@@ -82,7 +82,7 @@ void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const Pane
   }
 }
 
-std::vector<double> node_masses(const PanelMesh& mesh, const PanelCloth& cloth) {
+std::vector<double> node_masses(const PanelMesh& mesh, const PanelMaterial& cloth) {
   std::vector<double> masses(mesh.nodes.size(), 0);
   for_each_cell(mesh, [&](std::size_t node) {
     const double fraction = 0.25 * cell_area(mesh, node) * cloth.area_density;

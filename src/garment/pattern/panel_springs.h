@@ -18,7 +18,7 @@ struct Waistband {
 };
 
 /// What a panel is cut from. Defaults are denim's, as light as a garment needs it to settle quickly.
-struct PanelCloth {
+struct PanelMaterial {
   double area_density = 0.40;  ///< kg/m^2
   SpringMaterial structural{200, 0};
   SpringMaterial shear{60, 0};
@@ -36,16 +36,16 @@ std::uint32_t waistband_rows(const PanelMesh& mesh, const Waistband& waistband);
 
 /// Throws InputError, which names the panel, field and remedy, unless density, stiffnesses and factors are
 /// positive and finite, and dampings, shares and the waistband's height not negative.
-void require_cloth(const std::string& panel, const PanelCloth& cloth);
+void require_cloth(const std::string& panel, const PanelMaterial& cloth);
 
 /// Appends the springs of the 12-neighbour stencil in the order of springs_of(GridPatch), each as long at
 /// rest as its ends are apart in the plane of the pattern, and to `materials` those of the panel: structural,
 /// shear, bending and, with a waistband, its rows' structural one.
-void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const PanelCloth& cloth,
+void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const PanelMaterial& cloth,
                     std::vector<Spring>& springs, std::vector<SpringMaterial>& materials);
 
 /// kg, of each node: a quarter of each cell that it belongs to, times the density.
-std::vector<double> node_masses(const PanelMesh& mesh, const PanelCloth& cloth);
+std::vector<double> node_masses(const PanelMesh& mesh, const PanelMaterial& cloth);
 
 /// m^2, of all cells
 double area_of(const PanelMesh& mesh);

@@ -24,7 +24,7 @@ constexpr double least_curvature_radius_m = 0.04;
 /// without being drawn across the other one.
 constexpr double beside_the_leg_m = 0.01;
 
-const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
+const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
 
 std::string jeans_pointer(const GarmentSpec& garment) {
   return garment.pieces ? "/garment/outfit/jeans" : "/garment/jeans";

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
 
-const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.body); }
+const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
 
 void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
   fields.integer({"nodes", "About how many nodes all panels have."}, jeans.nodes, fewest_nodes, most_nodes);
@@ -46,7 +46,7 @@ void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
                 jeans.measures.crotch_ease, from(0, largest_length_m));
 }
 
-void visit_correction(FieldVisitor& fields, Dressing& dressing, VelocityCorrection correction) {
+void visit_correction(FieldVisitor& fields, DressingSettings& dressing, VelocityCorrection correction) {
   dressing.correction = correction;
   if (correction == VelocityCorrection::none) return;
   fields.number(
@@ -59,7 +59,7 @@ void visit_correction(FieldVisitor& fields, Dressing& dressing, VelocityCorrecti
                   dressing.correction_rate, from(0, 1));
 }
 
-void visit_dressing(FieldVisitor& fields, Dressing& dressing) {
+void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
   fields.number({"seam_force_n_per_m", "Force that draws a seam together at first, per length, N/m."},
                 dressing.seam_force, from(0, 1e6));
   fields.number({"seam_force_doubling_s", "Time in which that force has grown by its first value, s."},
@@ -135,7 +135,7 @@ SceneCounts counts_of(const GarmentBuild& build) { return {build.placed.size(), 
 }  // namespace
 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
-  GarmentSpec& garment = spec.body.emplace<GarmentSpec>();
+  GarmentSpec& garment = spec.content.emplace<GarmentSpec>();
   visit_body_fields(fields, garment);
   visit_length(fields, {"pixel_m", "Width of a pixel of the maps that cloth collides with, m."},
                garment.pixel_m);

@@ -78,7 +78,7 @@ Curve curve_of(const BoundarySpec& boundary) {
   return boundary.is_bezier ? Curve::bezier(boundary.points) : Curve(boundary.points);
 }
 
-PatternPanel panel_of(const PieceSpec& piece, const PanelCloth& cloth) {
+PatternPanel panel_of(const PieceSpec& piece, const PanelMaterial& cloth) {
   const auto boundary = [&](PanelEdge edge) {
     return curve_of(piece.boundaries.at(static_cast<std::size_t>(edge)));
   };
@@ -97,7 +97,7 @@ PatternPanel panel_of(const PieceSpec& piece, const PanelCloth& cloth) {
 
 }  // namespace
 
-void visit_cloth(FieldVisitor& fields, PanelCloth& cloth) {
+void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth) {
   fields.number({"areal_density_kg_per_m2", "Mass per area, kg/m^2."}, cloth.area_density, above(0, 1e6));
   fields.number(
       {"structural_n_per_m", "Stiffness of the springs between neighbours of a row or a column, N/m."},
@@ -166,7 +166,7 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
                std::to_string(most_nodes));
 }
 
-void append_pieces(const PiecesSpec& pieces, const PanelCloth& cloth, GarmentPattern& pattern) {
+void append_pieces(const PiecesSpec& pieces, const PanelMaterial& cloth, GarmentPattern& pattern) {
   for (const PieceSpec& piece : pieces.panels) pattern.panels.push_back(panel_of(piece, cloth));
   pattern.seams.insert(pattern.seams.end(), pieces.seams.begin(), pieces.seams.end());
 }

@@ -31,7 +31,7 @@ struct PieceSpec {
   double axis_m = 0;                                             ///< x at which the piece's x = 0 stands
   double distance_m = 0;                                         ///< PanelPlacement::distance
   double bend_radius_m = 0;                                      ///< PanelPlacement::radius
-  std::optional<PanelCloth> cloth;                               ///< none: the garment's
+  std::optional<PanelMaterial> cloth;                            ///< none: the garment's
 };
 
 /// Panels and seams of one's own pattern.
@@ -44,7 +44,7 @@ struct PiecesSpec {
 void visit_pieces(FieldVisitor& fields, PiecesSpec& pieces);
 
 /// Names the fields of what panels are cut from.
-void visit_cloth(FieldVisitor& fields, PanelCloth& cloth);
+void visit_cloth(FieldVisitor& fields, PanelMaterial& cloth);
 
 /// Throws SceneError, which names the place under `pointer`, for a panel without a name, for boundaries that
 /// are no curves, and for more than `most_nodes` nodes. What only cutting and sewing shows, build_garment
@@ -53,6 +53,6 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
                   std::uint64_t most_nodes);
 
 /// Appends pieces that check_pieces accepts to a pattern. Those without a cloth of their own are of `cloth`.
-void append_pieces(const PiecesSpec& pieces, const PanelCloth& cloth, GarmentPattern& pattern);
+void append_pieces(const PiecesSpec& pieces, const PanelMaterial& cloth, GarmentPattern& pattern);
 
 }  // namespace mssim

@@ -42,8 +42,8 @@ struct GarmentSpec {
   double skin_m = 0.003;    ///< that the maps lie before the body's surface, beside what coarse cloth needs
   std::optional<JeansSpec> jeans;
   std::optional<PiecesSpec> pieces;  ///< one or both of the two
-  PanelCloth cloth;                  ///< of jeans, and of pieces that have none of their own
-  Dressing dressing;
+  PanelMaterial cloth;               ///< of jeans, and of pieces that have none of their own
+  DressingSettings dressing;
   std::optional<ClothClothSettings> layers;  ///< that touch each other; none: they go through each other
   std::optional<MeshSize> expected;
 };

@@ -31,8 +31,8 @@ AtJoint<Vec3<Real>> spread(const JointEnds<Real>& ends, const Vec3<Real>& impuls
 /// Accelerations of the three (m/s^2) by which loop 3 draws a joint together, from their positions (m) and
 /// inverse masses (1/kg); none where it is near enough to be sewn. time_s: since the first step.
 template <class Real>
-std::optional<AtJoint<Vec3<Real>>> pull_of_joint(const Dressing& rules, const Joint& joint, double time_s,
-                                                 const AtJoint<Vec3<Real>>& x,
+std::optional<AtJoint<Vec3<Real>>> pull_of_joint(const DressingSettings& rules, const Joint& joint,
+                                                 double time_s, const AtJoint<Vec3<Real>>& x,
                                                  const AtJoint<Real>& inverse_mass) {
   const auto fraction = static_cast<Real>(joint.edge_share);
   const Vec3<Real> gap = joint_gap(x, fraction);

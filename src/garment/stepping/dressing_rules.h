@@ -18,7 +18,7 @@ struct PhaseRule {
 };
 
 template <class Real>
-PhaseRule<Real> phase_rule(const System& system, const Dressing& rules, bool draping) {
+PhaseRule<Real> phase_rule(const System& system, const DressingSettings& rules, bool draping) {
   if (draping)
     return {static_cast<Real>(system.viscous_damping), static_cast<Real>(system.gravity),
             static_cast<Real>(rules.friction)};
@@ -34,14 +34,14 @@ struct CorrectionRule {
 };
 
 template <class Real>
-CorrectionRule<Real> correction_rule(const Dressing& rules, double dt_s) {
+CorrectionRule<Real> correction_rule(const DressingSettings& rules, double dt_s) {
   const bool bounded = rules.correction == VelocityCorrection::bounded;
   return {1 + static_cast<Real>(rules.correction_threshold),
           bounded ? static_cast<Real>(rules.correction_rate) / static_cast<Real>(dt_s) : Real{0}};
 }
 
 /// Sweeps over all springs in a step.
-inline std::uint32_t correction_sweeps(const Dressing& rules) {
+inline std::uint32_t correction_sweeps(const DressingSettings& rules) {
   return rules.correction == VelocityCorrection::none ? 0 : rules.correction_sweeps;
 }
 
@@ -53,7 +53,7 @@ struct ClosingRule {
 };
 
 template <class Real>
-ClosingRule<Real> closing_rule(const Dressing& rules, double dt_s) {
+ClosingRule<Real> closing_rule(const DressingSettings& rules, double dt_s) {
   return {static_cast<Real>(rules.closing_share / dt_s), static_cast<Real>(rules.closing_speed)};
 }
 
@@ -63,7 +63,7 @@ inline DressingProgress first_progress(const Garment& garment, const State& star
 }
 
 /// Whether the step after which `steps` have been taken is the last one of seaming.
-inline bool ends_seaming(const Dressing& rules, const DressingProgress& progress, std::int64_t steps,
+inline bool ends_seaming(const DressingSettings& rules, const DressingProgress& progress, std::int64_t steps,
                          double dt_s) {
   return !progress.draping &&
          (progress.open_joints == 0 || static_cast<double>(steps) * dt_s >= rules.longest_seaming_s);

@@ -17,13 +17,13 @@ namespace {
 /// Rows of nothing before the stiffnesses of a panel's first row, as far as springs reach up.
 constexpr std::size_t rows_before = 2;
 
-DressingPhase phase_of(const System& system, const Dressing& rules, bool draping) {
+DressingPhase phase_of(const System& system, const DressingSettings& rules, bool draping) {
   const auto rule = phase_rule<float>(system, rules, draping);
   return {rule.damping, rule.gravity, rule.friction};
 }
 
 /// Steps after which seaming ends in any case.
-int longest_seaming(const Dressing& rules, double dt_s) {
+int longest_seaming(const DressingSettings& rules, double dt_s) {
   constexpr double most = std::numeric_limits<int>::max() - 1;
   const DressingProgress open{1, false, 0};
   auto steps = static_cast<std::int64_t>(std::min(rules.longest_seaming_s / dt_s, most));
@@ -32,7 +32,7 @@ int longest_seaming(const Dressing& rules, double dt_s) {
   return static_cast<int>(steps);
 }
 
-DressingParameters parameters_of(const System& system, const Dressing& rules, double dt_s) {
+DressingParameters parameters_of(const System& system, const DressingSettings& rules, double dt_s) {
   DressingParameters parameters{};
   parameters.surroundings = surroundings_of(system);
   parameters.seaming = phase_of(system, rules, false);

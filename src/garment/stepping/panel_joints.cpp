@@ -26,7 +26,7 @@ AtJoint<float> inverse_masses(const PanelGrid& grid, const PanelGrid::Joint& joi
 
 void pull_joints(PanelDressing& dressing) {
   PanelGrid& grid = dressing.grid;
-  const Dressing& rules = dressing.garment.dressing;
+  const DressingSettings& rules = dressing.garment.dressing;
   for (const PanelGrid::Joint& joint : grid.joints)
     for (const std::size_t node : {joint.node, joint.first, joint.second}) grid.pull.put(node, {});
   const double time_s = static_cast<double>(dressing.steps) * dressing.dt_s;

@@ -225,7 +225,7 @@ class SerialDressing final : public DressingBackend {
 
   const System& system_;
   const Garment& garment_;
-  const Dressing& rules_;
+  const DressingSettings& rules_;
   Real dt_;
   double dt_s_;
   std::vector<Node> nodes_;

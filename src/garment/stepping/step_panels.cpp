@@ -64,7 +64,7 @@ HWY_INLINE void correct(PanelGrid& grid, const CorrectionRule<float>& rule, std:
 /// What the first thread does between two steps.
 void end_step(PanelDressing& dressing) {
   PanelGrid& grid = dressing.grid;
-  const Dressing& rules = dressing.garment.dressing;
+  const DressingSettings& rules = dressing.garment.dressing;
   ++dressing.steps;
   if (!ends_seaming(rules, dressing.progress, dressing.steps, dressing.dt_s)) return;
   std::fill(grid.sewn.begin(), grid.sewn.end(), std::uint8_t{1});
@@ -108,7 +108,7 @@ class Team {
 };
 
 StepRule step_rule(const PanelDressing& dressing) {
-  const Dressing& rules = dressing.garment.dressing;
+  const DressingSettings& rules = dressing.garment.dressing;
   const bool draping = dressing.progress.draping;
   return {static_cast<float>(dressing.dt_s), static_cast<float>(rules.push_speed),
           phase_rule<float>(dressing.system, rules, draping), !draping, dressing.layers.has_value()};
@@ -128,7 +128,7 @@ void accelerate(PanelDressing& dressing, Worker& worker) {
 /// What is left of a step.
 void move(PanelDressing& dressing, const Worker& worker) {
   PanelGrid& grid = dressing.grid;
-  const Dressing& rules = dressing.garment.dressing;
+  const DressingSettings& rules = dressing.garment.dressing;
   const BlockRange range = worker.range;
   const StepRule rule = step_rule(dressing);
   if (rule.layers_touch)

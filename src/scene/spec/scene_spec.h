@@ -51,7 +51,7 @@ struct SceneSpec {
   double viscous_damping_per_s = 0;
   Floor floor;
   std::variant<ClothSpec, BodiesSpec, GarmentSpec>
-      body;                    ///< one alternative a scene kind, in the order of their table (scene_kinds.h)
+      content;                 ///< one alternative a scene kind, in the order of their table (scene_kinds.h)
   std::string source;          ///< the file's text, for traces and hashes
   std::filesystem::path file;  ///< where it was read, for messages
 };

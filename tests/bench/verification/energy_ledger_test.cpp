@@ -83,7 +83,7 @@ TEST_P(EnergyLedgerOf, BalancesABlockThatFallsSpinsBouncesAndSlides) {
 
 TEST_P(EnergyLedgerOf, BalancesAClothThatFallsOnTheFloorAndSlides) {
   SceneSpec spec = cloth_spec(12, 9);
-  auto& cloth = std::get<ClothSpec>(spec.body);
+  auto& cloth = std::get<ClothSpec>(spec.content);
   cloth.pins.reset();
   cloth.ceiling_height_m = 0.03;
   System system = build_system(spec);

@@ -50,7 +50,7 @@ const std::vector<Mistake> mistakes{
 /// Near the origin, where positions are rounded least.
 System low_cloth() {
   SceneSpec spec = cloth_spec(20, 25);
-  std::get<ClothSpec>(spec.body).ceiling_height_m = 0.2;
+  std::get<ClothSpec>(spec.content).ceiling_height_m = 0.2;
   return build_system(spec);
 }
 
@@ -113,7 +113,7 @@ TEST(Verification, FindsAStepOfTheWrongLength) {
 
 TEST(Verification, StopsBeforeTheFloor) {
   SceneSpec spec = cloth_spec(8, 8);
-  std::get<ClothSpec>(spec.body).ceiling_height_m = 0.0015;
+  std::get<ClothSpec>(spec.content).ceiling_height_m = 0.0015;
   const System system = build_system(spec);
   const Reference reference = run_reference(system, integrators[0], dt_s);
   EXPECT_FALSE(reference.failure);

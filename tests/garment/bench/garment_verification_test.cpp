@@ -97,7 +97,7 @@ void stiffen(System& system, GridSpringKind kind) { system.materials.at(kind).st
 /// The body as its maps have it, farther out.
 std::vector<std::shared_ptr<const BodyMaps>> maps_farther_out(double metres) {
   SceneSpec spec = jeans().spec;
-  std::get<GarmentSpec>(spec.body).skin_m += metres;
+  std::get<GarmentSpec>(spec.content).skin_m += metres;
   return std::get<Garment>(build_system(spec).topology).body_maps;
 }
 

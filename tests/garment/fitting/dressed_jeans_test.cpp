@@ -29,7 +29,7 @@ Dressed dressed_after(const std::function<void(DressingCase&)>& change, const Se
 
 /// The body's surface as maps that lie this far before it.
 void let_maps_lie(DressingCase& jeans, double offset) {
-  const double pixel = std::get<GarmentSpec>(jeans.spec.body).pixel_m;
+  const double pixel = std::get<GarmentSpec>(jeans.spec.content).pixel_m;
   put_on(jeans.system, body_of_garment(jeans.spec), {.pixel = pixel, .offset = offset});
 }
 

@@ -42,7 +42,7 @@ double sharpest_turn(const Curve& curve) {
   return sharpest;
 }
 
-GarmentBuild build_for(const JeansBody& body, std::uint32_t nodes, const PanelCloth& cloth = {}) {
+GarmentBuild build_for(const JeansBody& body, std::uint32_t nodes, const PanelMaterial& cloth = {}) {
   return build_garment(jeans_pattern(body.measures(), nodes, cloth, body.leg_axis()), body.depths());
 }
 
@@ -163,7 +163,7 @@ TEST(Jeans, PanelsAndSeamsAreNamedByTheWearersSides) {
 }
 
 TEST(Jeans, EverythingBelongsToTheSameNodes) {
-  PanelCloth cloth;
+  PanelMaterial cloth;
   cloth.waistband.height = 0.035;
   const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
   std::size_t nodes = 0, springs = 0;
@@ -226,7 +226,7 @@ TEST(Jeans, SeamsJoinNodeToNodeAndMeetInTheCrotchPoint) {
 }
 
 TEST(Jeans, TheWaistbandsJointsPullHarder) {
-  PanelCloth cloth;
+  PanelMaterial cloth;
   cloth.waistband.height = 0.035;
   const GarmentBuild build = build_for(JeansBody{}, 4'000, cloth);
   const GarmentPanel& panel = build.garment.panels[0];

@@ -20,7 +20,7 @@ struct Springs {
   std::vector<SpringMaterial> materials;
 };
 
-Springs springs_of_panel(const PanelMesh& mesh, const PanelCloth& cloth, std::uint32_t first_node = 0) {
+Springs springs_of_panel(const PanelMesh& mesh, const PanelMaterial& cloth, std::uint32_t first_node = 0) {
   Springs made;
   append_springs({"p", mesh.rows, mesh.columns, first_node, 0}, mesh, cloth, made.springs, made.materials);
   return made;
@@ -63,7 +63,7 @@ TEST(PanelSprings, BendingSpringsAreAsLongAsTheStraightDistance) {
 
 TEST(PanelSprings, AWaistbandIsStifferAlongItsRows) {
   const PanelMesh mesh = mesh_panel(rectangle_piece("p", 0.5, 0.7), {8, 6});
-  PanelCloth cloth;
+  PanelMaterial cloth;
   cloth.waistband.height = 0.25;
   EXPECT_EQ(waistband_rows(mesh, cloth.waistband), 3U);
   Springs panel = springs_of_panel(mesh, cloth);
@@ -89,7 +89,7 @@ TEST(PanelSprings, AWaistbandHoldsTheTopRowAtLeastAndNoneWithoutHeight) {
 TEST(PanelSprings, EachPanelBringsItsOwnMaterials) {
   const PanelMesh mesh = mesh_panel(rectangle_piece("p", 0.5, 0.7), {8, 6});
   Springs both = springs_of_panel(mesh, {});
-  PanelCloth stiff;
+  PanelMaterial stiff;
   stiff.structural.stiffness = 500;
   append_springs({"q", 8, 6, 48, 0}, mesh, stiff, both.springs, both.materials);
   ASSERT_EQ(both.materials.size(), 6U);
@@ -116,11 +116,11 @@ TEST(PanelSprings, ANodeWeighsAQuarterOfItsCells) {
 TEST(PanelSprings, AWaistbandIsHeavierAndNodesMayHaveALeastMass) {
   const PanelMesh mesh = mesh_panel(rectangle_piece("p", 0.2, 0.2), {3, 3});
   const std::vector<double> plain = node_masses(mesh, {});
-  PanelCloth cloth;
+  PanelMaterial cloth;
   cloth.waistband.height = 0.02;
   const std::vector<double> banded = node_masses(mesh, cloth);
   for (std::size_t i = 0; i < 9; ++i) EXPECT_DOUBLE_EQ(banded[i], plain[i] * (i < 6 ? 1 : 4));
-  PanelCloth even;
+  PanelMaterial even;
   even.least_mass_share = 1;
   const double mean = 0.4 * 0.04 / 9;
   const std::vector<double> evened = node_masses(mesh, even);
@@ -129,19 +129,19 @@ TEST(PanelSprings, AWaistbandIsHeavierAndNodesMayHaveALeastMass) {
 
 TEST(PanelSprings, BadClothIsRefused) {
   const auto complaint = [](auto change) {
-    PanelCloth cloth;
+    PanelMaterial cloth;
     change(cloth);
     return input_error_of([&] { require_cloth("front", cloth); });
   };
-  EXPECT_EQ(complaint([](PanelCloth&) {}), "");
-  EXPECT_EQ(complaint([](PanelCloth& cloth) { cloth.area_density = 0; }),
+  EXPECT_EQ(complaint([](PanelMaterial&) {}), "");
+  EXPECT_EQ(complaint([](PanelMaterial& cloth) { cloth.area_density = 0; }),
             "front: the cloth's area density is 0; give a number above 0");
-  EXPECT_EQ(complaint([](PanelCloth& cloth) { cloth.waistband.height = -1; }),
+  EXPECT_EQ(complaint([](PanelMaterial& cloth) { cloth.waistband.height = -1; }),
             "front: the waistband's height is -1; give a number not below 0");
-  EXPECT_THAT(complaint([](PanelCloth& cloth) { cloth.structural.stiffness = -200; }),
+  EXPECT_THAT(complaint([](PanelMaterial& cloth) { cloth.structural.stiffness = -200; }),
               StartsWith("front: the structural stiffness is -200"));
   EXPECT_THAT(
-      complaint([](PanelCloth& cloth) { cloth.shear.damping = std::numeric_limits<double>::infinity(); }),
+      complaint([](PanelMaterial& cloth) { cloth.shear.damping = std::numeric_limits<double>::infinity(); }),
       HasSubstr("the shear damping is inf"));
 }
 

@@ -39,7 +39,7 @@ class DressedPerson : public TemporaryFolderTest {
     SceneSpec spec = find_scene(name);
     BodyFile body;
     body.file = put("person.obj", obj_text(body_with_arms(form))).string();
-    auto& garment = std::get<GarmentSpec>(spec.body);
+    auto& garment = std::get<GarmentSpec>(spec.content);
     garment.body = body;
     garment.expected.reset();
     return spec;
@@ -50,7 +50,7 @@ TEST_F(DressedPerson, IsCutJeansForWhateverHeightsTheSceneGives) {
   for (const std::size_t triangles : {1'600U, 12'000U}) {
     SceneSpec spec = scene_for("jeans1k", {.triangles = triangles});
     const BodyProfile profile = measured_body(spec);
-    JeansMeasures& jeans = std::get<GarmentSpec>(spec.body).jeans.value().measures;
+    JeansMeasures& jeans = std::get<GarmentSpec>(spec.content).jeans.value().measures;
     int accepted = 0;
     for (const double waist : {0.96, 0.985, 1.005, 1.04})
       for (const double hip : {0.84, 0.86, 0.88})
@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, DressedPersonBy, testing::Values("serial", "o
 
 TEST_P(DressedPersonBy, WithinAllBoundsWithTheDefaultSkin) {
   const DressingCase jeans(scene_for("jeans4k", {.triangles = 6'000}));
-  EXPECT_EQ(std::get<GarmentSpec>(jeans.spec.body).skin_m, GarmentSpec{}.skin_m);
+  EXPECT_EQ(std::get<GarmentSpec>(jeans.spec.content).skin_m, GarmentSpec{}.skin_m);
   EXPECT_THAT(dressed(jeans, {}, GetParam()).found, IsEmpty());
 }
 
