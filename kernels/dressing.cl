@@ -257,7 +257,7 @@ MSSIM_INLINE Vector moved_on(Vector x, Vector* v, Mask is_free, Rules rules) {
 }
 
 /* What every kernel takes first. */
-#define SHEET                                                                                   \
+#define PANEL_GRID                                                                              \
   __constant struct DressingParameters *rules, __global float *position, __global float *moved, \
       __global float *velocity, __global float *pull, __global const float *inverse_mass,       \
       __global float *free, __global const float *rest, __global const float *stiffness,        \

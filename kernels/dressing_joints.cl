@@ -108,14 +108,14 @@ MSSIM_INLINE void close_sewn_joints(const Joints* joints, const PanelGrid* grid)
   { all, level_ends, nodes, sewn }
 
 /* Before the first step. */
-__kernel void begin_joints(SHEET, JOINTS) {
+__kernel void begin_joints(PANEL_GRID, JOINTS) {
   const PanelGrid grid = grid_of_arguments;
   const Joints joints = joints_of_arguments;
   pull_joints(&joints, 0, state, &grid);
 }
 
 /* The end of a step. */
-__kernel void step_joints(SHEET, JOINTS) {
+__kernel void step_joints(PANEL_GRID, JOINTS) {
   const PanelGrid grid = grid_of_arguments;
   const Joints joints = joints_of_arguments;
   close_sewn_joints(&joints, &grid);

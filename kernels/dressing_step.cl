@@ -6,7 +6,7 @@
  * Needs dressing.cl.
  */
 
-__kernel void update_velocities(SHEET, Block blocks, __global const float* pixels, int correct) {
+__kernel void update_velocities(PANEL_GRID, Block blocks, __global const float* pixels, int correct) {
   const PanelGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
   const int tiles = block->rows * tiles_of_row(block), draping = state->draping;
@@ -15,7 +15,7 @@ __kernel void update_velocities(SHEET, Block blocks, __global const float* pixel
   if (correct) correct_block(block, 1, &grid);
 }
 
-__kernel void correct_between_blocks(SHEET, Block blocks, int forwards_and_back) {
+__kernel void correct_between_blocks(PANEL_GRID, Block blocks, int forwards_and_back) {
   const PanelGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
   if (!block->joins) return;
@@ -24,8 +24,8 @@ __kernel void correct_between_blocks(SHEET, Block blocks, int forwards_and_back)
 }
 
 /* Nodes at joints are where they belong after step_joints only. */
-__kernel void correct_blocks(SHEET, Block blocks, __global const int* at_joint, int backwards, int forwards,
-                             int move) {
+__kernel void correct_blocks(PANEL_GRID, Block blocks, __global const int* at_joint, int backwards,
+                             int forwards, int move) {
   const PanelGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
   if (backwards) correct_block(block, 0, &grid);

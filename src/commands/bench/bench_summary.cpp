@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
 
-#include "output/tables/github_json.h"
+#include "output/tables/github_table.h"
 #include "output/tables/listing.h"
 #include "output/tables/ratio_mark.h"
 #include "output/tables/result_table.h"
@@ -52,7 +51,7 @@ std::string remarks(RowPointers rows, const Table& table, int threads) {
 }  // namespace
 
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads) {
-  if (format == SummaryFormat::github) return json_text(github_json(rows));
+  if (format == SummaryFormat::github) return table_json_text(github_table(rows));
   const std::vector<const ResultRow*> pointers = pointers_to(rows);
   const auto marked = [](Cell cell, std::string_view mark) {
     cell.suffix = mark;

@@ -9,7 +9,7 @@
 
 namespace mssim {
 
-/// How a bench prints its rows; `github` is github_json().
+/// How a bench prints its rows; `github` is github_table().
 enum class SummaryFormat : std::uint8_t { table, csv, json, github };
 
 /// The rows for a reader: the columns that answer "how fast, how right"; below a table, what is to know of

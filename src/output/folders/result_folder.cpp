@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -11,7 +10,7 @@
 #include "garment/output/garment_csv.h"
 #include "output/folders/provenance_file.h"
 #include "output/tables/benchmark_json.h"
-#include "output/tables/github_json.h"
+#include "output/tables/github_table.h"
 #include "output/tables/markdown.h"
 #include "output/tables/table_csv.h"
 #include "output/tables/table_json.h"
@@ -87,7 +86,7 @@ void ResultFolder::write(std::span<const ResultRow> rows) const {
   std::vector<File> files{{samples_name, samples_csv(rows)}};
   if (std::string garment = garment_csv(rows); !garment.empty())
     files.push_back({garment_name, std::move(garment)});
-  files.push_back({benchmark_name, json_text(benchmark_json(rows, provenance_))});
+  files.push_back({benchmark_name, benchmark_json(rows, provenance_)});
   for (const ResultTable& table : tables_(rows, provenance_)) {
     if (std::ranges::find(table_names, table.name) == table_names.end())
       throw std::invalid_argument("the table " + table.name + " is not in table_names");
@@ -98,7 +97,7 @@ void ResultFolder::write(std::span<const ResultRow> rows) const {
 }
 
 void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
-  write_file_atomically(folder_ / github_name, json_text(github_json(rows)));
+  write_file_atomically(folder_ / github_name, table_json_text(github_table(rows)));
 }
 
 void ResultFolder::write(std::span<const StructureRow> rows) const {

@@ -39,7 +39,7 @@ class ResultFolder {
   /// a number that is not finite and a table that is not in table_names, then before any file is touched.
   void write(std::span<const ResultRow> rows) const;
 
-  /// Writes github.json (github_json.h). Throws WriteError.
+  /// Writes github.json (github_table.h). Throws WriteError.
   void write_for_github(std::span<const ResultRow> rows) const;
 
   /// Writes table2.csv and table2.md. Throws WriteError.

@@ -1,10 +1,12 @@
 #include "output/tables/benchmark_json.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "output/tables/table_json.h"
 #include "statistics/statistics.h"
 
 namespace mssim {
@@ -69,7 +71,7 @@ std::vector<Aggregate> aggregates_of(std::span<const double> samples_ms) {
 
 }  // namespace
 
-ordered_json benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance) {
+std::string benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance) {
   ordered_json benchmarks = ordered_json::array();
   std::size_t family = 0;
   for (const ResultRow& row : rows) {
@@ -95,7 +97,7 @@ ordered_json benchmark_json(std::span<const ResultRow> rows, const Provenance& p
     }
     ++family;
   }
-  return {{"context", context_of(provenance)}, {"benchmarks", std::move(benchmarks)}};
+  return json_text({{"context", context_of(provenance)}, {"benchmarks", std::move(benchmarks)}});
 }
 
 }  // namespace mssim

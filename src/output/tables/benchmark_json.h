@@ -1,7 +1,7 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <span>
+#include <string>
 
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
@@ -15,6 +15,6 @@ namespace mssim {
 /// real_time is nanoseconds per step and iterations the steps of a sample. The schema demands a cpu_time;
 /// the harness measures wall-clock time only, so it is given as real_time again, and `context` says so. The
 /// host has no name here. Throws std::invalid_argument for a time that is not finite.
-nlohmann::ordered_json benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance);
+std::string benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance);
 
 }  // namespace mssim

@@ -1,7 +1,5 @@
 #include "output/tables/listing.h"
 
-#include <nlohmann/json.hpp>
-
 #include "output/tables/table_csv.h"
 #include "output/tables/table_json.h"
 #include "output/tables/table_text.h"
@@ -11,9 +9,9 @@ namespace mssim {
 std::string to_text(const Table& table, ListingFormat format) {
   switch (format) {
     case ListingFormat::csv:
-      return table_csv(table, [](double number) { return nlohmann::ordered_json(number).dump(); });
+      return table_csv(table, json_number);
     case ListingFormat::json:
-      return json_text(table_json(table));
+      return table_json_text(table);
     case ListingFormat::table:
       break;
   }

@@ -9,6 +9,11 @@ namespace mssim {
 
 /// An array of an object a row, whose keys are the columns; nothing is null.
 nlohmann::ordered_json table_json(const Table& table);
+/// The same as text.
+std::string table_json_text(const Table& table);
+
+/// A real as JSON spells it: with a point or an exponent.
+std::string json_number(double number);
 
 /// JSON as mssim writes it: indented by two, with a line feed at the end. Bytes that are no UTF-8 (a file's
 /// name may hold any) are replaced.

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 
 #include "bench/results/result.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 
-/// The rows that are ok as github-action-benchmark reads them ("customSmallerIsBetter"): a list of name
+/// The rows that are ok as github-action-benchmark reads them from JSON ("customSmallerIsBetter"): name
 /// (scene/backend/integrator), unit, value (median) and range (the 95 % interval of the median), with device
 /// and threads as `extra`.
-nlohmann::ordered_json github_json(std::span<const ResultRow> rows);
+Table github_table(std::span<const ResultRow> rows);
 
 }  // namespace mssim
