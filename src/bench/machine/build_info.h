@@ -10,7 +10,7 @@ struct BuildInfo {
   std::string commit;      ///< 40 hex digits, or "unknown" when built outside a git repository
   bool dirty = false;      ///< the program's sources differed from that commit
   std::string compiler;    ///< name and version, for example "GNU 12.2.0"
-  std::string flags;       ///< given to the compiler for every file of the program
+  std::string flags;       ///< given to the compiler for all that is timed
   std::string build_type;  ///< CMake's, for example "Release"
 };
 
