@@ -135,7 +135,7 @@ wait "$process" || status=$?
 [ "$(rounds piped)" = '1 1 ' ] || fail "a closed pipe costs results"
 whole piped
 status=0
-"$mssim" list scenes >&- 2>err || status=$?
+"$mssim" list methods >&- 2>err || status=$?
 [ "$status" -eq 4 ] || fail "a closed stdout gives exit status $status"
 grep -q 'standard output could not be written' err || fail "a closed stdout: $(cat err)"
 

@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# What mssim bench says of its own time and of the machine's limits. A neighbour would spoil it: nothing runs beside it.
+# What mssim bench writes, and what it says of its own time and of the machine's limits. A neighbour would spoil it: nothing
+# runs beside it.
 # $1: mssim, $2: the source folder
 set -euo pipefail
 mssim=$1
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
+
+# column NAME: of the results
+column() { column_of "$work/results/timings.csv" "$1"; }
 
 start=$(date +%s%N)
 "$mssim" bench --scene cloth2500,cloth4900 --backend serial,opencl --integrator semi-euler --threads 1 --time-budget 8 >"$work/out" 2>"$work/err" ||
@@ -12,8 +16,18 @@ start=$(date +%s%N)
 spent=$((($(date +%s%N) - start) / 1000000))
 [ "$spent" -ge 7200 ] && [ "$spent" -le 8800 ] || fail "a time budget of 8 s was $spent ms"
 
-"$mssim" bench --scene cloth2500 --rounds 2 --threads 2 --out "$work/results" >"$work/out" 2>"$work/err" ||
+# A bench of every backend and integrator: what it writes, and how near it comes to the limits.
+"$mssim" bench --scene cloth2500 --rounds 3 --threads 2 --trace --out "$work/results" >"$work/out" 2>"$work/err" ||
   fail "a bench exits with $?: $(cat "$work/err")"
-[ "$(column_of "$work/results/timings.csv" roofline_fraction | awk '$1 > 0 && $1 <= 1.05' | wc -l)" -eq 15 ] ||
+cat "$work/out"
+[ "$(column nodes | sort -u)" = 2500 ] || fail "nodes"
+[ "$(column springs_published | sort -u)" = 29004 ] || fail "springs"
+[ "$(column verified | grep -c true)" -eq 15 ] || fail "not 15 verified rows"
+for file in timings.csv samples.csv table1.csv table1.md benchmark.json provenance.json; do
+  [ -s "$work/results/$file" ] || fail "$file is missing"
+done
+[ "$(find "$work/results/traces" -name '*.h5' | wc -l)" -eq 15 ] || fail "not 15 traces"
+[ "$(awk -F, 'NR > 1' "$work/results/samples.csv" | wc -l)" -eq 45 ] || fail "not 45 samples"
+[ "$(column roofline_fraction | awk '$1 > 0 && $1 <= 1.05' | wc -l)" -eq 15 ] ||
   fail "not 15 rows have a fraction of the machine's limit: $(cat "$work/results/timings.csv")"
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
