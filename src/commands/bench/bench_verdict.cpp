@@ -29,13 +29,13 @@ std::vector<std::string> reasons(const std::vector<ResultRow>& rows, IsBad is_ba
 
 }  // namespace
 
-BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& backends,
-                        const std::vector<std::string>& integrators) {
+BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& asked_backends,
+                        const std::vector<std::string>& asked_integrators) {
   BenchVerdict verdict{exit_not_verified, reasons(rows, is_wrong)};
   if (!verdict.reasons.empty()) return verdict;
   verdict = {exit_unavailable, reasons(rows, [&](const ResultRow& row) {
-               return is_missed(row, backends, &ResultRow::backend, rows) ||
-                      is_missed(row, integrators, &ResultRow::integrator, rows);
+               return is_missed(row, asked_backends, &ResultRow::backend, rows) ||
+                      is_missed(row, asked_integrators, &ResultRow::integrator, rows);
              })};
   if (verdict.reasons.empty()) verdict.exit_code = exit_ok;
   return verdict;

@@ -15,8 +15,8 @@ struct BenchVerdict {
   std::vector<std::string> reasons;  ///< a sentence for each row that led to it
 };
 
-/// `backends` and `integrators` are those that were asked for by name.
-BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& backends,
-                        const std::vector<std::string>& integrators);
+/// `asked_backends` and `asked_integrators`: by name.
+BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& asked_backends,
+                        const std::vector<std::string>& asked_integrators);
 
 }  // namespace mssim

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view baseline_configuration = "cpu-only";
 
-constexpr std::string_view how_to_read =
+constexpr std::string_view how_to_read_paper_table =
     "Milliseconds per step; in brackets how many times as fast as one thread. *Published* lines are the "
     "paper's numbers, from its authors' mobile device, compared with its *CPU only*; **measured** lines are "
     "ours, medians, compared with `serial`. Springs are counted as in the paper: ";
@@ -118,7 +118,7 @@ class Page {
   Document made() const {
     Document page{Heading{1, std::string(published_.info().title) + ", published and measured"},
                   measured_on(measured_.rows(), provenance_),
-                  Paragraph{std::string(how_to_read).append(published_.info().springs_counted) +
+                  Paragraph{std::string(how_to_read_paper_table).append(published_.info().springs_counted) +
                             " the unique ones, by inference from its numbers."},
                   Paragraph{std::string(why_frozen) + (has_frozen() ? "" : " (`--integrator all`)") +
                             " hold them as the paper seems to, and reproduce its ratio of costs."}};

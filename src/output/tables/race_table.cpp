@@ -11,7 +11,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::string_view how_to_read =
+constexpr std::string_view how_to_read_races =
     "Springs that threads process at the same time add to the forces of nodes that they share: the data race "
     "of Figure 1 of Hong et al. (2016). Each line is a method to avoid it. All but `serial` and `openmp` "
     "step "
@@ -20,13 +20,13 @@ constexpr std::string_view how_to_read =
     "the "
     "median of paired samples. *Same bits* says whether a run repeated gives the very same numbers.";
 
-const std::vector<Column> columns{{"method"},
-                                  {"ms per step", Align::right},
-                                  {"interval", Align::right},
-                                  {"ratio", Align::right, "×"},
-                                  {"extra memory", Align::left},
-                                  {"springs computed", Align::left},
-                                  {"same bits", Align::left}};
+const std::vector<Column> race_columns{{"method"},
+                                       {"ms per step", Align::right},
+                                       {"interval", Align::right},
+                                       {"ratio", Align::right, "×"},
+                                       {"extra memory", Align::left},
+                                       {"springs computed", Align::left},
+                                       {"same bits", Align::left}};
 
 struct Line {
   const ResultRow* row;
@@ -87,14 +87,14 @@ Document page_of(const std::vector<Line>& lines, const std::vector<RaceLegend>& 
   std::vector<const ResultRow*> rows;
   for (const Line& line : lines) rows.push_back(line.row);
   Document page{Heading{1, "Methods to avoid the data race of the springs"}, measured_on(rows, provenance),
-                Paragraph{std::string(how_to_read)}};
+                Paragraph{std::string(how_to_read_races)}};
   const ResultRow* block = nullptr;
   for (const Line& line : lines) {
     const ResultRow& row = *line.row;
     if (!block || block->scene != row.scene || block->integrator != row.integrator)
       page.insert(page.end(), {Heading{2, row.scene + ", " + row.integrator + ": " + grouped(row.nodes) +
                                               " nodes, " + grouped(row.springs_unique) + " springs"},
-                               Table{columns, {}}});
+                               Table{race_columns, {}}});
     block = &row;
     std::get<Table>(page.back()).rows.push_back(cells_of(line, rows, provenance));
   }

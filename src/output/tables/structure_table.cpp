@@ -9,7 +9,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::string_view how_to_read =
+constexpr std::string_view how_to_read_structure =
     "Nodes and springs are what the mesh of the scene has, counted from its tetrahedra. The published counts "
     "of springs are three times the unique edges, by inference: all nine can be divided by three, a third of "
     "each fits a tetrahedral mesh of that many nodes, and the packed unit of the paper's Figure 6 holds "
@@ -77,7 +77,8 @@ Document page_of(const std::vector<Match>& matches, const Provenance& provenance
                           row->smallest_dihedral_angle_deg, match.same() ? Cell(true) : strong(false)});
   }
   return {Heading{1, "Bodies: Table 2 of Hong et al. (2016), published and built"},
-          Paragraph{made_by(provenance) + "."}, Paragraph{std::string(how_to_read)}, std::move(table)};
+          Paragraph{made_by(provenance) + "."}, Paragraph{std::string(how_to_read_structure)},
+          std::move(table)};
 }
 
 }  // namespace

@@ -41,9 +41,9 @@ std::string dimensions_of(std::span<const hsize_t> shape) {
 }
 
 /// A dataset of the trace as XDMF names it; `number` is its type's name, of so many bytes.
-std::string data_item(const std::string& trace, const std::string& dataset, const std::string& dimensions,
+std::string data_item(const std::string& trace, const std::string& dataset, const std::string& shape,
                       std::string_view number, std::size_t bytes = sizeof(float)) {
-  std::string item = "<DataItem Dimensions=\"" + dimensions + "\" NumberType=\"";
+  std::string item = "<DataItem Dimensions=\"" + shape + "\" NumberType=\"";
   item += number;
   return item + "\" Precision=\"" + std::to_string(bytes) + "\" Format=\"HDF\">" + trace + ":" + dataset +
          "</DataItem>";
@@ -173,8 +173,8 @@ std::string xdmf_panel_dataset(const XdmfPart& part) {
 
 void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) {
   const std::string action = "mapping frames for XDMF";
-  constexpr hsize_t dimensions = 3;
-  const std::array<hsize_t, 3> all{frames, mesh.nodes, dimensions};
+  constexpr hsize_t axes = 3;
+  const std::array<hsize_t, 3> all{frames, mesh.nodes, axes};
   const hid_t type = mesh.in_double ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
   const Hdf5Space source(H5Screate_simple(3, all.data(), nullptr), action);
   create_group(trace, "/xdmf");
@@ -186,8 +186,8 @@ void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) 
       if (part.panel) create_group(trace, folder_of(vector, part));
       std::vector<hsize_t> shape = part.shape;
       const hsize_t nodes = std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
-      shape.push_back(dimensions);
-      const std::array<hsize_t, 3> count{1, nodes, dimensions};
+      shape.push_back(axes);
+      const std::array<hsize_t, 3> count{1, nodes, axes};
       const Hdf5Space target(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), action);
       for (std::size_t frame = 0; frame < frames; ++frame) {
         const std::array<hsize_t, 3> start{frame, part.first_node, 0};

@@ -7,24 +7,24 @@
 namespace mssim {
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 /// A whole number without a decimal point.
-json number(double value) {
-  return value == std::trunc(value) ? json(static_cast<std::int64_t>(value)) : json(value);
+ordered_json number(double value) {
+  return value == std::trunc(value) ? ordered_json(static_cast<std::int64_t>(value)) : ordered_json(value);
 }
 
-json numbers(const char* type, const Range& range) {
+ordered_json numbers(const char* type, const Range& range) {
   return {{"type", type},
           {range.minimum_excluded ? "exclusiveMinimum" : "minimum", number(range.minimum)},
           {"maximum", number(range.maximum)}};
 }
 
-json array_of(json items, std::size_t least, std::size_t most) {
+ordered_json array_of(ordered_json items, std::size_t least, std::size_t most) {
   return {{"type", "array"}, {"minItems", least}, {"maxItems", most}, {"items", std::move(items)}};
 }
 
-json words(std::span<const std::string_view> known) { return {{"type", "string"}, {"enum", known}}; }
+ordered_json words(std::span<const std::string_view> known) { return {{"type", "string"}, {"enum", known}}; }
 
 /// Describes one object.
 class SchemaWriter final : public FieldVisitor {
@@ -65,14 +65,14 @@ class SchemaWriter final : public FieldVisitor {
     add(field, Presence::required, words(names));
     for (const Section& section : sections) {
       object(section.field, Presence::optional, section.fields);
-      const json present{{"required", {section.field.key}}};
+      const ordered_json present{{"required", {section.field.key}}};
       conditions_.push_back({{"if", {{"properties", {{field.key, {{"const", section.field.key}}}}}}},
                              {"then", present},
                              {"else", {{"not", present}}}});
     }
   }
   void list(const Field& field, Presence presence, std::size_t most, const Elements& elements) override {
-    json element{{"description", elements.description}};
+    ordered_json element{{"description", elements.description}};
     element.update(SchemaWriter(elements.fields).schema());
     add(field, presence, array_of(std::move(element), 1, most));
   }
@@ -80,30 +80,31 @@ class SchemaWriter final : public FieldVisitor {
     add(field, presence, SchemaWriter(fields).schema());
   }
 
-  json schema() const {
-    json schema{{"type", "object"},
-                {"additionalProperties", false},
-                {"required", required_},
-                {"properties", properties_}};
+  ordered_json schema() const {
+    ordered_json schema{{"type", "object"},
+                        {"additionalProperties", false},
+                        {"required", required_},
+                        {"properties", properties_}};
     if (!conditions_.empty()) schema["allOf"] = conditions_;
     return schema;
   }
 
  private:
-  void add(const Field& field, Presence presence, const json& schema) {
-    json& property = properties_[std::string(field.key)];
+  void add(const Field& field, Presence presence, const ordered_json& schema) {
+    ordered_json& property = properties_[std::string(field.key)];
     property = {{"description", field.description}};
     property.update(schema);
     if (presence == Presence::required) required_.push_back(field.key);
   }
 
-  json required_ = json::array(), properties_ = json::object(), conditions_ = json::array();
+  ordered_json required_ = ordered_json::array(), properties_ = ordered_json::object(),
+               conditions_ = ordered_json::array();
 };
 
 }  // namespace
 
 std::string json_schema(std::string_view title, std::string_view description, const FieldList& fields) {
-  json schema{
+  ordered_json schema{
       {"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}, {"description", description}};
   schema.update(SchemaWriter(fields).schema());
   return schema.dump(2) + '\n';
