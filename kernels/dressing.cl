@@ -1,5 +1,5 @@
 /* What the kernels that dress a garment (dressing_step.cl, dressing_joints.cl) do with its nodes, which lie
- * in rows (PanelGrid in src/garment/stepping/panel_grid.h). An array of vectors is three planes, x, y and
+ * in rows (GarmentGrid in src/garment/stepping/garment_grid.h). An array of vectors is three planes, x, y and
  * z.
  *
  * A work-group takes a block of rows. On a GPU its work-items share the nodes, one a Real, and meet at
@@ -21,7 +21,7 @@ typedef struct {
   __global const float* stiffness;    /* [direction][row] N/m */
   Rules rules;
   int plane; /* floats from one component, or direction, to the next */
-} PanelGrid;
+} GarmentGrid;
 
 #if MSSIM_LANES == 1
 /* What the items of the group have written so far is there for all of them. */
@@ -86,7 +86,7 @@ MSSIM_INLINE Vector spring_force(Vector away, Real rest, float stiffness) {
 }
 
 /* Loop 1: of each direction the spring that a node owns, and the one that ends at it. */
-MSSIM_INLINE Vector spring_forces(Tile tile, Block block, const PanelGrid* grid) {
+MSSIM_INLINE Vector spring_forces(Tile tile, Block block, const GarmentGrid* grid) {
   const Vector own = load_vector(grid->position + tile.at, grid->plane);
   Vector sum = no_vector();
   for (int d = 0; d < stencil_directions; ++d) {
@@ -128,7 +128,7 @@ MSSIM_INLINE Mask touch_body(Block block, __global const float* pixels, float fr
 
 /* Loops 1, 2 and 4 for a tile. */
 MSSIM_INLINE void update_tile(Tile tile, Block block, __global const float* pixels, int draping,
-                              const PanelGrid* grid) {
+                              const GarmentGrid* grid) {
   Rules rules = grid->rules;
   const int plane = grid->plane;
   __constant struct DressingPhase* phase = draping ? &rules->draping : &rules->seaming;
@@ -152,7 +152,7 @@ MSSIM_INLINE void update_tile(Tile tile, Block block, __global const float* pixe
  * together.
  *
  * Springs of a direction, from a tile to rows below, which have no node in common. */
-MSSIM_INLINE void correct_springs(int at, int direction, Block block, const PanelGrid* grid) {
+MSSIM_INLINE void correct_springs(int at, int direction, Block block, const GarmentGrid* grid) {
   const int plane = grid->plane, far_at = at + block->stride + stencil_columns[direction];
   const Vector d =
       minus(load_vector_anywhere(grid->moved + far_at, plane), load_vector(grid->moved + at, plane));
@@ -171,7 +171,7 @@ MSSIM_INLINE void correct_springs(int at, int direction, Block block, const Pane
 }
 
 /* One spring along a row that is longer than its limit. */
-MSSIM_INLINE void correct_along_row(int at, const PanelGrid* grid) {
+MSSIM_INLINE void correct_along_row(int at, const GarmentGrid* grid) {
   const int plane = grid->plane;
   const Vector d = minus(load_one(grid->moved + at + 1, plane), load_one(grid->moved + at, plane));
   const Vector own = load_one(grid->velocity + at, plane), far = load_one(grid->velocity + at + 1, plane);
@@ -185,7 +185,7 @@ MSSIM_INLINE void correct_along_row(int at, const PanelGrid* grid) {
 
 /* The springs along rows, of a row one after the other: MSSIM_LANES of them are looked at together, and those
  * that are too long, few mostly, are corrected in order. */
-MSSIM_INLINE void correct_rows(Block block, int forwards, const PanelGrid* grid) {
+MSSIM_INLINE void correct_rows(Block block, int forwards, const GarmentGrid* grid) {
   const int plane = grid->plane, tiles = tiles_of_row(block);
   for (int row = item; row < block->rows; row += items)
     for (int i = 0; i < tiles; ++i) {
@@ -206,7 +206,7 @@ MSSIM_INLINE void correct_rows(Block block, int forwards, const PanelGrid* grid)
 }
 
 /* The springs of a direction between two rows, the upper of which is a block's, or stands before it (-1). */
-MSSIM_INLINE void correct_between_rows(Block block, int row, int direction, const PanelGrid* grid) {
+MSSIM_INLINE void correct_between_rows(Block block, int row, int direction, const GarmentGrid* grid) {
   const int start = block->first + row * block->stride;
   for (int column = item * MSSIM_LANES; column < block->columns; column += items * MSSIM_LANES)
     correct_springs(start + column, direction, block, grid);
@@ -214,7 +214,7 @@ MSSIM_INLINE void correct_between_rows(Block block, int row, int direction, cons
 
 /* The springs of a direction between all rows of a block. On a GPU an item takes a line of them, from the
  * first row to the last, which has no node in common with another line. */
-MSSIM_INLINE void correct_diagonals(Block block, int direction, int forwards, const PanelGrid* grid) {
+MSSIM_INLINE void correct_diagonals(Block block, int direction, int forwards, const GarmentGrid* grid) {
   const int rows = block->rows - 1;
 #if MSSIM_LANES == 1
   for (int line = item; line < block->columns + rows; line += items)
@@ -230,7 +230,7 @@ MSSIM_INLINE void correct_diagonals(Block block, int direction, int forwards, co
 }
 
 /* A sweep of loop 5 over the springs within a block, in the order of correction_order.h. */
-MSSIM_INLINE void correct_block(Block block, int forwards, const PanelGrid* grid) {
+MSSIM_INLINE void correct_block(Block block, int forwards, const GarmentGrid* grid) {
   for (int i = 0; i < limited_directions; ++i) {
     const int direction = forwards ? i : limited_directions - 1 - i;
     if (direction == 0)
@@ -242,7 +242,7 @@ MSSIM_INLINE void correct_block(Block block, int forwards, const PanelGrid* grid
 }
 
 /* The same over the springs between a block and the one before it. */
-MSSIM_INLINE void correct_seam_of_blocks(Block block, int forwards, const PanelGrid* grid) {
+MSSIM_INLINE void correct_seam_of_blocks(Block block, int forwards, const GarmentGrid* grid) {
   for (int i = 1; i < limited_directions; ++i) {
     correct_between_rows(block, -1, forwards ? i : limited_directions - i, grid);
     block_barrier();
@@ -257,7 +257,7 @@ MSSIM_INLINE Vector moved_on(Vector x, Vector* v, Mask is_free, Rules rules) {
 }
 
 /* What every kernel takes first. */
-#define PANEL_GRID                                                                              \
+#define GARMENT_GRID                                                                            \
   __constant struct DressingParameters *rules, __global float *position, __global float *moved, \
       __global float *velocity, __global float *pull, __global const float *inverse_mass,       \
       __global float *free, __global const float *rest, __global const float *stiffness,        \

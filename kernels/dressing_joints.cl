@@ -29,7 +29,7 @@ MSSIM_INLINE Vector gap_of(AtJoint at, Joint joint) {
                       joint_gap(at.node.z, at.first.z, at.second.z, fraction)};
   return gap;
 }
-MSSIM_INLINE struct JointEnds ends_of(Joint joint, const PanelGrid* grid) {
+MSSIM_INLINE struct JointEnds ends_of(Joint joint, const GarmentGrid* grid) {
   return joint_ends((joint->fraction), (grid->inverse_mass[joint->node]), (grid->inverse_mass[joint->first]),
                     (grid->inverse_mass[joint->second]));
 }
@@ -48,7 +48,7 @@ MSSIM_INLINE void add_at_joint(struct JointEnds ends, Vector impulse, __global f
 
 /* After loop 5, which would open it again: the ends of a sewn joint move as one but for what closes its gap.
  */
-MSSIM_INLINE void close_joint(Joint joint, const PanelGrid* grid) {
+MSSIM_INLINE void close_joint(Joint joint, const GarmentGrid* grid) {
   const struct JointEnds ends = ends_of(joint, grid);
   const Real mobility = joint_mobility(ends, (joint->fraction));
   if (mobility == 0.0f) return;
@@ -63,7 +63,7 @@ MSSIM_INLINE void close_joint(Joint joint, const PanelGrid* grid) {
 }
 
 /* Loop 3 for an open joint: draws it together, or sews it where it is near enough; returns whether it has. */
-MSSIM_INLINE int pull_joint(Joint joint, int steps, const PanelGrid* grid) {
+MSSIM_INLINE int pull_joint(Joint joint, int steps, const GarmentGrid* grid) {
   Rules rules = grid->rules;
   const Vector gap = gap_of(load_at_joint(grid->position, joint, grid->plane), joint);
   const Real distance = sqrt(dot_product(gap, gap));
@@ -76,7 +76,7 @@ MSSIM_INLINE int pull_joint(Joint joint, int steps, const PanelGrid* grid) {
 
 /* Loop 3 of the step that comes: sews the joints that are near enough, and sets what the others do. */
 MSSIM_INLINE void pull_joints(const Joints* joints, int steps, __global struct DressingState* state,
-                              const PanelGrid* grid) {
+                              const GarmentGrid* grid) {
   Rules rules = grid->rules;
   for (int i = item; i < rules->joint_nodes; i += items)
     store_one(no_vector(), grid->pull + joints->nodes[i], grid->plane);
@@ -92,7 +92,7 @@ MSSIM_INLINE void pull_joints(const Joints* joints, int steps, __global struct D
   }
 }
 
-MSSIM_INLINE void close_sewn_joints(const Joints* joints, const PanelGrid* grid) {
+MSSIM_INLINE void close_sewn_joints(const Joints* joints, const GarmentGrid* grid) {
   for (int level = 0; level < grid->rules->joint_levels; ++level) {
     for (int j = (level > 0 ? joints->level_ends[level - 1] : 0) + item; j < joints->level_ends[level];
          j += items)
@@ -108,15 +108,15 @@ MSSIM_INLINE void close_sewn_joints(const Joints* joints, const PanelGrid* grid)
   { all, level_ends, nodes, sewn }
 
 /* Before the first step. */
-__kernel void begin_joints(PANEL_GRID, JOINTS) {
-  const PanelGrid grid = grid_of_arguments;
+__kernel void begin_joints(GARMENT_GRID, JOINTS) {
+  const GarmentGrid grid = grid_of_arguments;
   const Joints joints = joints_of_arguments;
   pull_joints(&joints, 0, state, &grid);
 }
 
 /* The end of a step. */
-__kernel void step_joints(PANEL_GRID, JOINTS) {
-  const PanelGrid grid = grid_of_arguments;
+__kernel void step_joints(GARMENT_GRID, JOINTS) {
+  const GarmentGrid grid = grid_of_arguments;
   const Joints joints = joints_of_arguments;
   close_sewn_joints(&joints, &grid);
   for (int i = item; i < rules->joint_nodes; i += items) {

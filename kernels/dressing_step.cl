@@ -6,8 +6,8 @@
  * Needs dressing.cl.
  */
 
-__kernel void update_velocities(PANEL_GRID, Block blocks, __global const float* pixels, int correct) {
-  const PanelGrid grid = grid_of_arguments;
+__kernel void update_velocities(GARMENT_GRID, Block blocks, __global const float* pixels, int correct) {
+  const GarmentGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
   const int tiles = block->rows * tiles_of_row(block), draping = state->draping;
   for (int i = item; i < tiles; i += items) update_tile(tile_at(i, block), block, pixels, draping, &grid);
@@ -15,8 +15,8 @@ __kernel void update_velocities(PANEL_GRID, Block blocks, __global const float* 
   if (correct) correct_block(block, 1, &grid);
 }
 
-__kernel void correct_between_blocks(PANEL_GRID, Block blocks, int forwards_and_back) {
-  const PanelGrid grid = grid_of_arguments;
+__kernel void correct_between_blocks(GARMENT_GRID, Block blocks, int forwards_and_back) {
+  const GarmentGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
   if (!block->joins) return;
   correct_seam_of_blocks(block, 1, &grid);
@@ -24,9 +24,9 @@ __kernel void correct_between_blocks(PANEL_GRID, Block blocks, int forwards_and_
 }
 
 /* Nodes at joints are where they belong after step_joints only. */
-__kernel void correct_blocks(PANEL_GRID, Block blocks, __global const int* at_joint, int backwards,
+__kernel void correct_blocks(GARMENT_GRID, Block blocks, __global const int* at_joint, int backwards,
                              int forwards, int move) {
-  const PanelGrid grid = grid_of_arguments;
+  const GarmentGrid grid = grid_of_arguments;
   Block block = blocks + get_group_id(0);
   if (backwards) correct_block(block, 0, &grid);
   if (forwards) correct_block(block, 1, &grid);

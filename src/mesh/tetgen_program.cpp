@@ -29,8 +29,8 @@ std::optional<fs::path> find_in_path(const std::string& program) {
 /// TetGen's own shared libraries, which hold most of it in Debian's package. Asked of the dynamic loader the
 /// way ldd does: it then prints what it would load, one "NAME => FILE (ADDRESS)" a line, and runs nothing.
 std::vector<fs::path> libraries_of(const fs::path& executable) {
-  constexpr unsigned cpu_seconds = 5;
-  const ChildResult listing = run({executable, {}, {"LD_TRACE_LOADED_OBJECTS=1"}, "/", cpu_seconds});
+  constexpr unsigned seconds = 5;
+  const ChildResult listing = run({executable, {}, {"LD_TRACE_LOADED_OBJECTS=1"}, "/", seconds});
   std::vector<fs::path> libraries;
   std::istringstream lines(listing.output);
   for (std::string line; std::getline(lines, line);) {

@@ -100,7 +100,7 @@ struct ShapeKind {
   Field section;
   void (*visit_fields)(FieldVisitor& fields, BodySpec& body);
 };
-constexpr std::array<ShapeKind, 6> kinds{{
+constexpr std::array<ShapeKind, 6> shape_kinds{{
     {{"box", "A box, its sides along the axes, its surface cut into squares of two triangles each."},
      visit_box},
     {{"sphere", "A sphere, its surface a finer icosahedron."}, visit_sphere},
@@ -110,7 +110,7 @@ constexpr std::array<ShapeKind, 6> kinds{{
      visit_surface_file},
     {{"scene", "The shape of the first body of another scene."}, visit_scene_shape},
 }};
-static_assert(kinds.size() == std::variant_size_v<BodyShape>);
+static_assert(shape_kinds.size() == std::variant_size_v<BodyShape>);
 
 /// The scene whose shape is meant; a path that is not absolute starts at `folder`.
 SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folder) {
@@ -173,7 +173,7 @@ struct LeastCounter {
 
 void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
   std::vector<Section> sections;
-  for (const ShapeKind& kind : kinds)
+  for (const ShapeKind& kind : shape_kinds)
     sections.push_back({kind.section, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
   fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
 }

@@ -49,7 +49,7 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
   for (const SceneKind& kind : scene_kinds())
     kinds.push_back(
         {{kind.name, kind.description}, [&](FieldVisitor& body) { kind.visit_fields(body, spec); }});
-  fields.one_of({"kind", "The scene kind, which is also the key of the section that describes its body."},
+  fields.one_of({"kind", "The scene kind, which is also the key of the section that describes its content."},
                 kinds);
   fields.text({"description", "One line for listings."}, Presence::required, spec.description);
   fields.number_or_auto({"dt_s",

@@ -17,7 +17,7 @@ BuiltScene without_note(const SceneSpec& spec) {
   return {build(spec), ""};
 }
 
-constexpr std::array<SceneKind, 3> kinds{{
+constexpr std::array<SceneKind, 3> table{{
     // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
     // both of its ends.
     {"cloth",
@@ -35,7 +35,7 @@ constexpr std::array<SceneKind, 3> kinds{{
      visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, garment_counts,
      build_garment_scene},
 }};
-static_assert(kinds.size() == std::variant_size_v<decltype(SceneSpec::content)>);
+static_assert(table.size() == std::variant_size_v<decltype(SceneSpec::content)>);
 
 SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
   if (const auto per_spring = kind_of(spec).published_per_spring)
@@ -47,9 +47,9 @@ std::string pointer_to_kind(const SceneSpec& spec) { return "/" + std::string(ki
 
 }  // namespace
 
-std::span<const SceneKind> scene_kinds() { return kinds; }
+std::span<const SceneKind> scene_kinds() { return table; }
 
-const SceneKind& kind_of(const SceneSpec& spec) { return kinds.at(spec.content.index()); }
+const SceneKind& kind_of(const SceneSpec& spec) { return table.at(spec.content.index()); }
 
 std::optional<SceneCounts> stated_counts(const SceneSpec& spec) {
   const auto stated = kind_of(spec).stated(spec);

@@ -8,26 +8,21 @@
 
 #include "statistics/midranks.h"
 #include "statistics/rank_distribution.h"
+#include "statistics/statistics.h"
 
 namespace mssim {
 namespace {
 
-void require_values(std::span<const double> values) {
+void require_samples(std::span<const double> values) {
   if (values.empty() || !std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
     throw std::invalid_argument("a rank sum needs finite values in both samples");
-}
-
-std::vector<double> ascending(std::span<const double> values) {
-  std::vector<double> sorted(values.begin(), values.end());
-  std::ranges::sort(sorted);
-  return sorted;
 }
 
 }  // namespace
 
 RankTest rank_sum_test(std::span<const double> x, std::span<const double> y) {
-  require_values(x);
-  require_values(y);
+  require_samples(x);
+  require_samples(y);
   std::vector<double> both(x.begin(), x.end());
   both.insert(both.end(), y.begin(), y.end());
   const Midranks pooled = midranks(both);
@@ -43,8 +38,8 @@ RankTest rank_sum_test(std::span<const double> x, std::span<const double> y) {
 }
 
 ShiftEstimate rank_sum_shift(std::span<const double> x, std::span<const double> y) {
-  require_values(x);
-  require_values(y);
+  require_samples(x);
+  require_samples(y);
   const std::vector<double> xs = ascending(x), ys = ascending(y);
   const auto differences_up_to = [&](double bound) {
     // A larger x needs a larger y, so that both samples are passed once.

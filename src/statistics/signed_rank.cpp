@@ -12,7 +12,7 @@
 namespace mssim {
 namespace {
 
-void require_values(std::span<const double> values) {
+void require_differences(std::span<const double> values) {
   if (values.empty() || !std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
     throw std::invalid_argument("signed ranks need finite values");
 }
@@ -20,7 +20,7 @@ void require_values(std::span<const double> values) {
 }  // namespace
 
 RankTest signed_rank_test(std::span<const double> differences) {
-  require_values(differences);
+  require_differences(differences);
   std::vector<double> values, sizes;
   for (const double difference : differences)
     if (difference != 0) {
@@ -41,7 +41,7 @@ RankTest signed_rank_test(std::span<const double> differences) {
 }
 
 ShiftEstimate signed_rank_shift(std::span<const double> differences, double error) {
-  require_values(differences);
+  require_differences(differences);
   std::vector<double> values(differences.begin(), differences.end());
   std::ranges::sort(values);
   const auto averages_up_to = [&](double bound) {

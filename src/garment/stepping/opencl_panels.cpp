@@ -8,7 +8,7 @@
 #include "backends/devices/program.h"
 #include "backends/interface/backend.h"
 #include "garment/stepping/dressing_rules.h"
-#include "garment/stepping/panel_grid.h"
+#include "garment/stepping/garment_grid.h"
 #include "garment/stepping/panel_stencil.h"
 
 namespace mssim {
@@ -53,10 +53,10 @@ DressingParameters parameters_of(const System& system, const DressingSettings& r
 }
 
 /// For each joint its level: after the levels of all joints before it that it has a node in common with.
-std::vector<std::size_t> levels_of(const std::vector<PanelGrid::Joint>& joints) {
+std::vector<std::size_t> levels_of(const std::vector<GarmentGrid::Joint>& joints) {
   std::map<std::size_t, std::size_t> next;  // the first level that is free at a node
   std::vector<std::size_t> levels;
-  for (const PanelGrid::Joint& joint : joints) {
+  for (const GarmentGrid::Joint& joint : joints) {
     const std::size_t level = std::max({next[joint.node], next[joint.first], next[joint.second]});
     next[joint.node] = next[joint.first] = next[joint.second] = level + 1;
     levels.push_back(level);
@@ -70,7 +70,7 @@ OpenclPanels::OpenclPanels(const System& system, double dt_s) {
   const auto& garment = std::get<Garment>(system.topology);
   if (garment.touching)
     throw Unsupported("opencl dresses without collisions between layers; serial and openmp have them");
-  const PanelGrid grid(system);
+  const GarmentGrid grid(system);
   const std::size_t plane = grid.inverse_mass.size();
   if (plane * panel_stencil.size() > std::numeric_limits<cl_int>::max())
     throw Unsupported(
@@ -85,7 +85,7 @@ OpenclPanels::OpenclPanels(const System& system, double dt_s) {
 
   std::vector<std::size_t> first_row;  // [panels] among the stiffnesses
   std::size_t rows = 0;
-  for (const PanelGrid::Panel& panel : grid.panels) {
+  for (const GarmentGrid::Panel& panel : grid.panels) {
     first_row.push_back(rows + rows_before);
     rows += rows_before + panel.rows;
   }
@@ -97,8 +97,8 @@ OpenclPanels::OpenclPanels(const System& system, double dt_s) {
                         stiffness.begin() + static_cast<std::ptrdiff_t>(d * rows + first_row[p]));
 
   std::map<const BodyMaps*, std::size_t> first_pixel;
-  for (const PanelGrid::Block& block : grid.blocks) {
-    const PanelGrid::Panel& panel = grid.panels[block.panel];
+  for (const GarmentGrid::Block& block : grid.blocks) {
+    const GarmentGrid::Panel& panel = grid.panels[block.panel];
     DressingBlock own{static_cast<int>(panel.first + block.begin * panel.stride),
                       static_cast<int>(block.end - block.begin),
                       static_cast<int>(panel.columns),
@@ -122,7 +122,7 @@ OpenclPanels::OpenclPanels(const System& system, double dt_s) {
   for (std::size_t level = 0; level < level_count; ++level) {
     for (std::size_t j = 0; j < levels.size(); ++j) {
       if (levels[j] != level) continue;
-      const PanelGrid::Joint& joint = grid.joints[j];
+      const GarmentGrid::Joint& joint = grid.joints[j];
       const mssim::Joint& rule = garment.joints[j];
       joints.push_back({static_cast<int>(joint.node), static_cast<int>(joint.first),
                         static_cast<int>(joint.second), joint.fraction, static_cast<float>(rule.length),

@@ -16,7 +16,7 @@ namespace mssim {
 
 /// A garment as the kernels of a dressing have it (kernels/dressing_parameters.h): what stays constant.
 struct OpenclPanels {
-  /// Throws Unsupported like PanelGrid, where layers touch each other and where the kernels' 32-bit offsets
+  /// Throws Unsupported like GarmentGrid, where layers touch each other and where the kernels' 32-bit offsets
   /// do not reach; std::invalid_argument where the springs are not those of the panels.
   OpenclPanels(const System& system, double dt_s);
 

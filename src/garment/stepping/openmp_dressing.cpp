@@ -17,7 +17,7 @@ class OpenMpDressing final : public DressingBackend {
       : kernel_(kernel),
         dressing_{system,
                   std::get<Garment>(system.topology),
-                  PanelGrid(system),
+                  GarmentGrid(system),
                   threads,
                   dt_s,
                   layer_collision(system, std::get<Garment>(system.topology), static_cast<int>(threads))} {

@@ -29,7 +29,7 @@ HWY_INLINE Mask is_elongated(Lanes length_squared, Lanes limit) {
 
 /// The springs of a direction between two rows of nodes, a vector of them side by side: no two have a node in
 /// common.
-HWY_INLINE void correct_between_rows(PanelGrid& grid, const PanelGrid::Panel& panel, std::size_t row,
+HWY_INLINE void correct_between_rows(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                                      std::size_t direction, const CorrectionRule<float>& rule) {
   const auto offset =
       static_cast<std::size_t>(static_cast<std::ptrdiff_t>(panel.stride) + panel_stencil[direction].columns);
@@ -54,7 +54,7 @@ HWY_INLINE void correct_between_rows(PanelGrid& grid, const PanelGrid::Panel& pa
 }
 
 /// One spring of a row that is longer than its limit, from the node at a float to the next.
-inline void correct_along_row(PanelGrid& grid, std::size_t at, const CorrectionRule<float>& rule) {
+inline void correct_along_row(GarmentGrid& grid, std::size_t at, const CorrectionRule<float>& rule) {
   const Vec3<float> d = grid.moved.at(at + 1) - grid.moved.at(at);
   const Vec3<float> own = grid.velocity.at(at), far = grid.velocity.at(at + 1);
   const float own_free = grid.free.data()[at], far_free = grid.free.data()[at + 1];
@@ -67,7 +67,7 @@ inline void correct_along_row(PanelGrid& grid, std::size_t at, const CorrectionR
 
 /// The springs along a row, one after the other: a vector of them is looked at together, and those that are
 /// too long, few mostly, are corrected in order.
-HWY_INLINE void correct_row(PanelGrid& grid, const PanelGrid::Panel& panel, std::size_t row,
+HWY_INLINE void correct_row(GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                             const CorrectionRule<float>& rule, bool forwards) {
   const std::size_t lanes = lane_count(), vectors = (panel.columns + lanes - 1) / lanes;
   for (std::size_t i = 0; i < vectors; ++i) {
@@ -86,9 +86,9 @@ HWY_INLINE void correct_row(PanelGrid& grid, const PanelGrid::Panel& panel, std:
 }
 
 /// The springs within a block.
-HWY_INLINE void correct_block(PanelGrid& grid, const PanelGrid::Block& block,
+HWY_INLINE void correct_block(GarmentGrid& grid, const GarmentGrid::Block& block,
                               const CorrectionRule<float>& rule, bool forwards) {
-  const PanelGrid::Panel& panel = grid.panels[block.panel];
+  const GarmentGrid::Panel& panel = grid.panels[block.panel];
   for (std::size_t i = 0; i < limited_directions; ++i) {
     const std::size_t direction = forwards ? i : limited_directions - 1 - i;
     const std::size_t rows =
@@ -104,9 +104,9 @@ HWY_INLINE void correct_block(PanelGrid& grid, const PanelGrid::Block& block,
 }
 
 /// The springs between a block and the one before it.
-HWY_INLINE void correct_seam_of_blocks(PanelGrid& grid, const PanelGrid::Block& block,
+HWY_INLINE void correct_seam_of_blocks(GarmentGrid& grid, const GarmentGrid::Block& block,
                                        const CorrectionRule<float>& rule, bool forwards) {
-  const PanelGrid::Panel& panel = grid.panels[block.panel];
+  const GarmentGrid::Panel& panel = grid.panels[block.panel];
   for (std::size_t i = 1; i < limited_directions; ++i)
     correct_between_rows(grid, panel, block.begin - 1, forwards ? i : limited_directions - i, rule);
 }

@@ -15,7 +15,7 @@
 #include "backends/vectors/lanes-inl.h"
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_rules.h"
-#include "garment/stepping/panel_grid.h"
+#include "garment/stepping/garment_grid.h"
 #include "garment/stepping/panel_stencil.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -47,8 +47,8 @@ struct StepRule {
 /// for each direction, with an empty vector on both sides.
 class ForceScratch {
  public:
-  explicit ForceScratch(const PanelGrid& grid) {
-    for (const PanelGrid::Panel& panel : grid.panels) widest_ = std::max(widest_, panel.stride);
+  explicit ForceScratch(const GarmentGrid& grid) {
+    for (const GarmentGrid::Panel& panel : grid.panels) widest_ = std::max(widest_, panel.stride);
     widest_ += 2 * side;
     forces_ = Float3Arrays(panel_stencil.size() * rows * widest_);
   }
@@ -69,7 +69,7 @@ class ForceScratch {
 };
 
 /// The forces of all springs that a row owns.
-HWY_INLINE void compute_forces(const PanelGrid& grid, const PanelGrid::Panel& panel, std::size_t row,
+HWY_INLINE void compute_forces(const GarmentGrid& grid, const GarmentGrid::Panel& panel, std::size_t row,
                                ForceScratch& scratch) {
   for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
     const std::size_t at = panel.first + row * panel.stride + column;
@@ -133,7 +133,7 @@ HWY_INLINE Mask touch_body(const BodyMaps& maps, const StepRule& rule, Mask real
 }
 
 /// Takes down a vector of nodes, with positions and velocities after the body has been met.
-HWY_INLINE void collide_with_body(PanelGrid& grid, const PanelGrid::Panel& panel, const StepRule& rule,
+HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Panel& panel, const StepRule& rule,
                                   std::size_t at, Lanes3 x, Lanes3 v) {
   const Lanes inverse_mass = hn::Load(FloatTag(), grid.inverse_mass.data() + at);
   const Mask real = hn::Gt(inverse_mass.v, hn::Zero(FloatTag()));
@@ -145,8 +145,8 @@ HWY_INLINE void collide_with_body(PanelGrid& grid, const PanelGrid::Panel& panel
 }
 
 /// The same for a block whose layers have met each other.
-HWY_INLINE void collide_with_body(PanelGrid& grid, const PanelGrid::Block& block, const StepRule& rule) {
-  const PanelGrid::Panel& panel = grid.panels[block.panel];
+HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Block& block, const StepRule& rule) {
+  const GarmentGrid::Panel& panel = grid.panels[block.panel];
   for (std::size_t row = block.begin; row < block.end; ++row)
     for (std::size_t column = 0; column < panel.columns; column += lane_count()) {
       const std::size_t at = panel.first + row * panel.stride + column;
@@ -156,9 +156,9 @@ HWY_INLINE void collide_with_body(PanelGrid& grid, const PanelGrid::Block& block
 
 /// Loops 1, 2 and 4 for the nodes of a block: from the positions of the block and of two rows on either side
 /// to its velocities, its moved positions and what may still move; where layers touch, to its velocities.
-HWY_INLINE void update_velocities(PanelGrid& grid, const PanelGrid::Block& block, const StepRule& rule,
+HWY_INLINE void update_velocities(GarmentGrid& grid, const GarmentGrid::Block& block, const StepRule& rule,
                                   ForceScratch& scratch) {
-  const PanelGrid::Panel& panel = grid.panels[block.panel];
+  const GarmentGrid::Panel& panel = grid.panels[block.panel];
   scratch.clear();
   const std::size_t before = std::min<std::size_t>(block.begin, 2);
   for (std::size_t row = block.begin - before; row < block.begin; ++row)

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "garment/stepping/dressing_backend.h"
+#include "garment/stepping/garment_grid.h"
 #include "garment/stepping/layer_collision.h"
-#include "garment/stepping/panel_grid.h"
 
 namespace mssim {
 
@@ -14,7 +14,7 @@ namespace mssim {
 struct PanelDressing {
   const System& system;
   const Garment& garment;
-  PanelGrid grid;
+  GarmentGrid grid;
   std::size_t threads;
   double dt_s;
   std::optional<LayerCollision> layers;  ///< that touch

@@ -26,8 +26,8 @@ struct BlockRange {
 };
 
 /// Loop 6 for a block.
-HWY_INLINE void move_block(PanelGrid& grid, const PanelGrid::Block& block, Lanes dt, const Floor& floor) {
-  const PanelGrid::Panel& panel = grid.panels[block.panel];
+HWY_INLINE void move_block(GarmentGrid& grid, const GarmentGrid::Block& block, Lanes dt, const Floor& floor) {
+  const GarmentGrid::Panel& panel = grid.panels[block.panel];
   const std::size_t first = panel.first + block.begin * panel.stride;
   const std::size_t last = panel.first + block.end * panel.stride;
   const Lanes height(static_cast<float>(floor.height));
@@ -44,7 +44,7 @@ HWY_INLINE void move_block(PanelGrid& grid, const PanelGrid::Block& block, Lanes
 
 /// Limits what over-elongated springs do, in the order of correction_order.h: a thread's own blocks, and the
 /// springs between each of them and the block before it, which is done when all have passed the barrier.
-HWY_INLINE void correct(PanelGrid& grid, const CorrectionRule<float>& rule, std::uint32_t sweeps,
+HWY_INLINE void correct(GarmentGrid& grid, const CorrectionRule<float>& rule, std::uint32_t sweeps,
                         BlockRange range, SpinBarrier& barrier) {
   for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
     const bool forwards = sweep % 2 == 0;
@@ -63,7 +63,7 @@ HWY_INLINE void correct(PanelGrid& grid, const CorrectionRule<float>& rule, std:
 
 /// What the first thread does between two steps.
 void end_step(PanelDressing& dressing) {
-  PanelGrid& grid = dressing.grid;
+  GarmentGrid& grid = dressing.grid;
   const DressingSettings& rules = dressing.garment.dressing;
   ++dressing.steps;
   if (!ends_seaming(rules, dressing.progress, dressing.steps, dressing.dt_s)) return;
@@ -127,7 +127,7 @@ void accelerate(PanelDressing& dressing, Worker& worker) {
 
 /// What is left of a step.
 void move(PanelDressing& dressing, const Worker& worker) {
-  PanelGrid& grid = dressing.grid;
+  GarmentGrid& grid = dressing.grid;
   const DressingSettings& rules = dressing.garment.dressing;
   const BlockRange range = worker.range;
   const StepRule rule = step_rule(dressing);
@@ -149,7 +149,7 @@ void move(PanelDressing& dressing, const Worker& worker) {
 
 /// Layers of the garment collide.
 void collide_layers(PanelDressing& dressing) {
-  PanelGrid& grid = dressing.grid;
+  GarmentGrid& grid = dressing.grid;
   dressing.layers->collide(
       dressing.dt_s,
       [&](std::size_t node) {

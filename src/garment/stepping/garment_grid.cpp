@@ -1,4 +1,4 @@
-#include "garment/stepping/panel_grid.h"
+#include "garment/stepping/garment_grid.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -35,7 +35,7 @@ std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::u
 
 }  // namespace
 
-PanelGrid::PanelGrid(const System& system) : offset(system.nodes()) {
+GarmentGrid::GarmentGrid(const System& system) : offset(system.nodes()) {
   const auto& garment = std::get<Garment>(system.topology);
   std::size_t floats = 0;
   for (const GarmentPanel& panel : garment.panels) {
@@ -82,7 +82,7 @@ PanelGrid::PanelGrid(const System& system) : offset(system.nodes()) {
   set_state(system.start);
 }
 
-void PanelGrid::set_state(const State& state) {
+void GarmentGrid::set_state(const State& state) {
   for (std::size_t i = 0; i < offset.size(); ++i) {
     position.put(offset[i], vec3_cast<float>(state.position[i]));
     velocity.put(offset[i], vec3_cast<float>(state.velocity[i]));
@@ -90,7 +90,7 @@ void PanelGrid::set_state(const State& state) {
   sewn.assign(joints.size(), state.draped ? 1 : 0);
 }
 
-State PanelGrid::state() const {
+State GarmentGrid::state() const {
   State state;
   for (const std::size_t at : offset) {
     state.position.push_back(vec3_cast<double>(position.at(at)));

@@ -31,7 +31,7 @@ struct Float3Arrays {
 /// beside one with nodes ends in the same row. Two empty rows stand before and after each panel: no neighbour
 /// of a node lies outside the arrays. What is no node has no inverse mass, and what is no spring no rest
 /// length.
-struct PanelGrid {
+struct GarmentGrid {
   struct Panel {
     std::size_t rows, columns, stride;
     std::size_t first;  ///< float of row 0, column 0
@@ -50,7 +50,7 @@ struct PanelGrid {
 
   /// Throws Unsupported where springs of one row and direction differ in stiffness, and std::invalid_argument
   /// where the springs are not those of the panels.
-  explicit PanelGrid(const System& system);
+  explicit GarmentGrid(const System& system);
 
   void set_state(const State& state);
   State state() const;
