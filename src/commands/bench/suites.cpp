@@ -40,7 +40,7 @@ std::vector<const BackendInfo*> all_backends() {
   return rows;
 }
 
-std::vector<const BackendInfo*> all_race_ways() {
+std::vector<const BackendInfo*> all_methods() {
   std::vector<const BackendInfo*> rows;
   for (const AccumulationMethod& method : accumulation_methods()) rows.push_back(&method.backend);
   return rows;
@@ -88,7 +88,7 @@ constexpr std::array<Suite, 6> table{{
      false,
      true,
      race_scenes,
-     {all_race_ways, cheapest_method, table_of_races}},
+     {all_methods, cheapest_method, table_of_races}},
     {"scaling",
      "the cost of a node in cloths of up to 16 million nodes",
      false,
