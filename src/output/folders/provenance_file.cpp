@@ -1,13 +1,11 @@
 #include "output/folders/provenance_file.h"
 
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "platform/whole_file.h"
@@ -75,14 +73,11 @@ class Place {
             "a whole number from 0 to " + std::to_string(std::numeric_limits<Number>::max()));
     return value_.get<Number>();
   }
-  /// 16 hexadecimal digits.
+  /// 16 hexadecimal digits, as hexadecimal() writes them.
   std::uint64_t hash() const {
-    const std::string digits = value_.is_string() ? value_.get<std::string>() : std::string();
-    std::uint64_t number = 0;
-    const char* end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, number, 16);
-    require(digits.size() == 16 && error == std::errc() && stop == end, "16 hexadecimal digits");
-    return number;
+    const auto number = from_hexadecimal(value_.is_string() ? value_.get<std::string>() : std::string());
+    require(number.has_value(), "16 hexadecimal digits");
+    return *number;
   }
   /// What `read` makes of each element of a list.
   template <class Read>

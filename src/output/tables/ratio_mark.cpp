@@ -29,8 +29,7 @@ std::string legend(bool wanted) {
   if (!wanted) return {};
   return std::string(mark) +
          " the two times shown contradict this ratio: their quotient differs from it by more than a quarter, "
-         "or "
-         "names the other one as the faster; trust the ratio, which compares single samples instead of "
+         "or names the other one as the faster; trust the ratio, which compares single samples instead of "
          "medians";
 }
 

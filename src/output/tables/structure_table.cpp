@@ -13,8 +13,7 @@ constexpr std::string_view how_to_read_structure =
     "Nodes and springs are what the mesh of the scene has, counted from its tetrahedra. The published counts "
     "of springs are three times the unique edges, by inference: all nine can be divided by three, a third of "
     "each fits a tetrahedral mesh of that many nodes, and the packed unit of the paper's Figure 6 holds "
-    "three "
-    "values for each spring. Inner points and surfaces were chosen so that TetGen meets both published "
+    "three values for each spring. Inner points and surfaces were chosen so that TetGen meets both published "
     "numbers; the paper shows neither its surfaces nor its switches.";
 
 struct Match {
