@@ -163,11 +163,14 @@ MSSIM_INLINE void correct_springs(int at, int direction, Block block, const Garm
   const Vector own = load_vector(grid->velocity + at, plane);
   const Vector far = load_vector_anywhere(grid->velocity + far_at, plane);
   const Real own_free = load_aligned(grid->free + at), far_free = load_lanes(grid->free + far_at);
-  Real impulse = elongation_impulse(squared, dot_product(minus(far, own), d), limit,
-                                    (Real)(grid->rules->correction_rate), own_free + far_free);
-  impulse = select((Real)(0.0f), impulse, acts);
-  store_vector(times_plus(own_free * impulse, d, own), grid->velocity + at, plane);
-  store_vector_anywhere(times_plus(-(far_free * impulse), d, far), grid->velocity + far_at, plane);
+  const Real impulse = elongation_impulse(squared, dot_product(minus(far, own), d), limit,
+                                          (Real)(grid->rules->correction_rate), own_free + far_free);
+  /* Springs that do not act change nothing, not even by adding 0, which would make 0 of -0 in some shapes of
+   * tiles and not in others. */
+  const Vector own_after = times_plus(own_free * impulse, d, own);
+  const Vector far_after = times_plus(-(far_free * impulse), d, far);
+  store_vector(where(acts, own_after, own), grid->velocity + at, plane);
+  store_vector_anywhere(where(acts, far_after, far), grid->velocity + far_at, plane);
 }
 
 /* One spring along a row that is longer than its limit. */
