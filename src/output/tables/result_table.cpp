@@ -10,6 +10,12 @@
 #include "text/decimal.h"
 
 namespace mssim {
+namespace {
+
+/// What a row says of the host where its backend chose an instruction set, which stands behind it.
+constexpr std::string_view host_with_vectors = "cpu ";
+
+}  // namespace
 
 std::vector<const ResultRow*> pointers_to(std::span<const ResultRow> rows) {
   std::vector<const ResultRow*> pointers;
@@ -32,21 +38,31 @@ std::string made_by(const Provenance& provenance) {
 }
 
 Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
-  std::set<std::string> devices;
-  for (const ResultRow* row : rows)
-    if (!row->device.empty() && row->device != "cpu") devices.insert(row->device);
+  std::set<std::string_view> instruction_sets, devices;
+  for (const ResultRow* row : rows) {
+    instruction_sets.insert(instruction_set(*row));
+    devices.insert(opencl_device(*row));
+  }
   const auto number = [](int of, std::string_view noun) {
     return counted(static_cast<std::uint64_t>(of), noun);
   };
   std::string text = "Measured on " + provenance.machine.cpu_model + " (" +
                      number(provenance.machine.logical_cpus, "logical CPU") + ") with " +
                      number(provenance.threads, "thread");
-  for (const std::string& device : devices) text += "; device " + device;
+  for (const std::string_view set : instruction_sets)
+    if (!set.empty()) text.append("; ").append(set).append(" vectors");
+  for (const std::string_view device : devices)
+    if (!device.empty()) text.append("; device ").append(device);
   return {text + "; " + made_by(provenance) + "."};
 }
 
+std::string_view instruction_set(const ResultRow& row) {
+  const std::string_view device = row.device;
+  return device.starts_with(host_with_vectors) ? device.substr(host_with_vectors.size()) : std::string_view();
+}
+
 std::string_view opencl_device(const ResultRow& row) {
-  const bool host = row.device == "cpu" || row.device.starts_with("cpu ");
+  const bool host = row.device == "cpu" || row.device.starts_with(host_with_vectors);
   return host ? std::string_view() : std::string_view(row.device);
 }
 

@@ -41,12 +41,17 @@ const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_
 /// Version, commit and time, without a full stop.
 std::string made_by(const Provenance& provenance);
 
-/// One sentence for the top of a page: machine, threads, devices of the rows, program, time.
+/// One sentence for the top of a page: machine, threads, instruction sets and devices of the rows, program,
+/// time.
 Paragraph measured_on(RowPointers rows, const Provenance& provenance);
 
 /// The name of a backend for a cell; with the OpenCL device that its rows ran on, and whether that is the
 /// processor of the machine.
 std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance);
+
+/// What the row's backend computed with on the host, where it chose among instruction sets ("AVX3"); else
+/// empty.
+std::string_view instruction_set(const ResultRow& row);
 
 /// A device that is not what the backends of the host run on; empty for those.
 std::string_view opencl_device(const ResultRow& row);

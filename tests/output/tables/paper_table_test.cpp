@@ -119,6 +119,13 @@ TEST(PaperTable, AsMarkdownTellsPublishedFromMeasured) {
   EXPECT_THAT(text, Not(HasSubstr("my-own")));
 }
 
+TEST(PaperTable, TellsTheInstructionSetOfTheProcessorFromDevices) {
+  std::vector<ResultRow> rows = table_rows();
+  for (ResultRow& row : rows)
+    if (row.backend == "openmp") row.device = "cpu AVX3";
+  EXPECT_THAT(page_of(rows), HasSubstr("with 2 threads; AVX3 vectors; device Some device; mssim 0.1.0"));
+}
+
 TEST(PaperTable, ShowsNoTimeThatWasNotVerified) {
   std::vector<ResultRow> rows{measured_row("openmp", 0.0125, 8.0)};
   rows[0].verified = false;
