@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -50,85 +52,97 @@ void visit_body(FieldVisitor& fields, BodySpec& body) {
 
 std::string pointer_to(std::size_t body) { return "/bodies/list/" + std::to_string(body); }
 
-/// Meshing takes minutes where there are millions of nodes: what cannot be held afterwards is refused before.
-void require_memory_for_meshes(const SceneSpec& spec) {
-  SceneCounts least;
-  const std::vector<BodySpec>& list = bodies_of(spec).list;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    try {
-      const SceneCounts body = least_counts(list[i].shape, spec.file.parent_path());
-      least.nodes += body.nodes;
-      least.springs_unique += body.springs_unique;
-    } catch (const SceneError& error) {  // of another scene whose shape it takes
-      refuse(spec.file, pointer_to(i), "has no mesh: " + printable(error.what(), 1500));
-    }
-  }
-  if (const auto shortage = memory_shortage(memory_needed(least.nodes, least.springs_unique)))
-    refuse(spec.file, "/bodies",
-           "has at least " + std::to_string(least.nodes) + " nodes and " +
-               std::to_string(least.springs_unique) + " springs and " + *shortage +
-               ": give fewer bodies, or bodies of fewer cells or points");
-}
-
-/// A mesh and what follows from it, for all bodies of that shape.
+/// A shape of bodies: a mesh and what follows from it.
 struct MeshedShape {
-  TetMesh mesh;  ///< its centre is the origin
-  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::size_t first_body;  ///< that has it
+  OwnShape own;
+  TetMesh mesh = {};  ///< its centre is the origin
+  std::vector<std::array<std::uint32_t, 2>> edges = {};
   double volume = 0;  ///< m^3
 };
 
-/// The shapes of a scene, each meshed once.
+/// Throws SceneError where it is that of another scene, which cannot be used.
+OwnShape shape_of(const SceneSpec& spec, std::size_t body) {
+  try {
+    return own_shape(bodies_of(spec).list[body].shape, spec.file.parent_path());
+  } catch (const SceneError& error) {
+    refuse(spec.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
+  }
+}
+
+void require_lengths(const MeshedShape& shape, const SceneSpec& spec) {
+  for (const auto& [a, b] : shape.edges)
+    if (const double metres = length(shape.mesh.nodes[b] - shape.mesh.nodes[a]);
+        !(metres >= shortest_spring && metres <= longest_spring))
+      refuse(spec.file, pointer_to(shape.first_body),
+             "has a spring of " + shown(metres) + " m: springs are from " + shown_number(shortest_spring) +
+                 " to " + shown_number(longest_spring) + " m long, so correct the unit_m or the mesh");
+}
+
+void mesh(MeshedShape& shape, const SceneSpec& spec) {
+  try {
+    shape.mesh = mesh_of(shape.own);
+  } catch (const InputError& error) {
+    refuse(spec.file, pointer_to(shape.first_body), "has no mesh: " + printable(error.what(), 1500));
+  }
+  Vec3d centre;
+  for (const Vec3d& node : shape.mesh.nodes) centre += node;
+  centre = 1 / static_cast<double>(shape.mesh.nodes.size()) * centre;
+  for (Vec3d& node : shape.mesh.nodes) node -= centre;
+  shape.edges = edges_of(shape.mesh);
+  require_lengths(shape, spec);
+  shape.volume = volume_of(shape.mesh);
+}
+
+/// The shapes of a scene's bodies, each read and meshed once.
 class MeshedShapes {
  public:
-  /// Throws SceneError where the memory does not do for what will be meshed.
-  explicit MeshedShapes(const SceneSpec& spec) : spec_(spec) { require_memory_for_meshes(spec); }
-
-  const MeshedShape& of_body(std::size_t body) {
-    const BodyShape& shape = bodies_of(spec_).list[body].shape;
-    const auto known =
-        std::find_if(shapes_.begin(), shapes_.end(), [&](const auto& entry) { return entry.first == shape; });
-    if (known != shapes_.end()) return known->second;
-    MeshedShape meshed;
-    try {
-      meshed.mesh = mesh_of(shape, spec_.file.parent_path());
-    } catch (const InputError& error) {
-      refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
-    } catch (const SceneError& error) {  // of another scene whose shape it takes
-      refuse(spec_.file, pointer_to(body), "has no mesh: " + printable(error.what(), 1500));
+  /// Throws SceneError, where the memory does not do for what will be meshed before it is, and
+  /// MissingProgram.
+  explicit MeshedShapes(const SceneSpec& spec) {
+    const std::vector<BodySpec>& list = bodies_of(spec).list;
+    for (std::size_t body = 0; body < list.size(); ++body) {
+      const auto known = std::ranges::find_if(shapes_, [&](const MeshedShape& shape) {
+        return list[shape.first_body].shape == list[body].shape;
+      });
+      of_body_.push_back(static_cast<std::size_t>(known - shapes_.begin()));
+      if (known == shapes_.end()) shapes_.push_back({body, shape_of(spec, body)});
     }
-    Vec3d centre;
-    for (const Vec3d& node : meshed.mesh.nodes) centre += node;
-    centre = 1 / static_cast<double>(meshed.mesh.nodes.size()) * centre;
-    for (Vec3d& node : meshed.mesh.nodes) node -= centre;
-    meshed.edges = edges_of(meshed.mesh);
-    require_lengths(meshed, body);
-    meshed.volume = volume_of(meshed.mesh);
-    return shapes_.emplace_back(shape, std::move(meshed)).second;
+    require_memory_for_meshes(spec);
+    for (MeshedShape& shape : shapes_) mesh(shape, spec);
   }
 
+  const MeshedShape& of_body(std::size_t body) const { return shapes_[of_body_[body]]; }
+
   /// Of all bodies together.
-  SceneCounts counts() {
+  SceneCounts counts() const {
     SceneCounts counts;
-    for (std::size_t i = 0; i < bodies_of(spec_).list.size(); ++i) {
-      const MeshedShape& shape = of_body(i);
-      counts.nodes += shape.mesh.nodes.size();
-      counts.springs_unique += shape.edges.size();
+    for (const std::size_t shape : of_body_) {
+      counts.nodes += shapes_[shape].mesh.nodes.size();
+      counts.springs_unique += shapes_[shape].edges.size();
     }
     return counts;
   }
 
  private:
-  void require_lengths(const MeshedShape& meshed, std::size_t body) const {
-    for (const auto& [a, b] : meshed.edges)
-      if (const double metres = length(meshed.mesh.nodes[b] - meshed.mesh.nodes[a]);
-          !(metres >= shortest_spring && metres <= longest_spring))
-        refuse(spec_.file, pointer_to(body),
-               "has a spring of " + shown(metres) + " m: springs are from " + shown_number(shortest_spring) +
-                   " to " + shown_number(longest_spring) + " m long, so correct the unit_m or the mesh");
+  /// Meshing takes minutes where there are millions of nodes: what cannot be held afterwards is refused
+  /// before.
+  void require_memory_for_meshes(const SceneSpec& spec) const {
+    SceneCounts least;
+    for (const std::size_t shape : of_body_) {
+      const SceneCounts body = least_counts(shapes_[shape].own);
+      least.nodes += body.nodes;
+      least.springs_unique += body.springs_unique;
+    }
+    if (const auto shortage = memory_shortage(memory_needed(least.nodes, least.springs_unique)))
+      refuse(spec.file, "/bodies",
+             "has at least " + std::to_string(least.nodes) + " nodes and " +
+                 std::to_string(least.springs_unique) + " springs and " + *shortage +
+                 ": give fewer bodies, or bodies of fewer cells or points");
   }
 
-  const SceneSpec& spec_;
-  std::vector<std::pair<BodyShape, MeshedShape>> shapes_;
+  std::vector<MeshedShape> shapes_;
+  std::vector<std::size_t> of_body_;  ///< the number of its shape
 };
 
 /// Rodrigues' rotation by `angle` (radians) about the unit vector `axis`.
@@ -159,32 +173,13 @@ void add_body(System& system, std::vector<Tetrahedron>& tetrahedra, const Meshed
                           bodies.density_kg_per_m3 * shape.volume / static_cast<double>(nodes));
 }
 
-}  // namespace
-
-void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
-  BodiesSpec& bodies = spec.content.emplace<BodiesSpec>();
-  fields.number(
-      {"density_kg_per_m3", "Mass per volume, kg/m^3; the mass of a body is spread evenly over its nodes."},
-      bodies.density_kg_per_m3, from(1e-3, 1e6));
-  fields.object(
-      {"springs", "How the springs answer stretching."}, Presence::required,
-      [&](FieldVisitor& springs) { visit_material(springs, bodies.springs, above(0, largest_stiffness)); });
-  fields.list({"list", "The bodies."}, Presence::required, most_bodies,
-              {"One body, and how it starts.",
-               [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); }});
-}
-
-void check_bodies(const SceneSpec& spec) {
-  const BodiesSpec& bodies = bodies_of(spec);
-  for (std::size_t i = 0; i < bodies.list.size(); ++i)
-    if (!(length(bodies.list[i].turn_axis) > 1e-6))
-      refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
-}
-
-std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
+/// The sum over the bodies; none unless all of them state their size.
+std::optional<SceneCounts> stated_counts_of(const SceneSpec& spec,
+                                            const std::function<OwnShape(std::size_t body)>& shape_of) {
   SceneCounts counts;
-  for (const BodySpec& body : bodies_of(spec).list) {
-    const std::optional<MeshSize> size = stated_size(body, spec.file.parent_path());
+  const std::vector<BodySpec>& list = bodies_of(spec).list;
+  for (std::size_t body = 0; body < list.size(); ++body) {
+    const std::optional<MeshSize> size = stated_size(list[body], shape_of(body));
     if (!size) return std::nullopt;
     counts.nodes += size->nodes;
     counts.springs_unique += size->springs;
@@ -192,11 +187,9 @@ std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
   return counts;
 }
 
-SceneCounts bodies_counts(const SceneSpec& spec) { return MeshedShapes(spec).counts(); }
-
-System build_bodies(const SceneSpec& spec) {
+/// Throws SceneError when a body starts below the floor and when the memory does not suffice.
+System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
   const BodiesSpec& bodies = bodies_of(spec);
-  MeshedShapes shapes(spec);
   require_memory(spec, "/bodies", shapes.counts());
   System system;
   system.materials = {bodies.springs};
@@ -231,6 +224,41 @@ System build_bodies(const SceneSpec& spec) {
   }
   system.topology = std::move(mesh);
   return system;
+}
+
+}  // namespace
+
+void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
+  BodiesSpec& bodies = spec.content.emplace<BodiesSpec>();
+  fields.number(
+      {"density_kg_per_m3", "Mass per volume, kg/m^3; the mass of a body is spread evenly over its nodes."},
+      bodies.density_kg_per_m3, from(1e-3, 1e6));
+  fields.object(
+      {"springs", "How the springs answer stretching."}, Presence::required,
+      [&](FieldVisitor& springs) { visit_material(springs, bodies.springs, above(0, largest_stiffness)); });
+  fields.list({"list", "The bodies."}, Presence::required, most_bodies,
+              {"One body, and how it starts.",
+               [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); }});
+}
+
+void check_bodies(const SceneSpec& spec) {
+  const BodiesSpec& bodies = bodies_of(spec);
+  for (std::size_t i = 0; i < bodies.list.size(); ++i)
+    if (!(length(bodies.list[i].turn_axis) > 1e-6))
+      refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
+}
+
+std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
+  return stated_counts_of(spec, [&](std::size_t body) {
+    return own_shape(bodies_of(spec).list[body].shape, spec.file.parent_path());
+  });
+}
+
+SceneParts read_bodies(const SceneSpec& spec) {
+  const auto shapes = std::make_shared<const MeshedShapes>(spec);
+  return {shapes->counts(),
+          stated_counts_of(spec, [&](std::size_t body) { return shapes->of_body(body).own; }),
+          [shapes](const SceneSpec& of) { return BuiltScene{build_bodies(of, *shapes)}; }};
 }
 
 }  // namespace mssim

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "model/system.h"
 #include "scene/fields/field_visitor.h"
+#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -19,13 +19,13 @@ void check_bodies(const SceneSpec& spec);
 /// The sum over the bodies; none unless all of them state their size.
 std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec);
 
-/// Meshes every body. Throws SceneError and MissingProgram.
-SceneCounts bodies_counts(const SceneSpec& spec);
-
-/// The bodies one after the other, each in its mesh's node order, its springs the edges of its tetrahedra at
-/// their length in the mesh. A body starts turned, as a rigid body that flies and spins, and grows at its
-/// swell rate. Deterministic. Throws SceneError when a body has no mesh or starts below the floor
-/// and when the memory does not suffice, and MissingProgram.
-System build_bodies(const SceneSpec& spec);
+/// Meshes every shape once.
+///
+/// The scene has the bodies one after the other, each in its mesh's node order, its springs the edges of its
+/// tetrahedra at their length in the mesh. A body starts turned, as a rigid body that flies and spins, and
+/// grows at its swell rate. Deterministic. Throws SceneError when a body has no mesh and when the memory does
+/// not suffice for the meshes, and MissingProgram; building it throws SceneError when a body starts below the
+/// floor.
+SceneParts read_bodies(const SceneSpec& spec);
 
 }  // namespace mssim

@@ -1,6 +1,7 @@
 #include "scene/body_shapes.h"
 
 #include <array>
+#include <stdexcept>
 #include <vector>
 
 #include "mesh/shape_mesh.h"
@@ -118,7 +119,7 @@ SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folde
 }
 
 /// The body of it whose shape is meant. Throws SceneError unless it has one of its own.
-BodySpec first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
+const BodySpec& first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
   const auto* bodies = std::get_if<BodiesSpec>(&scene.content);
   if (bodies == nullptr)
     throw SceneError("the scene \"" + printable(shape.name) +
@@ -127,6 +128,11 @@ BodySpec first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
     throw SceneError("the first body of the scene \"" + printable(shape.name) +
                      "\" takes its shape from another scene: name that one");
   return bodies->list.front();
+}
+
+/// No OwnShape is that of another scene.
+[[noreturn]] void throw_not_own(const ShapeOfScene& shape) {
+  throw std::logic_error("the shape of the scene " + shape.name + " was not read");
 }
 
 /// How a shape becomes a mesh, one overload a kind.
@@ -145,17 +151,12 @@ struct Mesher {
   TetMesh operator()(const SurfaceFile& surface) const {
     return surface_mesh({folder / surface.file, surface.unit_m, surface.largest_tetrahedron_m3});
   }
-  TetMesh operator()(const ShapeOfScene& shape) const {
-    const SceneSpec scene = scene_of(shape, folder);
-    return mesh_of(first_body(shape, scene).shape, scene.file.parent_path());
-  }
+  TetMesh operator()(const ShapeOfScene& shape) const { throw_not_own(shape); }
 };
 
 /// What is known of a mesh before it is made, one overload a kind. All edges of the surface stay edges of the
 /// mesh, three for a point in the limit; an inner point has four at least, each of which it may share.
 struct LeastCounter {
-  const std::filesystem::path& folder;
-
   template <class Solid>
   SceneCounts operator()(const GeneratedShape<Solid>& shape) const {
     const std::uint64_t outer = surface_point_count(shape.solid), inner = shape.interior.count;
@@ -163,10 +164,7 @@ struct LeastCounter {
   }
   SceneCounts operator()(const MeshFiles& /*files*/) const { return {}; }
   SceneCounts operator()(const SurfaceFile& /*surface*/) const { return {}; }
-  SceneCounts operator()(const ShapeOfScene& shape) const {
-    const SceneSpec scene = scene_of(shape, folder);
-    return least_counts(first_body(shape, scene).shape, scene.file.parent_path());
-  }
+  SceneCounts operator()(const ShapeOfScene& shape) const { throw_not_own(shape); }
 };
 
 }  // namespace
@@ -178,18 +176,20 @@ void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
   fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
 }
 
-std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem::path& folder) {
-  if (const auto* other = std::get_if<ShapeOfScene>(&body.shape))
-    return first_body(*other, scene_of(*other, folder)).expected;
-  return body.expected;
+OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
+  const auto* other = std::get_if<ShapeOfScene>(&shape);
+  if (other == nullptr) return {shape, folder, std::nullopt};
+  const SceneSpec scene = scene_of(*other, folder);
+  const BodySpec& body = first_body(*other, scene);
+  return {body.shape, scene.file.parent_path(), body.expected};
 }
 
-SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder) {
-  return std::visit(LeastCounter{folder}, shape);
+std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape) {
+  return std::holds_alternative<ShapeOfScene>(body.shape) ? shape.stated_by_other : body.expected;
 }
 
-TetMesh mesh_of(const BodyShape& shape, const std::filesystem::path& folder) {
-  return std::visit(Mesher{folder}, shape);
-}
+SceneCounts least_counts(const OwnShape& shape) { return std::visit(LeastCounter{}, shape.shape); }
+
+TetMesh mesh_of(const OwnShape& shape) { return std::visit(Mesher{shape.folder}, shape.shape); }
 
 }  // namespace mssim

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "mesh/tet_mesh.h"
 #include "scene/fields/field_visitor.h"
@@ -13,16 +14,26 @@ namespace mssim {
 /// targets in `body`. The TABLE of shapes stands in body_shapes.cpp.
 void visit_shape_fields(FieldVisitor& fields, BodySpec& body);
 
-/// What the scene's file, or the other scene that it names, states about the mesh. `folder` is the scene
-/// file's. Throws SceneError when there is no such scene.
-std::optional<MeshSize> stated_size(const BodySpec& body, const std::filesystem::path& folder);
+/// A shape that is not that of another scene any more.
+struct OwnShape {
+  BodyShape shape;
+  std::filesystem::path folder;  ///< that the paths of its files start at
+  std::optional<MeshSize>
+      stated_by_other;  ///< what the other scene, where there is one, states about the mesh
+};
+
+/// The shape of a body in a scene file of that folder; where it is another scene's, that is read. Throws
+/// SceneError when there is no such scene, or it cannot be used.
+OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder);
+
+/// What files state about the mesh of a body of that shape.
+std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape);
 
 /// Nodes and springs that the mesh of the shape has at least, without making it; zero where that is not
-/// known. Throws like stated_size.
-SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder);
+/// known.
+SceneCounts least_counts(const OwnShape& shape);
 
-/// The mesh of the shape, m, wherever its origin is. `folder` is the scene file's. Throws SceneError when the
-/// shape is that of a scene that cannot be used, InputError and MissingProgram.
-TetMesh mesh_of(const BodyShape& shape, const std::filesystem::path& folder);
+/// The mesh of the shape, m, wherever its origin is. Throws InputError and MissingProgram.
+TetMesh mesh_of(const OwnShape& shape);
 
 }  // namespace mssim

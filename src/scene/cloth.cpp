@@ -93,6 +93,12 @@ class Ripple {
   Sines columns_, rows_;
 };
 
+SceneCounts cloth_counts(const SceneSpec& spec) {
+  const ClothSpec& cloth = cloth_of(spec);
+  const std::uint64_t springs = count_springs(cloth.rows, cloth.columns);
+  return {std::uint64_t{cloth.rows} * cloth.columns, springs};
+}
+
 }  // namespace
 
 void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
@@ -148,13 +154,12 @@ void check_cloth(const SceneSpec& spec) {
                shown_number(cloth.spacing_m) + " or remove /cloth/pins");
 }
 
-SceneCounts cloth_counts(const SceneSpec& spec) {
-  const ClothSpec& cloth = cloth_of(spec);
-  const std::uint64_t springs = count_springs(cloth.rows, cloth.columns);
-  return {std::uint64_t{cloth.rows} * cloth.columns, springs};
-}
-
 std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec) { return cloth_counts(spec); }
+
+SceneParts read_cloth(const SceneSpec& spec) {
+  const SceneCounts counts = cloth_counts(spec);
+  return {counts, counts, [](const SceneSpec& of) { return BuiltScene{build_cloth(of)}; }};
+}
 
 System build_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);

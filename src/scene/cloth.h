@@ -4,6 +4,7 @@
 
 #include "model/system.h"
 #include "scene/fields/field_visitor.h"
+#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -17,11 +18,11 @@ void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec);
 /// no spring to length zero. Throws SceneError.
 void check_cloth(const SceneSpec& spec);
 
-/// Without building the cloth.
-SceneCounts cloth_counts(const SceneSpec& spec);
-
-/// The same: a cloth is as its file says.
+/// A cloth is as its file says.
 std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec);
+
+/// There is nothing to read: a cloth names no files.
+SceneParts read_cloth(const SceneSpec& spec);
 
 /// The cloth as spec describes it: node (r, c) has the index r * columns + c and starts at
 /// (c spacing, ceiling height, r spacing) plus the ripple, a standing wave of given amplitude in position and

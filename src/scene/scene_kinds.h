@@ -8,6 +8,7 @@
 #include "model/system.h"
 #include "scene/fields/field_visitor.h"
 #include "scene/spec/built_scene.h"
+#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -25,10 +26,8 @@ struct SceneKind {
   std::optional<std::uint64_t> published_per_spring;
   /// What the file says about nodes and unique springs, none where it says nothing.
   std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
-  /// What the scene has of both.
-  SceneCounts (*counts)(const SceneSpec& spec);
-  /// Builds the scene once it has found that the memory does.
-  BuiltScene (*build)(const SceneSpec& spec);
+  /// Reads the files that it names. Throws SceneError and MissingProgram.
+  SceneParts (*read)(const SceneSpec& spec);
 };
 
 /// The TABLE of scene kinds, in the order of SceneSpec::body's alternatives. A new kind is one row in
@@ -41,23 +40,27 @@ const SceneKind& kind_of(const SceneSpec& spec);
 /// Nodes and springs as the scene's file states them, which costs nothing; none where it does not.
 std::optional<SceneCounts> stated_counts(const SceneSpec& spec);
 
-/// Nodes and springs that the scene has. Bodies have to be meshed for that: throws SceneError and
-/// MissingProgram.
+/// What the scene is built from. Throws SceneError, and MissingProgram where bodies cannot be meshed.
+SceneParts read_parts(const SceneSpec& spec);
+
+/// Nodes and springs that the scene has. Reads its parts for that, and throws like read_parts.
 SceneCounts counts_of(const SceneSpec& spec);
 
 /// The same, of the scene's System.
 SceneCounts counts_of(const SceneSpec& spec, const System& system);
 
-/// Throws SceneError when any run of the scene needs more memory than there is (memory_needed), naming both
-/// amounts.
-void require_memory(const SceneSpec& spec);
+/// Throws SceneError when any run of the scene, which has these counts, needs more memory than there is
+/// (memory_needed), naming both amounts.
+void require_memory(const SceneSpec& spec, const SceneCounts& counts);
 
-/// The same for a use of the scene, which has these counts, that needs `needed` bytes.
+/// The same for a use of the scene that needs `needed` bytes.
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy);
 
-/// The scene, every file that it names read once. Throws SceneError when it needs more memory than there is,
-/// before allocating any for its System, and like counts_of.
+/// The scene of these parts. Throws like SceneParts::build.
+BuiltScene build_scene(const SceneSpec& spec, const SceneParts& parts);
+
+/// The scene, its parts read for it alone. Throws like both.
 BuiltScene build_scene(const SceneSpec& spec);
 
 /// Its System alone.

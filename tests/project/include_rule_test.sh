@@ -24,7 +24,7 @@ garment/layers        text geometry garment
 
 scene/fields          text geometry model
 garment/spec          text geometry garment mesh garment/body garment/pattern scene/fields
-scene/spec            platform geometry model mesh scene/fields garment/spec
+scene/spec            platform geometry model mesh garment/body scene/fields garment/spec
 garment/scene         text geometry garment/contact model mesh garment/body garment/pattern garment/layers scene/fields scene/spec
 scene                 text platform geometry model mesh scene/fields scene/spec garment/scene
 
@@ -57,8 +57,8 @@ output/traces         text platform geometry model output/hdf5 garment/output
 output/folders        text platform bench/machine bench/results output/tables garment/output
 
 commands/arguments    text
-commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting garment/scene scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders commands/arguments
-commands/run          platform model scene garment/scene garment/stepping garment/fitting backends/spring_list backends bench/verification output/tables output/traces commands/arguments commands/shared
+commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders commands/arguments
+commands/run          platform model scene garment/stepping garment/fitting backends/spring_list backends bench/verification output/tables output/traces commands/arguments commands/shared
 commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared
 commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/arguments commands/shared commands/bench
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench

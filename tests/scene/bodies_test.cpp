@@ -85,7 +85,7 @@ TEST(LeastCounts, AreTheNodesOfAMeshBeforeItIsMadeAndNoMoreThanItsSprings) {
   for (const SceneSpec& spec : body_scenes()) {
     SceneCounts least;
     for (const BodySpec& body : std::get<BodiesSpec>(spec.content).list) {
-      const SceneCounts counts = least_counts(body.shape, spec.file.parent_path());
+      const SceneCounts counts = least_counts(own_shape(body.shape, spec.file.parent_path()));
       least.nodes += counts.nodes;
       least.springs_unique += counts.springs_unique;
     }

@@ -20,9 +20,14 @@ namespace mssim {
 struct DressingCase {
   SceneSpec spec;
   System system;
+  std::shared_ptr<const MeasuredBody> body;
 
   explicit DressingCase(const std::string& scene) : DressingCase(find_scene(scene)) {}
-  explicit DressingCase(SceneSpec scene) : spec(std::move(scene)), system(build_system(spec)) {}
+  explicit DressingCase(SceneSpec scene) : spec(std::move(scene)) {
+    BuiltScene built = build_scene(spec);
+    system = std::move(built.system);
+    body = std::move(built.body);
+  }
 
   Garment& garment() { return std::get<Garment>(system.topology); }
   double dt_s() const { return spec.dt_s.value(); }
@@ -42,7 +47,7 @@ inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {},
   Dressed dressed;
   dressed.result =
       dress(*backend, of.system, of.dt_s(), rule, [](const State&, std::int64_t) { return true; });
-  dressed.fit = fit_of(of.system, dressed.result.state.position, fit_body(of.spec));
+  dressed.fit = fit_of(of.system, dressed.result.state.position, fit_body(of.body));
   dressed.found = misfits(dressed.result, dressed.fit, {});
   return dressed;
 }

@@ -44,10 +44,10 @@ void tell_before(const BenchPlan& plan) {
   warn_of_missing_speedups(plan);
 }
 
-std::vector<StructureRow> describe_scenes(const std::vector<SceneSpec>& specs) {
+std::vector<StructureRow> describe_scenes(std::vector<UnbuiltScene>& scenes) {
   std::vector<StructureRow> rows;
-  for (const SceneSpec& spec : specs) {
-    const PreparedScene scene = prepare_scene(spec);
+  for (UnbuiltScene& unbuilt : scenes) {
+    const PreparedScene scene = unbuilt.prepare();
     warn_of_note(scene);
     rows.push_back(structure_of(scene));
   }
@@ -68,7 +68,7 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
 }
 
 int run(const BenchOptions& options) {
-  const BenchPlan plan = plan_of(options);
+  BenchPlan plan = plan_of(options);
   TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
   if (options.dry_run) {
     tell_plan(plan);

@@ -1,6 +1,7 @@
 #include "commands/bench/bench_plan.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
@@ -69,7 +70,7 @@ void require_folder_where_needed(const BenchOutput& output) {
                      " needs the folder of an earlier run: give --out too");
 }
 
-/// Scenes by what they were asked for with, each read once.
+/// Scenes by what they were asked for with, and their parts by their file, each read once.
 class SceneReader {
  public:
   std::vector<SceneSpec> read(const std::vector<std::string>& names) {
@@ -82,8 +83,15 @@ class SceneReader {
     return specs;
   }
 
+  SceneParts parts_of(const SceneSpec& spec) {
+    auto found = parts_.find(spec.file);
+    if (found == parts_.end()) found = parts_.emplace(spec.file, read_parts(spec)).first;
+    return found->second;
+  }
+
  private:
   std::map<std::string, SceneSpec> known_;
+  std::map<std::filesystem::path, SceneParts> parts_;
 };
 
 /// Rows and results are told apart by their scene's name.
@@ -121,8 +129,11 @@ BenchPlan plan_of(const BenchOptions& options) {
   plan.tables = comparison.tables();
 
   SceneReader scenes;
-  plan.described = scenes.read(described_ones);
-  for (const SceneSpec& spec : plan.described) require_memory(spec);
+  for (SceneSpec& spec : scenes.read(described_ones)) {
+    SceneParts parts = scenes.parts_of(spec);
+    require_memory(spec, parts.counts);
+    plan.described.push_back({std::move(spec), std::move(parts)});
+  }
   std::vector<SceneSpec> timed = scenes.read(timed_ones);
   if (options.output.trace) std::ranges::for_each(timed, require_traceable);
   require_distinct_names(timed);
@@ -130,11 +141,15 @@ BenchPlan plan_of(const BenchOptions& options) {
   plan.uses_device = !timed.empty() && std::ranges::any_of(plan.settings.backends, &BackendInfo::uses_device);
   plan.provenance = run_provenance(plan.settings.execution.threads, plan.uses_device && !options.dry_run);
   plan.provenance.device_memory = name_of(plan.settings.execution.memory);
-  for (const std::vector<SceneSpec>* specs : {&plan.described, &timed})
-    for (const SceneSpec& spec : *specs) add_scene(plan.provenance, spec.name, spec.source);
+  for (const UnbuiltScene& scene : plan.described)
+    add_scene(plan.provenance, scene.spec.name, scene.spec.source);
+  for (const SceneSpec& spec : timed) add_scene(plan.provenance, spec.name, spec.source);
   if (!options.verified.empty())
     plan.settings.verified = verified_rows(options.verified, plan.provenance, plan.settings, timed);
-  for (SceneSpec& spec : timed) plan.timed.push_back(planned_scene(std::move(spec), plan.settings));
+  for (SceneSpec& spec : timed) {
+    SceneParts parts = scenes.parts_of(spec);
+    plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, plan.settings));
+  }
   return plan;
 }
 

@@ -13,15 +13,16 @@
 
 namespace mssim {
 
-/// What a bench does: made once, before anything is measured, and only read from then on. Every scene file
-/// has been read, and is not read again.
+/// What a bench does: made once, before anything is measured, and only read from then on, but for the parts
+/// of scenes, which are dropped one after the other. Every scene file has been read, and every file that it
+/// names; none is read again.
 struct BenchPlan {
   BenchSettings settings;  ///< of every scene
   std::optional<double> time_budget_s;
-  std::vector<PlannedScene> timed;   ///< scenes that are measured
-  std::vector<SceneSpec> described;  ///< scenes of which the structure is told
-  bool uses_device = false;          ///< whether a backend that is timed uses an OpenCL device
-  Provenance provenance;             ///< with all these scenes
+  std::vector<PlannedScene> timed;      ///< scenes that are measured
+  std::vector<UnbuiltScene> described;  ///< scenes of which the structure is told
+  bool uses_device = false;             ///< whether a backend that is timed uses an OpenCL device
+  Provenance provenance;                ///< with all these scenes
   std::vector<PublishedTable> published;
   TableMaker tables;
   BenchOutput output;

@@ -23,8 +23,8 @@ void tell_plan(const BenchPlan& plan) {
                {"combinations", combinations(plan.settings)},
                {"rounds", std::lround(rounds)},
                {"expected_s", seconds(scene.time)}});
-  for (const SceneSpec& scene : plan.described)
-    std::cout << scene.name << ": not timed; its structure is shown\n";
+  for (const UnbuiltScene& scene : plan.described)
+    std::cout << scene.spec.name << ": not timed; its structure is shown\n";
   std::cout << table_text(table);
   std::cout << "about " << seconds(all) << " s in all\n";
 }

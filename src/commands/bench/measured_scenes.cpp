@@ -20,23 +20,25 @@ void add_scene(SceneJob& job, const PreparedScene& scene) {
   job.springs_published = scene.counts.springs_published;
   job.note = scene.note;
   job.dt_s = scene.dt_s;
-  if (is_garment(scene.system)) job.garment.emplace(GarmentJob{.body = fit_body(scene.spec)});
+  if (scene.body) job.garment.emplace(GarmentJob{.body = fit_body(scene.body)});
 }
 
 }  // namespace
 
-void measure_scenes(const BenchPlan& plan, TimeBudget& budget, const StopRequest& stop,
-                    BenchResults& results) {
+void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
   ProgressLine progress(plan.timed.size());
-  for (const PlannedScene& planned : plan.timed) {
+  for (PlannedScene& planned : plan.timed) {
     SceneJob job{plan.settings};
     job.name = planned.spec.name;
     job.deadline = budget.begin_scene();
     job.earlier = results.of_scene(job.name);
     progress.begin_scene(job.name);
     const bool finished = is_finished(job, job.name, job.earlier);
-    if (finished && !plan.output.trace) continue;
-    const PreparedScene scene = prepare_scene(planned.spec);
+    if (finished && !plan.output.trace) {
+      planned.parts = {};
+      continue;
+    }
+    const PreparedScene scene = planned.prepare();
     warn_of_note(scene);
     add_scene(job, scene);
     bool first_round = true;

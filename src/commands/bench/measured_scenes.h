@@ -9,8 +9,7 @@ namespace mssim {
 
 /// Builds and measures the plan's timed scenes, one after the other, but for what the results have of them
 /// already, and keeps the rows after every round. With --trace traces each scene behind its measurement. Ends
-/// early when it is asked to. Throws like prepare_scene, BenchResults::keep and write_bench_traces.
-void measure_scenes(const BenchPlan& plan, TimeBudget& budget, const StopRequest& stop,
-                    BenchResults& results);
+/// early when it is asked to. Throws like UnbuiltScene::prepare, BenchResults::keep and write_bench_traces.
+void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results);
 
 }  // namespace mssim

@@ -12,13 +12,15 @@ SceneSize size_of(const SceneSpec& spec, const SceneCounts& counts) {
           std::holds_alternative<GarmentSpec>(spec.content)};
 }
 
-PlannedScene planned_scene(SceneSpec spec, const BenchSettings& settings) {
-  const SceneCounts counts = counts_of(spec);
-  const SceneSize size = size_of(spec, counts);
+PreparedScene UnbuiltScene::prepare() { return prepare_scene(spec, std::exchange(parts, {})); }
+
+PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
+  const SceneCounts counts = scene.parts.counts;
+  const SceneSize size = size_of(scene.spec, counts);
   const std::uint64_t memory_bytes = bench_memory_needed(settings, size);
-  require_memory(spec, counts, memory_bytes,
+  require_memory(scene.spec, counts, memory_bytes,
                  "name fewer with --backend or --integrator, or make the scene smaller");
-  return {std::move(spec), size, memory_bytes, expected_time(settings, size)};
+  return {std::move(scene), size, memory_bytes, expected_time(settings, size)};
 }
 
 std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes) {

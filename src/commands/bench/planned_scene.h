@@ -6,6 +6,8 @@
 #include "bench/bench_memory.h"
 #include "bench/expected_time.h"
 #include "bench/job/scene_job.h"
+#include "commands/shared/prepared_scene.h"
+#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -13,17 +15,27 @@ namespace mssim {
 /// What the memory and the time of a scene with these counts depend on.
 SceneSize size_of(const SceneSpec& spec, const SceneCounts& counts);
 
-/// A scene that a bench is to time, before it is built.
-struct PlannedScene {
+/// A scene before a bench builds it. Its parts are read for the plan and dropped when the scene has been
+/// built, so that they take no memory while it is measured; what those of some scenes take meanwhile is not
+/// available to those that are planned after them, which are refused where it is missing.
+struct UnbuiltScene {
   SceneSpec spec;
+  SceneParts parts;
+
+  /// Builds the scene, for the last time, and drops the parts. Throws SceneError.
+  PreparedScene prepare();
+};
+
+/// A scene that a bench is to time.
+struct PlannedScene : UnbuiltScene {
   SceneSize size;
   std::uint64_t memory_bytes = 0;  ///< bench_memory_needed
   ExpectedTime time;
 };
 
 /// Throws SceneError where the scene needs more memory than there is: a user shall not wait for a scene only
-/// to see the program killed. Throws like counts_of.
-PlannedScene planned_scene(SceneSpec spec, const BenchSettings& settings);
+/// to see the program killed.
+PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings);
 
 /// The times of the scenes alone.
 std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes);

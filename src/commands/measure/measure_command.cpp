@@ -155,7 +155,7 @@ int measure_scene(const MeasureOptions& options) {
     throw UsageError(spec.name +
                      " is a scene without a body to dress: give a garment's, or an .obj or .stl file");
   const auto* file = std::get_if<BodyFile>(&garment->body);
-  const BodyProfile body = measured_body(spec);
+  const BodyProfile body = measured_body(spec).profile;
   tell_of_ignored_parts(body);
   BodyListing listing;
   listing.add_stance(file ? file->stance : BodyStance{}, "by the scene");

@@ -52,7 +52,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
         recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   });
-  const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.spec));
+  const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.body));
   Table dressing, fitting;
   dressing.add({{"scene", scene.spec.name},
                 {"backend", backend_name},

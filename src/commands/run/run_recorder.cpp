@@ -3,7 +3,6 @@
 #include "commands/shared/exit_code.h"
 #include "commands/shared/output_names.h"
 #include "commands/shared/run_provenance.h"
-#include "garment/scene/garment_body.h"
 #include "platform/interruption.h"
 #include "platform/write_error.h"
 #include "scene/scene_file.h"
@@ -29,8 +28,7 @@ RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, cons
     curve_.emplace(files.energy_curve, comment);
   }
   if (!files.trace.empty())
-    trace_.emplace(files.trace, scene.system, header,
-                   is_garment(scene.system) ? body_of_garment(scene.spec) : Surface{});
+    trace_.emplace(files.trace, scene.system, header, scene.body ? scene.body->surface : Surface{});
 }
 
 void RunRecorder::record(const Frame& frame) {

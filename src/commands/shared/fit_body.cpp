@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <span>
 
-#include "garment/body/body_profile.h"
 #include "garment/contact/solid.h"
-#include "garment/scene/garment_body.h"
 
 namespace mssim {
 namespace {
-
-struct Body {
-  explicit Body(const Surface& surface) : profile(surface), solid(profile.trunk_and_legs().surface) {}
-
-  BodyProfile profile;
-  Solid solid;  ///< what the garment meets: an arm beside the hip is nothing to be inside of
-};
 
 /// The middle of the leg on the point's side, or of the trunk where that is nearer.
 Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
@@ -31,9 +21,10 @@ Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
 
 }  // namespace
 
-FitBody fit_body(const SceneSpec& spec) {
-  const auto body = std::make_shared<const Body>(body_of_garment(spec));
-  return {[body](std::span<const Vec3d> points) { return body->solid.depths(points); },
+FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body) {
+  // What the garment meets: an arm beside the hip is nothing to be inside of.
+  const auto solid = std::make_shared<const Solid>(body->profile.trunk_and_legs().surface);
+  return {[solid](std::span<const Vec3d> points) { return solid->depths(points); },
           [body](const Vec3d& point) { return limb_middle(body->profile, point); }};
 }
 

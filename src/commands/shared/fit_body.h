@@ -1,12 +1,13 @@
 #pragma once
 
+#include <memory>
+
+#include "garment/body/measured_body.h"
 #include "garment/fitting/fit.h"
-#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-/// The body of a garment scene, to measure fits against: the mesh of its trunk and legs, which is what
-/// garments meet. Throws SceneError.
-FitBody fit_body(const SceneSpec& spec);
+/// A body to measure fits against: the mesh of its trunk and legs, which is what garments meet.
+FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body);
 
 }  // namespace mssim

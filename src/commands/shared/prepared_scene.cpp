@@ -1,6 +1,7 @@
 #include "commands/shared/prepared_scene.h"
 
 #include <iostream>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -11,8 +12,8 @@ namespace mssim {
 namespace {
 
 /// Meshes, and bodies to dress, are what does not follow from a scene's file alone.
-std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
-  const auto stated = stated_counts(spec);
+std::string difference(const SceneSpec& spec, const SceneCounts& counts,
+                       const std::optional<SceneCounts>& stated) {
   if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
     return "";
   return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
@@ -25,16 +26,22 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts) {
 
 }  // namespace
 
-PreparedScene prepare_scene(SceneSpec spec) {
+PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
   PreparedScene scene;
   scene.spec = std::move(spec);
-  auto [system, note_of_building] = build_scene(scene.spec);
-  scene.system = std::move(system);
+  BuiltScene built = build_scene(scene.spec, parts);
+  scene.system = std::move(built.system);
+  scene.body = std::move(built.body);
   scene.counts = counts_of(scene.spec, scene.system);
-  scene.note = difference(scene.spec, scene.counts);
-  add_to_note(scene.note, note_of_building);
+  scene.note = difference(scene.spec, scene.counts, parts.stated);
+  add_to_note(scene.note, built.note);
   scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
   return scene;
+}
+
+PreparedScene prepare_scene(SceneSpec spec) {
+  const SceneParts parts = read_parts(spec);
+  return prepare_scene(std::move(spec), parts);
 }
 
 ModeBound mode_bound(const System& system) {

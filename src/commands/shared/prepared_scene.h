@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "integrators/stability.h"
 #include "model/system.h"
+#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -16,9 +18,13 @@ struct PreparedScene {
   double dt_s = 0;  ///< the scene's, or the largest safe one for `auto`
   /// How the scene differs from what its file states, and what of a body a garment ignores; or empty.
   std::string note;
+  std::shared_ptr<const MeasuredBody> body;  ///< that a garment is put on; none of other scenes
 };
 
-/// Builds the scene. Throws SceneError and MissingProgram.
+/// Builds the scene of its parts. Throws SceneError.
+PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts);
+
+/// The same, its parts read for it alone. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(SceneSpec spec);
 
 /// The modes of the scene, for the stability limits of its integrators.

@@ -120,6 +120,17 @@ void require_person(const SceneSpec& spec, const BodyFile& body, const BodyProfi
                     : ""));
 }
 
+Surface body_of_garment(const SceneSpec& spec) {
+  const GarmentSpec& garment = garment_of(spec);
+  if (const auto* file = std::get_if<BodyFile>(&garment.body)) return body_from_file(spec, *file);
+  const auto& form = std::get<MannequinBody>(garment.body);
+  try {
+    return mannequin(form.measures, form.resolution);
+  } catch (const InputError& error) {
+    refuse(spec.file, "/garment/body", "is not a usable body: " + printable(error.what(), 1500));
+  }
+}
+
 }  // namespace
 
 void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment) {
@@ -143,25 +154,14 @@ void check_body(const SceneSpec& spec) {
           "level");
 }
 
-Surface body_of_garment(const SceneSpec& spec) {
-  const GarmentSpec& garment = garment_of(spec);
-  if (const auto* file = std::get_if<BodyFile>(&garment.body)) return body_from_file(spec, *file);
-  const auto& form = std::get<MannequinBody>(garment.body);
-  try {
-    return mannequin(form.measures, form.resolution);
-  } catch (const InputError& error) {
-    refuse(spec.file, "/garment/body", "is not a usable body: " + printable(error.what(), 1500));
-  }
-}
-
-BodyProfile measured_body(const SceneSpec& spec) {
-  const Surface surface = body_of_garment(spec);
+MeasuredBody measured_body(const SceneSpec& spec) {
+  Surface surface = body_of_garment(spec);
   try {
     BodyProfile profile(surface);
     const GarmentSpec& garment = garment_of(spec);
     if (const auto* file = std::get_if<BodyFile>(&garment.body); file && garment.jeans)
       require_person(spec, *file, profile);
-    return profile;
+    return {std::move(surface), std::move(profile)};
   } catch (const InputError& error) {
     refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
   }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "garment/body/body_profile.h"
-#include "geometry/surface.h"
+#include "garment/body/measured_body.h"
 #include "scene/fields/field_visitor.h"
 #include "scene/spec/scene_spec.h"
 
@@ -16,11 +15,8 @@ void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment);
 void check_body(const SceneSpec& spec);
 
 /// The body that the garment is for, upright in y and looking to +z, its openings closed as far as the scene
-/// says so. Throws SceneError.
-Surface body_of_garment(const SceneSpec& spec);
-
-/// The body as a pattern needs it. Throws SceneError for one that cannot be measured, and for jeans when it
-/// is not a person's height.
-BodyProfile measured_body(const SceneSpec& spec);
+/// says so. Throws SceneError for one that cannot be read or measured, and for jeans when it is not a
+/// person's height.
+MeasuredBody measured_body(const SceneSpec& spec);
 
 }  // namespace mssim

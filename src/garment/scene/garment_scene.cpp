@@ -132,6 +132,35 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
 
 SceneCounts counts_of(const GarmentBuild& build) { return {build.placed.size(), build.springs.size()}; }
 
+BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body, const FittedGarment& cut) {
+  const GarmentSpec& garment = garment_of(spec);
+  const GarmentBuild& build = cut.build;
+  require_memory(spec, "/garment", counts_of(build));
+  const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
+  if (lowest_start < spec.floor.height)
+    refuse(spec.file, "/floor/height_m",
+           "is " + shown_number(spec.floor.height) + ", but the garment would start down to " +
+               shown_number(lowest_start) + ": lower the floor or wear the garment higher");
+  System system;
+  system.springs = build.springs;
+  system.materials = build.materials;
+  system.node_mass = build.node_mass;
+  system.gravity = spec.gravity_m_per_s2;
+  system.viscous_damping = spec.viscous_damping_per_s;
+  system.floor = spec.floor;
+  system.start.position = build.placed;
+  system.start.velocity.resize(system.start.position.size());
+
+  Garment dressed = build.garment;
+  dressed.dressing = garment.dressing;
+  dressed.flat = build.flat;
+  if (garment.layers) dressed.touching = {{layer_pairs(dressed), {}}, *garment.layers};
+  const TrunkAndLegs& met = body->profile.trunk_and_legs();
+  dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
+  system.topology = std::move(dressed);
+  return {std::move(system), ignored_parts(met), std::move(body)};
+}
+
 }  // namespace
 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
@@ -188,36 +217,11 @@ std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
   return expected ? std::optional(SceneCounts{expected->nodes, expected->springs}) : std::nullopt;
 }
 
-SceneCounts garment_counts(const SceneSpec& spec) {
-  return counts_of(cut_and_placed(spec, measured_body(spec)).build);
-}
-
-BuiltScene build_garment_scene(const SceneSpec& spec) {
-  const GarmentSpec& garment = garment_of(spec);
-  const BodyProfile body = measured_body(spec);
-  auto [build, body_offset] = cut_and_placed(spec, body);
-  require_memory(spec, "/garment", counts_of(build));
-  const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
-  if (lowest_start < spec.floor.height)
-    refuse(spec.file, "/floor/height_m",
-           "is " + shown_number(spec.floor.height) + ", but the garment would start down to " +
-               shown_number(lowest_start) + ": lower the floor or wear the garment higher");
-  System system;
-  system.springs = std::move(build.springs);
-  system.materials = std::move(build.materials);
-  system.node_mass = std::move(build.node_mass);
-  system.gravity = spec.gravity_m_per_s2;
-  system.viscous_damping = spec.viscous_damping_per_s;
-  system.floor = spec.floor;
-  system.start.position = std::move(build.placed);
-  system.start.velocity.resize(system.start.position.size());
-
-  build.garment.dressing = garment.dressing;
-  build.garment.flat = std::move(build.flat);
-  if (garment.layers) build.garment.touching = {{layer_pairs(build.garment), {}}, *garment.layers};
-  build.garment.body_maps = maps_for_layers(spec, build.garment, body.trunk_and_legs().surface, body_offset);
-  system.topology = std::move(build.garment);
-  return {std::move(system), ignored_parts(body.trunk_and_legs())};
+SceneParts read_garment(const SceneSpec& spec) {
+  const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
+  const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
+  return {counts_of(cut->build), stated_garment_counts(spec),
+          [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
 }
 
 }  // namespace mssim

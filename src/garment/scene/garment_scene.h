@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "scene/fields/field_visitor.h"
-#include "scene/spec/built_scene.h"
+#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -18,12 +18,12 @@ void check_garment(const SceneSpec& spec);
 
 std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec);
 
-/// Measures the body and drafts the pattern. Throws SceneError.
-SceneCounts garment_counts(const SceneSpec& spec);
-
-/// Panels placed around the body, at rest, and the maps of the body that they collide with; the note says
-/// what of the body they ignore. Deterministic. Throws SceneError when the body cannot be measured, the
-/// pattern does not fit together or the memory does not suffice.
-BuiltScene build_garment_scene(const SceneSpec& spec);
+/// Measures the body and cuts the garment for it. Throws SceneError when the body cannot be measured or the
+/// pattern does not fit together.
+///
+/// The scene has the panels placed around the body, at rest, and the maps of the body that they collide with;
+/// its note says what of the body they ignore. Deterministic. Building it throws SceneError when the garment
+/// starts below the floor or the memory does not suffice.
+SceneParts read_garment(const SceneSpec& spec);
 
 }  // namespace mssim

@@ -42,7 +42,7 @@ TEST_F(BenchPlanTest, HoldsWhatABenchOfItsScenesTakes) {
 }
 
 TEST_F(BenchPlanTest, OutlivesTheFilesOfItsScenes) {
-  const BenchPlan plan = plan_of(options_);
+  BenchPlan plan = plan_of(options_);
   put("mine.json", "no scene any more");
   BenchResults results(plan);
   TimeBudget budget(plan.time_budget_s, times_of(plan.timed));

@@ -8,7 +8,6 @@
 #include <functional>
 #include <string>
 
-#include "garment/scene/garment_body.h"
 #include "tests/support/garment_system.h"
 
 namespace mssim {
@@ -30,7 +29,7 @@ Dressed dressed_after(const std::function<void(DressingCase&)>& change, const Se
 /// The body's surface as maps that lie this far before it.
 void let_maps_lie(DressingCase& jeans, double offset) {
   const double pixel = std::get<GarmentSpec>(jeans.spec.content).pixel_m;
-  put_on(jeans.system, body_of_garment(jeans.spec), {.pixel = pixel, .offset = offset});
+  put_on(jeans.system, jeans.body->surface, {.pixel = pixel, .offset = offset});
 }
 
 TEST(DressedJeans, FitWithinAllBounds) {

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
 #include <string>
 
 #include "commands/shared/prepared_scene.h"
@@ -12,6 +11,7 @@
 #include "scene/scene_kinds.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/dressed_jeans.h"
+#include "tests/support/obj_text.h"
 #include "tests/support/open_count.h"
 #include "tests/support/temporary_folder.h"
 
@@ -21,16 +21,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::string obj_text(const Surface& surface) {
-  std::ostringstream text;
-  text.precision(9);
-  for (const Vec3d& point : surface.points)
-    text << "v " << point.x << ' ' << point.y << ' ' << point.z << '\n';
-  for (const auto& [a, b, c] : surface.triangles)
-    text << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
-  return text.str();
-}
 
 class DressedPerson : public TemporaryFolderTest {
  protected:
@@ -49,7 +39,7 @@ class DressedPerson : public TemporaryFolderTest {
 TEST_F(DressedPerson, IsCutJeansForWhateverHeightsTheSceneGives) {
   for (const std::size_t triangles : {1'600U, 12'000U}) {
     SceneSpec spec = scene_for("jeans1k", {.triangles = triangles});
-    const BodyProfile profile = measured_body(spec);
+    const BodyProfile profile = measured_body(spec).profile;
     JeansMeasures& jeans = std::get<GarmentSpec>(spec.content).jeans.value().measures;
     int accepted = 0;
     for (const double waist : {0.96, 0.985, 1.005, 1.04})
@@ -105,10 +95,11 @@ TEST_F(DressedPerson, IsSaidToHaveArmsThatTheGarmentIgnores) {
   EXPECT_EQ(build_scene(find_scene("jeans1k")).note, "");
   // As a command says it; the person is read and measured once.
   OpenCount count(folder() / "person.obj");
-  EXPECT_THAT(prepare_scene(spec).note, HasSubstr("garments ignore"));
-  EXPECT_EQ(count.value(), 1);
+  const PreparedScene scene = prepare_scene(spec);
+  EXPECT_THAT(scene.note, HasSubstr("garments ignore"));
   // What is drawn is the whole person.
-  EXPECT_EQ(body_of_garment(spec).triangles.size(), 1'600U);
+  EXPECT_EQ(scene.body->surface.triangles.size(), 1'600U);
+  EXPECT_EQ(count.value(), 1);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "commands/shared/command.h"
-#include "garment/scene/garment_body.h"
 #include "scene/fields/scene_error.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/contact_fixture.h"
@@ -109,7 +108,7 @@ TEST_F(ScannedBody, AsAnObjFileOfQuadsInCentimetresInAnyOrderIsDressed) {
   const ObjText shuffled_obj = as_obj(renumbered(body()), 0.01);
   put("body.obj", shuffled_obj.text);
   const DressingCase jeans(scene_for("body.obj", 0.01));
-  EXPECT_EQ(body_of_garment(jeans.spec).triangles.size(), body().triangles.size());
+  EXPECT_EQ(jeans.body->surface.triangles.size(), body().triangles.size());
   EXPECT_THAT(dressed(jeans).found, IsEmpty());
 }
 
