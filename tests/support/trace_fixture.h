@@ -42,6 +42,15 @@ inline std::vector<hsize_t> shape_of(hid_t file, const std::string& path) {
   return shape;
 }
 
+/// A string of fixed length.
+inline std::string text_in(hid_t file, const std::string& path) {
+  const Hdf5Dataset dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), "opening " + path);
+  const Hdf5Type type(H5Dget_type(dataset.get()), "type");
+  std::string text(H5Tget_size(type.get()), '\0');
+  checked(H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "reading " + path);
+  return text;
+}
+
 inline Hdf5File open(const std::filesystem::path& file) {
   prepare_hdf5();
   return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening " + file.string()};

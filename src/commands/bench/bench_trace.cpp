@@ -18,7 +18,8 @@ constexpr int frames = 10;
 }  // namespace
 
 void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
-                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch) {
+                        const Provenance& provenance, const std::filesystem::path& folder, bool keep_existing,
+                        const BenchWatch& watch) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -34,8 +35,7 @@ void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const s
     const Integrator& integrator = *find_integrator(row.integrator);
     const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
     const auto backend = make_backend(info, scene.system, integrator, scene.dt_s, job.execution);
-    TraceHeader header = trace_header(scene, *backend, row.backend, integrator);
-    H5mdTrace trace(file, scene.system, header);
+    H5mdTrace trace(file, scene.system, trace_header(scene, *backend, row.backend, integrator, provenance));
     simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s},
              {[&](const Frame& frame) {
                trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);

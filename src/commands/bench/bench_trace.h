@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/bench_scene.h"
+#include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "commands/shared/prepared_scene.h"
 
@@ -11,8 +12,10 @@ namespace mssim {
 
 /// Traces every combination whose row is ok, from the start over as many steps as it was verified with, into
 /// FOLDER/SCENE-BACKEND-INTEGRATOR.h5: what `mssim bench --trace` does after the timing. Files that are there
-/// already stay when `keep_existing`. Ends between two traces when it is asked to. Throws WriteError.
+/// already stay when `keep_existing`. `provenance`: the bench's. Ends between two traces when it is asked to.
+/// Throws WriteError.
 void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
-                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch);
+                        const Provenance& provenance, const std::filesystem::path& folder, bool keep_existing,
+                        const BenchWatch& watch);
 
 }  // namespace mssim

@@ -55,7 +55,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
       if (!measured.empty()) results.keep(job.name, std::move(measured));
     }
     if (plan.output.trace && !stop.requested())
-      write_bench_traces(job, scene, results.of_scene(job.name),
+      write_bench_traces(job, scene, results.of_scene(job.name), plan.provenance,
                          std::filesystem::path(plan.output.folder) / "traces", plan.output.resume, watch);
     if (stop.requested()) return;
   }

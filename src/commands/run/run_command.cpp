@@ -95,13 +95,16 @@ std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, c
   return (curve.back().energy.total() + losses.total() - curve.front().energy.total()) / in_motion;
 }
 
-TraceHeader header_of(const RunOptions& options, const PreparedScene& scene, const Backend& backend,
-                      const Integrator& integrator) {
-  TraceHeader header;
-  if (!options.files.trace.empty()) header = trace_header(scene, backend, options.backend, integrator);
-  header.with_losses = options.losses;
-  header.in_double = options.precision == "double";
-  return header;
+FileHeaders headers_of(const RunOptions& options, const PreparedScene& scene, const Backend& backend,
+                       const Integrator& integrator) {
+  if (!options.files.any()) return {};
+  Provenance provenance = run_provenance(backend.threads(), require_backend(options.backend).uses_device);
+  add_scene(provenance, scene.spec.name, scene.spec.source);
+  FileHeaders headers{trace_header(scene, backend, options.backend, integrator, provenance),
+                      command_line(provenance)};
+  headers.trace.with_losses = options.losses;
+  headers.trace.in_double = options.precision == "double";
+  return headers;
 }
 
 int run_garment(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
@@ -112,22 +115,22 @@ int run_garment(const RunOptions& options, const PreparedScene& scene, const Int
     throw UsageError(
         "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
         "leave it out");
-  const TraceHeader header = header_of(options, scene, *backend, integrator);
-  // After the header, for which libraries are loaded that catch signals themselves, and before there is a
+  const FileHeaders headers = headers_of(options, scene, *backend, integrator);
+  // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
   // file.
   StopRequest stop;
   const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
   const SettlingRule rule = settling_rule(options, plan);
-  RunRecorder recorder(options.files, scene, header);
+  RunRecorder recorder(options.files, scene, headers);
   return run_dressing(scene, *backend, options.backend, rule, frames, recorder, stop);
 }
 
 int run_simulation(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
                    const SimulationPlan& plan) {
   const auto backend = chosen_backend(options, scene, integrator, make_backend, make_reference);
-  const TraceHeader header = header_of(options, scene, *backend, integrator);
+  const FileHeaders headers = headers_of(options, scene, *backend, integrator);
   StopRequest stop;  // where run_garment has it
-  RunRecorder recorder(options.files, scene, header);
+  RunRecorder recorder(options.files, scene, headers);
   if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
   std::int64_t steps = 0;
   std::optional<EnergyLosses> losses;

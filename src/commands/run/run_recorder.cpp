@@ -2,7 +2,6 @@
 
 #include "commands/shared/exit_code.h"
 #include "commands/shared/output_names.h"
-#include "commands/shared/run_provenance.h"
 #include "platform/interruption.h"
 #include "platform/write_error.h"
 #include "scene/scene_file.h"
@@ -20,15 +19,15 @@ void require_distinct(const RunFiles& files, const SceneSpec& scene) {
   require_distinct(written, read);
 }
 
-RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const TraceHeader& header) {
+RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers) {
   if (!files.energy_curve.empty()) {
-    std::string comment = command_line();
+    std::string comment = headers.command_line;
     if (const std::string_view work = energies_leave_out(scene.system); !work.empty())
       comment.append("\nleft out: ").append(work);
     curve_.emplace(files.energy_curve, comment);
   }
   if (!files.trace.empty())
-    trace_.emplace(files.trace, scene.system, header, scene.body ? scene.body->surface : Surface{});
+    trace_.emplace(files.trace, scene.system, headers.trace, scene.body ? scene.body->surface : Surface{});
 }
 
 void RunRecorder::record(const Frame& frame) {

@@ -20,6 +20,12 @@ struct RunFiles {
   bool any() const { return !trace.empty() || !energy_curve.empty(); }
 };
 
+/// What the files say about how they came about, beside what the scene says.
+struct FileHeaders {
+  TraceHeader trace;
+  std::string command_line;  ///< of the energy curve
+};
+
 /// Throws UsageError when two of the files, the XDMF of the trace, and the files that the scene is read from,
 /// are the same.
 void require_distinct(const RunFiles& files, const SceneSpec& scene);
@@ -28,7 +34,7 @@ void require_distinct(const RunFiles& files, const SceneSpec& scene);
 class RunRecorder {
  public:
   /// Begins the files of a scene that there are to be. Throws WriteError, also where another writer has one.
-  RunRecorder(const RunFiles& files, const PreparedScene& scene, const TraceHeader& header);
+  RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers);
 
   /// Whether anything is written.
   bool wanted() const { return trace_ || curve_; }

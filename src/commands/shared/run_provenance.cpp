@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "backends/backends.h"
 #include "backends/devices/offer.h"
 #include "mesh/tetgen_program.h"
 #include "output/folders/provenance_file.h"
@@ -38,13 +37,6 @@ std::string quoted(const std::string& argument) {
 
 void remember_arguments(int argc, char** argv) { arguments().assign(argv, argv + argc); }
 
-std::string command_line() {
-  std::string text;
-  for (const std::string& argument : gather_provenance(arguments(), 0).command_line)
-    text.append(text.empty() ? "" : " ").append(quoted(argument));
-  return text;
-}
-
 Provenance run_provenance(int threads, bool uses_device) {
   Provenance provenance = gather_provenance(arguments(), threads);
   if (uses_device) {
@@ -59,10 +51,15 @@ Provenance run_provenance(int threads, bool uses_device) {
   return provenance;
 }
 
+std::string command_line(const Provenance& provenance) {
+  std::string text;
+  for (const std::string& argument : provenance.command_line)
+    text.append(text.empty() ? "" : " ").append(quoted(argument));
+  return text;
+}
+
 TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
-                         const Integrator& integrator) {
-  Provenance provenance = run_provenance(backend.threads(), find_backend(backend_name)->uses_device);
-  add_scene(provenance, scene.spec.name, scene.spec.source);
+                         const Integrator& integrator, const Provenance& provenance) {
   TraceHeader header;
   header.creator_version = build_info().version;
   header.scene_json = scene.spec.source;
