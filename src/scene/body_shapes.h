@@ -17,9 +17,8 @@ void visit_shape_fields(FieldVisitor& fields, BodySpec& body);
 /// A shape that is not that of another scene any more.
 struct OwnShape {
   BodyShape shape;
-  std::filesystem::path folder;  ///< that the paths of its files start at
-  std::optional<MeshSize>
-      stated_by_other;  ///< what the other scene, where there is one, states about the mesh
+  std::filesystem::path folder;             ///< that the paths of its files start at
+  std::optional<MeshSize> stated_by_other;  ///< about the mesh, by the scene that it was taken from
 };
 
 /// The shape of a body in a scene file of that folder; where it is another scene's, that is read. Throws
