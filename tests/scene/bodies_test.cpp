@@ -47,9 +47,7 @@ std::vector<BodyNodes> bodies_in(const SceneSpec& spec) {
   std::vector<BodyNodes> bodies;
   std::size_t first = 0;
   for (const BodySpec& body : std::get<BodiesSpec>(spec.content).list) {
-    SceneSpec alone = spec;
-    std::get<BodiesSpec>(alone.content).list = {body};
-    bodies.push_back({first, counts_of(alone).nodes});
+    bodies.push_back({first, least_counts(body.shape, spec.file.parent_path()).nodes});
     first += bodies.back().count;
   }
   return bodies;

@@ -176,8 +176,11 @@ inline Surface body_with_arms(const PersonForm& form = {}) {
   // A cube that the surface passes through makes about eight triangles.
   const double cell = std::min(0.024, std::sqrt(1.8 * 8 / (1.2 * static_cast<double>(form.triangles))));
   const auto cells = [&](double extent) { return static_cast<std::uint32_t>(std::ceil(extent / cell)); };
+  // The arms reach 0.71 m down from the shoulders, and a hand is 0.05 m wide.
+  const auto reach = [](double degrees) { return 0.8 * std::sin(degrees * std::numbers::pi / 180); };
   // x = 0 is a plane of corners: the legs never grow together there.
-  const std::uint32_t aside = cells(0.95), behind = cells(0.25), before = cells(0.65);
+  const std::uint32_t aside = cells(0.3 + reach(form.arm_angle_degrees)), behind = cells(0.25),
+                      before = cells(0.25 + reach(form.arm_forward_degrees));
   const FieldBox box{
       {-cell * aside, -2.3 * cell, -cell * behind}, cell, {2 * aside, cells(1.72) + 4, behind + before}};
   Surface surface = Decimation(isosurface(field, box), field).down_to(form.triangles);

@@ -62,9 +62,10 @@ inline Surface isosurface(const DistanceField& field, const FieldBox& box) {
       surface.triangles.push_back({a, c, b});
   };
   const auto cut = [&](const std::array<std::uint32_t, 4>& tetrahedron) {
+    const auto inside = std::ranges::count_if(tetrahedron, [&](auto corner) { return value[corner] < 0; });
+    if (inside == 0 || inside == 4) return;
     std::vector<std::uint32_t> in, out;
     for (const std::uint32_t corner : tetrahedron) (value[corner] < 0 ? in : out).push_back(corner);
-    if (in.empty() || out.empty()) return;
     Vec3d outwards;
     for (const std::uint32_t corner : out) outwards += 1.0 / double(out.size()) * place[corner];
     for (const std::uint32_t corner : in) outwards += -1.0 / double(in.size()) * place[corner];

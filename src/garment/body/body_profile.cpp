@@ -17,6 +17,9 @@ using Corners = std::array<Vec3d, 3>;
 /// point in which one of its edges passes through that plane.
 template <class Visit>
 void cut(const Corners& corners, double Vec3d::*coordinate, double value, const Visit& visit) {
+  const auto [low, high] =
+      std::minmax({corners[0].*coordinate, corners[1].*coordinate, corners[2].*coordinate});
+  if (low > value || high < value) return;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3d& from = corners[i];
     const Vec3d& to = corners[(i + 1) % 3];

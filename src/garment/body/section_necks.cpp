@@ -16,6 +16,12 @@ constexpr double least_outline = 0.05;  // m, of what is a limb rather than a fo
 constexpr std::size_t most_ends = 300;
 
 double distance(const PlanPoint& a, const PlanPoint& b) { return std::hypot(a.x - b.x, a.z - b.z); }
+/// Are two points farther apart than that, m, whatever rounding does? Takes a fraction of the distance's
+/// time.
+bool are_surely_farther(const PlanPoint& a, const PlanPoint& b, double far) {
+  const double x = a.x - b.x, z = a.z - b.z;
+  return x * x + z * z > (1 + 1e-9) * far * far;
+}
 double cross(const PlanPoint& a, const PlanPoint& b) { return a.x * b.z - a.z * b.x; }
 
 /// The part of a loop from its point `first` to its point `last`, round its beginning where that is smaller.
@@ -65,12 +71,13 @@ std::optional<Stretch> narrowest(const SectionLoop& loop) {
   const std::size_t stride = 1 + outline.size() / most_ends;
   for (std::size_t i = 0; i < outline.size(); i += stride)
     for (std::size_t j = i + stride; j < outline.size(); j += stride) {
-      const double chord = distance(outline[i], outline[j]);
       for (const Stretch& stretch : {Stretch{i, j}, Stretch{j, i}}) {
         const double length = outline.length(stretch);
-        if (length < least_outline || chord >= least * length) continue;
+        if (length < least_outline || are_surely_farther(outline[i], outline[j], least * length)) continue;
         const double fraction = outline.fraction(stretch);
         if (!(fraction > 0 && fraction <= small_part) || !outline.is_on_one_side(stretch)) continue;
+        const double chord = distance(outline[i], outline[j]);
+        if (chord >= least * length) continue;
         least = chord / length;
         found = stretch;
       }

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <unordered_map>
 #include <utility>
 
 #include "garment/pattern/jeans.h"
@@ -88,29 +91,49 @@ std::string uncut_jeans(const JeansMeasures& jeans, const BodyProfile& profile) 
          "measure finds them)";
 }
 
+using OfHeight = std::function<double(double height)>;
+
+/// The same function, which computes a value once for each height. Copies remember together.
+OfHeight remembered(OfHeight function) {
+  return [function = std::move(function),
+          known = std::make_shared<std::unordered_map<double, double>>()](double height) {
+    const auto found = known->find(height);
+    return found != known->end() ? found->second : known->emplace(height, function(height)).first->second;
+  };
+}
+
+/// What patterns ask of a body. They ask for the same heights again: for panels that are mirror images, and
+/// when they are cut once more for another offset.
+struct AskedMeasures {
+  const BodyProfile& profile;
+  OfHeight girth = remembered([&of = profile](double y) { return of.hull_girth(y); });
+  OfHeight leg_x = remembered([&of = profile](double y) { return of.leg_middle(y).x; });
+  BodyDepth depth{remembered([&of = profile](double y) { return of.front(y); }),
+                  remembered([&of = profile](double y) { return of.back(y); })};
+};
+
 /// Jeans for a body that is as much wider all round as its maps lie before it.
-GarmentPattern jeans_for(const GarmentSpec& garment, const BodyProfile& profile, double body_offset) {
+GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, double body_offset) {
   JeansMeasures measures = garment.jeans->measures;
   measures.body_offset = body_offset;
-  measures.girth = [&](double height) { return profile.hull_girth(height); };
-  measures.crotch_height = profile.crotch_height();
+  measures.girth = body.girth;
+  measures.crotch_height = body.profile.crotch_height();
   return jeans_pattern(measures, garment.jeans->nodes, garment.cloth,
-                       [&](double height) { return profile.leg_middle(height).x + beside_the_leg_m; });
+                       [leg_x = body.leg_x](double height) { return leg_x(height) + beside_the_leg_m; });
 }
 
 /// Throws SceneError, which names the panel or seam that cannot be made.
-GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern, const BodyProfile& profile,
+GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern, const AskedMeasures& body,
                             const GarmentPattern& jeans) {
   const GarmentSpec& garment = garment_of(spec);
   try {
-    return build_garment(pattern, {[&](double height) { return profile.front(height); },
-                                   [&](double height) { return profile.back(height); }});
+    return build_garment(pattern, body.depth);
   } catch (const PatternError& error) {
     const bool is_panel = error.part == PatternError::Part::panel;
     const std::size_t of_jeans = is_panel ? jeans.panels.size() : jeans.seams.size();
     if (error.index < of_jeans)
       refuse(spec.file, jeans_pointer(garment),
-             error.folded ? uncut_jeans(garment.jeans->measures, profile)
+             error.folded ? uncut_jeans(garment.jeans->measures, body.profile)
                           : "does not fit: " + printable(error.what(), 1500));
     refuse(spec.file,
            pieces_pointer(garment) + (is_panel ? "/panels/" : "/seams/") +
@@ -119,18 +142,18 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern
   }
 }
 
-FittedGarment cut_and_placed(const SceneSpec& spec, const BodyProfile& profile, double body_offset) {
+FittedGarment cut_and_placed(const SceneSpec& spec, const AskedMeasures& body, double body_offset) {
   const GarmentSpec& garment = garment_of(spec);
   GarmentPattern jeans;
-  if (garment.jeans) require_body_there(spec, profile);
+  if (garment.jeans) require_body_there(spec, body.profile);
   try {
-    if (garment.jeans) jeans = jeans_for(garment, profile, body_offset);
+    if (garment.jeans) jeans = jeans_for(garment, body, body_offset);
   } catch (const InputError& error) {
     refuse(spec.file, jeans_pointer(garment), "does not fit: " + printable(error.what(), 1500));
   }
   GarmentPattern pattern = jeans;
   if (garment.pieces) append_pieces(*garment.pieces, garment.cloth, pattern);
-  GarmentBuild build = cut_and_placed(spec, pattern, profile, jeans);
+  GarmentBuild build = cut_and_placed(spec, pattern, body, jeans);
   const double cell = widest_mean_cell(pattern, build);
   return {std::move(build), map_offset(garment, cell)};
 }
@@ -143,10 +166,10 @@ std::string pieces_pointer(const GarmentSpec& garment) {
 
 FittedGarment cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) {
   const double least = JeansMeasures{}.body_offset;
-  FittedGarment fitted = cut_and_placed(spec, profile, least);
-  return garment_of(spec).jeans && fitted.body_offset > least
-             ? cut_and_placed(spec, profile, fitted.body_offset)
-             : fitted;
+  const AskedMeasures body{profile};
+  FittedGarment fitted = cut_and_placed(spec, body, least);
+  return garment_of(spec).jeans && fitted.body_offset > least ? cut_and_placed(spec, body, fitted.body_offset)
+                                                              : fitted;
 }
 
 }  // namespace mssim
