@@ -47,7 +47,7 @@ std::vector<BodyNodes> bodies_in(const SceneSpec& spec) {
   std::vector<BodyNodes> bodies;
   std::size_t first = 0;
   for (const BodySpec& body : std::get<BodiesSpec>(spec.content).list) {
-    bodies.push_back({first, least_counts(body.shape, spec.file.parent_path()).nodes});
+    bodies.push_back({first, least_counts(own_shape(body.shape, spec.file.parent_path())).nodes});
     first += bodies.back().count;
   }
   return bodies;
