@@ -14,8 +14,8 @@ fi
 
 # PoCL inherits what its threads may use; with POCL_AFFINITY it would narrow that again.
 all=$(awk '/^Cpus_allowed_list/ { print $2 }' /proc/self/status)
-OMP_PROC_BIND=true POCL_AFFINITY=0 "$mssim" bench --scene cloth2500 --backend opencl --integrator semi-euler \
-  --threads 1 --rounds 2000 >"$work/out" 2>"$work/err" &
+env --default-signal=INT OMP_PROC_BIND=true POCL_AFFINITY=0 "$mssim" bench --scene cloth2500 --backend opencl \
+  --integrator semi-euler --threads 1 --rounds 2000 >"$work/out" 2>"$work/err" &
 bench=$!
 threads=0
 for ((try = 0; try < 300 && threads < 2; ++try)); do

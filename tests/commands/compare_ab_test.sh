@@ -206,7 +206,7 @@ cat "$work/out" "$work/err"
 says 'small  openmp   semi-euler .* same'
 warns '^mssim: 10 rounds in'
 if grep -q 'verifies again' "$work/err"; then fail "it knows --verified itself"; fi
-# And against an older one, which is this one with an option less.
+# And against an older one, which is this one with an option less: a few rounds, too few for a verdict.
 cat >"$work/older" <<SCRIPT
 #!/usr/bin/env bash
 case "\$*" in
@@ -217,10 +217,11 @@ esac
 SCRIPT
 chmod +x "$work/older"
 status=0
-"$mssim" compare --ab "$work/older" "$mssim" --scene "$work/small.json" --threads 1 --threshold 1900 --time-budget 60 \
+"$mssim" compare --ab "$work/older" "$mssim" --scene "$work/small.json" --threads 1 --threshold 1900 --time-budget 6 \
   >"$work/out" 2>"$work/err" || status=$?
 cat "$work/out" "$work/err"
 [ "$status" -eq 0 ] || fail "a comparison with an older one exits with $status"
-says 'small  openmp   semi-euler .* same'
+says '^small  openmp   semi-euler  [0-9]'
+warns '^mssim: [1-9][0-9]* rounds in'
 warns 'older has no bench --verified'
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
