@@ -119,9 +119,9 @@ HWY_INLINE void prefetch_row(const float* row) {
 }
 
 /// One row: the springs of `set` that it owns and, if `update`, the nodes' new values.
-template <std::size_t method, std::size_t stage, unsigned set, bool update>
-HWY_INLINE void walk_row(const RowConstants& constants, const ColumnView& column, Carry& carry,
-                         std::ptrdiff_t row) {
+template <std::size_t method, std::size_t stage>
+HWY_INLINE void walk_row(const RowConstants& constants, const ColumnView& column, unsigned set, bool update,
+                         Carry& carry, std::ptrdiff_t row) {
   const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
   const std::ptrdiff_t row_floats = 6 * lanes, force_floats = 3 * lanes;
   const auto& spring = constants.spring;
@@ -134,38 +134,38 @@ HWY_INLINE void walk_row(const RowConstants& constants, const ColumnView& column
   const Mask has_below = below(cloth_row, rows - 1);
 
   Lanes3 force = carry.below;
-  if constexpr (update) force = force + load3(column.forces_here + row * force_floats);
+  if (update) force = force + load3(column.forces_here + row * force_floats);
   carry.below = carry.below_2;
-  if constexpr ((set & down) != 0) {
+  if ((set & down) != 0) {
     const Lanes3 pull =
         spring_force<true>(node, column.here + (row + 1) * row_floats, spring[structural], has_below);
     force = force - pull;
     carry.below = carry.below + pull;
   }
-  if constexpr ((set & down_2) != 0) {
+  if ((set & down_2) != 0) {
     carry.below_2 = spring_force<true>(node, column.here + (row + 2) * row_floats, spring[bending],
                                        below(cloth_row, rows < 2 ? 0 : rows - 2));
     force = force - carry.below_2;
   }
-  if constexpr ((set & right_up) != 0) {
+  if ((set & right_up) != 0) {
     const Mask has_above = below(hn::Sub(cloth_row, hn::Set(IndexTag(), 1)), rows - 1);
     const Lanes3 pull =
         spring_force<true>(node, column.next + (row - 1) * row_floats, spring[shear], has_above);
     force = force - pull;
     if (row > 0) store3(column.forces_next + (row - 1) * force_floats, carry.right_above + pull);
   }
-  if constexpr ((set & right) != 0) {
+  if ((set & right) != 0) {
     const Lanes3 pull =
         spring_force<false>(node, column.next + row * row_floats, spring[structural], has_below);
     force = force - pull;
     carry.right_above = carry.right_below + load3(column.forces_next + row * force_floats) + pull;
   }
-  if constexpr ((set & right_down) != 0) {
+  if ((set & right_down) != 0) {
     carry.right_below =
         spring_force<true>(node, column.next + (row + 1) * row_floats, spring[shear], has_below);
     force = force - carry.right_below;
   }
-  if constexpr ((set & right_2) != 0) {
+  if ((set & right_2) != 0) {
     const float* other = column.next_2 + row * row_floats;
     if constexpr (integrators[method].stages[stage].gather == Pair::state) prefetch_row(other);
     const Lanes3 pull = spring_force<false>(node, other, spring[bending], has_below);
@@ -173,7 +173,7 @@ HWY_INLINE void walk_row(const RowConstants& constants, const ColumnView& column
     store3(column.forces_next_2 + row * force_floats, pull);
   }
 
-  if constexpr (update) {
+  if (update) {
     const Surroundings& surroundings = constants.surroundings;
     // The forces are accelerations already; dummies get none and stay where they are.
     const Lanes3 a = keep(
@@ -203,19 +203,31 @@ HWY_INLINE void walk_row(const RowConstants& constants, const ColumnView& column
 
 /// One column from the halo rows above it to the one below. `set`: springs of its nodes that exist and
 /// matter.
-template <std::size_t method, std::size_t stage, unsigned set, bool update>
-HWY_NOINLINE void walk_column(const BandGrid& bands, const ColumnView& view) {
+template <std::size_t method, std::size_t stage>
+HWY_INLINE void walk_rows(const BandGrid& bands, const ColumnView& view, unsigned set, bool update) {
   const RowConstants constants(bands);
   const ColumnView column = view;
   const auto height = static_cast<std::ptrdiff_t>(bands.layout.height);
   Carry carry{zero3(), zero3(), zero3(), zero3()};
-  if constexpr ((set & within_column) != 0)
-    walk_row<method, stage, set & down_2, false>(constants, column, carry, -2);
-  walk_row<method, stage, set&(within_column | right_down), false>(constants, column, carry, -1);
+  if ((set & within_column) != 0) walk_row<method, stage>(constants, column, set & down_2, false, carry, -2);
+  walk_row<method, stage>(constants, column, set & (within_column | right_down), false, carry, -1);
   for (std::ptrdiff_t row = 0; row < height; ++row)
-    walk_row<method, stage, set, update>(constants, column, carry, row);
-  if constexpr ((set & right_up) != 0)
-    walk_row<method, stage, right_up, false>(constants, column, carry, height);
+    walk_row<method, stage>(constants, column, set, update, carry, row);
+  if ((set & right_up) != 0) walk_row<method, stage>(constants, column, right_up, false, carry, height);
+}
+
+/// A column whose nodes own all springs and are updated: all but a few.
+template <std::size_t method, std::size_t stage>
+HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& view) {
+  walk_rows<method, stage>(bands, view, every_spring, true);
+}
+
+/// A column near the end of the cloth or of the partition. It asks in every row what there is to do: code of
+/// their own for the four kinds of such columns would take as long again to compile, for a few columns a
+/// pass.
+template <std::size_t method, std::size_t stage>
+HWY_NOINLINE void walk_edge_column(const BandGrid& bands, const ColumnView& view, unsigned set, bool update) {
+  walk_rows<method, stage>(bands, view, set, update);
 }
 
 }  // namespace mssim::HWY_NAMESPACE

@@ -80,16 +80,16 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
   view.forces_next = under_way.forces[1];
   view.forces_next_2 = under_way.forces[2];
   if (column + 2 == under_way.begin) {
-    walk_column<method, stage, right_2, false>(bands, view);
+    walk_edge_column<method, stage>(bands, view, right_2, false);
   } else if (column + 1 == under_way.begin) {
-    walk_column<method, stage, to_next_column | right_2, false>(bands, view);
+    walk_edge_column<method, stage>(bands, view, to_next_column | right_2, false);
   } else {
     if (column + 2 < layout.columns) {
-      walk_column<method, stage, every_spring, true>(bands, view);
-    } else if (column + 1 < layout.columns) {
-      walk_column<method, stage, within_column | to_next_column, true>(bands, view);
+      walk_inner_column<method, stage>(bands, view);
     } else {
-      walk_column<method, stage, within_column, true>(bands, view);
+      const bool last = column + 1 == layout.columns;
+      walk_edge_column<method, stage>(bands, view, last ? within_column : within_column | to_next_column,
+                                      true);
     }
     finish_written<method, stage>(layout, partition, column);
   }
