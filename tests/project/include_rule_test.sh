@@ -29,7 +29,7 @@ garment/scene         text geometry garment/contact model mesh garment/body garm
 scene                 text platform geometry model mesh scene/fields scene/spec garment/scene
 
 backends/interface    kernels integrators model
-backends/vectors      laws integrators
+backends/vectors      laws integrators backends/interface
 backends/threads
 backends/layouts      integrators model backends/interface backends/vectors
 backends/devices      text platform integrators backends/interface

@@ -1,4 +1,4 @@
-// openmp's vector code for every instruction set that this processor has: from one lane to sixteen.
+// openmp's vector code for every instruction set that this processor has: from four lanes to sixteen.
 #include "backends/vectors/instruction_sets.h"
 
 #include <gmock/gmock.h>
@@ -40,11 +40,6 @@ std::vector<std::pair<std::string, std::size_t>> expected_kernels() {
     sets.emplace_back("AVX3", 16);
   if (avx2) sets.emplace_back("AVX2", 8);
   if (__builtin_cpu_supports("sse4.2")) sets.emplace_back("SSE4", 4);
-#ifdef __clang__
-  sets.emplace_back("EMU128", 4);  // vectors made up of floats, which Highway does not trust g++ with
-#else
-  sets.emplace_back("SCALAR", 1);
-#endif
   return sets;
 #elif defined(__aarch64__)
   return {{"NEON", 4}};
