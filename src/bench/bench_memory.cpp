@@ -12,31 +12,34 @@ constexpr double state_node = 2 * sizeof(Vec3d);
 /// The double-precision reference: a spring list of twice the bytes, but for a byte that says what is pinned.
 constexpr MemoryUse reference{.node = 2 * spring_list_memory.node - 1,
                               .pair_node = 2 * spring_list_memory.pair_node};
-/// The states that a run of the reference holds: ten steps ago, now, and the last before contact.
+/// The states that a run of the reference holds: ten steps ago, now, and the last before contact, which it
+/// leaves.
 constexpr double reference_states = 3;
-/// Those of a verification: the reference's, and the one read back.
-constexpr double verification_states = 2;
-/// Those that a garment's reference keeps, where stretches start and end; and their errors.
-constexpr double garment_states = 4 * stretches;
-constexpr double garment_error_node = 2 * stretches * sizeof(double);
+/// What a garment's reference leaves: the states where stretches start and end, and their errors.
+constexpr double garment_reference_node = 4 * stretches * state_node + 2 * stretches * sizeof(double);
 
 }  // namespace
 
+std::size_t references_at_once(const BenchSettings& settings) {
+  return std::min(settings.integrators.size(), static_cast<std::size_t>(settings.execution.threads));
+}
+
 std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize& size) {
   const auto nodes = static_cast<double>(size.nodes);
-  double held =  // the System
+  const double system =
       nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
-  if (size.garment) held += nodes * (garment_states * state_node + garment_error_node);
-  double peak = held;
+  double running = 0, held = system;
   for (const Integrator* integrator : settings.integrators) {
-    peak = std::max(peak, held + reference.bytes(*integrator, size.nodes, size.springs, 1) +
-                              reference_states * state_node * nodes);
+    running = std::max(running, reference.bytes(*integrator, size.nodes, size.springs, 1) +
+                                    reference_states * state_node * nodes +
+                                    (size.garment ? garment_reference_node * nodes : 0));
+    held += (size.garment ? garment_reference_node : state_node) * nodes;
     for (const BackendInfo* backend : settings.backends)
       held += (size.grid ? backend->grid_memory : backend->mesh_memory)
                   .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
-    peak = std::max(peak, held + verification_states * state_node * nodes);
   }
-  return static_cast<std::uint64_t>(peak);
+  return static_cast<std::uint64_t>(std::max(
+      system + static_cast<double>(references_at_once(settings)) * running, held + state_node * nodes));
 }
 
 }  // namespace mssim

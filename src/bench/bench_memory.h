@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "bench/job/scene_job.h"
@@ -14,9 +15,13 @@ struct SceneSize {
   bool garment = false;
 };
 
-/// Bytes that bench_scene takes at its peak for a scene of this size, about: the System; all combinations of
-/// the scene, because every round takes a sample of each; and the larger of what the reference and what a
-/// verification needs beside them; of a garment also the states that its reference keeps.
+/// How many references bench_scene runs at the same time.
+std::size_t references_at_once(const BenchSettings& settings);
+
+/// Bytes that bench_scene takes at its peak for a scene of this size, about: the System, and the larger of
+/// what the references need and of what follows: all combinations of the scene, because every round takes a
+/// sample of each, what the references have left, and one verification. Of a garment a reference leaves more
+/// states.
 std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize& size);
 
 }  // namespace mssim

@@ -1,13 +1,16 @@
 #include "bench/bench_scene.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <functional>
+#include <future>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "bench/job/combination.h"
 #include "bench/roofline/machine_peak.h"
@@ -71,6 +74,26 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
   return [&job, reference = run_reference(*job.system, integrator, job.dt_s)](Backend& backend) {
     return verify(backend, *job.system, reference, job.dt_s);
   };
+}
+
+/// The verifiers of all integrators, in their order. References take one thread each: as many of them run at
+/// the same time as the backends have threads.
+std::vector<Verifier> make_verifiers(const SceneJob& job, const std::optional<State>& draped) {
+  std::vector<Verifier> verifiers(job.integrators.size());
+  // Those of more stages take longer, and begin first.
+  std::vector<std::size_t> order(verifiers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](std::size_t i) { return job.integrators[i]->stage_count; });
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::future<void>> threads;
+  for (std::size_t thread = 0; thread < references_at_once(job); ++thread)
+    threads.push_back(std::async(std::launch::async, [&] {
+      for (std::size_t i = next++; i < order.size(); i = next++)
+        verifiers[order[i]] = make_verifier(job, *job.integrators[order[i]], draped);
+    }));
+  for (std::future<void>& thread : threads) thread.get();
+  return verifiers;
 }
 
 /// What the samples so far say.
@@ -151,13 +174,14 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     if (!draped) return {};
   }
   const State& start = draped ? *draped : job.system->start;
-  for (const Integrator* integrator : job.integrators) {
-    Verifier verifier;
-    if (!job.verified) {
-      watch.progress("reference " + std::string(integrator->name), done());
-      if (watch.stop()) return {};
-      verifier = make_verifier(job, *integrator, draped);
-    }
+  std::vector<Verifier> verifiers;
+  if (!job.verified) {
+    watch.progress("references", 0);
+    if (watch.stop()) return {};
+    verifiers = make_verifiers(job, draped);
+  }
+  for (std::size_t i = 0; i < job.integrators.size(); ++i) {
+    const Integrator* integrator = job.integrators[i];
     for (const BackendInfo* info : job.backends) {
       watch.progress((job.verified ? "prepare " : "verify ") + std::string(info->name) + " " +
                          std::string(integrator->name),
@@ -167,7 +191,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       if (combination.backend && job.verified)
         take_verification(combination, *job.verified);
       else if (combination.backend)
-        take_verification(combination, verifier(*combination.backend));
+        take_verification(combination, verifiers[i](*combination.backend));
       if (combination.backend && job.garment && !job.verified) {
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, watch.stop)) return {};
