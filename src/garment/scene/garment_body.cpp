@@ -19,8 +19,6 @@
 namespace mssim {
 namespace {
 
-const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
-
 void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
   const std::string part(key);
   fields.object({key, "Girth of the " + part + "."}, Presence::required, [&](FieldVisitor& at) {

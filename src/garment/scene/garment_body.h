@@ -1,12 +1,17 @@
 #pragma once
 
+#include <variant>
+
 #include "garment/body/measured_body.h"
 #include "scene/fields/field_visitor.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-// The body of a garment scene. All of these but visit_body_fields need a spec whose body is a GarmentSpec.
+/// What a scene whose content is a garment holds.
+inline const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
+
+// The body of a garment scene. All of these but visit_body_fields need a spec whose content is a garment.
 
 /// Names the fields of the body, with their targets in garment.body.
 void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment);

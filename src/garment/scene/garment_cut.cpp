@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "garment/pattern/jeans.h"
+#include "garment/scene/garment_body.h"
 #include "geometry/geometry.h"
 #include "scene/fields/scene_error.h"
 #include "text/input_error.h"
@@ -26,8 +27,6 @@ constexpr double least_curvature_radius_m = 0.04;
 /// A trouser leg begins so far outside the leg's middle: its halves are closed around the leg from there
 /// without being drawn across the other one.
 constexpr double beside_the_leg_m = 0.01;
-
-const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
 
 std::string jeans_pointer(const GarmentSpec& garment) {
   return garment.pieces ? "/garment/outfit/jeans" : "/garment/jeans";

@@ -24,8 +24,6 @@ namespace {
 
 constexpr std::uint32_t fewest_nodes = 300, most_nodes = 10'000'000;
 
-const GarmentSpec& garment_of(const SceneSpec& spec) { return std::get<GarmentSpec>(spec.content); }
-
 void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
   fields.integer({"nodes", "About how many nodes all panels have."}, jeans.nodes, fewest_nodes, most_nodes);
   visit_length(fields, {"waist_height_m", "Height at which the upper edge is worn at the side, m."},
