@@ -49,15 +49,16 @@ ensure_packages() {
   mapfile -t missing < <(missing_packages "$@")
   ((${#missing[@]})) || return 0
   ((EUID == 0)) || as_root=(sudo)
-  local install="install -y --no-install-recommends ${missing[*]}" log=$root/build/packages.log
+  local update install="install -y --no-install-recommends ${missing[*]}" log=$root/build/packages.log
   mkdir -p "$root/build"
   say "installing ${missing[*]} (log: $log)"
-  # An update that fails, or fails in part, is no reason to stop: what decides is whether the packages can be installed.
+  # Lists of packages that are there often suffice, and fetching them takes seconds. An update that fails, or fails in part, is no
+  # reason to stop: what decides is whether the packages can be installed.
   # shellcheck disable=SC2086 # the words of $install are arguments of their own
-  {
-    "${as_root[@]}" apt-get update || true
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 $install
-  } </dev/null >"$log" 2>&1 && return 0
+  for update in true "${as_root[*]} apt-get update"; do
+    $update || true
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 $install && return 0
+  done </dev/null >"$log" 2>&1
   local apt="${as_root[*]:+sudo }apt-get"
   say "these Debian packages are missing and could not be installed; with network access, run: $apt update && $apt $install"
   exit "$exit_missing"
