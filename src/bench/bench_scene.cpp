@@ -18,6 +18,7 @@
 #include "garment/bench/dressing_record.h"
 #include "garment/bench/garment_verification.h"
 #include "garment/stepping/dressing_backend.h"
+#include "platform/process_cpus.h"
 #include "text/counted.h"
 
 namespace mssim {
@@ -86,6 +87,7 @@ std::vector<Verifier> make_verifiers(const SceneJob& job, const std::optional<St
   std::ranges::stable_sort(order, std::greater(),
                            [&](std::size_t i) { return job.integrators[i]->stage_count; });
   std::atomic<std::size_t> next = 0;
+  const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
   std::vector<std::future<void>> threads;
   for (std::size_t thread = 0; thread < references_at_once(job); ++thread)
     threads.push_back(std::async(std::launch::async, [&] {

@@ -48,7 +48,7 @@ bench/roofline        integrators model
 bench/verification    text integrators model backends/interface backends/spring_list
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
-bench                 text garment/stepping bench/roofline bench/verification bench/job garment/bench
+bench                 text platform garment/stepping bench/roofline bench/verification bench/job garment/bench
 
 output/hdf5
 output/tables         text statistics platform bench/machine bench/results

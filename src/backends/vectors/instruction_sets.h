@@ -6,11 +6,12 @@
 #error "backends/vectors/instruction_sets.h must be included before Highway"
 #endif
 
-// On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, "AVX3" to Highway). Every x86-64 processor since 2011 has
-// SSE4; plain floats for those before it would be a quarter of the time that vector code takes to compile. On
-// arm64 NEON (4). Not Arm's SVE: a vector whose length is known only at run time cannot be a member of a
-// struct, as Lanes needs it, and the phones that have SVE have vectors of 128 bits, no longer than NEON's. On
-// any other processor what its compiler takes for granted, or plain floats, one lane.
+// On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, "AVX3" to Highway). By SSE4 Highway
+// means SSE4.2 with AES and carry-less multiplication, which a few processors up to about 2013 lack; plain
+// floats for them would be a quarter of the time that vector code takes to compile. On arm64 NEON (4). Not
+// Arm's SVE: a vector whose length is known only at run time cannot be a member of a struct, as Lanes needs
+// it, and the phones that have SVE have vectors of 128 bits, no longer than NEON's. On any other processor
+// what its compiler takes for granted, or plain floats, one lane.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #if defined(__x86_64__) && !defined(__SSE4_2__)
 #define HWY_BASELINE_TARGETS HWY_SSE4
@@ -38,7 +39,7 @@ std::vector<Kernel> kernels_of_this_processor(Kernel (*const (&table)[size])()) 
     kernels.push_back(table[size == 1 ? 0 : target.GetIndex()]());
   }
   if (kernels.empty())
-    throw Unavailable("this processor has no SSE4, the least that vector code is compiled for");
+    throw Unavailable("this processor lacks SSE4.2 or AES, the least that vector code is compiled for");
   return kernels;
 }
 
