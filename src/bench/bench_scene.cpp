@@ -77,25 +77,50 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
   };
 }
 
-/// The verifiers of all integrators, in their order. References take one thread each: as many of them run at
-/// the same time as the backends have threads.
-std::vector<Verifier> make_verifiers(const SceneJob& job, const std::optional<State>& draped) {
-  std::vector<Verifier> verifiers(job.integrators.size());
+/// The backend as job.verified or else the comparison with the reference finds it.
+Combination make_verified(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
+                          const State& start, const Verifier& verifier) {
+  Combination combination = make_combination(job, info, integrator, start);
+  if (combination.backend && job.verified)
+    take_verification(combination, *job.verified);
+  else if (combination.backend)
+    take_verification(combination, verifier(*combination.backend));
+  return combination;
+}
+
+/// What an integrator's reference leaves.
+struct AfterReference {
+  Verifier verifier;
+  std::optional<Combination> serial;  ///< verified, if it is among the job's backends
+};
+
+/// Runs the references of all integrators and verifies `serial` with each. Both take one thread: as many run
+/// at the same time as the other backends have threads. The results have the integrators' order.
+std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
+                                           const State& start) {
+  std::vector<AfterReference> results(job.integrators.size());
+  const auto serial =
+      std::ranges::find_if(job.backends, [](const BackendInfo* info) { return info->name == "serial"; });
   // Those of more stages take longer, and begin first.
-  std::vector<std::size_t> order(verifiers.size());
+  std::vector<std::size_t> order(results.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(),
                            [&](std::size_t i) { return job.integrators[i]->stage_count; });
+  const auto run = [&](const Integrator& integrator, AfterReference& result) {
+    result.verifier = make_verifier(job, integrator, draped);
+    if (serial != job.backends.end())
+      result.serial = make_verified(job, **serial, integrator, start, result.verifier);
+  };
   std::atomic<std::size_t> next = 0;
   const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
   std::vector<std::future<void>> threads;
   for (std::size_t thread = 0; thread < references_at_once(job); ++thread)
     threads.push_back(std::async(std::launch::async, [&] {
       for (std::size_t i = next++; i < order.size(); i = next++)
-        verifiers[order[i]] = make_verifier(job, *job.integrators[order[i]], draped);
+        run(*job.integrators[order[i]], results[order[i]]);
     }));
   for (std::future<void>& thread : threads) thread.get();
-  return verifiers;
+  return results;
 }
 
 /// What the samples so far say.
@@ -176,11 +201,11 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     if (!draped) return {};
   }
   const State& start = draped ? *draped : job.system->start;
-  std::vector<Verifier> verifiers;
+  std::vector<AfterReference> references(job.integrators.size());
   if (!job.verified) {
     watch.progress("references", 0);
     if (watch.stop()) return {};
-    verifiers = make_verifiers(job, draped);
+    references = run_references(job, draped, start);
   }
   for (std::size_t i = 0; i < job.integrators.size(); ++i) {
     const Integrator* integrator = job.integrators[i];
@@ -189,11 +214,11 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
                          std::string(integrator->name),
                      done());
       if (watch.stop()) return {};
-      Combination& combination = all.emplace_back(make_combination(job, *info, *integrator, start));
-      if (combination.backend && job.verified)
-        take_verification(combination, *job.verified);
-      else if (combination.backend)
-        take_verification(combination, verifiers[i](*combination.backend));
+      auto& [verifier, serial] = references[i];
+      Combination& combination =
+          all.emplace_back(serial && info->name == serial->row.backend
+                               ? std::move(*serial)
+                               : make_verified(job, *info, *integrator, start, verifier));
       if (combination.backend && job.garment && !job.verified) {
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, watch.stop)) return {};

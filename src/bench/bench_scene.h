@@ -22,8 +22,8 @@ struct BenchWatch {
 ///
 /// Timing: after a verification of each combination, `rounds` rounds, each of which takes one sample of every
 /// combination in a random order, so that the drift of a noisy machine hits all alike. A sample is as many
-/// steps as fill `sample_seconds`, from the scene's start state, which is set, and warmed up with a step,
-/// outside the timed region. Speed-ups are medians of the ratios within a round.
+/// steps as fill `sample_seconds`, from the scene's start state, which is set, and where steps take less than
+/// 10 ms warmed up with a step, outside the timed region. Speed-ups are medians of the ratios within a round.
 ///
 /// A garment is first dressed by each backend, and how it fits then decides with the comparison whether the
 /// row is verified. Its samples start from one draped, settled state (draped_state), in which it touches the

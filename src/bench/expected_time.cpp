@@ -60,7 +60,7 @@ ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size)
     if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_backends;
     for (const BackendInfo* backend : settings.backends) {
       const double step = step_time(*backend, list_step);
-      const double sample = std::max(settings.sample_seconds, step) + step + 2 * nodes * moved_node_s;
+      const double sample = std::max(settings.sample_seconds, step) + 2 * nodes * moved_node_s;
       time.preparation += verification * step + samples_to_calibrate * sample;
       if (size.garment && !settings.verified) time.preparation += dressing_steps(nodes) * step;
       time.round += sample;

@@ -21,6 +21,7 @@ struct Combination {
   std::unique_ptr<Backend> backend;     ///< null where the row has no times: it cannot run, or has failed
   DressingBackend* dressing = nullptr;  ///< the same, of a garment
   int steps = 1;                        ///< in a sample
+  double step_seconds = 0;              ///< what calibrate has found; 0 before
 };
 
 /// Makes the backend; a reason not to becomes the row's status. `start`: of its samples; must
