@@ -13,10 +13,14 @@
  */
 
 /* Force on this end divided by the vector to the other end, N/m.
- * length_squared = d . d (m^2), closing = u . d (m^2/s), stiffness = k (N/m), stiffness_rest = k L (N),
- * damping = c (N s/m). A spring of length zero gives infinity or NaN, which the callers' finite check
- * reports. */
-MSSIM_LAW spring_pull(Real length_squared, Real closing, Real stiffness, Real stiffness_rest, Real damping) {
-  Real inverse_length = inverse_sqrt(length_squared);
+ * inverse_length = 1/|d| (1/m), closing = u . d (m^2/s), stiffness = k (N/m), stiffness_rest = k L (N),
+ * damping = c (N s/m). */
+MSSIM_LAW spring_pull_at(Real inverse_length, Real closing, Real stiffness, Real stiffness_rest, Real damping) {
   return mul_add(mul_add(damping * closing, inverse_length, -stiffness_rest), inverse_length, stiffness);
+}
+
+/* The same from length_squared = d . d (m^2). A spring of length zero gives infinity or NaN, which the
+ * callers' finite check reports. */
+MSSIM_LAW spring_pull(Real length_squared, Real closing, Real stiffness, Real stiffness_rest, Real damping) {
+  return spring_pull_at(inverse_sqrt(length_squared), closing, stiffness, stiffness_rest, damping);
 }

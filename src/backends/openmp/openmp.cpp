@@ -65,7 +65,7 @@ Kernel kernel_for(const std::vector<Kernel>& kernels, std::string_view instructi
 
 std::vector<std::string_view> openmp_instruction_sets() {
   std::vector<std::string_view> names;
-  for (const BandKernel& kernel : band_kernels()) names.emplace_back(kernel.instruction_set);
+  for (const SliceKernel& kernel : slice_kernels()) names.emplace_back(kernel.instruction_set);
   return names;
 }
 
@@ -80,7 +80,7 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
   const auto threads = static_cast<std::size_t>(options.threads);
   if (const auto* grid = std::get_if<GridPatch>(&system.topology))
     return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads,
-                                        kernel_for(band_kernels(), instruction_set));
+                                        kernel_for(band_kernels(integrator), instruction_set));
   return std::make_unique<OpenMpBodies>(system, integrator, dt_s, threads,
                                         kernel_for(slice_kernels(), instruction_set));
 }

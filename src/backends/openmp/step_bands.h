@@ -15,7 +15,8 @@ struct BandKernel {
   void (*step)(BandGrid& bands, int count);  ///< takes `count` steps
 };
 
-/// The kernels for the instruction sets of this processor, at least one, the best first.
-std::vector<BandKernel> band_kernels();
+/// The kernels for the instruction sets of this processor that take steps of the integrator, at least one,
+/// the best first.
+std::vector<BandKernel> band_kernels(const Integrator& integrator);
 
 }  // namespace mssim

@@ -1,0 +1,203 @@
+// The walk over a banded cloth: stages one behind the other, partitions beside each other, ghosts between
+// them. Compiled once per instruction set, so the guard toggles.
+#if defined(MSSIM_BAND_STEPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MSSIM_BAND_STEPS_INL_H_
+#undef MSSIM_BAND_STEPS_INL_H_
+#else
+#define MSSIM_BAND_STEPS_INL_H_
+#endif
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "backends/openmp/column_walk-inl.h"
+#include "backends/threads/spin_barrier.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+/// Puts the pins of a freshly written column of a pair back and renews its halo rows. Row -1 of a lane is the
+/// last row of the lane before it, so a halo row is an unaligned load one float away. The first or last lane
+/// gets a stray number from the neighbouring component, which every spring there masks.
+HWY_NOINLINE inline void finish_column(const BandLayout& layout, const std::vector<BandPin>& pins,
+                                       float* start) {
+  const std::size_t lanes = lane_count(), row_floats = layout.row_floats();
+  for (const BandPin& pin : pins)
+    for (std::size_t k = 0; k < 3; ++k) {
+      start[pin.offset + k * lanes] = pin.position[k];
+      start[pin.offset + (3 + k) * lanes] = 0;
+    }
+  float* above = start;
+  const float* last = start + layout.height * row_floats;
+  float* under = start + (layout.height + BandLayout::halo) * row_floats;
+  const float* first = start + BandLayout::halo * row_floats;
+  for (std::size_t i = 0; i < BandLayout::halo * row_floats; i += lanes) {
+    hn::Store(hn::LoadU(FloatTag(), last + i - 1), FloatTag(), above + i);
+    hn::Store(hn::LoadU(FloatTag(), first + i + 1), FloatTag(), under + i);
+  }
+}
+
+/// Finishes a column of every pair that the stage has written and that a later stage, or the next step's
+/// first, gathers from.
+template <std::size_t method, std::size_t stage>
+HWY_INLINE void finish_written(const BandLayout& layout, BandPartition& partition, std::size_t column) {
+  const auto finish = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
+    constexpr Pair pair = static_cast<Pair>(i), stored = written_to<method, stage>(pair);
+    if constexpr (writes_to_gather(integrators[method], stage, pair))
+      finish_column(layout, partition.pins[partition.local(column)],
+                    partition.column(layout, stored, column));
+  };
+  [&]<std::size_t... i>(std::index_sequence<i...>) MSSIM_INLINE_LAMBDA {
+    (finish(std::integral_constant<std::size_t, i>{}), ...);
+  }
+  (std::make_index_sequence<pair_kinds>{});
+}
+
+/// One of the stages under way in a partition.
+struct StageUnderWay {
+  std::size_t begin, end;        ///< columns that it updates
+  std::array<float*, 3> forces;  ///< of the column that it is at, the next and the one after
+};
+
+/// What a stage that gathers `gather` sees of a column.
+HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& partition,
+                                       const StageUnderWay& under_way, Pair gather, std::size_t column) {
+  const std::size_t to_row_0 = BandLayout::halo * layout.row_floats();
+  ColumnView view;
+  view.here = partition.column(layout, gather, column) + to_row_0;
+  view.next = partition.column(layout, gather, column + 1) + to_row_0;
+  view.next_2 = partition.column(layout, gather, column + 2) + to_row_0;
+  for (std::size_t i = 0; i < pair_kinds; ++i)
+    view.pairs[i] = partition.pairs[i].size() == 0
+                        ? nullptr
+                        : partition.column(layout, static_cast<Pair>(i), column) + to_row_0;
+  view.forces_here = under_way.forces[0];
+  view.forces_next = under_way.forces[1];
+  view.forces_next_2 = under_way.forces[2];
+  return view;
+}
+
+/// The springs of a column that exist and act on columns from `begin` on.
+HWY_INLINE unsigned springs_of_column(std::size_t column, std::size_t begin, std::size_t columns) {
+  unsigned set = every_spring;
+  if (column < begin) set &= ~within_column;
+  if (column + 1 < begin || column + 1 == columns) set &= ~to_next_column;
+  if (column + 2 >= columns) set &= ~right_2;
+  return set;
+}
+
+/// Takes the stage through one column, if it is one of those that it updates or of the two before them, whose
+/// springs act on them.
+template <std::size_t method, std::size_t stage>
+HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, StageUnderWay& under_way,
+                           std::size_t column) {
+  const BandLayout& layout = bands.layout;
+  constexpr Pair gather =
+      storage_of(integrators[method], integrators[method].stages[stage].gather, Storage::in_place);
+  const ColumnView view = view_of(layout, partition, under_way, gather, column);
+  const unsigned set = springs_of_column(column, under_way.begin, layout.columns);
+  const bool update = column >= under_way.begin;
+  if (set == every_spring)
+    walk_inner_column<method, stage>(bands, view);
+  else
+    walk_edge_column<method, stage>(bands, view, set, update);
+  if (update) finish_written<method, stage>(layout, partition, column);
+  std::rotate(under_way.forces.begin(), under_way.forces.begin() + 1, under_way.forces.end());
+}
+
+/// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other.
+template <std::size_t method>
+HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, std::size_t steps) {
+  constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
+  const std::size_t count = steps * stages, columns = bands.layout.columns;
+  std::array<StageUnderWay, stages_under_way> under_way;
+  for (std::size_t i = 0; i < count; ++i) {
+    // What the stages behind need of the neighbours' columns is computed here too.
+    const std::size_t reach = distance * (count - 1 - i);
+    under_way[i].begin = partition.first - std::min(partition.first, reach);
+    under_way[i].end = std::min(partition.first + partition.count + reach, columns);
+    for (std::size_t f = 0; f < 3; ++f)
+      under_way[i].forces[f] = partition.forces.data() + (3 * i + f) * bands.layout.force_floats();
+    for (std::size_t f = 0; f < 2; ++f)
+      std::memset(under_way[i].forces[f], 0, bands.layout.force_floats() * sizeof(float));
+  }
+  const std::size_t start = under_way[0].begin - std::min(under_way[0].begin, distance);
+  const std::size_t end = under_way[count - 1].end + distance * (count - 1);
+  for (std::size_t head = start; head < end; ++head)
+    for (std::size_t step = 0; step < steps; ++step)
+      for_each_stage<method>([&](auto stage) HWY_ATTR {
+        const std::size_t i = step * stages + stage, behind = distance * i;
+        if (head < behind + (under_way[i].begin - std::min(under_way[i].begin, distance)) ||
+            head >= behind + under_way[i].end)
+          return;
+        walk_stage<method, stage>(bands, partition, under_way[i], head - behind);
+      });
+}
+
+/// Copies the ghost columns of the state from the partitions that own them.
+HWY_NOINLINE inline void fetch_ghosts(BandGrid& bands, std::size_t p) {
+  BandPartition& partition = bands.partitions[p];
+  const std::size_t bytes = bands.layout.column_floats() * sizeof(float);
+  const auto fetch = [&](std::size_t owner, std::size_t column) HWY_ATTR {
+    std::memcpy(partition.column(bands.layout, Pair::state, column),
+                bands.partitions[owner].column(bands.layout, Pair::state, column), bytes);
+  };
+  const std::size_t begin = partition.first - std::min(partition.first, partition.ghosts);
+  for (std::size_t column = partition.first, owner = p; column-- > begin;) {
+    while (column < bands.partitions[owner].first) --owner;
+    fetch(owner, column);
+  }
+  const std::size_t first_right = partition.first + partition.count;
+  const std::size_t end = std::min(first_right + partition.ghosts, bands.layout.columns);
+  for (std::size_t column = first_right, owner = p; column < end; ++column) {
+    while (column >= bands.partitions[owner].first + bands.partitions[owner].count) ++owner;
+    fetch(owner, column);
+  }
+}
+
+template <std::size_t method>
+HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
+  // Every thread computes its own columns whole, whatever their number: the order of every sum depends on the
+  // cloth alone, and the result is the same to the last bit for any number of threads.
+  const int partitions = static_cast<int>(bands.partitions.size());
+  std::optional<SpinBarrier> barrier;
+#pragma omp parallel num_threads(partitions)
+  {
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
+#pragma omp single
+    barrier.emplace(threads);
+    const auto for_my_partitions = [&](auto&& act) HWY_ATTR {
+      for (std::size_t p = thread; p < bands.partitions.size(); p += threads) act(p);
+    };
+    for (std::size_t done = 0; done < count;) {
+      const std::size_t steps = std::min(bands.steps_per_pass, count - done);
+      for_my_partitions([&](std::size_t p)
+                            HWY_ATTR { walk_partition<method>(bands, bands.partitions[p], steps); });
+      done += steps;
+      if (bands.partitions.size() > 1) {
+        barrier->wait();
+        for_my_partitions([&](std::size_t p) HWY_ATTR { fetch_ghosts(bands, p); });
+        barrier->wait();
+      }
+    }
+  }
+}
+
+/// Takes `count` steps of an integrator of `fewest` to `most` stages.
+template <std::size_t fewest, std::size_t most>
+void step_bands(BandGrid& bands, int count) {
+  with_integrator(*bands.integrator, [&](auto method) HWY_ATTR {
+    constexpr std::size_t stages = integrators[method].stage_count;
+    if constexpr (stages >= fewest && stages <= most)
+      step_method<method>(bands, static_cast<std::size_t>(count));
+  });
+}
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
