@@ -1,11 +1,13 @@
 // The results of serial and openmp to the last bit, as hashes of the state after 100 steps. They are the same
 // on every processor, because nothing is contracted and the order of every sum is the scene's; openmp has
-// two, as instruction sets with multiply-adds round once where others round twice.
+// two, as instruction sets with multiply-adds round once where others round twice. Instruction sets without
+// exact roots are left out: their bits are the processor's.
 //
 // A change that is not meant to change results leaves these hashes as they are. After one that is, put here
 // what the failing test prints, and say in the commit why the results differ.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -42,11 +44,16 @@ const Integrator& rk4() { return *find_integrator("rk4"); }
 
 void expect_hashes(const System& system, const Integrator& integrator, double dt_s, const Hashes& expected) {
   EXPECT_EQ(hash_after_100_steps(*make_serial(system, integrator, dt_s, {1, ""})), expected.serial);
-  for (const std::string_view set : openmp_instruction_sets())
+  std::size_t held = 0;
+  for (const std::string_view set : openmp_instruction_sets()) {
+    if (!has_exact_roots(set)) continue;
+    ++held;
     for (const int threads : {1, 3})
       EXPECT_EQ(hash_after_100_steps(*make_openmp(system, integrator, dt_s, {threads, ""}, set)),
                 fuses(set) ? expected.fused : expected.not_fused)
           << set << ", " << threads << " threads";
+  }
+  EXPECT_GT(held, 0U);
 }
 
 TEST(GoldenBits, OfACloth) {

@@ -21,12 +21,19 @@ enum class DeviceMemory : std::uint8_t {
   copy
 };
 
-/// What the user chose about where a backend runs.
+/// How `openmp` finds the reciprocal length of a spring.
+enum class Roots : std::uint8_t {
+  fast,  ///< as is fastest with the processor's instruction set
+  exact  ///< by a root and a division, each correctly rounded: the same bits on every processor that has FMA
+};
+
+/// What the user chose about where and how a backend runs.
 struct ExecutionOptions {
   int threads = 0;  ///< host threads, and compute units of a device that is a processor; at least 1
   std::string device =
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
   DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
+  Roots roots = Roots::fast;
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.

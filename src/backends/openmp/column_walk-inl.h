@@ -109,7 +109,7 @@ HWY_INLINE BegunSpring begin_spring(const NodeLanes& node, const float* other) {
   // What is subtracted can come straight from memory.
   const Lanes3 d = node.x - load3(other);
   const Lanes3 u = node.v - load3(other + 3 * lane_count());
-  return {d, dot(u, d), inverse_sqrt(dot(d, d))};
+  return {d, dot(u, d), inverse_length(dot(d, d))};
 }
 
 /// Its force on the other end; the owner gets the opposite one.

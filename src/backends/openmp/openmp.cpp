@@ -1,5 +1,6 @@
 #include "backends/openmp/openmp.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -69,9 +70,17 @@ std::vector<std::string_view> openmp_instruction_sets() {
   return names;
 }
 
+bool has_exact_roots(std::string_view instruction_set) {
+  return kernel_for(slice_kernels(), instruction_set).exact_roots;
+}
+
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  return make_openmp(system, integrator, dt_s, options, openmp_instruction_sets().front());
+  const auto sets = openmp_instruction_sets();
+  const auto best =
+      options.roots == Roots::exact ? std::ranges::find_if(sets, has_exact_roots) : sets.begin();
+  if (best == sets.end()) throw Unavailable("no vector code for this processor has exact roots");
+  return make_openmp(system, integrator, dt_s, options, *best);
 }
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,

@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 BandKernel few_stages_kernel() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), &step_bands<1, few_stages>};
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &step_bands<1, few_stages>};
 }
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 BandKernel many_stages_kernel() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), &step_bands<few_stages + 1, max_stages>};
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &step_bands<few_stages + 1, max_stages>};
 }
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

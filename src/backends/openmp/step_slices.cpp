@@ -33,8 +33,8 @@ HWY_INLINE Lanes3 spring_acceleration(const SlicedBodies& bodies, const float* p
     });
     const Lanes stiffness_rest = hn::Load(d, entry + vector_nodes);
     const Lanes3 to_other = other.x - node.x;
-    const Lanes pull = spring_pull(dot(to_other, to_other), dot(other.v - node.v, to_other), stiffness,
-                                   stiffness_rest, damping);
+    const Lanes pull = spring_pull_at(inverse_length(dot(to_other, to_other)),
+                                      dot(other.v - node.v, to_other), stiffness, stiffness_rest, damping);
     const Mask exists = hn::Ge(stiffness_rest.v, hn::Zero(d));
     sum = mul_add(keep(exists, pull), to_other, sum);
   }
@@ -108,7 +108,7 @@ void step_slices(SlicedBodies& bodies, int count) {
   with_integrator(*bodies.integrator, [&](auto method) HWY_ATTR { step_method<method>(bodies, count); });
 }
 
-SliceKernel slice_kernel() { return {vector_nodes, hwy::TargetName(HWY_TARGET), &step_slices}; }
+SliceKernel slice_kernel() { return {vector_nodes, hwy::TargetName(HWY_TARGET), exact_roots, &step_slices}; }
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -12,6 +12,7 @@ namespace mssim {
 struct SliceKernel {
   std::size_t lanes;                              ///< floats in a vector: SlicedGraph::lanes must equal it
   const char* instruction_set;                    ///< Highway's name for it
+  bool exact_roots;                               ///< as inverse_length (backends/vectors/lanes-inl.h) says
   void (*step)(SlicedBodies& bodies, int count);  ///< takes `count` steps
 };
 

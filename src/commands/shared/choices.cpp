@@ -76,6 +76,11 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options) {
       "--memory", options.memory, device_memories,
       "How host and OpenCL device exchange data: shared, without copying where the device can, or copy "
       "(default: shared)");
+  arguments.add_choice<Roots>(
+      "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
+      "How openmp finds the lengths of springs: fast, with AVX-512 by an estimate and a Newton step, or "
+      "exact, "
+      "which gives the same bits on every processor that has multiply-adds (default: fast)");
 }
 
 std::string name_of(DeviceMemory memory) {

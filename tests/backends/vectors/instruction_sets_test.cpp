@@ -69,6 +69,10 @@ TEST(InstructionSets, AreTakenAsNamedTheBestWhereNoneIs) {
     EXPECT_EQ(make_openmp(system, integrators[0], dt_s, {1, ""})->device(),
               "cpu " + std::string(sets.front()));
     EXPECT_THROW(make_openmp(system, integrators[0], dt_s, {1, ""}, "MMX"), std::invalid_argument);
+    const auto exact = std::ranges::find_if(sets, has_exact_roots);
+    ASSERT_NE(exact, sets.end());
+    EXPECT_EQ(make_openmp(system, integrators[0], dt_s, {1, "", {}, Roots::exact})->device(),
+              "cpu " + std::string(*exact));
   }
 }
 
@@ -114,7 +118,8 @@ TEST_P(EachInstructionSetAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShap
 TEST_P(EachInstructionSetAndIntegrator, GivesTheSameBitsAsTheBestThatRoundsAlike) {
   const auto sets = openmp_instruction_sets();
   const std::string_view best = *std::find_if(sets.begin(), sets.end(), [&](std::string_view other) {
-    return fuses(other) == fuses(instruction_set());
+    return fuses(other) == fuses(instruction_set()) &&
+           has_exact_roots(other) == has_exact_roots(instruction_set());
   });
   for (System system : systems_of_any_shape()) {
     system.floor.height = system.start.position[0].y - 0.001;  // it is met on the way
