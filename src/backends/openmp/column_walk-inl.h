@@ -131,9 +131,10 @@ HWY_INLINE Lanes3 force_of(const BegunSpring& begun, const SpringLanes& spring, 
 /// with one.
 HWY_INLINE void prefetch_row(const float* row) {
   constexpr std::ptrdiff_t rows_ahead = 16;  // behind a column's end lies the next one; no address is wrong
-  const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
-  for (std::ptrdiff_t component = 0; component < 6; ++component)
-    hwy::Prefetch(row + (6 * rows_ahead + component) * lanes);
+  constexpr std::ptrdiff_t line_floats = 16;
+  const std::ptrdiff_t row_floats = 6 * static_cast<std::ptrdiff_t>(lane_count());
+  for (std::ptrdiff_t i = 0; i < row_floats; i += line_floats)
+    hwy::Prefetch(row + rows_ahead * row_floats + i);
 }
 
 /// The nodes of a row in the gathered pair.
