@@ -10,6 +10,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "bench/machine/cpu_generation.h"
+
 namespace mssim {
 namespace {
 
@@ -47,6 +49,13 @@ template <class Number>
 Number leading_number(std::string_view text) {
   Number number{};
   std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+/// The number that a text such as "0xd0c" stands for, 0 when it is none.
+int hexadecimal_number(std::string_view text) {
+  int number = 0;
+  if (text.starts_with("0x")) std::from_chars(text.data() + 2, text.data() + text.size(), number, 16);
   return number;
 }
 
@@ -124,7 +133,23 @@ std::string kernel_name() {
                            : std::string();
 }
 
+/// The design of the first processor in a file such as /proc/cpuinfo.
+std::string read_generation(const fs::path& file) {
+  const std::string vendor = value_of(file, "vendor_id", ':');
+  if (!vendor.empty())
+    return std::string(cpu_generation({vendor, leading_number<int>(value_of(file, "cpu family", ':')),
+                                       leading_number<int>(value_of(file, "model", ':'))}));
+  const std::string implementer = value_of(file, "CPU implementer", ':');
+  const std::string part = value_of(file, "CPU part", ':');  // "0xd0c"
+  return std::string(cpu_generation({implementer, 0, hexadecimal_number(part)}));
+}
+
 }  // namespace
+
+std::string cpu_name(const Machine& machine) {
+  return machine.cpu_generation.empty() ? machine.cpu_model
+                                        : machine.cpu_model + ", " + machine.cpu_generation;
+}
 
 Machine read_machine(const fs::path& root) {
   const fs::path cpus = root / "sys/devices/system/cpu";
@@ -135,6 +160,7 @@ Machine read_machine(const fs::path& root) {
     if (const std::string part = value_of(root / "proc/cpuinfo", "CPU part", ':'); !part.empty())
       machine.cpu_model =
           "implementer " + value_of(root / "proc/cpuinfo", "CPU implementer", ':') + " part " + part;
+  machine.cpu_generation = read_generation(root / "proc/cpuinfo");
   machine.logical_cpus = count_cpus(first_line(cpus / "online"));
   machine.cpu_mhz = leading_number<double>(value_of(root / "proc/cpuinfo", "cpu MHz", ':'));
   machine.caches = read_caches(cpus);

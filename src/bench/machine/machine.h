@@ -20,6 +20,7 @@ struct Cache {
 /// What can be known about a Linux machine without asking for rights. What cannot be read is empty or zero.
 struct Machine {
   std::string cpu_model;
+  std::string cpu_generation;           ///< its design (cpu_generation.h)
   int logical_cpus = 0;                 ///< online
   double cpu_mhz = 0;                   ///< of the first CPU, now
   std::vector<Cache> caches;            ///< by level, then type
@@ -30,6 +31,9 @@ struct Machine {
   std::string operating_system;  ///< the distribution's name for itself
   std::string kernel;            ///< system, release and architecture
 };
+
+/// "MODEL, GENERATION", as far as they are known.
+std::string cpu_name(const Machine& machine);
 
 /// The machine that this runs on, as it is now. `root` stands before /proc, /sys and /etc; tests put a
 /// made-up machine there.

@@ -15,8 +15,10 @@ void add(std::vector<std::string>& sentences, const std::string& what, const std
   if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
 }
 
-std::string cpu_of(const Machine& machine) {
-  return machine.cpu_model + " with " + std::to_string(machine.logical_cpus) + " logical CPUs";
+/// `with_generation`: an mssim that did not know generations wrote results that can be compared all the same.
+std::string cpu_of(const Machine& machine, bool with_generation) {
+  return (with_generation ? cpu_name(machine) : machine.cpu_model) + " with " +
+         std::to_string(machine.logical_cpus) + " logical CPUs";
 }
 
 std::string size_of(const ResultRow& row) {
@@ -28,7 +30,8 @@ std::string size_of(const ResultRow& row) {
 
 std::vector<std::string> differences(const Provenance& before, const Provenance& now) {
   std::vector<std::string> sentences;
-  add(sentences, "the CPU", cpu_of(before.machine), cpu_of(now.machine));
+  const bool generations = !before.machine.cpu_generation.empty() && !now.machine.cpu_generation.empty();
+  add(sentences, "the CPU", cpu_of(before.machine, generations), cpu_of(now.machine, generations));
   add(sentences, "the compiler", before.build.compiler, now.build.compiler);
   add(sentences, "the build type", before.build.build_type, now.build.build_type);
   add(sentences, "the compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');

@@ -128,6 +128,8 @@ Machine read_machine(const Place& document) {
   const Place cpu = document["cpu"];
   Machine machine;
   machine.cpu_model = cpu["model"].text();
+  if (const auto generation = cpu.find("generation"); generation && !generation->is_null())
+    machine.cpu_generation = generation->text();
   machine.logical_cpus = cpu["logical_cpus"].count<int>();
   machine.cpu_mhz = cpu["mhz"].number();
   machine.caches = cpu["caches"].list(read_cache);
@@ -187,6 +189,7 @@ json to_json(const Provenance& provenance) {
            provenance.program_fnv1a_64 ? json(hexadecimal(*provenance.program_fnv1a_64)) : json()},
           {"cpu",
            {{"model", machine.cpu_model},
+            {"generation", machine.cpu_generation.empty() ? json() : json(machine.cpu_generation)},
             {"logical_cpus", machine.logical_cpus},
             {"mhz", machine.cpu_mhz},
             {"governor", machine.governor ? json(*machine.governor) : json()},

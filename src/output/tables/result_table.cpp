@@ -46,7 +46,7 @@ Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
   const auto number = [](int of, std::string_view noun) {
     return counted(static_cast<std::uint64_t>(of), noun);
   };
-  std::string text = "Measured on " + provenance.machine.cpu_model + " (" +
+  std::string text = "Measured on " + cpu_name(provenance.machine) + " (" +
                      number(provenance.machine.logical_cpus, "logical CPU") + ") with " +
                      number(provenance.threads, "thread");
   for (const std::string_view set : instruction_sets)

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/machine/cpu_generation.h"
 #include "output/folders/provenance_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -33,7 +34,9 @@ class MadeUpMachine : public TemporaryFolderTest {
 };
 
 TEST_F(MadeUpMachine, IsReadFromItsFiles) {
-  put("proc/cpuinfo", "processor\t: 0\nmodel name\t: A Processor (R) 9000\ncpu MHz\t\t: 3400.125\n");
+  put("proc/cpuinfo",
+      "processor\t: 0\nvendor_id\t: AuthenticAMD\ncpu family\t: 25\nmodel\t\t: 17\n"
+      "model name\t: A Processor (R) 9000\ncpu MHz\t\t: 3400.125\n");
   put("proc/meminfo", "MemTotal:       16384 kB\nMemFree: 1 kB\n");
   put("proc/loadavg", "0.50 1.25 2.00 1/100 4242\n");
   put("etc/os-release", "ID=x\nPRETTY_NAME=\"Some Linux 12 (name)\"\n");
@@ -46,6 +49,8 @@ TEST_F(MadeUpMachine, IsReadFromItsFiles) {
   }
   const Machine machine = read_machine(folder());
   EXPECT_EQ(machine.cpu_model, "A Processor (R) 9000");
+  EXPECT_EQ(machine.cpu_generation, "Zen 4");
+  EXPECT_EQ(cpu_name(machine), "A Processor (R) 9000, Zen 4");
   EXPECT_EQ(machine.cpu_mhz, 3400.125);
   EXPECT_EQ(machine.logical_cpus, 4);
   EXPECT_EQ(machine.memory_bytes, 16U << 20);
@@ -74,7 +79,17 @@ TEST_F(MadeUpMachine, MayHideEverything) {
 
 TEST_F(MadeUpMachine, OfArmIsNamedByItsNumbers) {
   put("proc/cpuinfo", "processor : 0\nCPU implementer\t: 0x41\nCPU part\t: 0xd0c\n");
-  EXPECT_EQ(read_machine(folder()).cpu_model, "implementer 0x41 part 0xd0c");
+  EXPECT_EQ(cpu_name(read_machine(folder())), "implementer 0x41 part 0xd0c, Neoverse N1");
+}
+
+TEST(CpuGeneration, IsToldByMakerFamilyAndModel) {
+  EXPECT_EQ(cpu_generation({"AuthenticAMD", 0x19, 0x11}), "Zen 4");
+  EXPECT_EQ(cpu_generation({"AuthenticAMD", 0x19, 0x21}), "Zen 3");
+  EXPECT_EQ(cpu_generation({"AuthenticAMD", 0x1a, 0x02}), "Zen 5");
+  EXPECT_EQ(cpu_generation({"GenuineIntel", 6, 0x8f}), "Sapphire Rapids");
+  EXPECT_EQ(cpu_generation({"GenuineIntel", 6, 0xff}), "");
+  EXPECT_EQ(cpu_generation({"0x41", 0, 0xd40}), "Neoverse V1");
+  EXPECT_EQ(cpu_generation({"", 0, 0}), "");
 }
 
 void expect_finite_numbers(const nlohmann::json& value) {

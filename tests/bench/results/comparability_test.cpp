@@ -50,6 +50,16 @@ TEST(Comparability, SaysWhatDiffers) {
               ElementsAre("the CPU was Another with 2 logical CPUs and is A Processor with 2 logical CPUs"));
 }
 
+TEST(Comparability, TellsDesignsOfOneNameApartWhereBothAreKnown) {
+  Provenance zen4 = made_up_provenance(), zen5 = made_up_provenance();
+  zen4.machine.cpu_generation = "Zen 4";
+  zen5.machine.cpu_generation = "Zen 5";
+  EXPECT_THAT(differences(zen4, zen5),
+              ElementsAre("the CPU was A Processor, Zen 4 with 2 logical CPUs and is "
+                          "A Processor, Zen 5 with 2 logical CPUs"));
+  EXPECT_THAT(differences(made_up_provenance(), zen5), testing::IsEmpty());
+}
+
 TEST(Comparability, HoldsAgainstEachOtherOnlyScenesThatBothHave) {
   Provenance before = made_up_provenance(), now = made_up_provenance();
   before.scenes = {{"a", 1}, {"b", 2}, {"c", 3}};

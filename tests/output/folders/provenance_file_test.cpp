@@ -23,6 +23,7 @@ Provenance full_provenance() {
   Provenance provenance = made_up_provenance();
   provenance.machine.governor = "performance";
   provenance.machine.turbo = false;
+  provenance.machine.cpu_generation = "Zen 4";
   provenance.noise = {"turbo is on"};
   provenance.earlier_starts_utc = {"2026-01-30T12:00:00Z"};
   provenance.machine.memory_bytes = std::uint64_t{1} << 53;
@@ -127,7 +128,7 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
     const json::json_pointer place(pointer);
     if (document[place.parent_pointer()].is_array() || pointer.starts_with("/scenes_fnv1a_64/") ||
         pointer.starts_with("/threads/environment/") || pointer == "/cpu/turbo" ||
-        pointer == "/program_fnv1a_64" || pointer == "/device_memory")
+        pointer == "/cpu/generation" || pointer == "/program_fnv1a_64" || pointer == "/device_memory")
       continue;
     EXPECT_EQ(refusal_with(pointer, gone), pointer + " is missing: give a provenance.json that mssim wrote");
     ++values;
@@ -138,12 +139,14 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
 TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   json document = json_of(full_provenance());
   document["cpu"].erase("turbo");
+  document["cpu"].erase("generation");
   document.erase("noise");
   document.erase("earlier_starts_utc");
   document.erase("program_fnv1a_64");
   document.erase("device_memory");
   const Provenance old = read_provenance(put("old.json", document.dump()));
   EXPECT_EQ(old.machine.turbo, std::nullopt);
+  EXPECT_EQ(old.machine.cpu_generation, "");
   EXPECT_EQ(old.program_fnv1a_64, std::nullopt);
   EXPECT_TRUE(old.noise.empty());
   EXPECT_TRUE(old.earlier_starts_utc.empty());
