@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "backends/interface/backend.h"
-
 namespace mssim {
 namespace {
 
@@ -45,12 +43,9 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
     : layout(grid, lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
+      springs(spring_constants_of(system, grid)),
       surroundings(surroundings_of(system)),
       spacing_(grid.spacing) {
-  const double mass = require_uniform_mass(system);
-  for (const GridSpringKind kind : {structural, shear, bending})
-    springs.emplace_back(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass);
-
   partitions.resize(
       std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, layout.columns / narrowest_part(method))));
   steps_per_pass = steps_in_a_pass.value_or(steps_per_pass_for(layout, method, partitions.size()));

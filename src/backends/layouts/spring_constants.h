@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "backends/interface/backend.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -16,5 +19,14 @@ struct SpringConstants {
         stiffness_rest(static_cast<float>(material.stiffness * rest_length / mass)),
         damping(static_cast<float>(material.damping / mass)) {}
 };
+
+/// Those of a cloth's springs, by GridSpringKind. Throws Unsupported where its nodes differ in mass.
+inline std::vector<SpringConstants> spring_constants_of(const System& system, const GridPatch& grid) {
+  const double mass = require_uniform_mass(system);
+  std::vector<SpringConstants> constants;
+  for (const GridSpringKind kind : {structural, shear, bending})
+    constants.emplace_back(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass);
+  return constants;
+}
 
 }  // namespace mssim

@@ -10,9 +10,9 @@
 #include <array>
 #include <utility>
 
-#include "backends/interface/surroundings.h"
 #include "backends/layouts/node_records.h"
 #include "backends/layouts/records-inl.h"
+#include "backends/layouts/update_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
@@ -35,10 +35,6 @@ HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeL
                              const Lanes3& pull, Mask free, const Coefficients<float>& coefficients,
                              const Surroundings& surroundings) {
   constexpr Stage table = integrators[method].stages[stage];
-  // What is held is at rest; without acceleration every assignment gives it back as it was.
-  const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping),
-                                                Lanes(surroundings.gravity)));
-
   NodeLanes loaded[pair_kinds];
   const auto half = [&](auto slot) MSSIM_INLINE_LAMBDA -> Lanes3& {
     constexpr std::size_t i = index(decltype(slot)::value);
@@ -58,14 +54,9 @@ HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeL
                   (reads(table, position_slot(pair)) || reads(table, velocity_slot(pair))))
       loaded[i] = load_nodes(pairs[i] + offset);
   });
-  update_stage<method, stage>(
-      coefficients, node.x, node.v, a, half,
-      [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { half(slot) = value; },
-      [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
-        const Lanes height(surroundings.floor_height);
-        touch_floor(hn::And(free, hn::Lt(x.y.v, height.v)), height, Lanes(surroundings.restitution),
-                    Lanes(surroundings.friction), x, v);
-      });
+  update_lanes<method, stage>(node, pull, free, coefficients, surroundings, half,
+                              [&](auto slot, const Lanes3& value)
+                                  MSSIM_INLINE_LAMBDA { half(slot) = value; });
   for_each_pair([&](auto i) MSSIM_INLINE_LAMBDA {
     if constexpr (writes(table, position_slot(static_cast<Pair>(decltype(i)::value))))
       store_records<vector_nodes>(pairs[i] + offset, loaded[i]);

@@ -26,9 +26,9 @@ GridParameters parameters_of(const System& system, const GridPatch& patch) {
   GridParameters grid{};
   grid.rows = static_cast<int>(patch.rows);
   grid.columns = static_cast<int>(patch.columns);
-  const double mass = require_uniform_mass(system);
+  const std::vector<SpringConstants> springs = spring_constants_of(system, patch);
   for (const GridSpringKind kind : {structural, shear, bending}) {
-    const SpringConstants spring(system.materials[kind], static_cast<double>(patch.rest_length(kind)), mass);
+    const SpringConstants& spring = springs[kind];
     grid.stiffness[kind] = spring.stiffness;
     grid.stiffness_rest[kind] = spring.stiffness_rest;
     grid.damping[kind] = spring.damping;

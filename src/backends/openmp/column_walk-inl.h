@@ -16,6 +16,7 @@
 #include <hwy/cache_control.h>
 
 #include "backends/layouts/band_grid.h"
+#include "backends/layouts/spring_lanes-inl.h"
 #include "backends/vectors/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -58,13 +59,6 @@ struct ColumnView {
   float* forces_here;                    ///< [row][x y z][lane] from columns already walked
   float* forces_next;
   float* forces_next_2;
-};
-
-/// Spring constants in registers.
-struct SpringLanes {
-  Lanes stiffness, stiffness_rest, damping;
-  HWY_INLINE explicit SpringLanes(const SpringConstants& s)
-      : stiffness(s.stiffness), stiffness_rest(s.stiffness_rest), damping(s.damping) {}
 };
 
 /// What every row needs of the bands. A copy, as the walk's ColumnView is: a vector's store may change

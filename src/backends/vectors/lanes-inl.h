@@ -73,6 +73,11 @@ HWY_INLINE Lanes where_less(Lanes a, Lanes b, Lanes yes, Lanes no) {
 using Mask = hn::Mask<FloatTag>;
 HWY_INLINE Lanes keep(Mask mask, Lanes a) { return hn::IfThenElseZero(mask, a.v); }
 HWY_INLINE Lanes select(Mask mask, Lanes yes, Lanes no) { return hn::IfThenElse(mask, yes.v, no.v); }
+/// In place of a mask where all lanes are meant: nothing is computed.
+struct EveryLane {};
+HWY_INLINE Mask both(Mask a, Mask b) { return hn::And(a, b); }
+HWY_INLINE Mask both(EveryLane, Mask mask) { return mask; }
+HWY_INLINE Lanes keep(EveryLane, Lanes a) { return a; }
 /// Lanes whose index is below `limit`; an index that has wrapped below zero is not.
 HWY_INLINE Mask below(Index index, std::uint32_t limit) {
   return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
@@ -106,6 +111,7 @@ HWY_INLINE Lanes3 mul_add(Lanes s, const Lanes3& a, const Lanes3& b) {
 HWY_INLINE Lanes3 keep(Mask mask, const Lanes3& a) {
   return {keep(mask, a.x), keep(mask, a.y), keep(mask, a.z)};
 }
+HWY_INLINE Lanes3 keep(EveryLane, const Lanes3& a) { return a; }
 HWY_INLINE Lanes3 select(Mask mask, const Lanes3& yes, const Lanes3& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
