@@ -73,7 +73,8 @@ TEST(MemoryUse, IsWhatEveryBackendAndWayTakesForACloth) {
 TEST(MemoryUse, IsWhatEveryBackendAndWayTakesForBodies) {
   const System system = solid_block(60, 60, 60);
   for (const BackendInfo& backend : backends_and_ways())
-    expect_as_stated(backend, backend.mesh_memory, system);
+    if (backend.name != "gather-vectors")  // refuses bodies
+      expect_as_stated(backend, backend.mesh_memory, system);
 }
 
 SceneJob job_of(const std::vector<std::string_view>& backend_names,

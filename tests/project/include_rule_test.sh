@@ -39,7 +39,7 @@ backends/opencl       kernels integrators model backends/interface backends/layo
 backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices
 garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
 backends              backends/interface backends/devices backends/spring_list backends/openmp backends/opencl backends/hybrid garment/stepping
-backends/accumulation model backends/interface backends/threads backends/spring_list backends
+backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 
 bench/machine         mssim text platform

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "backends/accumulation/gather_vectors.h"
 #include "backends/accumulation/methods.h"
 #include "backends/backends.h"
 #include "backends/spring_list/threads_mutex.h"
@@ -12,6 +13,7 @@ namespace {
 constexpr MemoryUse with_private_arrays{.node = 17, .pair_node = 24, .thread_node = 12};
 constexpr MemoryUse with_coloured_copy{.node = 25, .pair_node = 24, .spring = 20};
 constexpr MemoryUse with_both_ends{.node = 33, .pair_node = 24, .spring = 32};
+constexpr MemoryUse in_padded_rows{.pair_node = 24, .storage = Storage::separate};
 
 /// A method that steps the plain list.
 constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, auto make,
@@ -20,8 +22,8 @@ constexpr AccumulationMethod of_list(std::string_view name, std::string_view des
   return {{name, "", description, false, make, memory, memory}, extra_memory, springs_computed, repeatable};
 }
 
-const std::array<AccumulationMethod, 8>& table() {
-  static const std::array<AccumulationMethod, 8> rows{{
+const std::array<AccumulationMethod, 9>& table() {
+  static const std::array<AccumulationMethod, 9> rows{{
       {*find_backend("serial"), "none", "once", Repeatable::always},
       of_list("mutex-per-group",
               "one lock for all nodes, taken to add the forces of 512 springs (threads-mutex)",
@@ -36,6 +38,16 @@ const std::array<AccumulationMethod, 8>& table() {
               make_colouring, with_coloured_copy, "16 bytes a spring", "once", Repeatable::always),
       of_list("gather", "each node sums its own springs", make_gather, with_both_ends,
               "32 bytes a spring, 8 a node", "twice", Repeatable::always),
+      {{"gather-vectors",
+        "",
+        "vectors of a cloth's nodes sum their own springs, from rows of a layout of its own",
+        false,
+        make_gather_vectors,
+        in_padded_rows,
+        {}},
+       "a layout of its own",
+       "twice",
+       Repeatable::always},
       {*find_backend("openmp"), "a layout of its own", "once on a cloth, twice on bodies",
        Repeatable::always},
   }};

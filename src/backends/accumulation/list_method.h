@@ -5,33 +5,18 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 
+#include "backends/accumulation/team.h"
 #include "backends/interface/backend.h"
 #include "backends/spring_list/spring_list.h"
 #include "backends/threads/spin_barrier.h"
 
 namespace mssim {
 
-/// The threads that step a spring list together, as one of them sees them.
-struct Team {
-  std::size_t thread;
-  std::size_t threads;
-  SpinBarrier& barrier;
-
-  /// Where this thread's slice of `count` things begins; the next thread's begins where it ends.
-  std::size_t begin(std::size_t count) const { return count * thread / threads; }
-  std::size_t end(std::size_t count) const { return count * (thread + 1) / threads; }
-  template <class T>
-  std::span<const T> slice_of(std::span<const T> all) const {
-    return all.subspan(begin(all.size()), end(all.size()) - begin(all.size()));
-  }
-};
-
-/// The plain spring list stepped by several threads. All methods to avoid the data race of Hong et al.'s
-/// Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that they
-/// differ in the accumulation alone. An Accumulation is made of (const System&, SpringList<float>&,
+/// The plain spring list stepped by several threads. The methods on it to avoid the data race of Hong et
+/// al.'s Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that
+/// they differ in the accumulation alone. An Accumulation is made of (const System&, SpringList<float>&,
 /// std::size_t threads), and in every stage each thread calls, with its Team:
 /// - prepare(team), while others may still be in the last stage's `finish` and update: it writes only what no
 ///   other thread touches there, and reads no node;

@@ -6,7 +6,7 @@
 
 namespace mssim {
 
-/// Methods to let threads add spring forces to the nodes that springs share. All step the plain spring list
+/// Methods to let threads add spring forces to the nodes that springs share. These step the plain spring list
 /// with options.threads threads (list_method.h) and differ in the accumulation alone; accumulation_methods.h
 /// has the table.
 

@@ -21,7 +21,7 @@ enum class DeviceMemory : std::uint8_t {
   copy
 };
 
-/// How `openmp` finds the reciprocal length of a spring.
+/// How `openmp` and `gather-vectors` find the reciprocal length of a spring.
 enum class Roots : std::uint8_t {
   fast,  ///< as is fastest with the processor's instruction set
   exact  ///< by a root and a division, each correctly rounded: the same bits on every processor that has FMA

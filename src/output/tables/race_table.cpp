@@ -13,9 +13,11 @@ namespace {
 
 constexpr std::string_view how_to_read_races =
     "Springs that threads process at the same time add to the forces of nodes that they share: the data race "
-    "of Figure 1 of Hong et al. (2016). Each line is a method to avoid it. All but `serial` and `openmp` "
-    "step the same list of springs with the same layout, force and update, and differ in the accumulation "
-    "alone. Times are medians with their 95 % interval; *ratio* is how many times as fast as `serial` a "
+    "of Figure 1 of Hong et al. (2016). Each line is a method to avoid it. All but "
+    "`gather-vectors` and `openmp`, which have vectors and layouts of their own, step the list of springs "
+    "that "
+    "`serial` steps, with the same layout, force and update, and differ in the accumulation alone. Times are "
+    "medians with their 95 % interval; *ratio* is how many times as fast as `serial` a "
     "method is, the median of paired samples. *Same bits* says whether a run repeated gives the very same "
     "numbers.";
 

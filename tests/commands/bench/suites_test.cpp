@@ -46,7 +46,7 @@ TEST(Suites, OfRacesAndScalingMeasureOneMethodOfTheirOwn) {
   EXPECT_THAT(scenes_of_suite("races", true), testing::ElementsAre("cloth40k", "bodies20587"));
   EXPECT_THAT(backends_of("races"),
               testing::ElementsAre("serial", "mutex-per-group", "lock-per-node", "atomic", "thread-private",
-                                   "colouring", "gather", "openmp"));
+                                   "colouring", "gather", "gather-vectors", "openmp"));
   EXPECT_EQ(scenes_of_suite("scaling", true).back(), "cloth16m");
   EXPECT_EQ(backends_of("scaling"), backends_of("table1"));
   for (const std::string_view suite : {"races", "scaling"})
