@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "platform/interruption.h"
+#include "platform/process_cpus.h"
 
 namespace mssim {
 namespace {
@@ -178,8 +179,11 @@ ChildResult run(const ChildProcess& child) { return run_together({&child, 1}).fr
 std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
   InterruptionGuard interruption;
   std::deque<Running> all;
-  for (const ChildProcess& child : children)
-    all.emplace_back(child, all.empty() ? 0 : all.front().process(), interruption);
+  {
+    const OnAllProcessCpus inherited;  // set before a fork and restored in this process alone
+    for (const ChildProcess& child : children)
+      all.emplace_back(child, all.empty() ? 0 : all.front().process(), interruption);
+  }
   if (!all.empty()) interruption.watch(all.front().process());
   for (Running& one : all) one.end();
   interruption.throw_if_interrupted();

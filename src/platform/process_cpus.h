@@ -11,8 +11,8 @@ namespace mssim {
 /// OMP_PLACES it binds the first one to a CPU of its own before main begins.
 std::vector<int> process_cpus();
 
-/// While it lives, the calling thread may move to all of process_cpus(), and the threads that it starts
-/// inherit that: those of a library would otherwise share the one CPU that OpenMP has bound this thread to.
+/// While it lives, the calling thread may move to all of process_cpus(), and the threads and processes that
+/// it starts inherit that: they would otherwise share the one CPU that OpenMP has bound this thread to.
 class OnAllProcessCpus {
  public:
   OnAllProcessCpus();

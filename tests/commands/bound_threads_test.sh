@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Where OpenMP binds its threads, which a noise warning advises, PoCL's threads still have all the process's CPUs, and
-# the provenance names them all. $1: mssim, $2: the source folder
+# Where OpenMP binds its threads, which a noise warning advises, other threads (PoCL's, those of threads-mutex) and the
+# processes that mssim starts still have all the process's CPUs, and the provenance names them all. $1: mssim, $2: the source folder
 set -euo pipefail
 mssim=$1
 # shellcheck source=tests/support/command_line.sh
@@ -12,20 +12,42 @@ if [ "$cpus" -lt 2 ] || [ "$(nproc)" -ne "$cpus" ]; then
   exit 77
 fi
 
-# PoCL inherits what its threads may use; with POCL_AFFINITY it would narrow that again.
 all=$(awk '/^Cpus_allowed_list/ { print $2 }' /proc/self/status)
-env --default-signal=INT OMP_PROC_BIND=true POCL_AFFINITY=0 "$mssim" bench --scene cloth2500 --backend opencl \
-  --integrator semi-euler --threads 1 --rounds 2000 >"$work/out" 2>"$work/err" &
-bench=$!
-threads=0
-for ((try = 0; try < 300 && threads < 2; ++try)); do
-  sleep 0.1
-  kill -0 $bench 2>/dev/null || break
-  threads=$(cat /proc/$bench/task/*/status 2>/dev/null | grep -xc "Cpus_allowed_list:[[:space:]]*$all" || true)
-done
-kill -INT $bench 2>/dev/null || true
-wait $bench || true
-[ "$threads" -ge 2 ] || fail "$threads threads may use all of $all: $(cat "$work/err")"
+
+# expect_free LEAST ARGUMENTS...: in mssim ARGUMENTS, which runs for long, at least LEAST threads may use all CPUs
+expect_free() {
+  local least=$1 threads=0 try bench
+  shift
+  env --default-signal=INT OMP_PROC_BIND=true POCL_AFFINITY=0 "$mssim" "$@" >"$work/out" 2>"$work/err" &
+  bench=$!
+  for ((try = 0; try < 300 && threads < least; ++try)); do
+    sleep 0.1
+    kill -0 $bench 2>/dev/null || break
+    threads=$(cat /proc/$bench/task/*/status 2>/dev/null | grep -xc "Cpus_allowed_list:[[:space:]]*$all" || true)
+  done
+  kill -INT $bench 2>/dev/null || true
+  wait $bench || true
+  [ "$threads" -ge "$least" ] || fail "$*: $threads threads may use all of $all: $(cat "$work/err")"
+}
+
+# PoCL inherits what its threads may use; with POCL_AFFINITY it would narrow that again.
+expect_free 2 bench --scene cloth2500 --backend opencl --integrator semi-euler --threads 1 --rounds 2000
+
+# The references, which have threads of their own, come from a folder.
+bench=(bench --scene cloth2500 --backend threads-mutex --integrator semi-euler --threads 2)
+succeed "${bench[@]}" --rounds 1 --out "$work/verified"
+expect_free 1 "${bench[@]}" --rounds 2000 --verified "$work/verified"
+
+# A program that says what it may use instead of measuring.
+cat >"$work/program" <<END
+#!/bin/sh
+sed -n 's/^Cpus_allowed_list:[[:space:]]*//p' /proc/self/status >>"$work/allowed"
+exit 1
+END
+chmod +x "$work/program"
+OMP_PROC_BIND=true "$mssim" compare --ab "$work/program" "$work/program" --scene cloth2500 --backend openmp \
+  --integrator semi-euler --threads 2 >"$work/out" 2>"$work/err" && fail "compare with a program that fails succeeds"
+[ "$(sort -u "$work/allowed")" = "$all" ] || fail "programs of compare may use $(cat "$work/allowed"), not $all"
 
 OMP_PROC_BIND=true "$mssim" bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 5 \
   --out "$work/bound" >"$work/out" 2>"$work/err" || fail "a bench with bound threads exits with $?"

@@ -33,7 +33,7 @@ backends/vectors      laws integrators backends/interface
 backends/threads
 backends/layouts      integrators model backends/interface backends/vectors
 backends/devices      text platform integrators backends/interface
-backends/spring_list  integrators model backends/interface
+backends/spring_list  platform integrators model backends/interface
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/opencl       kernels integrators model backends/interface backends/layouts backends/devices
 backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backends/spring_list/spring_list.h"
+#include "platform/process_cpus.h"
 
 namespace mssim {
 namespace {
@@ -33,8 +34,11 @@ class ThreadsMutex final : public Backend {
   void step(int count) override {
     std::barrier together(static_cast<std::ptrdiff_t>(threads_));
     std::vector<std::jthread> group;
-    for (std::size_t thread = 1; thread < threads_; ++thread)
-      group.emplace_back([&, thread] { run(thread, count, together); });
+    {
+      const OnAllProcessCpus inherited;
+      for (std::size_t thread = 1; thread < threads_; ++thread)
+        group.emplace_back([&, thread] { run(thread, count, together); });
+    }
     run(0, count, together);
   }
 
