@@ -31,7 +31,7 @@ scene                 text platform geometry model mesh scene/fields scene/spec 
 backends/interface    kernels integrators model
 backends/vectors      laws integrators backends/interface
 backends/threads
-backends/layouts      integrators model backends/interface backends/vectors
+backends/layouts      integrators model backends/interface backends/vectors backends/threads
 backends/devices      text platform integrators backends/interface
 backends/spring_list  platform integrators model backends/interface
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts

@@ -10,6 +10,7 @@
 #include "backends/interface/surroundings.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/spring_constants.h"
+#include "backends/threads/team_gain.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
@@ -98,6 +99,7 @@ struct BandGrid {
   Surroundings surroundings{};
   std::size_t steps_per_pass = 1;  ///< steps under way at once
   std::vector<BandPartition> partitions;
+  TeamGain team_gain;  ///< of a thread for each partition
 
   /// Cuts the cloth for `lanes` lanes and at most `threads` partitions. Arrays stay untouched until
   /// set_state. `steps_in_a_pass`: chosen by the size of the cloth unless given; their stages must not be

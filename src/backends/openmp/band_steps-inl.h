@@ -163,26 +163,37 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   // Every thread computes its own columns whole, whatever their number: the order of every sum depends on the
   // cloth alone, and the result is the same to the last bit for any number of threads.
   const int partitions = static_cast<int>(bands.partitions.size());
+  const std::size_t passes = (count + bands.steps_per_pass - 1) / bands.steps_per_pass;
+  // Of every stride-th partition from `first` on.
+  const auto walk = [&](std::size_t first, std::size_t stride, std::size_t pass) HWY_ATTR {
+    const std::size_t steps = std::min(bands.steps_per_pass, count - pass * bands.steps_per_pass);
+    for (std::size_t p = first; p < bands.partitions.size(); p += stride)
+      walk_partition<method>(bands, bands.partitions[p], steps);
+  };
+  const auto fetch = [&](std::size_t first, std::size_t stride) HWY_ATTR {
+    for (std::size_t p = first; p < bands.partitions.size(); p += stride) fetch_ghosts(bands, p);
+  };
+  const auto pass_alone = [&](std::size_t pass) HWY_ATTR {
+    if (pass >= passes) return false;
+    walk(0, 1, pass);
+    fetch(0, 1);
+    return true;
+  };
+  const std::size_t begin = bands.team_gain.take_rounds(pass_alone);
+  if (begin == passes) return;
   std::optional<SpinBarrier> barrier;
 #pragma omp parallel num_threads(partitions)
   {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
 #pragma omp single
-    barrier.emplace(threads);
-    const auto for_my_partitions = [&](auto&& act) HWY_ATTR {
-      for (std::size_t p = thread; p < bands.partitions.size(); p += threads) act(p);
-    };
-    for (std::size_t done = 0; done < count;) {
-      const std::size_t steps = std::min(bands.steps_per_pass, count - done);
-      for_my_partitions([&](std::size_t p)
-                            HWY_ATTR { walk_partition<method>(bands, bands.partitions[p], steps); });
-      done += steps;
-      if (bands.partitions.size() > 1) {
-        barrier->wait();
-        for_my_partitions([&](std::size_t p) HWY_ATTR { fetch_ghosts(bands, p); });
-        barrier->wait();
-      }
+    barrier.emplace(threads, bands.team_gain);
+    for (std::size_t pass = begin; pass < passes; ++pass) {
+      walk(thread, threads, pass);
+      if (partitions == 1) continue;
+      barrier->wait();
+      fetch(thread, threads);
+      pass += barrier->end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); });
     }
   }
 }

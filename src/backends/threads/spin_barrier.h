@@ -4,32 +4,99 @@
 #include <cstddef>
 
 #include "backends/threads/spin_wait.h"
+#include "backends/threads/team_gain.h"
 
 namespace mssim {
 
-/// A barrier for threads that meet every few microseconds (spin_wait.h says how it waits).
+/// A barrier for threads that meet every few microseconds (spin_wait.h says how it waits). At the end of a
+/// round of their work one of them may take rounds alone, where that is faster.
 class SpinBarrier {
  public:
   explicit SpinBarrier(std::size_t threads) : threads_(threads) {}
+  /// `gain` lives as long, and is called by no other thread meanwhile.
+  SpinBarrier(std::size_t threads, TeamGain& gain) : threads_(threads), gain_(&gain) {
+    gain.begin(Clock::now());
+  }
 
-  /// Returns when all threads have called it as often as this one. What they wrote before is visible after.
+  /// Returns when all threads have called it, or end_round(), as often as this one. What they wrote before is
+  /// visible after.
   void wait() {
-    const unsigned phase = phase_.load(std::memory_order_acquire);
-    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
-      arrived_.store(0, std::memory_order_relaxed);
-      change_and_notify(phase_, phase + 1);
-      return;
+    const Arrival mine = arrive();
+    if (mine.is_last)
+      release(mine.phase);
+    else
+      wait_for_others(mine);
+  }
+
+  /// The same at the end of a round. Meanwhile one thread may take rounds for all: take_round(n), n = 0, 1,
+  /// ..., does the work of all threads in the (n + 1)th round after this one, or returns false where none is
+  /// left. Returns to every thread how many rounds that were.
+  template <class TakeRound>
+  std::size_t end_round(TakeRound&& take_round) {
+    const Arrival mine = arrive();
+    if (mine.is_last) {
+      rounds_alone_ = 0;
+      if (threads_ == 1 || !gain_ ||
+          !gain_->begins_alone(static_cast<TeamGain::Duration::rep>(threads_), &Clock::now)) {
+        release(mine.phase);
+        return 0;
+      }
+      change_and_notify(phase_, mine.phase + 1);
     }
-    wait_for_change(phase_, phase, spins);
+    const unsigned now =
+        mine.is_last ? wait_for_change(phase_, mine.phase + 1, spins) : wait_for_others(mine);
+    if (now == mine.phase + 1) {
+      if (mine.is_first) {  // nothing has kept it from arriving: it has a processor
+        rounds_alone_ = gain_->take_rounds(take_round);
+        gain_->begin(Clock::now());
+        release(mine.phase);
+      } else {
+        wait_for_change(phase_, mine.phase + 1, spins);
+      }
+    }
+    return rounds_alone_;
   }
 
  private:
+  using Clock = TeamGain::Clock;
+
   /// Some microseconds: about as long as the parts of a balanced step differ.
   static constexpr int spins = 300;
 
+  struct Arrival {
+    unsigned phase;
+    bool is_first, is_last;
+  };
+
+  Arrival arrive() {
+    const unsigned phase = phase_.load(std::memory_order_acquire);
+    const std::size_t before = arrived_.fetch_add(1, std::memory_order_acq_rel);
+    return {phase, before == 0, before + 1 == threads_};
+  }
+
+  void release(unsigned phase) {
+    arrived_.store(0, std::memory_order_relaxed);
+    change_and_notify(phase_, phase + 2);
+  }
+
+  /// Who arrives before the last one. Reads the clock in waits only that are long already: a step of the
+  /// smallest cloths takes as long as a few hundred readings.
+  unsigned wait_for_others(const Arrival& mine) {
+    if (!mine.is_first || !gain_) return wait_for_change(phase_, mine.phase, spins);
+    constexpr int first_spins = spins / 10;
+    if (const unsigned now = spin_for_change(phase_, mine.phase, first_spins); now != mine.phase) return now;
+    const Clock::time_point begin = Clock::now();
+    const unsigned now = wait_for_change(phase_, mine.phase, spins - first_spins);
+    // The last one may be the next to use it, but not before this thread has arrived again.
+    gain_->add_wait(Clock::now() - begin);
+    return now;
+  }
+
   const std::size_t threads_;
+  TeamGain* const gain_ = nullptr;  // of who is last, of the first in a wait, or of who works alone
   std::atomic<std::size_t> arrived_{0};
-  std::atomic<unsigned> phase_{0};
+  std::atomic<unsigned> phase_{0};  // two more after every meeting; one more while a thread is alone
+  std::size_t rounds_alone_ = 0;
 };
 
 }  // namespace mssim

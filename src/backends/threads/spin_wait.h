@@ -9,6 +9,22 @@
 
 namespace mssim {
 
+/// Spins `spins` times, or until an atomic has another value than `old`. Returns its value.
+template <class T>
+T spin_for_change(const std::atomic<T>& value, T old, int spins) {
+  T now = value.load(std::memory_order_acquire);
+  for (int tries = 0; tries < spins && now == old; ++tries) {
+    // Leaves the core's resources to its other thread.
+#if defined(__x86_64__)
+    _mm_pause();
+#elif defined(__aarch64__)
+    asm volatile("yield");
+#endif
+    now = value.load(std::memory_order_acquire);
+  }
+  return now;
+}
+
 /// Waits until an atomic has another value than `old` and returns it, for threads that meet every few
 /// microseconds: spins `spins` times, then offers its core some times, then sleeps until it is notified.
 ///
@@ -17,20 +33,12 @@ namespace mssim {
 /// could run: a step of a 2,500-node cloth then took milliseconds instead of 6 microseconds.
 template <class T>
 T wait_for_change(const std::atomic<T>& value, T old, int spins) {
+  if (const T now = spin_for_change(value, old, spins); now != old) return now;
   /// If both threads have come to share a core, the other one runs at the first of these.
   constexpr int yields = 100;
-  for (int tries = 0; tries < spins + yields; ++tries) {
+  for (int tries = 0; tries < yields; ++tries) {
+    std::this_thread::yield();
     if (const T now = value.load(std::memory_order_acquire); now != old) return now;
-    if (tries >= spins) {
-      std::this_thread::yield();
-    } else {
-      // Leaves the core's resources to its other thread.
-#if defined(__x86_64__)
-      _mm_pause();
-#elif defined(__aarch64__)
-      asm volatile("yield");
-#endif
-    }
   }
   value.wait(old, std::memory_order_seq_cst);
   return value.load(std::memory_order_acquire);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "backends/threads/team_gain.h"
 #include "garment/stepping/dressing_backend.h"
 #include "garment/stepping/garment_grid.h"
 #include "garment/stepping/layer_collision.h"
@@ -20,6 +21,7 @@ struct PanelDressing {
   std::optional<LayerCollision> layers;  ///< that touch
   std::int64_t steps = 0;
   DressingProgress progress = {};
+  TeamGain team_gain = {};
 };
 
 /// Loop 3: sews the joints that are near enough, and sets what the others do to the nodes at their ends.

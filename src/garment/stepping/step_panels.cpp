@@ -91,18 +91,25 @@ struct Worker {
 class Team {
  public:
   /// This thread's part. All threads of a region call it first; it makes parts for as many as there are.
-  Worker& join(const PanelDressing& dressing) {
+  Worker& join(PanelDressing& dressing) {
 #pragma omp single
     if (const auto threads = static_cast<std::size_t>(omp_get_num_threads()); threads != workers_.size()) {
       workers_.clear();
-      barrier_.emplace(threads);
+      barrier_.emplace(threads, dressing.team_gain);
       for (std::size_t thread = 0; thread < threads; ++thread)
         workers_.emplace_back(dressing, thread, threads, *barrier_);
     }
     return workers_[static_cast<std::size_t>(omp_get_thread_num())];
   }
+  /// All parts as one, of a thread that works alone.
+  Worker& whole(const PanelDressing& dressing) {
+    if (!whole_) whole_.emplace(dressing, 0, 1, no_barrier_);
+    return *whole_;
+  }
 
  private:
+  SpinBarrier no_barrier_{1};
+  std::optional<Worker> whole_;
   std::optional<SpinBarrier> barrier_;
   std::vector<Worker> workers_;
 };
@@ -144,7 +151,6 @@ void move(PanelDressing& dressing, const Worker& worker) {
   worker.barrier.wait();
   for (std::size_t b = range.begin; b < range.end; ++b)
     move_block(grid, grid.blocks[b], Lanes(rule.dt), dressing.system.floor);
-  worker.barrier.wait();
 }
 
 /// Layers of the garment collide.
@@ -162,20 +168,33 @@ void collide_layers(PanelDressing& dressing) {
       });
 }
 
+/// A step, until the thread has moved its own nodes.
+void take_step(PanelDressing& dressing, Worker& worker) {
+  accelerate(dressing, worker);
+  if (dressing.layers) {
+    worker.barrier.wait();
+    if (worker.thread == 0) collide_layers(dressing);
+    worker.barrier.wait();
+  }
+  move(dressing, worker);
+}
+
 void step_panels(PanelDressing& dressing, int count) {
   Team team;
   if (!dressing.layers || dressing.layers->threads() == 1) {
+    const auto step_alone = [&](std::size_t step) {
+      if (step >= static_cast<std::size_t>(count)) return false;
+      take_step(dressing, team.whole(dressing));
+      return true;
+    };
+    const std::size_t begin = dressing.team_gain.take_rounds(step_alone);
+    if (begin == static_cast<std::size_t>(count)) return;
 #pragma omp parallel num_threads(static_cast <int>(dressing.threads))
     {
       Worker& worker = team.join(dressing);
-      for (int step = 0; step < count; ++step) {
-        accelerate(dressing, worker);
-        if (dressing.layers) {
-          worker.barrier.wait();
-          if (worker.thread == 0) collide_layers(dressing);
-          worker.barrier.wait();
-        }
-        move(dressing, worker);
+      for (std::size_t step = begin; step < static_cast<std::size_t>(count); ++step) {
+        take_step(dressing, worker);
+        step += worker.barrier.end_round([&](std::size_t taken) { return step_alone(step + 1 + taken); });
       }
     }
     return;
