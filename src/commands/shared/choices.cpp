@@ -78,7 +78,8 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options) {
       "(default: shared)");
   arguments.add_choice<Roots>(
       "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
-      "How openmp and gather-vectors find the lengths of springs: fast, with AVX-512 by an estimate and a Newton step, or "
+      "How openmp and gather-vectors find the lengths of springs: fast, with AVX-512 by an estimate and a "
+      "Newton step, or "
       "exact, "
       "which gives the same bits on every processor that has multiply-adds (default: fast)");
 }
