@@ -15,7 +15,8 @@
 /* Force on this end divided by the vector to the other end, N/m.
  * inverse_length = 1/|d| (1/m), closing = u . d (m^2/s), stiffness = k (N/m), stiffness_rest = k L (N),
  * damping = c (N s/m). */
-MSSIM_LAW spring_pull_at(Real inverse_length, Real closing, Real stiffness, Real stiffness_rest, Real damping) {
+MSSIM_LAW spring_pull_at(Real inverse_length, Real closing, Real stiffness, Real stiffness_rest,
+                         Real damping) {
   return mul_add(mul_add(damping * closing, inverse_length, -stiffness_rest), inverse_length, stiffness);
 }
 
