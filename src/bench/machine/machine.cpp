@@ -146,11 +146,6 @@ std::string read_generation(const fs::path& file) {
 
 }  // namespace
 
-std::string cpu_name(const Machine& machine) {
-  return machine.cpu_generation.empty() ? machine.cpu_model
-                                        : machine.cpu_model + ", " + machine.cpu_generation;
-}
-
 Machine read_machine(const fs::path& root) {
   const fs::path cpus = root / "sys/devices/system/cpu";
   Machine machine;

@@ -33,7 +33,10 @@ struct Machine {
 };
 
 /// "MODEL, GENERATION", as far as they are known.
-std::string cpu_name(const Machine& machine);
+inline std::string cpu_name(const Machine& machine) {
+  return machine.cpu_generation.empty() ? machine.cpu_model
+                                        : machine.cpu_model + ", " + machine.cpu_generation;
+}
 
 /// The machine that this runs on, as it is now. `root` stands before /proc, /sys and /etc; tests put a
 /// made-up machine there.
