@@ -125,12 +125,12 @@ void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
 
 void check_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
-  constexpr std::uint64_t most_nodes = std::numeric_limits<std::uint32_t>::max();
-  if (const std::uint64_t nodes = std::uint64_t{cloth.rows} * cloth.columns; nodes > most_nodes)
+  constexpr std::uint64_t largest = std::numeric_limits<std::uint32_t>::max();
+  if (const std::uint64_t nodes = std::uint64_t{cloth.rows} * cloth.columns; nodes > largest)
     refuse(spec.file, "/cloth/rows",
            "is " + std::to_string(cloth.rows) + ", which with " + std::to_string(cloth.columns) +
                " columns makes " + std::to_string(nodes) + " nodes: keep the product at or below " +
-               std::to_string(most_nodes));
+               std::to_string(largest));
   if (cloth.pins && cloth.pins->row >= cloth.rows)
     refuse(spec.file, "/cloth/pins/row",
            "is " + std::to_string(cloth.pins->row) + ", but the rows are numbered from 0 to " +
