@@ -73,7 +73,7 @@ cmp -s kept int/samples.csv || fail "a refused bench has changed the folder"
 grep -q 'other backends or integrators of cloth2500' err || fail "other backends: $(cat err)"
 cp -r int moved
 sed -i 's/"model": ".*"/"model": "Another CPU"/; s/"asked_for": 1/"asked_for": 8/' moved/provenance.json
-expect 2 'cannot continue in moved: the CPU was Another CPU .*; the number of threads was 8 and is 1; choose another' \
+expect 2 'cannot continue in moved: the CPU was Another CPU[ ,].*; the number of threads was 8 and is 1; choose another' \
   "${bench[@]}" --out moved --resume
 expect 2 'resume' bench --scene cloth2500 --resume
 expect 2 'cannot continue in int: it has results of cloth2500, which this command leaves out; choose another' \
