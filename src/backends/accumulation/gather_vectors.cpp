@@ -1,8 +1,6 @@
 #include "backends/accumulation/gather_vectors.h"
 
-#include <algorithm>
 #include <string>
-#include <vector>
 
 namespace mssim {
 namespace {
@@ -39,11 +37,7 @@ std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integra
 
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options) {
-  const std::vector<RowKernel> kernels = row_kernels();
-  const auto best = options.roots == Roots::exact ? std::ranges::find_if(kernels, &RowKernel::exact_roots)
-                                                  : kernels.begin();
-  if (best == kernels.end()) throw Unavailable("no vector code for this processor has exact roots");
-  return make_gather_vectors(system, integrator, dt_s, options, *best);
+  return make_gather_vectors(system, integrator, dt_s, options, best_kernel(row_kernels(), options.roots));
 }
 
 }  // namespace mssim

@@ -1,6 +1,5 @@
 #include "backends/openmp/openmp.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -76,11 +75,8 @@ bool has_exact_roots(std::string_view instruction_set) {
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const auto sets = openmp_instruction_sets();
-  const auto best =
-      options.roots == Roots::exact ? std::ranges::find_if(sets, has_exact_roots) : sets.begin();
-  if (best == sets.end()) throw Unavailable("no vector code for this processor has exact roots");
-  return make_openmp(system, integrator, dt_s, options, *best);
+  return make_openmp(system, integrator, dt_s, options,
+                     best_kernel(slice_kernels(), options.roots).instruction_set);
 }
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,

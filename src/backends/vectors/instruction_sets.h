@@ -6,12 +6,12 @@
 #error "backends/vectors/instruction_sets.h must be included before Highway"
 #endif
 
-// On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, "AVX3" to Highway). By SSE4 Highway
-// means SSE4.2 with AES and carry-less multiplication, which a few processors up to about 2013 lack; plain
-// floats for them would be a quarter of the time that vector code takes to compile. On arm64 NEON (4). Not
-// Arm's SVE: a vector whose length is known only at run time cannot be a member of a struct, as Lanes needs
-// it, and the phones that have SVE have vectors of 128 bits, no longer than NEON's. On any other processor
-// what its compiler takes for granted, or plain floats, one lane.
+// On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, "AVX3" to Highway). By SSE4 Highway means SSE4.2 with AES
+// and carry-less multiplication, which a few processors up to about 2013 lack; plain floats for them would be
+// a quarter of the time that vector code takes to compile. On arm64 NEON (4). Not Arm's SVE: a vector whose
+// length is known only at run time cannot be a member of a struct, as Lanes needs it, and the phones that
+// have SVE have vectors of 128 bits, no longer than NEON's. On any other processor what its compiler takes
+// for granted, or plain floats, one lane.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #if defined(__x86_64__) && !defined(__SSE4_2__)
 #define HWY_BASELINE_TARGETS HWY_SSE4
@@ -41,6 +41,14 @@ std::vector<Kernel> kernels_of_this_processor(Kernel (*const (&table)[size])()) 
   if (kernels.empty())
     throw Unavailable("this processor lacks SSE4.2 or AES, the least that vector code is compiled for");
   return kernels;
+}
+
+/// The best of these kernels that has `roots`. Throws Unavailable where none has.
+template <class Kernel>
+Kernel best_kernel(const std::vector<Kernel>& kernels, Roots roots) {
+  for (const Kernel& kernel : kernels)
+    if (roots == Roots::fast || kernel.exact_roots) return kernel;
+  throw Unavailable("no vector code for this processor has exact roots");
 }
 
 }  // namespace mssim

@@ -18,8 +18,8 @@
 namespace mssim {
 namespace {
 
-/// A step that takes so long (s) is timed without a step before it: waking threads takes some 50 us, and such
-/// a step finds none of its data in a cache that is not filled again in each step.
+/// A step that takes so long (s) is timed without a step before it: waking threads takes some 50 us, and
+/// filling the caches little more.
 constexpr double long_step_s = 0.01;
 
 /// Runs the steps of one sample and returns its wall-clock seconds.
