@@ -37,7 +37,8 @@ std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integra
 
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options) {
-  return make_gather_vectors(system, integrator, dt_s, options, best_kernel(row_kernels(), options.roots));
+  return make_gather_vectors(system, integrator, dt_s, options,
+                             best_kernel(row_kernels(integrator), options.roots));
 }
 
 }  // namespace mssim

@@ -16,7 +16,8 @@ struct RowKernel {
   void (*step)(PaddedRows& cloth, int count);  ///< takes `count` steps
 };
 
-/// The kernels for the instruction sets of this processor, at least one, the best first.
-std::vector<RowKernel> row_kernels();
+/// The kernels for the instruction sets of this processor that take steps of the integrator, at least one,
+/// the best first.
+std::vector<RowKernel> row_kernels(const Integrator& integrator);
 
 }  // namespace mssim

@@ -7,6 +7,7 @@
 #include "backends/openmp/sliced_bodies.h"
 #include "backends/openmp/step_bands.h"
 #include "backends/openmp/step_slices.h"
+#include "integrators/integrators.h"
 
 namespace mssim {
 namespace {
@@ -63,20 +64,22 @@ Kernel kernel_for(const std::vector<Kernel>& kernels, std::string_view instructi
 
 }  // namespace
 
+// They are the same for all integrators, and for cloths and bodies.
 std::vector<std::string_view> openmp_instruction_sets() {
   std::vector<std::string_view> names;
-  for (const SliceKernel& kernel : slice_kernels()) names.emplace_back(kernel.instruction_set);
+  for (const SliceKernel& kernel : slice_kernels(integrators.front()))
+    names.emplace_back(kernel.instruction_set);
   return names;
 }
 
 bool has_exact_roots(std::string_view instruction_set) {
-  return kernel_for(slice_kernels(), instruction_set).exact_roots;
+  return kernel_for(slice_kernels(integrators.front()), instruction_set).exact_roots;
 }
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
   return make_openmp(system, integrator, dt_s, options,
-                     best_kernel(slice_kernels(), options.roots).instruction_set);
+                     best_kernel(slice_kernels(integrator), options.roots).instruction_set);
 }
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
@@ -87,7 +90,7 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
     return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads,
                                         kernel_for(band_kernels(integrator), instruction_set));
   return std::make_unique<OpenMpBodies>(system, integrator, dt_s, threads,
-                                        kernel_for(slice_kernels(), instruction_set));
+                                        kernel_for(slice_kernels(integrator), instruction_set));
 }
 
 }  // namespace mssim

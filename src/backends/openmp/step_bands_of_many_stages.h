@@ -1,16 +1,12 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "backends/openmp/step_bands.h"
 
 namespace mssim {
 
-/// The most stages of the integrators that step_bands.cpp compiles.
-inline constexpr std::size_t few_stages = 2;
-
-/// band_kernels of integrators that have more stages.
-std::vector<BandKernel> kernels_of_many_stages();
+/// band_kernels of integrators that have more than two stages.
+std::vector<BandKernel> band_kernels_of_many_stages();
 
 }  // namespace mssim

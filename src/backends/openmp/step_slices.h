@@ -16,7 +16,8 @@ struct SliceKernel {
   void (*step)(SlicedBodies& bodies, int count);  ///< takes `count` steps
 };
 
-/// The kernels for the instruction sets of this processor, at least one, the best first.
-std::vector<SliceKernel> slice_kernels();
+/// The kernels for the instruction sets of this processor that take steps of the integrator, at least one,
+/// the best first.
+std::vector<SliceKernel> slice_kernels(const Integrator& integrator);
 
 }  // namespace mssim

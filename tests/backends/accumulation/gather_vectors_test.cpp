@@ -43,17 +43,18 @@ bool has_met_floor(const System& system, const State& state) {
 
 class EachRowKernelAndIntegrator : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
  protected:
-  RowKernel kernel() const { return row_kernels()[std::get<0>(GetParam())]; }
+  RowKernel kernel() const { return row_kernels(integrator())[std::get<0>(GetParam())]; }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
     return make_gather_vectors(system, integrator(), dt_s, {threads, ""}, kernel());
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachRowKernelAndIntegrator,
-                         testing::Combine(testing::Range(std::size_t{0}, row_kernels().size()),
+                         testing::Combine(testing::Range(std::size_t{0}, row_kernels(integrators[0]).size()),
                                           testing::Range(std::size_t{0}, integrators.size())),
                          [](const auto& test) {
-                           std::string name = row_kernels()[std::get<0>(test.param)].instruction_set;
+                           std::string name =
+                               row_kernels(integrators[0])[std::get<0>(test.param)].instruction_set;
                            name += "__" + std::string(integrators[std::get<1>(test.param)].name);
                            std::ranges::replace(name, '-', '_');
                            return name;
@@ -71,7 +72,7 @@ TEST_P(EachRowKernelAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
 }
 
 TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsTheBestThatRoundsAlike) {
-  const std::vector<RowKernel> kernels = row_kernels();
+  const std::vector<RowKernel> kernels = row_kernels(integrator());
   const RowKernel best = *std::ranges::find_if(kernels, [&](const RowKernel& other) {
     return fuses(other.instruction_set) == fuses(kernel().instruction_set) &&
            other.exact_roots == kernel().exact_roots;
@@ -162,7 +163,7 @@ TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {
 
 TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
   const System system = cloth_system(9, 11);
-  const std::vector<RowKernel> kernels = row_kernels();
+  const std::vector<RowKernel> kernels = row_kernels(integrators[0]);
   const auto device = [&](Roots roots) {
     return make_gather_vectors(system, integrators[0], dt_s, {.threads = 1, .roots = roots})->device();
   };
@@ -172,7 +173,7 @@ TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
 }
 
 TEST(GatherVectors, BeginsEachComponentOfARowWithAVector) {
-  for (const RowKernel& kernel : row_kernels())
+  for (const RowKernel& kernel : row_kernels(integrators[0]))
     for (const auto& [rows, columns] : sizes) {
       const RowLayout layout(GridPatch{rows, columns, 0.01}, kernel.lanes);
       EXPECT_EQ(layout.offset(0, 0) % kernel.lanes, 0U);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "backends/accumulation/step_rows.h"
 #include "backends/openmp/openmp.h"
 #include "backends/openmp/step_bands.h"
 #include "backends/openmp/step_slices.h"
@@ -56,9 +57,11 @@ std::vector<std::pair<std::string, std::size_t>> names_and_lanes(const std::vect
 }
 
 TEST(InstructionSets, AreAllThatThisProcessorHasTheBestFirst) {
-  for (const Integrator& integrator : integrators)
+  for (const Integrator& integrator : integrators) {
     EXPECT_THAT(names_and_lanes(band_kernels(integrator)), ElementsAreArray(expected_kernels()));
-  EXPECT_THAT(names_and_lanes(slice_kernels()), ElementsAreArray(expected_kernels()));
+    EXPECT_THAT(names_and_lanes(slice_kernels(integrator)), ElementsAreArray(expected_kernels()));
+    EXPECT_THAT(names_and_lanes(row_kernels(integrator)), ElementsAreArray(expected_kernels()));
+  }
 }
 
 TEST(InstructionSets, AreTakenAsNamedTheBestWhereNoneIs) {

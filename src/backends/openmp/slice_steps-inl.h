@@ -1,0 +1,122 @@
+// The walk over bodies in slices: chunk by chunk, whichever thread is free. Compiled once per instruction
+// set, so the guard toggles.
+#if defined(MSSIM_SLICE_STEPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MSSIM_SLICE_STEPS_INL_H_
+#undef MSSIM_SLICE_STEPS_INL_H_
+#else
+#define MSSIM_SLICE_STEPS_INL_H_
+#endif
+
+#include <omp.h>
+
+#include <bit>
+#include <utility>
+
+#include "backends/layouts/update_nodes-inl.h"
+#include "backends/openmp/sliced_bodies.h"
+#include "backends/threads/chunk_tickets.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+/// Some microseconds: about as long as a chunk takes.
+constexpr int spins = 300;
+
+/// Acceleration that the springs of a slice's nodes give them, neighbour by neighbour in the order of
+/// entries.
+HWY_INLINE Lanes3 spring_acceleration(const SlicedBodies& bodies, const float* pair, std::size_t slice,
+                                      const NodeLanes& node, Lanes stiffness, Lanes damping) {
+  const FloatTag d;
+  Lanes3 sum = zero3();
+  const float* end = bodies.entries.data() + bodies.first_entry[slice + 1] * 2 * vector_nodes;
+  for (const float* entry = bodies.entries.data() + bodies.first_entry[slice] * 2 * vector_nodes; entry < end;
+       entry += 2 * vector_nodes) {
+    const NodeLanes other = load_records<vector_nodes>([&](std::size_t i) MSSIM_INLINE_LAMBDA {
+      return pair + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * SlicedBodies::offset_floats;
+    });
+    const Lanes stiffness_rest = hn::Load(d, entry + vector_nodes);
+    const Lanes3 to_other = other.x - node.x;
+    const Lanes pull = spring_pull_at(inverse_length(dot(to_other, to_other)),
+                                      dot(other.v - node.v, to_other), stiffness, stiffness_rest, damping);
+    const Mask exists = hn::Ge(stiffness_rest.v, hn::Zero(d));
+    sum = mul_add(keep(exists, pull), to_other, sum);
+  }
+  return sum;
+}
+
+/// One stage at the nodes of one slice.
+template <std::size_t method, std::size_t stage>
+HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::size_t slice) {
+  const float* gathered = base[index(integrators[method].stages[stage].gather)];
+  const std::size_t offset = slice * vector_nodes * record_floats;
+  const NodeLanes node = load_nodes(gathered + offset);
+  const float* constants = bodies.constants.data() + slice * 3 * vector_nodes;
+  const Mask free = hn::Eq(hn::Load(FloatTag(), constants + 2 * vector_nodes), hn::Zero(FloatTag()));
+  const Lanes3 a = spring_acceleration(bodies, gathered, slice, node, Lanes(hn::Load(FloatTag(), constants)),
+                                       Lanes(hn::Load(FloatTag(), constants + vector_nodes)));
+  update_nodes<method, stage>(base, offset, node, a, free, bodies.coefficients, bodies.surroundings);
+}
+
+template <std::size_t method, std::size_t stage>
+HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, SlicedBodies::Chunk chunk) {
+  for (std::size_t slice = chunk.begin; slice < chunk.end; ++slice)
+    step_slice<method, stage>(bodies, base, slice);
+}
+
+/// Works on a chunk in the stage that the ticket's phase stands for.
+template <std::size_t method>
+HWY_INLINE void work_on(const SlicedBodies& bodies, const ChunkTickets::Ticket& ticket) {
+  constexpr std::size_t stages = integrators[method].stage_count;
+  Pairs base = bodies.base;
+  if (ticket.phase / stages % 2 != 0) std::swap(base[index(Pair::state)], base[index(Pair::next)]);
+  for_each_stage<method>([&](auto stage) HWY_ATTR {
+    if (ticket.phase % stages == stage) step_chunk<method, stage>(bodies, base, bodies.chunks[ticket.chunk]);
+  });
+}
+
+template <std::size_t method>
+HWY_INLINE void take_steps(SlicedBodies& bodies, int count) {
+  // A node's sums have the order of its entries, whichever thread computes them: the result is the same to
+  // the last bit for any number of threads.
+  constexpr std::size_t stages = integrators[method].stage_count;
+  const auto phases = static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(stages);
+  if (phases == 0 || bodies.chunks.empty()) return;
+  ChunkTickets tickets(static_cast<std::uint32_t>(bodies.chunks.size()),
+                       static_cast<std::uint32_t>(bodies.threads));
+  std::uint32_t opened = 1;  // only whoever has finished a phase touches it
+  tickets.open();
+#pragma omp parallel num_threads(static_cast <int>(bodies.threads))
+  {
+    const auto thread = static_cast<std::uint32_t>(omp_get_thread_num());
+    tickets.work_until_closed(
+        thread, spins, [&](const ChunkTickets::Ticket& ticket) HWY_ATTR { work_on<method>(bodies, ticket); },
+        [&] {
+          if (opened == phases) return tickets.close();
+          ++opened;
+          tickets.open();
+        });
+  }
+  if (count % 2 != 0) std::swap(bodies.base[index(Pair::state)], bodies.base[index(Pair::next)]);
+}
+
+template <std::size_t method>
+HWY_INLINE void step_method(SlicedBodies& bodies, int count) {
+  constexpr int most = 1 << 20;  // a ticket numbers a call's phases
+  static_assert(most * integrators[method].stage_count <= ChunkTickets::most_phases);
+  for (; count > most; count -= most) take_steps<method>(bodies, most);
+  take_steps<method>(bodies, count);
+}
+
+/// Takes `count` steps of an integrator of `fewest` to `most` stages.
+template <std::size_t fewest, std::size_t most>
+void step_slices(SlicedBodies& bodies, int count) {
+  with_integrator(*bodies.integrator, [&](auto method) HWY_ATTR {
+    constexpr std::size_t stages = integrators[method].stage_count;
+    if constexpr (stages >= fewest && stages <= most) step_method<method>(bodies, count);
+  });
+}
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
