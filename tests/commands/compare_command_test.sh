@@ -7,7 +7,7 @@ mssim=$1
 . "$2/tests/support/command_line.sh"
 
 # A folder in which nothing but the samples is made up.
-source_run=$2/results/table1
+source_run=$2/results/table1/zen5
 
 # make NAME BACKEND=MS[:SPREAD][:COUNT]...: a result folder with samples of each backend, spread evenly about MS
 make() {
