@@ -9,6 +9,7 @@ mssim
 kernels
 text
 statistics
+picture               text
 platform              text
 geometry              text
 laws                  kernels geometry

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace mssim {
+
+/// A colour in sRGB.
+struct Rgb {
+  std::uint8_t red = 0, green = 0, blue = 0;
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+inline constexpr Rgb black{0, 0, 0}, white{255, 255, 255};
+
+/// Pixels in rows from left to right, row 0 at the top.
+struct Picture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<Rgb> pixels;
+
+  Picture() = default;
+  Picture(std::uint32_t w, std::uint32_t h, Rgb colour = white);
+
+  /// The pixel in column `x` of row `y`, which must be inside.
+  Rgb& at(std::uint32_t x, std::uint32_t y) { return pixels[std::size_t{y} * width + x]; }
+  const Rgb& at(std::uint32_t x, std::uint32_t y) const { return pixels[std::size_t{y} * width + x]; }
+
+  friend bool operator==(const Picture&, const Picture&) = default;
+};
+
+/// Whole pixels, from column `left` and row `top` on. It may lie beyond a picture, which cuts it off.
+struct PixelBox {
+  int left = 0, top = 0, width = 0, height = 0;
+};
+
+/// `over` on `under` where it covers `coverage` of 255, channel by channel and rounded to the nearest.
+constexpr Rgb blended(Rgb under, Rgb over, std::uint8_t coverage) {
+  const auto channel = [coverage](unsigned below, unsigned above) {
+    return static_cast<std::uint8_t>((below * (255u - coverage) + above * coverage + 127) / 255);
+  };
+  return {channel(under.red, over.red), channel(under.green, over.green), channel(under.blue, over.blue)};
+}
+
+/// Blends `colour` over the pixel in column `x` of row `y`; nothing happens outside of the picture.
+void blend(Picture& picture, int x, int y, Rgb colour, std::uint8_t coverage);
+
+/// Blends `colour` over every pixel of `box`; by default it replaces them.
+void fill(Picture& picture, const PixelBox& box, Rgb colour, std::uint8_t coverage = 255);
+
+/// Copies `pasted` into `picture`, its top left pixel to column `left` of row `top`. What lies outside is cut
+/// off.
+void paste(Picture& picture, const Picture& pasted, int left, int top);
+
+}  // namespace mssim
