@@ -7,15 +7,11 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "text/decimal.h"
 
 namespace mssim {
 namespace {
-
-/// Rows that one thread draws at a time.
-constexpr std::int64_t band_rows = 16;
 
 /// Fixed-point coordinates stay below 2^29, so that the difference of two products of differences stays below
 /// 2^61.
@@ -62,7 +58,7 @@ class Raster {
     points_.reserve(surface.points.size());
     for (const Vec3d& point : surface.points)
       points_.push_back({fixed(point.x - grid.left), fixed(point.y - grid.bottom)});
-    bands_.resize(static_cast<std::size_t>((grid.rows + band_rows - 1) / band_rows));
+    bands_.resize((grid.rows + band_rows - 1) / band_rows);
     ranges_.reserve(surface.triangles.size());
     for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
       const PixelRange& range = ranges_.emplace_back(range_of(surface.triangles[t]));
@@ -70,13 +66,16 @@ class Raster {
       for (std::int64_t band = range.first_row / band_rows; band <= (range.end_row - 1) / band_rows; ++band)
         bands_[static_cast<std::size_t>(band)].push_back(t);
     }
-    fragments_.resize(grid.pixels());
   }
 
-  std::vector<Fragment> drawn(int threads) && {
-#pragma omp parallel for num_threads(threads > 0 ? threads : omp_get_max_threads()) schedule(dynamic)
-    for (std::size_t band = 0; band < bands_.size(); ++band) draw_band(band);
-    return std::move(fragments_);
+  void draw(int threads, const TakeBand& take) const {
+    const int team = threads > 0 ? threads : omp_get_max_threads();
+    // One band for each thread, made here, where it may throw.
+    std::vector<std::vector<Fragment>> drawn(static_cast<std::size_t>(team),
+                                             std::vector<Fragment>(std::size_t{band_rows} * grid_.columns));
+#pragma omp parallel for num_threads(team) schedule(dynamic)
+    for (std::size_t band = 0; band < bands_.size(); ++band)
+      draw_band(band, drawn[static_cast<std::size_t>(omp_get_thread_num())], take);
   }
 
  private:
@@ -93,37 +92,51 @@ class Raster {
             std::min<std::int64_t>(end_centre(std::max({a.y, b.y, c.y})), grid_.rows)};
   }
 
-  void draw_band(std::size_t band) {
+  void draw_band(std::size_t band, std::span<Fragment> drawn, const TakeBand& take) const {
     const std::int64_t first_row = static_cast<std::int64_t>(band) * band_rows;
+    const std::int64_t end_row = std::min<std::int64_t>(first_row + band_rows, grid_.rows);
+    const std::span<Fragment> fragments =
+        drawn.first(static_cast<std::size_t>(end_row - first_row) * grid_.columns);
+    std::ranges::fill(fragments, Fragment{});
     for (const std::uint32_t t : bands_[band]) {
       PixelRange range = ranges_[t];
       range.first_row = std::max(range.first_row, first_row);
-      range.end_row = std::min(range.end_row, first_row + band_rows);
-      draw(t, range);
+      range.end_row = std::min(range.end_row, end_row);
+      draw_triangle(t, range, first_row, fragments);
     }
+    take(static_cast<std::uint32_t>(first_row), fragments);
   }
 
-  void draw(std::uint32_t number, const PixelRange& range) {
+  /// Draws what of a triangle lies in `range` into the band that begins at `first_row`.
+  void draw_triangle(std::uint32_t number, const PixelRange& range, std::int64_t first_row,
+                     std::span<Fragment> fragments) const {
     const auto& [ia, ib, ic] = surface_.triangles[number];
     const FixedPoint &a = points_[ia], &b = points_[ib], &c = points_[ic];
     const std::int64_t whole = area(a, b, c);
     if (whole == 0) return;  // edge-on: its neighbours cover what it covers
     const std::int64_t turn = whole > 0 ? 1 : -1;
     const double per_area = 1 / static_cast<double>(turn * whole);
-    for (std::int64_t row = range.first_row; row < range.end_row; ++row)
-      for (std::int64_t column = range.first_column; column < range.end_column; ++column) {
-        const FixedPoint centre{column * subpixels + subpixels / 2, row * subpixels + subpixels / 2};
-        const std::int64_t at_a = turn * area(b, c, centre), at_b = turn * area(c, a, centre),
-                           at_c = turn * area(a, b, centre);
-        if (at_a < 0 || at_b < 0 || at_c < 0) continue;
+    const double za = surface_.points[ia].z, zb = surface_.points[ib].z, zc = surface_.points[ic].z;
+    // From a pixel to the next of its row, the area opposite to each corner grows by:
+    const std::int64_t step_a = turn * (b.y - c.y) * subpixels, step_b = turn * (c.y - a.y) * subpixels,
+                       step_c = turn * (a.y - b.y) * subpixels;
+    for (std::int64_t row = range.first_row; row < range.end_row; ++row) {
+      const FixedPoint centre{range.first_column * subpixels + subpixels / 2,
+                              row * subpixels + subpixels / 2};
+      std::int64_t at_a = turn * area(b, c, centre), at_b = turn * area(c, a, centre),
+                   at_c = turn * area(a, b, centre);
+      Fragment* shown = fragments.data() + static_cast<std::size_t>(row - first_row) * grid_.columns +
+                        static_cast<std::size_t>(range.first_column);
+      for (std::int64_t column = range.first_column; column < range.end_column;
+           ++column, ++shown, at_a += step_a, at_b += step_b, at_c += step_c) {
+        if ((at_a | at_b | at_c) < 0) continue;  // one of them is
         const double wa = static_cast<double>(at_a) * per_area, wb = static_cast<double>(at_b) * per_area,
                      wc = static_cast<double>(at_c) * per_area;
-        const double z = wa * surface_.points[ia].z + wb * surface_.points[ib].z + wc * surface_.points[ic].z;
-        Fragment& shown =
-            fragments_[static_cast<std::size_t>(row) * grid_.columns + static_cast<std::size_t>(column)];
-        if (shown.triangle == Fragment::nothing || sign_ * z > sign_ * shown.z)
-          shown = {z, {static_cast<float>(wa), static_cast<float>(wb), static_cast<float>(wc)}, number};
+        const double z = wa * za + wb * zb + wc * zc;
+        if (shown->triangle == Fragment::nothing || sign_ * z > sign_ * shown->z)
+          *shown = {z, {static_cast<float>(wa), static_cast<float>(wb), static_cast<float>(wc)}, number};
       }
+    }
   }
 
   const Surface& surface_;
@@ -132,14 +145,24 @@ class Raster {
   std::vector<FixedPoint> points_;
   std::vector<PixelRange> ranges_;                 // by triangle
   std::vector<std::vector<std::uint32_t>> bands_;  // the triangles that reach into each, in their order
-  std::vector<Fragment> fragments_;
 };
 
 }  // namespace
 
-std::vector<Fragment> rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view, int threads) {
+void rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view, int threads,
+               const TakeBand& take) {
   check(grid);
-  return Raster(surface, grid, view).drawn(threads);
+  Raster(surface, grid, view).draw(threads, take);
+}
+
+std::vector<Fragment> rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view, int threads) {
+  std::vector<Fragment> all;
+  check(grid);
+  all.resize(grid.pixels());
+  rasterise(surface, grid, view, threads, [&](std::uint32_t first_row, std::span<const Fragment> fragments) {
+    std::ranges::copy(fragments, all.begin() + static_cast<std::ptrdiff_t>(first_row) * grid.columns);
+  });
+  return all;
 }
 
 }  // namespace mssim

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "geometry/surface.h"
@@ -37,13 +39,24 @@ struct Fragment {
   std::uint32_t triangle = nothing;  ///< index into Surface::triangles
 };
 
-/// The nearest triangle at the centre of every pixel, row by row. Triangles count from both sides; the
-/// picture cuts off what lies beside it (a corner more than 32768 pixels away from its own is drawn that far
-/// away). x and y are rounded to 1/16384 of a pixel and coverage is decided in whole numbers, edges belonging
-/// to the triangles on both sides: a closed surface shows no gaps, and the same pixels from the front as from
-/// the back. Of triangles equally near, the first is shown. Points are finite. Works in bands of rows by
-/// `threads` threads (0: as many as OpenMP takes); the result does not depend on their number. Throws
-/// std::invalid_argument for a grid that is empty, too large, or not finite.
+/// Rows of a band, the last of a picture excepted: what one thread draws at a time.
+constexpr std::uint32_t band_rows = 16;
+
+/// What is done with a band: its first row, and its fragments row by row. Called by several threads at once,
+/// each time for another band. Must not throw.
+using TakeBand = std::function<void(std::uint32_t first_row, std::span<const Fragment> fragments)>;
+
+/// Finds the nearest triangle at the centre of every pixel. Triangles count from both sides; the picture cuts
+/// off what lies beside it (a corner more than 32768 pixels away from its own is drawn that far away). x and
+/// y are rounded to 1/16384 of a pixel and coverage is decided in whole numbers, edges belonging to the
+/// triangles on both sides: a closed surface shows no gaps, and the same pixels from the front as from the
+/// back. Of triangles equally near, the first is shown. Points are finite. Works by `threads` threads (0: as
+/// many as OpenMP takes); the result does not depend on their number. Throws std::invalid_argument for a grid
+/// that is empty, too large, or not finite.
+void rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view, int threads,
+               const TakeBand& take);
+
+/// The same as one array, row by row.
 std::vector<Fragment> rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view,
                                 int threads = 0);
 
