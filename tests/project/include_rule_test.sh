@@ -12,6 +12,7 @@ statistics
 picture               text
 platform              text
 geometry              text
+render                geometry picture
 laws                  kernels geometry
 integrators           geometry laws
 
@@ -54,6 +55,7 @@ bench                 text platform garment/stepping bench/roofline bench/verifi
 output/hdf5
 output/tables         text statistics platform bench/machine bench/results
 garment/output        text garment bench/results output/hdf5 output/tables
+output/pictures       geometry render picture model
 output/traces         text platform geometry model output/hdf5 garment/output
 output/folders        text platform bench/machine bench/results output/tables garment/output
 
