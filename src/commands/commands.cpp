@@ -23,6 +23,7 @@
 #include "commands/shared/run_provenance.h"
 #include "output/folders/provenance_file.h"
 #include "output/tables/csv.h"
+#include "output/traces/trace_error.h"
 #include "platform/interruption.h"
 #include "platform/missing_program.h"
 #include "platform/temporary_folder.h"
@@ -80,6 +81,8 @@ int run_guarded(const std::function<int()>& run) {
     return fail(exit_bad_input, error.what());
   } catch (const ProvenanceError& error) {
     return fail(exit_bad_input, error.what());
+  } catch (const TraceError& error) {
+    return fail(error.refused ? exit_file_error : exit_bad_input, error.what());
   } catch (const MissingProgram& error) {
     return fail(exit_unavailable, error.what());
   } catch (const Unsupported& error) {

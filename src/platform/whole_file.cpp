@@ -37,14 +37,19 @@ std::string ReadError::sentence(const fs::path& file, std::string_view remedy) c
   return text;
 }
 
-std::string read_file(const fs::path& file, std::size_t most_bytes) {
+void require_regular_file(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::not_found) throw ReadError(Cause::missing, "there is no such file");
   if (error) fail("cannot be looked up", error, "check the path and its permissions");
   if (!fs::is_regular_file(status)) throw ReadError(Cause::not_regular, "is not a regular file");
+}
+
+std::string read_file(const fs::path& file, std::size_t most_bytes) {
+  require_regular_file(file);
   const Descriptor open(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (!open.is_open()) fail("cannot be opened", last_error(), "check its permissions");
+  std::error_code error;
   if (const std::uintmax_t bytes = fs::file_size(file, error); !error && bytes > most_bytes)
     refuse_size(most_bytes);
   std::string text;

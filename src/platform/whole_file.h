@@ -20,6 +20,9 @@ struct ReadError : std::runtime_error {
   std::string sentence(const std::filesystem::path& file, std::string_view remedy) const;
 };
 
+/// Throws ReadError unless there is such a file and it is a regular one.
+void require_regular_file(const std::filesystem::path& file);
+
 /// All bytes of a regular file: a pipe would block, a device may never end, and a folder reads as nothing.
 /// Throws ReadError, also where there are more than `most_bytes`.
 std::string read_file(const std::filesystem::path& file,

@@ -68,7 +68,7 @@ commands/compare      text platform geometry backends/interface bench/results be
 commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/arguments commands/shared commands/run commands/bench
 commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/arguments commands/shared
 commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/folders commands/arguments commands/shared commands/run commands/bench commands/list commands/compare commands/check commands/measure commands/help
+commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/bench commands/list commands/compare commands/check commands/measure commands/help
 main.cpp              commands/shared
 ask_opencl.cpp
 '

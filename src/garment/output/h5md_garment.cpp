@@ -30,7 +30,7 @@ void require_fitting_garment(const Garment& garment, std::size_t nodes) {
   for (const GarmentPanel& panel : garment.panels) {
     if (panel.rows < 2 || panel.columns < 2 || panel.first_node != next)
       throw std::invalid_argument("a trace needs panels of rows and columns, one behind the other");
-    next += panel.nodes();
+    next += std::size_t{panel.rows} * panel.columns;
   }
   if (next != nodes || garment.flat.size() != nodes)
     throw std::invalid_argument("a trace needs panels of all nodes, and where these lie in the pattern");

@@ -11,9 +11,9 @@
 
 namespace mssim {
 
-void require_fitting_body(const System& system, const Surface& body) {
+void require_fitting_body(const Topology& topology, const Surface& body) {
   if (body.points.empty() && body.triangles.empty()) return;
-  if (!std::holds_alternative<Garment>(system.topology))
+  if (!std::holds_alternative<Garment>(topology))
     throw std::invalid_argument("only a garment's trace has a body that does not move");
   const bool fits = std::ranges::all_of(body.triangles, [&](const auto& corners) {
     return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < body.points.size(); });

@@ -14,7 +14,7 @@ namespace mssim {
 
 /// Throws std::invalid_argument where a body, which may be empty, has triangles beyond its points, points
 /// without triangles, or stands beside something that is no garment.
-void require_fitting_body(const System& system, const Surface& body);
+void require_fitting_body(const Topology& topology, const Surface& body);
 
 /// Writes the body, an empty one not at all. Throws Hdf5Error.
 void write_static_body(hid_t file, const Surface& body);

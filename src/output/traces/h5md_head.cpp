@@ -104,16 +104,15 @@ void write_connectivity(hid_t file, const std::string& particles, const System& 
 
 }  // namespace
 
-void require_fitting_topology(const System& system) {
-  const std::size_t nodes = system.nodes();
-  if (nodes == 0) throw std::invalid_argument("a trace needs a system with nodes");
-  if (const auto* grid = std::get_if<GridPatch>(&system.topology)) {
-    if (grid->nodes() != nodes) throw std::invalid_argument("a trace needs a grid of all nodes");
+void require_fitting_topology(const Topology& topology, std::size_t nodes) {
+  if (nodes == 0) throw std::invalid_argument("a trace needs nodes");
+  if (const auto* grid = std::get_if<GridPatch>(&topology)) {
+    if (std::uint64_t{grid->rows} * grid->columns != nodes)
+      throw std::invalid_argument("a trace needs a grid of all nodes");
     return;
   }
-  if (const auto* garment = std::get_if<Garment>(&system.topology))
-    return require_fitting_garment(*garment, nodes);
-  const auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
+  if (const auto* garment = std::get_if<Garment>(&topology)) return require_fitting_garment(*garment, nodes);
+  const auto& tetrahedra = std::get<TetrahedralMesh>(topology).tetrahedra;
   const bool fits = std::ranges::all_of(tetrahedra, [&](const Tetrahedron& corners) {
     return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });
   });

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <string>
 
 #include "model/system.h"
@@ -22,9 +23,9 @@ struct TraceHeader {
   bool in_double = false;
 };
 
-/// Throws std::invalid_argument unless the system has nodes and its topology fits them: a file that points
-/// beyond its nodes would crash who reads it.
-void require_fitting_topology(const System& system);
+/// Throws std::invalid_argument unless there are nodes and the topology fits them: a file that points beyond
+/// its nodes would crash who reads it.
+void require_fitting_topology(const Topology& topology, std::size_t nodes);
 
 /// Writes what a trace holds beside its frames: /h5md, /parameters, the group of particles (for example
 /// /particles/cloth) with its box and masses, and /connectivity. Throws Hdf5Error.

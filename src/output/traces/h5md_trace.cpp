@@ -73,8 +73,8 @@ H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const Tra
     : output_(std::move(file)),
       mesh_(xdmf_mesh_of(system, body, header.in_double)),
       with_losses_(header.with_losses) {
-  require_fitting_topology(system);
-  require_fitting_body(system, body);
+  require_fitting_topology(system.topology, system.nodes());
+  require_fitting_body(system.topology, body);
   prepare_hdf5();
   require_replaceable(xdmf_of(name()));
   if (xdmf_of(name()) == name())

@@ -8,8 +8,8 @@
 
 #include "output/traces/xdmf.h"
 #include "platform/write_error.h"
-#include "tests/support/garment_system.h"
 #include "tests/support/trace_fixture.h"
+#include "tests/support/trace_systems.h"
 
 namespace mssim {
 namespace {
@@ -18,25 +18,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A panel of 3 x 4 and one of 2 x 5 nodes, sewn to the middle of an edge and to a node.
-System two_panels() {
-  System system = garment_of({{3, 4, 0.01, {0, 0, 0}}, {2, 5, 0.01, {0.1, 0, 0}}});
-  Garment& garment = garment_in(system);
-  garment.panels[0].name = "front \"left\" & more";
-  garment.panels[1].name = "back";
-  garment.panels[1].layer = 3;
-  garment.seams = {"side", "hem"};
-  garment.joints = {{11, 12, 13, 0.25, 0.01, 1, 1}, {3, 17, 17, 0, 0.01, 1, 0}};
-  return system;
-}
-
-Surface tetrahedron() {
-  return {{{0, 0, 0}, {0.1, 0, 0}, {0, 0.2, 0}, {0, 0, 0.3}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-}
-
 class GarmentTrace : public Trace {
  protected:
-  void write_garment_frames(int frames, const Surface& body = tetrahedron()) const {
+  void write_garment_frames(int frames, const Surface& body = small_tetrahedron()) const {
     H5mdTrace trace(file(), garment_, header(), body);
     for (int frame = 0; frame < frames; ++frame) write_frame(trace, garment_, frame);
     trace.close();
@@ -95,11 +79,11 @@ TEST_F(GarmentTrace, HoldsTheBodyOnceWhateverTheFrames) {
   const auto size_of_one = std::filesystem::file_size(file());
   const Hdf5File h5 = open(file());
   EXPECT_EQ(read<float>(h5.get(), "/body/points", H5T_NATIVE_FLOAT),
-            in_single_precision(tetrahedron().points));
+            in_single_precision(small_tetrahedron().points));
   EXPECT_EQ(shape_of(h5.get(), "/body/points"), (std::vector<hsize_t>{4, 3}));
   EXPECT_EQ(numbers("/body/triangles"), (std::vector<std::uint32_t>{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}));
   // A body of 20,000 points adds its own size to traces of one and of twenty frames alike.
-  Surface large = tetrahedron();
+  Surface large = small_tetrahedron();
   for (int i = 0; i < 20000; ++i) large.points.push_back({std::sin(i), std::sin(3 * i), std::sin(5 * i)});
   write_garment_frames(1, large);
   const auto added_to_one = std::filesystem::file_size(file()) - size_of_one;
@@ -115,7 +99,7 @@ TEST_F(GarmentTrace, ShowsEachPanelOfEachFrameToXdmfReaders) {
   constexpr int frames = 3;
   write_garment_frames(frames);
   const Hdf5File h5 = open(file());
-  const XdmfMesh mesh = xdmf_mesh_of(garment_, tetrahedron());
+  const XdmfMesh mesh = xdmf_mesh_of(garment_, small_tetrahedron());
   for (int frame = 0; frame < frames; ++frame) {
     const State state = state_at(garment_, frame);
     for (const auto& [vector, values] :
@@ -193,7 +177,7 @@ TEST_F(GarmentTrace, NeedsNoBody) {
 
 TEST_F(GarmentTrace, KeepsItsFramesAndItsBodyWhenTheProcessIsKilled) {
   const int status = status_in_child([&] {
-    H5mdTrace trace(file(), garment_, header(), tetrahedron());
+    H5mdTrace trace(file(), garment_, header(), small_tetrahedron());
     for (int frame = 0; frame < 5; ++frame) write_frame(trace, garment_, frame);
     return std::raise(SIGKILL);
   });
@@ -213,7 +197,7 @@ TEST_F(GarmentTrace, LeavesNothingBehindWhereNotEvenTheBodyFits) {
               std::signal(SIGXFSZ, SIG_IGN);
               const rlimit limit{100000, 100000};
               ::setrlimit(RLIMIT_FSIZE, &limit);
-              Surface large = tetrahedron();
+              Surface large = small_tetrahedron();
               for (int i = 0; i < 20000; ++i)
                 large.points.push_back({std::sin(i), std::sin(3 * i), std::sin(5 * i)});
               EXPECT_THAT([&] { H5mdTrace(file(), garment_, header(), large); },
@@ -238,11 +222,11 @@ TEST_F(GarmentTrace, RefusesWhatWouldPointBeyondItsNodes) {
   refused([](Garment& garment) { garment.joints[0].edge_second = 22; });
   refused([](Garment& garment) { garment.joints[1].seam = 2; });
   const auto nothing = [](Garment&) {};
-  Surface body = tetrahedron();
+  Surface body = small_tetrahedron();
   body.triangles[3][1] = 4;
   refused(nothing, body);
-  refused(nothing, {tetrahedron().points, {}});
-  EXPECT_THROW(H5mdTrace(file(), system_, header(), tetrahedron()), std::invalid_argument)
+  refused(nothing, {small_tetrahedron().points, {}});
+  EXPECT_THROW(H5mdTrace(file(), system_, header(), small_tetrahedron()), std::invalid_argument)
       << "a cloth's body";
   EXPECT_TRUE(std::filesystem::is_empty(folder()));
 }

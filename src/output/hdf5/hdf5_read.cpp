@@ -1,0 +1,180 @@
+#include "output/hdf5/hdf5_read.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace mssim {
+namespace {
+
+/// Throws unless a dataset's bytes lie in its file, stored in a way that hdf5_write.h uses. A virtual or
+/// external one would read other files, and a filter from elsewhere run its code.
+void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) {
+  const std::string action = "looking up how " + path + " is stored";
+  const Hdf5Properties properties(H5Dget_create_plist(dataset.get()), action);
+  if (checked(H5Pget_layout(properties.get()), action) == H5D_VIRTUAL ||
+      checked(H5Pget_external_count(properties.get()), action) != 0)
+    throw Hdf5ContentError(path + " has its numbers elsewhere");
+  constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
+  for (const H5Z_filter_t filter : filters_of(dataset))
+    if (std::ranges::find(known, filter) == known.end())
+      throw Hdf5ContentError(path + " is packed by a filter that mssim does not use, number " +
+                             std::to_string(filter));
+}
+
+/// What HDF5 calls a string, cut where it ends.
+std::string text_of(const char* bytes, std::size_t length, H5T_str_t padding) {
+  std::string text(bytes, ::strnlen(bytes, length));
+  if (padding == H5T_STR_SPACEPAD) text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+/// The strings of a dataset or an attribute; `read` fills memory of the file's own type.
+template <class Read>
+std::vector<std::string> texts_in(hid_t file, const std::string& path, const Hdf5Type& type,
+                                  const Hdf5Space& space, const Read& read) {
+  const std::string action = "reading " + path;
+  if (checked(H5Tget_class(type.get()), action) != H5T_STRING) throw Hdf5ContentError(path + " is no text");
+  const H5T_str_t padding = checked(H5Tget_strpad(type.get()), action);
+  const auto count = static_cast<hsize_t>(checked(H5Sget_simple_extent_npoints(space.get()), action));
+  const std::size_t length = H5Tget_size(type.get());
+  require_room(file, path, count, length);
+  std::vector<std::string> texts;
+  if (checked(H5Tis_variable_str(type.get()), action) > 0) {
+    std::vector<char*> pointers(count, nullptr);
+    const herr_t status = read(pointers.data());
+    for (const char* text : pointers)
+      texts.push_back(text ? text_of(text, std::strlen(text), padding) : std::string());
+    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, pointers.data());
+    checked(status, action);
+  } else {
+    std::string bytes(count * length, '\0');
+    checked(read(bytes.data()), action);
+    for (std::size_t i = 0; i < count; ++i)
+      texts.push_back(text_of(bytes.data() + i * length, length, padding));
+  }
+  return texts;
+}
+
+Hdf5Attribute open_attribute(hid_t file, const std::string& path, const std::string& name) {
+  if (!exists(file, path) || !has_attribute(file, path, name))
+    throw Hdf5ContentError(path + " has no attribute " + name);
+  return {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+          "opening attribute " + name + " of " + path};
+}
+
+template <class Number>
+Number read_number(hid_t file, const std::string& path, const std::string& name, hid_t file_type,
+                   hid_t memory_type) {
+  const Hdf5Attribute attribute = open_attribute(file, path, name);
+  const std::string action = "reading attribute " + name + " of " + path;
+  const Hdf5Type type(H5Aget_type(attribute.get()), action);
+  const Hdf5Space space(H5Aget_space(attribute.get()), action);
+  if (checked(H5Tequal(type.get(), file_type), action) == 0 || H5Sget_simple_extent_npoints(space.get()) != 1)
+    throw Hdf5ContentError("attribute " + name + " of " + path +
+                           " is no single number of the type that mssim writes");
+  Number number{};
+  checked(H5Aread(attribute.get(), memory_type, &number), action);
+  return number;
+}
+
+}  // namespace
+
+Hdf5File open_for_reading(const std::filesystem::path& file) {
+  prepare_hdf5();
+  checked(H5PLset_loading_state(0), "turning off filters from elsewhere");
+  if (H5Fis_hdf5(file.c_str()) == 0) throw Hdf5ContentError("it is no HDF5 file");
+  return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening"};
+}
+
+bool exists(hid_t file, const std::string& path) {
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    const std::string part = path.substr(0, end), action = "looking up " + part;
+    if (checked(H5Lexists(file, part.c_str(), H5P_DEFAULT), action) == 0) return false;
+    H5L_info_t link{};
+    checked(H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT), action);
+    if (link.type != H5L_TYPE_HARD) throw Hdf5ContentError(part + " is a link to elsewhere");
+    if (end == std::string::npos) return true;
+    H5O_info_t object{};
+    checked(H5Oget_info_by_name(file, part.c_str(), &object, H5P_DEFAULT), action);
+    if (object.type != H5O_TYPE_GROUP) return false;  // nothing is in it
+  }
+}
+
+Hdf5Dataset open_dataset(hid_t file, const std::string& path) {
+  if (!exists(file, path)) throw Hdf5ContentError("there is no " + path);
+  const std::string action = "opening " + path;
+  H5O_info_t object{};
+  checked(H5Oget_info_by_name(file, path.c_str(), &object, H5P_DEFAULT), action);
+  if (object.type != H5O_TYPE_DATASET) throw Hdf5ContentError(path + " is no dataset");
+  Hdf5Dataset dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), action);
+  require_known_storage(dataset, path);
+  return dataset;
+}
+
+std::vector<H5Z_filter_t> filters_of(const Hdf5Dataset& dataset) {
+  const std::string action = "looking up the filters of a dataset";
+  const Hdf5Properties properties(H5Dget_create_plist(dataset.get()), action);
+  std::vector<H5Z_filter_t> filters(
+      static_cast<std::size_t>(checked(H5Pget_nfilters(properties.get()), action)));
+  for (std::size_t i = 0; i < filters.size(); ++i) {
+    unsigned flags = 0;
+    std::size_t options = 0;
+    filters[i] = checked(H5Pget_filter2(properties.get(), static_cast<unsigned>(i), &flags, &options, nullptr,
+                                        0, nullptr, nullptr),
+                         action);
+  }
+  return filters;
+}
+
+hsize_t bytes_of(hid_t file) {
+  hsize_t bytes = 0;
+  checked(H5Fget_filesize(file, &bytes), "asking for the length of the file");
+  return bytes;
+}
+
+void require_room(hid_t file, const std::string& path, hsize_t items, hsize_t bytes_per_item, hsize_t ratio) {
+  if (bytes_per_item > 0 && items > bytes_of(file) * ratio / bytes_per_item)
+    throw Hdf5ContentError(path + " says that it is larger than the file can hold");
+}
+
+std::vector<std::string> read_texts(hid_t file, const std::string& path) {
+  const Hdf5Dataset dataset = open_dataset(file, path);
+  const Hdf5Type type(H5Dget_type(dataset.get()), "reading " + path);
+  const Hdf5Space space(H5Dget_space(dataset.get()), "reading " + path);
+  return texts_in(file, path, type, space, [&](void* data) {
+    return H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+  });
+}
+
+std::string read_text(hid_t file, const std::string& path) {
+  std::vector<std::string> texts = read_texts(file, path);
+  if (texts.size() != 1) throw Hdf5ContentError(path + " is no single text");
+  return texts.front();
+}
+
+bool has_attribute(hid_t file, const std::string& path, const std::string& name) {
+  return checked(H5Aexists_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT),
+                 "looking up attribute " + name + " of " + path) > 0;
+}
+
+std::string read_text_attribute(hid_t file, const std::string& path, const std::string& name) {
+  const Hdf5Attribute attribute = open_attribute(file, path, name);
+  const std::string place = "attribute " + name + " of " + path;
+  const Hdf5Type type(H5Aget_type(attribute.get()), "reading " + place);
+  const Hdf5Space space(H5Aget_space(attribute.get()), "reading " + place);
+  std::vector<std::string> texts = texts_in(
+      file, place, type, space, [&](void* data) { return H5Aread(attribute.get(), type.get(), data); });
+  if (texts.size() != 1) throw Hdf5ContentError(place + " is no single text");
+  return texts.front();
+}
+
+double read_double_attribute(hid_t file, const std::string& path, const std::string& name) {
+  return read_number<double>(file, path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE);
+}
+
+std::int64_t read_integer_attribute(hid_t file, const std::string& path, const std::string& name) {
+  return read_number<std::int64_t>(file, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64);
+}
+
+}  // namespace mssim

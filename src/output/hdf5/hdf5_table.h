@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "output/hdf5/hdf5_read.h"
+
+namespace mssim {
+
+/// Numbers in an HDF5 file that anybody may have written: rows of one shape, of a type that traces have
+/// (float32, float64, int64 or uint32, little-endian). What is read has its checksums compared and is stored
+/// in the file as a whole: HDF5 itself gives zeros for chunks that are not there. All functions throw
+/// Hdf5Error and Hdf5ContentError.
+class Hdf5Table {
+ public:
+  static constexpr hsize_t any = 0;  ///< of an extent that may be any number
+  /// A dataset with these extents, of which the first is how many rows there are.
+  Hdf5Table(hid_t file, std::string path, const std::vector<hsize_t>& extents);
+
+  hsize_t rows() const { return extents_.front(); }
+  hsize_t extent(std::size_t axis) const { return extents_.at(axis); }
+
+  /// The numbers of some rows, one row behind the other; `doubles` of floating-point numbers, `integers` of
+  /// the others.
+  std::vector<double> doubles(hsize_t first_row, hsize_t rows) const;
+  std::vector<std::int64_t> integers(hsize_t first_row, hsize_t rows) const;
+
+ private:
+  template <class Number>
+  std::vector<Number> read(hsize_t first_row, hsize_t rows, hid_t memory_type) const;
+  void require_stored(hsize_t first_row, hsize_t rows) const;
+  void require_chunks(hsize_t first_row, hsize_t rows) const;
+  void require_chunk(const std::vector<hsize_t>& start, hsize_t bytes) const;
+
+  hid_t file_;
+  std::string path_;
+  Hdf5Dataset dataset_;
+  std::vector<hsize_t> extents_;
+  hsize_t bytes_per_number_ = 0;
+  std::vector<H5Z_filter_t> filters_;
+  std::vector<hsize_t> chunk_;  ///< extents of a chunk; none where there are no chunks
+};
+
+/// All numbers of a dataset.
+std::vector<double> read_doubles(hid_t file, const std::string& path, const std::vector<hsize_t>& extents);
+/// The same for whole numbers of 32 bits without a sign.
+std::vector<std::uint32_t> read_numbers(hid_t file, const std::string& path,
+                                        const std::vector<hsize_t>& extents);
+
+}  // namespace mssim

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/surface.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// What a trace says beside its frames (h5md_trace.h).
+struct TraceContent {
+  std::string particles;  ///< "cloth", "bodies" or "garment"
+  /// A grid, whose spacing a trace does not say (0), tetrahedra, or a garment: its panels, seams, flat nodes
+  /// and joints, without how it was dressed and what its joints weigh.
+  Topology topology;
+  std::vector<std::array<std::uint32_t, 2>> springs;  ///< may be empty; two nodes that differ
+  std::vector<double> rest_length;              ///< [springs] m, above 0; empty in traces of earlier versions
+  Surface body;                                 ///< that does not move; may be empty
+  std::string scene_json, backend, integrator;  ///< as written
+  double dt_s = 0;
+  std::size_t nodes = 0;           ///< one at least
+  std::vector<std::int64_t> step;  ///< [frames] increasing; one frame at least
+  std::vector<double> time_s;      ///< [frames] increasing
+};
+
+/// Reads and checks all of it; indices lie below the number of nodes, and the topology fits these. Throws
+/// Hdf5Error, Hdf5ContentError, and std::invalid_argument with the rule that a trace breaks.
+TraceContent read_trace_content(hid_t file);
+
+/// Where the particles of a trace are, for example /particles/cloth.
+std::string particles_group(const TraceContent& content);
+
+}  // namespace mssim

@@ -1,0 +1,202 @@
+#include "output/traces/trace_reader.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "output/hdf5/hdf5_write.h"
+#include "tests/support/solid_system.h"
+#include "tests/support/trace_fixture.h"
+#include "tests/support/trace_systems.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+
+class TraceReading : public Trace {
+ protected:
+  void write_system(const System& system, int frames, bool in_double, const Surface& body = {}) const {
+    TraceHeader head = header();
+    head.in_double = in_double;
+    H5mdTrace trace(file(), system, head, body);
+    for (int frame = 0; frame < frames; ++frame) write_frame(trace, system, frame);
+    trace.close();
+  }
+
+  /// Writes frames and expects all that a trace says of any system to come back.
+  TraceReader read_back(const System& system, bool in_double, const Surface& body = {}) const {
+    constexpr int frames = 3;
+    write_system(system, frames, in_double, body);
+    TraceReader reader(file());
+    const TraceContent& content = reader.content();
+    EXPECT_EQ(content.nodes, system.nodes());
+    EXPECT_EQ(content.scene_json, header().scene_json);
+    EXPECT_EQ(content.backend, "openmp");
+    EXPECT_EQ(content.integrator, "rk4");
+    EXPECT_EQ(content.dt_s, 1e-3);
+    EXPECT_EQ(content.step, (std::vector<std::int64_t>{0, 10, 20}));
+    EXPECT_EQ(content.time_s, (std::vector<double>{0, 0.1, 0.1 * 2}));
+    EXPECT_EQ(content.springs.size(), system.springs.size());
+    EXPECT_EQ(content.rest_length.size(), system.springs.size());
+    for (std::size_t s = 0; s < content.springs.size(); ++s) {
+      EXPECT_EQ(content.springs[s], (std::array{system.springs[s].first, system.springs[s].second}));
+      EXPECT_EQ(content.rest_length[s], system.springs[s].rest_length);
+    }
+    EXPECT_EQ(reader.frames(), static_cast<std::size_t>(frames));
+    for (int frame = 0; frame < frames; ++frame) {
+      State state = state_at(system, frame);
+      if (!in_double) round_to_single(state);
+      EXPECT_EQ(reader.positions(static_cast<std::size_t>(frame)), state.position);
+      EXPECT_EQ(reader.velocities(static_cast<std::size_t>(frame)), state.velocity);
+    }
+    return reader;
+  }
+
+  std::string refusal(const std::filesystem::path& trace, bool by_system = false) const {
+    try {
+      const TraceReader reader(trace);
+    } catch (const TraceError& error) {
+      EXPECT_EQ(error.refused, by_system) << error.what();
+      return error.what();
+    }
+    return "read";
+  }
+};
+
+TEST_F(TraceReading, GivesBackACloth) {
+  for (const bool in_double : {false, true}) {
+    const TraceReader reader = read_back(system_, in_double);
+    EXPECT_EQ(reader.content().particles, "cloth");
+    const auto& grid = std::get<GridPatch>(reader.content().topology);
+    EXPECT_EQ(grid.rows, rows);
+    EXPECT_EQ(grid.columns, columns);
+    EXPECT_TRUE(reader.content().body.points.empty());
+  }
+}
+
+TEST_F(TraceReading, GivesBackBodies) {
+  const System system = two_solid_blocks();
+  for (const bool in_double : {false, true}) {
+    const TraceReader reader = read_back(system, in_double);
+    EXPECT_EQ(reader.content().particles, "bodies");
+    EXPECT_EQ(std::get<TetrahedralMesh>(reader.content().topology).tetrahedra,
+              std::get<TetrahedralMesh>(system.topology).tetrahedra);
+  }
+}
+
+TEST_F(TraceReading, GivesBackAGarmentAndItsBody) {
+  const System system = two_panels();
+  const auto& written = std::get<Garment>(system.topology);
+  for (const bool in_double : {false, true}) {
+    const TraceReader reader = read_back(system, in_double, small_tetrahedron());
+    EXPECT_EQ(reader.content().particles, "garment");
+    const auto& garment = std::get<Garment>(reader.content().topology);
+    ASSERT_EQ(garment.panels.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const GarmentPanel &is = garment.panels[i], &was = written.panels[i];
+      EXPECT_EQ(std::tie(is.name, is.rows, is.columns, is.first_node, is.layer),
+                std::tie(was.name, was.rows, was.columns, was.first_node, was.layer));
+    }
+    EXPECT_EQ(garment.seams, written.seams);
+    EXPECT_EQ(garment.flat, written.flat);
+    ASSERT_EQ(garment.joints.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Joint &is = garment.joints[i], &was = written.joints[i];
+      EXPECT_EQ(std::tie(is.node, is.edge_first, is.edge_second, is.edge_share, is.seam),
+                std::tie(was.node, was.edge_first, was.edge_second, was.edge_share, was.seam));
+    }
+    EXPECT_EQ(in_single_precision(reader.content().body.points),
+              in_single_precision(small_tetrahedron().points));
+    EXPECT_EQ(reader.content().body.triangles, small_tetrahedron().triangles);
+  }
+}
+
+TEST_F(TraceReading, GivesBackEnergiesByName) {
+  constexpr int more_than_a_chunk = 300;
+  write(more_than_a_chunk);
+  const TraceReader reader(file());
+  const auto kinetic = reader.observable("kinetic_energy"), total = reader.observable("total_energy");
+  ASSERT_TRUE(kinetic && total);
+  ASSERT_EQ(kinetic->size(), static_cast<std::size_t>(more_than_a_chunk));
+  for (int frame = 0; frame < more_than_a_chunk; ++frame) {
+    EXPECT_EQ((*kinetic)[static_cast<std::size_t>(frame)], energy_at(frame).kinetic);
+    EXPECT_EQ((*total)[static_cast<std::size_t>(frame)], energy_at(frame).total());
+  }
+  EXPECT_FALSE(reader.observable("friction_loss"));
+}
+
+TEST_F(TraceReading, TakesAGarmentWithoutSeamsAndACalmClothThatPacksWell) {
+  read_back(garment_of({{3, 4, 0.01, {0, 0, 0}}}), false);
+  const System large = small_cloth(100, 100);
+  H5mdTrace trace(file(), large, header());
+  trace.write_frame(0, 0, large.start, {});
+  trace.close();
+  EXPECT_EQ(TraceReader(file()).positions(0), large.start.position);
+}
+
+TEST_F(TraceReading, TakesThePartOfARunThatDidNotEnd) {
+  {
+    H5mdTrace trace(file(), system_, header());
+    for (int frame = 0; frame < 2; ++frame) write_frame(trace, system_, frame);
+  }
+  const TraceReader reader(part());
+  EXPECT_EQ(reader.frames(), 2U);
+  State state = state_at(system_, 1);
+  round_to_single(state);
+  EXPECT_EQ(reader.positions(1), state.position);
+}
+
+TEST_F(TraceReading, TakesStringsOfAnyLength) {
+  write(1);
+  const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+  checked(H5Ldelete(h5.get(), "/parameters/scene", H5P_DEFAULT), "deleting");
+  const Hdf5Type type(H5Tcopy(H5T_C_S1), "type");
+  checked(H5Tset_size(type.get(), H5T_VARIABLE), "size");
+  const Hdf5Space space(H5Screate(H5S_SCALAR), "space");
+  const char* text = "{\"name\": \"other\"}";
+  Hdf5Dataset dataset(H5Dcreate2(h5.get(), "/parameters/scene", type.get(), space.get(), H5P_DEFAULT,
+                                 H5P_DEFAULT, H5P_DEFAULT),
+                      "creating");
+  checked(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &text), "writing");
+  checked(H5Fflush(h5.get(), H5F_SCOPE_GLOBAL), "flushing");
+  EXPECT_EQ(TraceReader(file()).content().scene_json, text);
+}
+
+TEST_F(TraceReading, SaysWhatItIsThatIsNoTrace) {
+  EXPECT_THAT(refusal(folder() / "not-there.h5"), HasSubstr("not-there.h5: there is no such file: give"));
+  EXPECT_THAT(refusal(folder()), HasSubstr("is not a regular file"));
+  ASSERT_EQ(::mkfifo((folder() / "pipe.h5").c_str(), 0600), 0);
+  EXPECT_THAT(refusal(folder() / "pipe.h5"), HasSubstr("is not a regular file"));
+  EXPECT_THAT(refusal(put("text.h5", "time_s,kinetic_j\n")), HasSubstr("text.h5: it is no HDF5 file: give"));
+  EXPECT_THAT(refusal(put("empty.h5", "")), HasSubstr("no HDF5 file"));
+  write(1);
+  EXPECT_THAT(refusal(folder() / "run.xdmf"), HasSubstr("run.h5"));
+  if (::geteuid() == 0) return;  // who may read everything
+  std::filesystem::permissions(file(), std::filesystem::perms::none);
+  EXPECT_THAT(refusal(file(), true), HasSubstr("Permission denied"));
+}
+
+TEST_F(TraceReading, RefusesWhatOtherProgramsWrote) {
+  prepare_hdf5();
+  {
+    const Hdf5File h5(H5Fcreate(file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), "creating");
+    create_group(h5.get(), "/results");
+  }
+  EXPECT_THAT(refusal(file()), HasSubstr("it is an HDF5 file, but no H5MD trace"));
+  {
+    const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+    create_group(h5.get(), "/h5md");
+    write_attribute(create_group(h5.get(), "/h5md/creator").get(), "name", std::string_view("GROMACS"));
+  }
+  EXPECT_THAT(refusal(file()), HasSubstr("its creator is GROMACS, not mssim"));
+}
+
+TEST_F(TraceReading, RefusesATraceWithoutFrames) {
+  write(0);
+  EXPECT_THAT(refusal(file()), HasSubstr("it has no frames"));
+}
+
+}  // namespace
+}  // namespace mssim
