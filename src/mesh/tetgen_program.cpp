@@ -33,11 +33,15 @@ std::vector<fs::path> libraries_of(const fs::path& executable) {
   const ChildResult listing = run({executable, {}, {"LD_TRACE_LOADED_OBJECTS=1"}, "/", seconds});
   std::vector<fs::path> libraries;
   std::istringstream lines(listing.output);
+  constexpr std::string_view before = " => ", after = " (";
   for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string name, arrow, file;
-    if (words >> name >> arrow >> file && name.starts_with("libtet") && arrow == "=>")
-      libraries.emplace_back(file);
+    const std::size_t name = line.find_first_not_of(" \t"), arrow = line.find(before),
+                      end = line.rfind(after);
+    if (name == std::string::npos || arrow == std::string::npos || end == std::string::npos) continue;
+    // The name of a folder may have spaces.
+    const std::size_t file = arrow + before.size();
+    if (line.compare(name, 6, "libtet") == 0 && file < end)
+      libraries.emplace_back(line.substr(file, end - file));
   }
   return libraries;
 }
