@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "picture/picture.h"
+
+namespace mssim {
+
+/// Letters of one size and colour. `size_px` is that of the font: capitals are about 0.74 of it high, and x
+/// 0.54. Letters are fit for reading from 10 px on.
+struct Letters {
+  double size_px = 14;
+  Rgb colour = black;
+
+  /// Whole pixels from the baseline to the top of a capital.
+  int capital_height() const;
+  /// Whole pixels below the baseline that letters like g reach.
+  int descent() const;
+  /// From one baseline to the next of a text of several lines.
+  int line_distance() const;
+};
+
+/// Which part of a text stands at the column that it is written at.
+enum class Alignment { left, centre, right };
+
+/// Pixels from the left edge of the first character to the right edge of the last. `text` is UTF-8; each of
+/// its characters counts, and each byte that is not part of one.
+int text_width(std::string_view text, const Letters& letters);
+
+/// Writes a line of text at column `x`; the last row of letters without descender is the one above
+/// `baseline`. Printable ASCII and ° × – − µ ± · ² ³ … are known. Another character is an empty box. What
+/// lies outside of the picture is cut off.
+void write(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
+           Alignment alignment = Alignment::left);
+
+/// `text`, or as much of its beginning as leaves room for "…" within `width` pixels.
+std::string shortened(std::string_view text, int width, const Letters& letters);
+
+}  // namespace mssim
