@@ -66,6 +66,8 @@ int Letters::descent() const { return static_cast<int>(std::lround(8 * Pen(size_
 
 int Letters::line_distance() const { return static_cast<int>(std::lround(1.4 * size_px)); }
 
+double letter_size_for(std::uint32_t picture_height) { return std::max(11.0, 0.025 * picture_height); }
+
 int text_width(std::string_view text, const Letters& letters) {
   return walk_along(text, letters, [](const Glyph&, const Pen&, int) {});
 }

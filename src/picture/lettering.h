@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,9 @@ struct Letters {
   /// From one baseline to the next of a text of several lines.
   int line_distance() const;
 };
+
+/// The size in pixels of letters on a picture of this height: 2.5 % of it, at least 11.
+double letter_size_for(std::uint32_t picture_height);
 
 /// Which part of a text stands at the column that it is written at.
 enum class Alignment { left, centre, right };

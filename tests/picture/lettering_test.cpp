@@ -9,6 +9,7 @@
 
 #include "picture/glyph_raster.h"
 #include "picture/glyph_table.h"
+#include "tests/support/picture_content.h"
 
 namespace mssim {
 namespace {
@@ -18,20 +19,6 @@ Picture written(std::string_view text, double size_px = 14) {
   Picture picture(static_cast<std::uint32_t>(text_width(text, {size_px}) + 20), 30);
   write(picture, text, 10, 20, {size_px});
   return picture;
-}
-
-/// The smallest box that has all pixels that are not white.
-PixelBox ink_of(const Picture& picture) {
-  int left = static_cast<int>(picture.width), top = static_cast<int>(picture.height), right = 0, bottom = 0;
-  for (std::uint32_t y = 0; y < picture.height; ++y)
-    for (std::uint32_t x = 0; x < picture.width; ++x)
-      if (picture.at(x, y) != white) {
-        left = std::min(left, static_cast<int>(x));
-        right = std::max(right, static_cast<int>(x) + 1);
-        top = std::min(top, static_cast<int>(y));
-        bottom = std::max(bottom, static_cast<int>(y) + 1);
-      }
-  return {left, top, right - left, bottom - top};
 }
 
 TEST(Lettering, KnowsEveryCharacterThatItPromises) {
@@ -62,7 +49,7 @@ TEST(Lettering, TablesAreInOrderAndDrawNoTwoCharactersAlike) {
 }
 
 TEST(Lettering, StandsOnTheBaselineAtTheColumnGiven) {
-  const PixelBox ink = ink_of(written("H"));
+  const PixelBox ink = ink_of(written("H")).value();
   EXPECT_EQ(ink.left, 10 - 1) << "the pen is a little wider than a pixel";
   for (const double size : {11.0, 12.0, 20.0}) {
     const Letters letters{size};
@@ -94,7 +81,8 @@ TEST(Lettering, IsAsWideAsMeasured) {
     for (const std::string_view text : {"HnI", "0", "Wm", "10 N/m²"}) {
       Picture picture(400, 60);
       write(picture, text, 10, 40, {size});
-      EXPECT_NEAR(ink_of(picture).width, text_width(text, {size}), 2 + size / 20) << text << ' ' << size;
+      EXPECT_NEAR(ink_of(picture).value().width, text_width(text, {size}), 2 + size / 20)
+          << text << ' ' << size;
     }
   EXPECT_EQ(text_width("", {}), 0);
   EXPECT_EQ(text_width("0123456789", {16}), text_width("8888888888", {16})) << "digits have one width";
