@@ -12,13 +12,18 @@ std::string decimal(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
+std::string fixed_decimal(double value, int digits) {
+  // The largest number has 309 digits before the point.
+  std::array<char, 400> buffer{};
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, digits)
+          .ptr;
+  return {buffer.data(), end};
+}
+
 std::string three_digits(double value) {
   const int before_point = value > 0 ? static_cast<int>(std::floor(std::log10(value))) + 1 : 1;
-  std::array<char, 340> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::fixed, std::max(0, 3 - before_point))
-                       .ptr;
-  return {buffer.data(), end};
+  return fixed_decimal(value, std::max(0, 3 - before_point));
 }
 
 std::string grouped(std::uint64_t number) {

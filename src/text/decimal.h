@@ -11,6 +11,9 @@ std::string decimal(double value);
 /// Three significant digits, without an exponent.
 std::string three_digits(double value);
 
+/// With `digits` behind the point, rounded, without an exponent.
+std::string fixed_decimal(double value, int digits);
+
 /// 4188004 as 4,188,004.
 std::string grouped(std::uint64_t number);
 
