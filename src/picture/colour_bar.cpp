@@ -67,12 +67,12 @@ void draw_upright(Picture& picture, const ColourBar& bar, const BarLayout& layou
   // A number at an end reaches half its height beyond the bar.
   const int bar_from = layout.title_height + capital / 2;
   const PixelBox content = draw_panel(picture, width, bar_from + layout.length + capital / 2, corner);
-  write(picture, layout.title, content.left, content.top + capital, letters);
+  draw_text(picture, layout.title, content.left, content.top + capital, letters);
   draw_bar(picture, bar, layout, content.left, content.top + bar_from);
   for (const Tick& tick : layout.ticks) {
     const int y = content.top + bar_from + layout.length - 1 - place_of(tick.value, bar, layout.length);
     fill(picture, {content.left + layout.thickness, y, layout.dash, 1}, letters.colour);
-    write(picture, tick.label, content.left + labels_from, y + (capital + 1) / 2, letters);
+    draw_text(picture, tick.label, content.left + labels_from, y + (capital + 1) / 2, letters);
   }
 }
 
@@ -82,13 +82,13 @@ void draw_lying(Picture& picture, const ColourBar& bar, const BarLayout& layout,
   const int labels_from = layout.title_height + layout.thickness + 2 * layout.dash;
   const int width = std::max(layout.title_width, layout.length + 2 * half_label);
   const PixelBox content = draw_panel(picture, width, labels_from + capital, corner);
-  write(picture, layout.title, content.left, content.top + capital, letters);
+  draw_text(picture, layout.title, content.left, content.top + capital, letters);
   const int left = content.left + half_label, top = content.top + layout.title_height;
   draw_bar(picture, bar, layout, left, top);
   for (const Tick& tick : layout.ticks) {
     const int x = left + place_of(tick.value, bar, layout.length);
     fill(picture, {x, top + layout.thickness, 1, layout.dash}, letters.colour);
-    write(picture, tick.label, x, content.top + labels_from + capital, letters, Alignment::centre);
+    draw_text(picture, tick.label, x, content.top + labels_from + capital, letters, Alignment::centre);
   }
 }
 

@@ -30,7 +30,7 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries, Corner 
   int top = content.top;
   for (std::size_t i = 0; i < names.size(); ++i, top += line) {
     if (i < shown) fill(picture, {content.left, top, swatch, swatch}, entries[i].colour);
-    write(picture, names[i], content.left + names_from, top + 1 + capital, letters);
+    draw_text(picture, names[i], content.left + names_from, top + 1 + capital, letters);
   }
 }
 

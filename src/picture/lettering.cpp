@@ -72,8 +72,8 @@ int text_width(std::string_view text, const Letters& letters) {
   return walk_along(text, letters, [](const Glyph&, const Pen&, int) {});
 }
 
-void write(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
-           Alignment alignment) {
+void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
+               Alignment alignment) {
   if (alignment != Alignment::left) x -= text_width(text, letters) / (alignment == Alignment::centre ? 2 : 1);
   walk_along(text, letters, [&](const Glyph& glyph, const Pen& pen, int from_start) {
     const GlyphMask mask = mask_of(glyph, pen);

@@ -32,11 +32,11 @@ enum class Alignment { left, centre, right };
 /// its characters counts, and each byte that is not part of one.
 int text_width(std::string_view text, const Letters& letters);
 
-/// Writes a line of text at column `x`; the last row of letters without descender is the one above
+/// Draws a line of text at column `x`; the last row of letters without descender is the one above
 /// `baseline`. Printable ASCII and ° × – − µ ± · ² ³ … are known. Another character is an empty box. What
 /// lies outside of the picture is cut off.
-void write(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
-           Alignment alignment = Alignment::left);
+void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
+               Alignment alignment = Alignment::left);
 
 /// `text`, or as much of its beginning as leaves room for "…" within `width` pixels.
 std::string shortened(std::string_view text, int width, const Letters& letters);

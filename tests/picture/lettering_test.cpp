@@ -17,7 +17,7 @@ namespace {
 /// A text at 14 px on white, 10 px from the left, on a baseline of 20 px.
 Picture written(std::string_view text, double size_px = 14) {
   Picture picture(static_cast<std::uint32_t>(text_width(text, {size_px}) + 20), 30);
-  write(picture, text, 10, 20, {size_px});
+  draw_text(picture, text, 10, 20, {size_px});
   return picture;
 }
 
@@ -80,7 +80,7 @@ TEST(Lettering, IsAsWideAsMeasured) {
   for (const double size : {10.0, 14.0, 23.5, 40.0})
     for (const std::string_view text : {"HnI", "0", "Wm", "10 N/m²"}) {
       Picture picture(400, 60);
-      write(picture, text, 10, 40, {size});
+      draw_text(picture, text, 10, 40, {size});
       EXPECT_NEAR(ink_of(picture).value().width, text_width(text, {size}), 2 + size / 20)
           << text << ' ' << size;
     }
@@ -95,8 +95,8 @@ TEST(Lettering, AlignsLeftCentreAndRight) {
        {std::pair{Alignment::left, 100}, std::pair{Alignment::centre, 100 - width / 2},
         std::pair{Alignment::right, 100 - width}}) {
     Picture aligned(200, 30), expected(200, 30);
-    write(aligned, "strain", 100, 20, letters, alignment);
-    write(expected, "strain", left, 20, letters);
+    draw_text(aligned, "strain", 100, 20, letters, alignment);
+    draw_text(expected, "strain", left, 20, letters);
     EXPECT_EQ(aligned, expected);
   }
 }
@@ -113,9 +113,9 @@ TEST(Lettering, DrawsAnEmptyBoxForEachUnknownCharacterAndStrayByte) {
 
 TEST(Lettering, IsWrittenInItsColourAndCutOffOutside) {
   Picture picture(20, 20, black);
-  write(picture, "WWW", -9, 12, {30, Rgb{10, 200, 30}});
+  draw_text(picture, "WWW", -9, 12, {30, Rgb{10, 200, 30}});
   EXPECT_NE(std::ranges::find(picture.pixels, Rgb{10, 200, 30}), picture.pixels.end());
-  write(picture, "gone", 1000, -1000, {12});
+  draw_text(picture, "gone", 1000, -1000, {12});
 }
 
 TEST(Lettering, ShortensWhatIsTooWide) {
