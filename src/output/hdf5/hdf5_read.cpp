@@ -15,11 +15,15 @@ void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) 
   if (checked(H5Pget_layout(properties.get()), action) == H5D_VIRTUAL ||
       checked(H5Pget_external_count(properties.get()), action) != 0)
     throw Hdf5ContentError(path + " has its numbers elsewhere");
-  constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
-  for (const H5Z_filter_t filter : filters_of(dataset))
-    if (std::ranges::find(known, filter) == known.end())
+  const Hdf5Type type(H5Dget_type(dataset.get()), action);
+  for (const Hdf5Filter& filter : filters_of(dataset)) {
+    constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
+    if (std::ranges::find(known, filter.number) == known.end())
       throw Hdf5ContentError(path + " is packed by a filter that mssim does not use, number " +
-                             std::to_string(filter));
+                             std::to_string(filter.number));
+    if (filter.number == H5Z_FILTER_SHUFFLE && filter.option != H5Tget_size(type.get()))
+      throw Hdf5ContentError(path + " is said to hold shuffled bytes of other numbers than it does");
+  }
 }
 
 /// What HDF5 calls a string, cut where it ends.
@@ -112,17 +116,17 @@ Hdf5Dataset open_dataset(hid_t file, const std::string& path) {
   return dataset;
 }
 
-std::vector<H5Z_filter_t> filters_of(const Hdf5Dataset& dataset) {
+std::vector<Hdf5Filter> filters_of(const Hdf5Dataset& dataset) {
   const std::string action = "looking up the filters of a dataset";
   const Hdf5Properties properties(H5Dget_create_plist(dataset.get()), action);
-  std::vector<H5Z_filter_t> filters(
+  std::vector<Hdf5Filter> filters(
       static_cast<std::size_t>(checked(H5Pget_nfilters(properties.get()), action)));
   for (std::size_t i = 0; i < filters.size(); ++i) {
     unsigned flags = 0;
-    std::size_t options = 0;
-    filters[i] = checked(H5Pget_filter2(properties.get(), static_cast<unsigned>(i), &flags, &options, nullptr,
-                                        0, nullptr, nullptr),
-                         action);
+    std::size_t options = 1;
+    filters[i].number = checked(H5Pget_filter2(properties.get(), static_cast<unsigned>(i), &flags, &options,
+                                               &filters[i].option, 0, nullptr, nullptr),
+                                action);
   }
   return filters;
 }

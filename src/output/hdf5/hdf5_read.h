@@ -30,8 +30,14 @@ bool exists(hid_t file, const std::string& path);
 /// The dataset at `path`, which is stored in this file, by filters that hdf5_write.h uses.
 Hdf5Dataset open_dataset(hid_t file, const std::string& path);
 
-/// The filters that its chunks went through, in the order of writing.
-std::vector<H5Z_filter_t> filters_of(const Hdf5Dataset& dataset);
+/// What chunks go through when they are written.
+struct Hdf5Filter {
+  H5Z_filter_t number = 0;
+  unsigned option = 0;  ///< the first, for shuffling the bytes of a number
+};
+
+/// The filters of a dataset in the order of writing.
+std::vector<Hdf5Filter> filters_of(const Hdf5Dataset& dataset);
 
 /// The length of a file in bytes.
 hsize_t bytes_of(hid_t file);

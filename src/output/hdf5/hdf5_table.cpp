@@ -77,6 +77,9 @@ std::vector<Number> Hdf5Table::read(hsize_t first_row, hsize_t rows, hid_t memor
   shape.front() = rows;
   if (product_of(shape) == 0) return {};
   require_stored(first_row, rows);
+  if (!chunk_.empty())
+    each_chunk(first_row, rows, [this](const auto& corner) { require_whole_chunk(corner); });
+  require_room(file_, path_, product_of(shape), bytes_per_number_, most_deflated);
   std::vector<Number> numbers(product_of(shape));
   const Hdf5Space space(H5Dget_space(dataset_.get()), action);
   checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr),
@@ -87,57 +90,57 @@ std::vector<Number> Hdf5Table::read(hsize_t first_row, hsize_t rows, hid_t memor
   return numbers;
 }
 
-/// Throws unless the rows are in the file.
 void Hdf5Table::require_stored(hsize_t first_row, hsize_t rows) const {
-  std::vector<hsize_t> shape = extents_;
-  shape.front() = rows;
-  const bool deflated = std::ranges::find(filters_, H5Z_FILTER_DEFLATE) != filters_.end();
-  const hsize_t ratio = deflated ? most_deflated : 1;
-  require_room(file_, path_, product_of(shape), bytes_per_number_, ratio);
-  if (!chunk_.empty()) {
-    require_room(file_, path_, product_of(chunk_), bytes_per_number_, ratio);
-    require_chunks(first_row, rows);
-  } else if (H5Dget_storage_size(dataset_.get()) / bytes_per_number_ < product_of(extents_)) {
-    throw Hdf5ContentError(path_ + " is not in the file as a whole");
+  if (chunk_.empty()) {
+    if (H5Dget_storage_size(dataset_.get()) / bytes_per_number_ < product_of(extents_))
+      throw Hdf5ContentError(path_ + " is not in the file as a whole");
+    return;
   }
+  const bool deflated =
+      std::ranges::find(filters_, H5Z_FILTER_DEFLATE, &Hdf5Filter::number) != filters_.end();
+  require_room(file_, path_, product_of(chunk_), bytes_per_number_, deflated ? most_deflated : 1);
+  each_chunk(first_row, rows, [this](const auto& start) { stored_bytes(start); });
 }
 
-void Hdf5Table::require_chunks(hsize_t first_row, hsize_t rows) const {
-  const hsize_t bytes = product_of(chunk_) * bytes_per_number_;
+void Hdf5Table::each_chunk(hsize_t first_row, hsize_t rows,
+                           const std::function<void(const std::vector<hsize_t>&)>& visit) const {
   std::vector<hsize_t> start(extents_.size(), 0);
   start.front() = first_row / chunk_.front() * chunk_.front();
   while (true) {
-    require_chunk(start, bytes);
-    std::size_t axis = start.size() - 1;  // the next one, the last axis first
-    for (; axis < start.size(); --axis) {
-      start[axis] += chunk_[axis];
-      if (start[axis] < (axis == 0 ? first_row + rows : extents_[axis])) break;
+    visit(start);
+    std::size_t axis = start.size() - 1;  // to the next one, along the last axis first
+    while ((start[axis] += chunk_[axis]) >= (axis == 0 ? first_row + rows : extents_[axis])) {
       if (axis == 0) return;
-      start[axis] = 0;
+      start[axis--] = 0;
     }
   }
 }
 
-/// HDF5 trusts what the file says of how long a chunk is, and of filters that were left out of it.
-void Hdf5Table::require_chunk(const std::vector<hsize_t>& start, hsize_t bytes) const {
-  const std::string action = "reading " + path_;
+hsize_t Hdf5Table::stored_bytes(const std::vector<hsize_t>& start) const {
   hsize_t stored = 0;
-  checked(H5Dget_chunk_storage_size(dataset_.get(), start.data(), &stored), action);
+  checked(H5Dget_chunk_storage_size(dataset_.get(), start.data(), &stored), "reading " + path_);
   if (stored == 0) throw Hdf5ContentError(path_ + " is not in the file as a whole");
   require_room(file_, path_, stored, 1);
-  std::vector<char> raw(stored);
+  return stored;
+}
+
+/// HDF5 trusts what the file says of how long a chunk is, and of filters that were left out of it.
+void Hdf5Table::require_whole_chunk(const std::vector<hsize_t>& start) const {
+  std::vector<char> raw(stored_bytes(start));
   std::uint32_t left_out = 0;
-  checked(H5Dread_chunk(dataset_.get(), H5P_DEFAULT, start.data(), &left_out, raw.data()), action);
+  checked(H5Dread_chunk(dataset_.get(), H5P_DEFAULT, start.data(), &left_out, raw.data()),
+          "reading " + path_);
+  const hsize_t bytes = product_of(chunk_) * bytes_per_number_;
   bool deflated = false;
   hsize_t checksum = 0;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const bool applied = (left_out >> i & 1U) == 0;
-    if (filters_[i] == H5Z_FILTER_FLETCHER32 && !applied)
+    if (filters_[i].number == H5Z_FILTER_FLETCHER32 && !applied)
       throw Hdf5ContentError(path_ + " has a part without its checksum");
-    if (filters_[i] == H5Z_FILTER_FLETCHER32) checksum = fletcher32_bytes;
-    if (filters_[i] == H5Z_FILTER_DEFLATE && applied) deflated = true;
+    if (filters_[i].number == H5Z_FILTER_FLETCHER32) checksum = fletcher32_bytes;
+    if (filters_[i].number == H5Z_FILTER_DEFLATE && applied) deflated = true;
   }
-  if (deflated ? stored * most_deflated < bytes : stored != bytes + checksum)
+  if (deflated ? raw.size() * most_deflated < bytes : raw.size() != bytes + checksum)
     throw Hdf5ContentError(path_ + " has a part of another length than it should be");
 }
 

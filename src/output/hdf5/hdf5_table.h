@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ class Hdf5Table {
   hsize_t rows() const { return extents_.front(); }
   hsize_t extent(std::size_t axis) const { return extents_.at(axis); }
 
+  /// Throws unless these rows are in the file.
+  void require_stored(hsize_t first_row, hsize_t rows) const;
+
   /// The numbers of some rows, one row behind the other; `doubles` of floating-point numbers, `integers` of
   /// the others.
   std::vector<double> doubles(hsize_t first_row, hsize_t rows) const;
@@ -29,16 +33,19 @@ class Hdf5Table {
  private:
   template <class Number>
   std::vector<Number> read(hsize_t first_row, hsize_t rows, hid_t memory_type) const;
-  void require_stored(hsize_t first_row, hsize_t rows) const;
-  void require_chunks(hsize_t first_row, hsize_t rows) const;
-  void require_chunk(const std::vector<hsize_t>& start, hsize_t bytes) const;
+  /// Calls `visit` with the first corner of each chunk of these rows.
+  void each_chunk(hsize_t first_row, hsize_t rows,
+                  const std::function<void(const std::vector<hsize_t>&)>& visit) const;
+  /// The bytes that a chunk takes in the file.
+  hsize_t stored_bytes(const std::vector<hsize_t>& start) const;
+  void require_whole_chunk(const std::vector<hsize_t>& start) const;
 
   hid_t file_;
   std::string path_;
   Hdf5Dataset dataset_;
   std::vector<hsize_t> extents_;
   hsize_t bytes_per_number_ = 0;
-  std::vector<H5Z_filter_t> filters_;
+  std::vector<Hdf5Filter> filters_;
   std::vector<hsize_t> chunk_;  ///< extents of a chunk; none where there are no chunks
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "output/hdf5/hdf5_read.h"
+#include "platform/trial_process.h"
 #include "platform/whole_file.h"
 #include "text/printable.h"
 
@@ -57,13 +58,21 @@ void require_file(const fs::path& file) {
 
 TraceReader::TraceReader(fs::path file) : name_(std::move(file)) {
   require_file(name_);
-  explained(name_, [&] {
-    file_ = open_for_reading(name_);
-    content_ = read_trace_content(file_.get());
-    const std::vector<hsize_t> extents{Hdf5Table::any, content_.nodes, 3};
-    position_.emplace(file_.get(), particles_group(content_) + "/position/value", extents);
-    velocity_.emplace(file_.get(), particles_group(content_) + "/velocity/value", extents);
-  });
+  // Some damage makes HDF5 1.10 crash where it opens a dataset, before anything of it can be checked.
+  constexpr unsigned most_seconds = 60;
+  if (!ends_in_trial([this] { open(); }, most_seconds))
+    throw TraceError(sentence(name_, "the HDF5 library crashes on it", remedy), false);
+  explained(name_, [this] { open(); });
+}
+
+void TraceReader::open() {
+  file_ = open_for_reading(name_);
+  content_ = read_trace_content(file_.get());
+  const std::vector<hsize_t> extents{Hdf5Table::any, content_.nodes, 3};
+  for (auto& [series, what] : {std::pair{&position_, "/position"}, std::pair{&velocity_, "/velocity"}}) {
+    series->emplace(file_.get(), particles_group(content_) + what + "/value", extents);
+    (*series)->require_stored(0, frames());
+  }
 }
 
 std::vector<Vec3d> TraceReader::vectors(const Hdf5Table& series, const std::string& what,

@@ -36,6 +36,7 @@ class TraceReader {
   std::optional<std::vector<double>> observable(std::string_view name) const;
 
  private:
+  void open();
   std::vector<Vec3d> vectors(const Hdf5Table& series, const std::string& what, std::size_t frame) const;
 
   std::filesystem::path name_;

@@ -1,0 +1,31 @@
+#include "platform/trial_process.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace mssim {
+namespace {
+
+TEST(TrialProcess, SaysWhetherWorkEndsAndChangesNothingHere) {
+  int here = 0;
+  EXPECT_TRUE(ends_in_trial([&] { here = 1; }, 10));
+  EXPECT_TRUE(ends_in_trial([] { throw std::runtime_error("refused"); }, 10));
+  EXPECT_EQ(here, 0);
+  for (const int crash : {SIGSEGV, SIGFPE, SIGABRT})
+    EXPECT_FALSE(ends_in_trial([&] { std::raise(crash); }, 10)) << crash;
+}
+
+TEST(TrialProcess, EndsWorkThatDoesNot) {
+  EXPECT_FALSE(ends_in_trial(
+      [] {
+        for (volatile unsigned turn = 0;; turn = turn + 1) {
+        }
+      },
+      1));
+}
+
+}  // namespace
+}  // namespace mssim
