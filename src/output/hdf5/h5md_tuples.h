@@ -18,7 +18,6 @@ void write_tuples(hid_t file, const std::string& path, const std::string& partic
                   std::span<const std::array<std::uint32_t, size>> tuples) {
   if (tuples.empty()) return;
   const std::string action = "writing " + path;
-  constexpr hsize_t tuples_per_chunk = 65536;
   const std::array<hsize_t, 2> shape{tuples.size(), size};
   const std::array<hsize_t, 2> chunk{std::min(shape[0], tuples_per_chunk), size};
   const Hdf5Properties properties = chunked(chunk, Packing::deflated);

@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "output/hdf5/hdf5_write.h"
+
 namespace mssim {
 namespace {
 
@@ -13,13 +15,11 @@ namespace {
 constexpr hsize_t most_deflated = 1032;
 constexpr hsize_t fletcher32_bytes = 4;
 
-hsize_t product_of(const std::vector<hsize_t>& extents, std::size_t first = 0) {
+/// The largest number of all where the product is larger.
+hsize_t product_of(const std::vector<hsize_t>& extents) {
   hsize_t product = 1;
-  for (std::size_t axis = first; axis < extents.size(); ++axis)
-    if (extents[axis] != 0 && product > std::numeric_limits<hsize_t>::max() / extents[axis])
-      return std::numeric_limits<hsize_t>::max();
-    else
-      product *= extents[axis];
+  for (const hsize_t extent : extents)
+    if (__builtin_mul_overflow(product, extent, &product)) return std::numeric_limits<hsize_t>::max();
   return product;
 }
 
@@ -51,6 +51,24 @@ Hdf5Table::Hdf5Table(hid_t file, std::string path, const std::vector<hsize_t>& e
   if (checked(H5Pget_layout(properties.get()), action) != H5D_CHUNKED) return;
   chunk_.resize(extents_.size());
   checked(H5Pget_chunk(properties.get(), static_cast<int>(chunk_.size()), chunk_.data()), action);
+  std::vector<hsize_t> limits(extents_.size());
+  checked(H5Sget_simple_extent_dims(space.get(), nullptr, limits.data()), action);
+  require_written_chunks(limits.front() == H5S_UNLIMITED);
+}
+
+/// HDF5 does not compare what it inflates with the chunk that it should be, and would read on behind it.
+/// Chunks that are not deflated have a length to compare.
+void Hdf5Table::require_written_chunks(bool grows) const {
+  if (!is_deflated()) return;
+  const bool whole = std::equal(chunk_.begin() + 1, chunk_.end(), extents_.begin() + 1, extents_.end());
+  const hsize_t rows = chunk_.front();
+  if (!whole || (grows ? rows != 1 : rows != extents_.front() && rows != tuples_per_chunk))
+    throw Hdf5ContentError(path_ + " is stored in parts of " + shown(chunk_) +
+                           ", which mssim does not write");
+}
+
+bool Hdf5Table::is_deflated() const {
+  return std::ranges::find(filters_, H5Z_FILTER_DEFLATE, &Hdf5Filter::number) != filters_.end();
 }
 
 std::vector<double> Hdf5Table::doubles(hsize_t first_row, hsize_t rows) const {
@@ -76,10 +94,10 @@ std::vector<Number> Hdf5Table::read(hsize_t first_row, hsize_t rows, hid_t memor
   start.front() = first_row;
   shape.front() = rows;
   if (product_of(shape) == 0) return {};
+  require_room(file_, path_, product_of(shape), bytes_per_number_, is_deflated() ? most_deflated : 1);
   require_stored(first_row, rows);
   if (!chunk_.empty())
     each_chunk(first_row, rows, [this](const auto& corner) { require_whole_chunk(corner); });
-  require_room(file_, path_, product_of(shape), bytes_per_number_, most_deflated);
   std::vector<Number> numbers(product_of(shape));
   const Hdf5Space space(H5Dget_space(dataset_.get()), action);
   checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr),
@@ -96,9 +114,7 @@ void Hdf5Table::require_stored(hsize_t first_row, hsize_t rows) const {
       throw Hdf5ContentError(path_ + " is not in the file as a whole");
     return;
   }
-  const bool deflated =
-      std::ranges::find(filters_, H5Z_FILTER_DEFLATE, &Hdf5Filter::number) != filters_.end();
-  require_room(file_, path_, product_of(chunk_), bytes_per_number_, deflated ? most_deflated : 1);
+  require_room(file_, path_, product_of(chunk_), bytes_per_number_, is_deflated() ? most_deflated : 1);
   each_chunk(first_row, rows, [this](const auto& start) { stored_bytes(start); });
 }
 

@@ -15,7 +15,7 @@ namespace mssim {
 /// Hdf5Error and Hdf5ContentError.
 class Hdf5Table {
  public:
-  static constexpr hsize_t any = 0;  ///< of an extent that may be any number
+  static constexpr hsize_t any = H5S_UNLIMITED;  ///< an extent that may be any number
   /// A dataset with these extents, of which the first is how many rows there are.
   Hdf5Table(hid_t file, std::string path, const std::vector<hsize_t>& extents);
 
@@ -33,6 +33,8 @@ class Hdf5Table {
  private:
   template <class Number>
   std::vector<Number> read(hsize_t first_row, hsize_t rows, hid_t memory_type) const;
+  void require_written_chunks(bool grows) const;
+  bool is_deflated() const;
   /// Calls `visit` with the first corner of each chunk of these rows.
   void each_chunk(hsize_t first_row, hsize_t rows,
                   const std::function<void(const std::vector<hsize_t>&)>& visit) const;

@@ -37,6 +37,9 @@ void write_array(hid_t parent, const std::string& path, hid_t file_type, hid_t m
 /// A list of numbers in double precision, one at least.
 void write_numbers(hid_t parent, const std::string& path, std::span<const double> numbers);
 
+/// Rows in a chunk of a long list of tuples.
+inline constexpr hsize_t tuples_per_chunk = 65536;
+
 /// How the chunks of a dataset are stored. Every chunk has a Fletcher-32 checksum.
 enum class Packing { plain, deflated };
 
