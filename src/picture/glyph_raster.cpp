@@ -137,7 +137,7 @@ class MaskDrawing {
         const double along = squared > 0 ? std::clamp((px * dx + py * dy) / squared, 0.0, 1.0) : 0;
         const double distance = std::hypot(px - along * dx, py - along * dy);
         const double covered = std::clamp(reach - distance, 0.0, 1.0);
-        std::uint8_t& pixel = mask_.coverage[static_cast<std::size_t>(y * mask_.width + x)];
+        std::uint8_t& pixel = mask_.coverage[mask_.index_of(x, y)];
         pixel = std::max(pixel, static_cast<std::uint8_t>(std::lround(255 * covered)));
       }
   }

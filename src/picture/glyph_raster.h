@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,11 @@ struct Pen {
 struct GlyphMask {
   int left = 0, top = 0, width = 0, height = 0;
   std::vector<std::uint8_t> coverage;
+
+  /// Where `coverage` has the pixel in column `x` of row `y` of the mask.
+  std::size_t index_of(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
 };
 
 GlyphMask mask_of(const Glyph& glyph, const Pen& pen);

@@ -79,7 +79,7 @@ void draw_text(Picture& picture, std::string_view text, int x, int baseline, con
     const GlyphMask mask = mask_of(glyph, pen);
     for (int row = 0; row < mask.height; ++row)
       for (int column = 0; column < mask.width; ++column)
-        if (const std::uint8_t covered = mask.coverage[static_cast<std::size_t>(row * mask.width + column)])
+        if (const std::uint8_t covered = mask.coverage[mask.index_of(column, row)])
           blend(picture, x + from_start + mask.left + column, baseline + mask.top + row, letters.colour,
                 covered);
   });

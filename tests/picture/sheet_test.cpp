@@ -57,7 +57,7 @@ TEST(Sheet, WritesCaptionsBelowTheirPictures) {
   const PixelBox first_letters = box_of(first_row, is_letter).value();
   EXPECT_LT(first_letters.top + first_letters.height, c.top);
   // A picture beside it has the same caption, so that they are centred together.
-  EXPECT_NEAR(first_letters.left + first_letters.width / 2, static_cast<int>(sheet.width) / 2, 2);
+  EXPECT_NEAR(first_letters.left + 0.5 * first_letters.width, 0.5 * sheet.width, 2);
 }
 
 TEST(Sheet, ShortensLongCaptions) {
