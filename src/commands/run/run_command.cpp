@@ -1,224 +1,18 @@
 #include "commands/run/run_command.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <iostream>
 #include <memory>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <vector>
 
-#include "backends/backends.h"
-#include "backends/spring_list/serial.h"
-#include "commands/run/dressing_run.h"
-#include "commands/run/run_recorder.h"
-#include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
-#include "commands/shared/opencl_notes.h"
-#include "commands/shared/prepared_scene.h"
-#include "commands/shared/progress_line.h"
-#include "commands/shared/run_provenance.h"
-#include "commands/shared/simulation.h"
-#include "commands/shared/stop_request.h"
-#include "garment/stepping/serial_dressing.h"
-#include "output/tables/table_text.h"
-#include "output/traces/trace_name.h"
-#include "scene/scene_file.h"
+#include "commands/run/run_scene.h"
 
 namespace mssim {
-namespace {
-
-struct RunOptions {
-  std::string scene;
-  std::string backend = "openmp";
-  std::string integrator = "semi-euler";
-  std::string precision = "single";
-  std::optional<double> dt_s;
-  std::optional<double> duration_s;  ///< default_duration_s where it is not given
-  double fps = 60;
-  RunFiles files;
-  bool losses = false;
-  ExecutionOptions execution;
-};
-
-/// The chosen backend, made by `in_single`, make_backend or make_dressing_backend, or by `in_double`.
-template <class InSingle, class InDouble>
-auto chosen_backend(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
-                    const InSingle& in_single, const InDouble& in_double) {
-  const BackendInfo& info = require_backend(options.backend);
-  if (options.precision == "single") {
-    const ExecutionOptions execution = complete(options.execution);
-    auto backend = in_single(info, scene.system, integrator, scene.dt_s, execution);
-    if (info.uses_device) tell_of_opencl();
-    if (const std::string excess = excess_of(*backend, execution.threads); !excess.empty())
-      std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
-    return backend;
-  }
-  if (info.make != make_serial)
-    throw UsageError("--precision double needs --backend serial, not \"" + options.backend +
-                     "\": the other backends compute in single precision only");
-  return in_double(scene.system, integrator, scene.dt_s);
-}
-
-/// A garment is dressed until it has settled; --duration says how long that may take.
-SettlingRule settling_rule(const RunOptions& options, const SimulationPlan& plan) {
-  SettlingRule rule;
-  if (options.duration_s) rule.longest_s = static_cast<double>(count_steps(plan)) * plan.dt_s;
-  return rule;
-}
-
-/// Tells who waits long why.
-void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, const Integrator& integrator) {
-  constexpr double passes_for_energies = 4;
-  constexpr double springs_per_second = 1e8;  // of the double-precision reference, roughly
-  constexpr double patience_s = 10;
-  const double seconds = static_cast<double>(count_steps(plan)) * static_cast<double>(system.springs.size()) *
-                         (passes_for_energies + static_cast<double>(integrator.stage_count)) /
-                         springs_per_second;
-  if (seconds > patience_s)
-    std::cerr << "mssim: --losses takes a double-precision step for every step, about " << std::round(seconds)
-              << " s in all\n";
-}
-
-/// What the three kinds of energy and the losses add up to at the end, less what they did at the start, over
-/// the largest change that one kind of energy makes from frame to frame: zero in a perfect world.
-std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, const EnergyLosses& losses) {
-  double in_motion = 0;
-  for (const auto kind : {&Energy::kinetic, &Energy::elastic, &Energy::gravitational}) {
-    const auto [low, high] =
-        std::ranges::minmax(curve, {}, [&](const EnergySample& sample) { return sample.energy.*kind; });
-    in_motion = std::max(in_motion, high.energy.*kind - low.energy.*kind);
-  }
-  if (in_motion == 0) return std::nullopt;
-  return (curve.back().energy.total() + losses.total() - curve.front().energy.total()) / in_motion;
-}
-
-FileHeaders headers_of(const RunOptions& options, const PreparedScene& scene, const Backend& backend,
-                       const Integrator& integrator) {
-  if (!options.files.any()) return {};
-  Provenance provenance = run_provenance(backend.threads(), require_backend(options.backend).uses_device);
-  add_scene(provenance, scene.spec.name, scene.spec.source);
-  FileHeaders headers{trace_header(scene, backend, options.backend, integrator, provenance),
-                      command_line(provenance)};
-  headers.trace.with_losses = options.losses;
-  headers.trace.in_double = options.precision == "double";
-  return headers;
-}
-
-int run_garment(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
-                const SimulationPlan& plan) {
-  const auto backend =
-      chosen_backend(options, scene, integrator, make_dressing_backend, make_reference_dressing);
-  if (options.losses)
-    throw UsageError(
-        "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
-        "leave it out");
-  const FileHeaders headers = headers_of(options, scene, *backend, integrator);
-  // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
-  // file.
-  StopRequest stop;
-  const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
-  const SettlingRule rule = settling_rule(options, plan);
-  RunRecorder recorder(options.files, scene, headers);
-  return run_dressing(scene, *backend, options.backend, rule, frames, recorder, stop);
-}
-
-int run_simulation(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
-                   const SimulationPlan& plan) {
-  const auto backend = chosen_backend(options, scene, integrator, make_backend, make_reference);
-  const FileHeaders headers = headers_of(options, scene, *backend, integrator);
-  StopRequest stop;  // where run_garment has it
-  RunRecorder recorder(options.files, scene, headers);
-  if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
-  std::int64_t steps = 0;
-  std::optional<EnergyLosses> losses;
-  double seconds = 0;
-  recorder.finish_after([&] {
-    const auto before = std::chrono::steady_clock::now();
-    ProgressLine progress(1, ProgressLine::Log::nothing);
-    progress.begin_scene(scene.spec.name);
-    simulate(*backend, scene.system, integrator, plan,
-             {[&](const Frame& frame) {
-                recorder.record(frame);
-                steps = frame.step;
-                losses = frame.losses;
-                stop.throw_if_requested();
-              },
-              [&](std::int64_t done, std::int64_t all) {
-                progress.update_often("step " + std::to_string(done) + " of " + std::to_string(all),
-                                      static_cast<double>(done) / static_cast<double>(all));
-                stop.throw_if_requested();
-              }});
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  });
-
-  const std::vector<EnergySample>& curve = recorder.energies();
-  const auto loss = [&](double EnergyLosses::*kind) { return losses ? Cell(*losses.*kind) : Cell(); };
-  const Energy &first = curve.front().energy, &last = curve.back().energy;
-  Table table;
-  table.add({{"scene", scene.spec.name},
-             {"backend", options.backend},
-             {"device", backend->device()},
-             {"threads", backend->threads()},
-             {"integrator", options.integrator},
-             {"dt_s", scene.dt_s},
-             {"steps", steps},
-             {"simulated_s", curve.back().time_s},
-             {"wall_s", seconds},
-             {"kinetic_j", last.kinetic},
-             {"elastic_j", last.elastic},
-             {"gravitational_j", last.gravitational},
-             {"total_change_j", last.total() - first.total()},
-             {"damping_loss_j", loss(&EnergyLosses::damping)},
-             {"friction_loss_j", loss(&EnergyLosses::friction)},
-             {"bounce_loss_j", loss(&EnergyLosses::bounce)},
-             {"integration_loss_j", loss(&EnergyLosses::integration)},
-             {"energy_imbalance", losses ? Cell(energy_imbalance(curve, *losses)) : Cell()}});
-  std::cout << table_text(table);
-  return exit_ok;
-}
-
-int run(const RunOptions& options) {
-  if (!options.files.trace.empty())
-    if (const auto problem = trace_name_problem(options.files.trace))
-      throw UsageError("--trace: " + *problem);
-  const Integrator& integrator = require_integrator(options.integrator);
-  require_backend(options.backend);
-  PreparedScene scene = prepare_scene(find_scene(options.scene));
-  warn_of_note(scene);
-  require_distinct(options.files, scene.spec);
-  if (options.dt_s) scene.dt_s = *options.dt_s;
-  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
-                            options.losses};
-  return is_garment(scene.system) ? run_garment(options, scene, integrator, plan)
-                                  : run_simulation(options, scene, integrator, plan);
-}
-
-}  // namespace
 
 std::function<int()> declare_run(Arguments& arguments) {
   const auto options = std::make_shared<RunOptions>();
   arguments.add("--scene", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
       .required()
       .value_name("NAME|FILE");
-  arguments.add("--backend", options->backend, "Backend that simulates it (default: openmp)")
-      .value_name("NAME");
-  arguments.add("--integrator", options->integrator, "Integrator (default: semi-euler)").value_name("NAME");
-  arguments
-      .add_number("--duration", options->duration_s,
-                  "Simulated time (default: 1); for a garment the longest time that it may take to settle "
-                  "(default: 4)",
-                  positive_number())
-      .value_name("SECONDS");
-  arguments
-      .add_number("--fps", options->fps,
-                  "Frames per simulated second of the trace and the energy curve (default: 60)",
-                  positive_number())
-      .value_name("N");
-  arguments.add_number("--dt", options->dt_s, "Time of a step (default: the scene's)", positive_number())
-      .value_name("SECONDS");
+  declare_stepping(arguments, *options,
+                   "Frames per simulated second of the trace and the energy curve (default: 60)");
   arguments
       .add("--precision", options->precision, "single, or double with --backend serial (default: single)",
            one_of("precision", {"single", "double"}))
@@ -234,8 +28,7 @@ std::function<int()> declare_run(Arguments& arguments) {
       "--losses", options->losses,
       "Account for the energy lost to damping, friction, bounces and the integrator; computes a "
       "double-precision step for every step (not for garments)");
-  declare_execution(arguments, options->execution);
-  return [options] { return run(*options); };
+  return [options] { return run_scene(*options); };
 }
 
 }  // namespace mssim
