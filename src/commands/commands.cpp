@@ -17,6 +17,7 @@
 #include "commands/help/help_command.h"
 #include "commands/list/list_command.h"
 #include "commands/measure/measure_command.h"
+#include "commands/render/render_command.h"
 #include "commands/run/run_command.h"
 #include "commands/shared/command.h"
 #include "commands/shared/exit_code.h"
@@ -35,11 +36,13 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 7> table{{
+constexpr std::array<Command, 8> table{{
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
     {"run", "Simulate one scene; write a trace or an energy curve if asked to",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
+    {"render", "Draw pictures or a movie of a trace or a scene",
+     "mssim render --scene jeans4k --out jeans.png", declare_render},
     {"check", "Check scene files: size, memory, time and stability limit, without a run",
      "mssim check my-cloth.json", declare_check},
     {"compare", "Compare two results or programs: which is faster, and is that certain?",

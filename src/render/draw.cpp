@@ -1,14 +1,13 @@
 #include "render/draw.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
 #include "geometry/vertex_normals.h"
 #include "render/light.h"
+#include "render/srgb.h"
 
 namespace mssim {
 namespace {
@@ -19,26 +18,6 @@ static_assert(band_rows % samples == 0, "a band is whole rows of pixels");
 
 constexpr double margin = 0.06;
 constexpr Light background{0.91F, 0.92F, 0.94F};
-
-/// sRGB of linear light, by a table fine enough for 8 bits.
-class Encoding {
- public:
-  Encoding() {
-    for (std::size_t i = 0; i < table_.size(); ++i) {
-      const double light = static_cast<double>(i) / (entries - 1);
-      const double encoded = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-      table_[i] = static_cast<std::uint8_t>(std::lround(255 * encoded));
-    }
-  }
-  Rgb operator()(const Light& light) const { return {of(light.x), of(light.y), of(light.z)}; }
-
- private:
-  static constexpr std::size_t entries = 8192;
-  std::uint8_t of(float light) const {
-    return table_[static_cast<std::size_t>(std::clamp(light, 0.0F, 1.0F) * (entries - 1) + 0.5F)];
-  }
-  std::array<std::uint8_t, entries> table_{};
-};
 
 /// Everything that the light of a sample depends on.
 struct Stage {
@@ -94,7 +73,7 @@ struct PixelFragments {
 
 /// The pixel's light, the mean of its points. A pixel of nothing but ground, or of one smooth surface, is
 /// shaded at fewer points than it is drawn at.
-Light light_of(const Stage& stage, const PixelFragments& pixel) {
+Light mean_light(const Stage& stage, const PixelFragments& pixel) {
   std::uint32_t hits = 0;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::uint32_t j = 0; j < samples; ++j)
@@ -127,7 +106,6 @@ Box<double> seen_box(const Camera& camera, const std::vector<Vec3d>& points) {
 }
 
 Picture drawn(const Subject& subject, const Shot& shot) {
-  static const Encoding encoding;
   const Camera camera(shot.direction);
   const Lights lights(shot.direction);
   const std::vector<PointLight> light = lights.on(vertex_normals(subject.surface), shot.threads);
@@ -147,7 +125,7 @@ Picture drawn(const Subject& subject, const Shot& shot) {
                                              grid.columns, grid.centre_x(samples * x),
                                              grid.centre_y(first_row + row)};
                   picture.at(x, shot.height - 1 - (first_row + row) / samples) =
-                      encoding(light_of(stage, pixel));
+                      colour_of(mean_light(stage, pixel));
                 }
             });
   return picture;

@@ -55,20 +55,21 @@ bench                 text platform garment/stepping bench/roofline bench/verifi
 output/hdf5
 output/tables         text statistics platform bench/machine bench/results
 garment/output        text garment bench/results output/hdf5 output/tables
-output/pictures       geometry render picture model
 output/traces         text platform geometry model output/hdf5 garment/output
+output/pictures       geometry render picture model garment output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
 
 commands/arguments    text
 commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders commands/arguments
-commands/run          platform model scene garment/stepping garment/fitting backends/spring_list backends bench/verification output/tables output/traces commands/arguments commands/shared
+commands/run          platform model scene garment/stepping garment/fitting backends/interface backends/spring_list backends bench/verification output/tables output/traces commands/arguments commands/shared
+commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared
 commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/arguments commands/shared commands/bench
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench
 commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/arguments commands/shared commands/run commands/bench
 commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/arguments commands/shared
 commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/bench commands/list commands/compare commands/check commands/measure commands/help
+commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/bench commands/list commands/compare commands/check commands/measure commands/help
 main.cpp              commands/shared
 ask_opencl.cpp
 '

@@ -11,7 +11,7 @@
 #include "commands/bench/bench_options.h"
 #include "commands/bench/planned_scene.h"
 #include "commands/bench/suites.h"
-#include "commands/run/run_command.h"
+#include "commands/run/run_scene.h"
 #include "commands/shared/choices.h"
 #include "garment/fitting/dress.h"
 #include "garment/stepping/dressing_backend.h"

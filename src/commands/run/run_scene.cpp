@@ -29,6 +29,8 @@
 namespace mssim {
 namespace {
 
+constexpr double default_fps = 60;
+
 /// The chosen backend, made by `in_single`, make_backend or make_dressing_backend, or by `in_double`.
 template <class InSingle, class InDouble>
 auto chosen_backend(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
@@ -105,7 +107,7 @@ int run_garment(const RunOptions& options, const PreparedScene& scene, const Int
   // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
   // file.
   StopRequest stop;
-  const FrameGrid frames = frame_grid(options.fps, scene.dt_s);
+  const FrameGrid frames = frame_grid(options.fps.value_or(default_fps), scene.dt_s);
   const SettlingRule rule = settling_rule(options, plan);
   RunRecorder recorder(options.files, scene, headers);
   return run_dressing(scene, *backend, options.backend, rule, frames, recorder, stop);
@@ -178,25 +180,32 @@ int run_scene(const RunOptions& options) {
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
-  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s), options.fps,
-                            options.losses};
+  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
+                            options.fps.value_or(default_fps), options.losses};
   return is_garment(scene.system) ? run_garment(options, scene, integrator, plan)
                                   : run_simulation(options, scene, integrator, plan);
 }
 
-void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps) {
-  arguments.add("--backend", options.backend, "Backend that simulates it (default: openmp)")
-      .value_name("NAME");
-  arguments.add("--integrator", options.integrator, "Integrator (default: semi-euler)").value_name("NAME");
-  arguments
-      .add_number("--duration", options.duration_s,
-                  "Simulated time (default: 1); for a garment the longest time that it may take to settle "
-                  "(default: 4)",
-                  positive_number())
-      .value_name("SECONDS");
+void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps,
+                      std::optional<Argument> needed) {
+  const auto of_a_simulation = [&](Argument argument, const std::string& value_name) {
+    argument.value_name(value_name);
+    if (needed) argument.needs(*needed);
+  };
+  of_a_simulation(arguments.add("--backend", options.backend, "Backend that simulates it (default: openmp)"),
+                  "NAME");
+  of_a_simulation(arguments.add("--integrator", options.integrator, "Integrator (default: semi-euler)"),
+                  "NAME");
+  of_a_simulation(
+      arguments.add_number("--duration", options.duration_s,
+                           "Simulated time (default: 1); for a garment the longest time that it may take to "
+                           "settle (default: 4)",
+                           positive_number()),
+      "SECONDS");
   arguments.add_number("--fps", options.fps, about_fps, positive_number()).value_name("N");
-  arguments.add_number("--dt", options.dt_s, "Time of a step (default: the scene's)", positive_number())
-      .value_name("SECONDS");
+  of_a_simulation(
+      arguments.add_number("--dt", options.dt_s, "Time of a step (default: the scene's)", positive_number()),
+      "SECONDS");
   declare_execution(arguments, options.execution);
 }
 

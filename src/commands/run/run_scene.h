@@ -9,6 +9,9 @@
 
 namespace mssim {
 
+/// Simulated seconds of a run that says nothing of them.
+inline constexpr double default_duration_s = 1;
+
 /// What to simulate, by what, how long, and what to write.
 struct RunOptions {
   std::string scene;
@@ -17,15 +20,16 @@ struct RunOptions {
   std::string precision = "single";
   std::optional<double> dt_s;
   std::optional<double> duration_s;  ///< default_duration_s where it is not given
-  double fps = 60;
+  std::optional<double> fps;         ///< frames per simulated second, 60 where it is not given
   RunFiles files;
   bool losses = false;
   ExecutionOptions execution;
 };
 
 /// Declares --backend, --integrator, --duration, --fps, --dt and those of declare_execution. `options` must
-/// outlive the parsing.
-void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps);
+/// outlive the parsing. Where `needed` is given, those that only a simulation takes are errors without it.
+void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps,
+                      std::optional<Argument> needed = {});
 
 /// Simulates the scene, dresses its garment until it has settled, writes the files and prints how it went.
 /// Returns an ExitCode. Throws UsageError, SceneError, Unsupported, Unavailable, MissingProgram, NotVerified

@@ -1,0 +1,219 @@
+#include "commands/render/render_command.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "commands/render/frame_choice.h"
+#include "commands/run/run_scene.h"
+#include "commands/shared/choices.h"
+#include "commands/shared/exit_code.h"
+#include "commands/shared/output_names.h"
+#include "commands/shared/progress_line.h"
+#include "garment/spec/garment_spec.h"
+#include "output/pictures/painter.h"
+#include "output/traces/trace_reader.h"
+#include "picture/animated_png.h"
+#include "picture/png.h"
+#include "picture/sheet.h"
+#include "platform/atomic_file.h"
+#include "platform/temporary_folder.h"
+#include "scene/scene_file.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderOptions {
+  std::string trace;
+  RunOptions run;  ///< of --scene; its fps is that of a movie, too
+  std::string out, view = "three-quarter", size, sheet;
+  std::vector<std::string> frames;
+  std::optional<double> time_s;
+  bool movie = false;
+  ColourBy colour = ColourBy::object;
+};
+
+constexpr double movie_fps = 30;
+constexpr std::uint32_t most_on_a_sheet = 20;  // across and down
+
+PictureOptions picture_options(const RenderOptions& options) {
+  const auto view = view_direction(options.view);
+  if (!view)
+    throw UsageError("--view: \"" + printable(options.view) +
+                     "\" is no view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
+  const bool alone = options.sheet.empty() && !options.movie;
+  const std::string& wanted = options.size;
+  const auto size = two_numbers(!wanted.empty() ? wanted
+                                : alone         ? "960x720"
+                                                : "640x480",
+                                most_picture_pixels);
+  if (!size)
+    throw UsageError("--size: \"" + printable(wanted) + "\" is no size; give WIDTHxHEIGHT, up to " +
+                     std::to_string(most_picture_pixels) + " pixels each");
+  return {*view, size->first, size->second, options.colour, complete(options.run.execution).threads};
+}
+
+/// "bodies20587" of a scene's name or file, "fall" of fall.h5.
+std::string stem_of(const RenderOptions& options) {
+  return fs::path(options.trace.empty() ? options.run.scene : options.trace).stem().string();
+}
+
+fs::path output_of(const RenderOptions& options) {
+  if (!options.out.empty()) return options.out;
+  return stem_of(options) + (options.movie ? ".apng" : options.sheet.empty() ? ".png" : "-sheet.png");
+}
+
+/// The frames that are drawn, in their order.
+std::vector<std::size_t> chosen_frames(const RenderOptions& options, const TraceContent& content) {
+  const std::size_t frames = content.step.size();
+  std::vector<std::size_t> chosen;
+  if (options.time_s)
+    chosen = {frame_at(*options.time_s, content.time_s)};
+  else if (!options.frames.empty())
+    chosen = listed_frames(options.frames, frames);
+  else
+    for (std::size_t frame = 0; frame < frames; ++frame) chosen.push_back(frame);
+  if (const auto sheet = two_numbers(options.sheet, most_on_a_sheet))
+    return spread_over(chosen, std::size_t{sheet->first} * sheet->second);
+  return options.movie ? chosen : std::vector{chosen.back()};
+}
+
+std::string caption_of(double time_s) {
+  std::ostringstream text;
+  text << "t = " << std::fixed << std::setprecision(2) << time_s << " s";
+  return text.str();
+}
+
+/// At which a movie shows frames as fast as they follow each other in simulated time.
+double natural_fps(const TraceContent& content, const std::vector<std::size_t>& frames) {
+  const double simulated_s = content.time_s[frames.back()] - content.time_s[frames.front()];
+  return simulated_s > 0 ? std::clamp(static_cast<double>(frames.size() - 1) / simulated_s, 0.1, 1000.0)
+                         : movie_fps;
+}
+
+/// Draws the chosen frames of a trace: the bytes of the file, and what is in it.
+std::string drawn_file(const RenderOptions& options, const PictureOptions& picture,
+                       const TraceReader& trace) {
+  const TraceContent& content = trace.content();
+  const std::vector<std::size_t> frames = chosen_frames(options, content);
+  Painter painter(content, trace.positions(0), picture);
+  for (const std::size_t frame : frames) painter.make_room_for(trace.positions(frame));
+  ProgressLine progress(1, ProgressLine::Log::nothing);
+  progress.begin_scene(stem_of(options));
+  std::optional<AnimatedPng> movie;
+  if (options.movie) movie.emplace(options.run.fps.value_or(natural_fps(content, frames)));
+  std::vector<CaptionedPicture> pictures;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    Picture drawn = painter.picture_of(trace.positions(frames[i]));
+    progress.update_often("picture " + std::to_string(i + 1) + " of " + std::to_string(frames.size()),
+                          static_cast<double>(i + 1) / static_cast<double>(frames.size()));
+    if (movie)
+      movie->add(drawn);
+    else
+      pictures.push_back({std::move(drawn), caption_of(content.time_s[frames[i]])});
+  }
+  if (movie) return movie->bytes();
+  if (const auto sheet = two_numbers(options.sheet, most_on_a_sheet))
+    return png_of(sheet_of(pictures, sheet->first));
+  return png_of(pictures.front().picture);
+}
+
+/// Frames per simulated second that the pictures need of a run: a scene may be large, and its trace with it.
+double fps_of_run(const RenderOptions& options) {
+  if (options.run.fps) return *options.run.fps;
+  if (options.movie || options.time_s || !options.frames.empty()) return movie_fps;
+  const double duration_s = options.run.duration_s.value_or(default_duration_s);
+  const auto sheet = two_numbers(options.sheet, most_on_a_sheet);
+  const std::uint32_t moments = sheet ? sheet->first * sheet->second : 2;
+  // When a garment has settled nobody knows.
+  if (sheet && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content)) return movie_fps;
+  return std::max(moments - 1, 1U) / duration_s;
+}
+
+int render(const RenderOptions& options) {
+  const PictureOptions picture = picture_options(options);
+  if (!options.sheet.empty() && !two_numbers(options.sheet, most_on_a_sheet))
+    throw UsageError("--sheet: \"" + printable(options.sheet) + "\" is no number of pictures; give " +
+                     "COLUMNSxROWS, up to " + std::to_string(most_on_a_sheet) + " each");
+  if (options.trace.empty() == options.run.scene.empty()) throw UsageError("give either a trace or --scene");
+  const fs::path out = output_of(options);
+  fs::path trace = options.trace;
+  int code = exit_ok;
+  if (trace.empty()) {
+    RunOptions run = options.run;
+    run.fps = fps_of_run(options);
+    trace = temporary_folder_of_process() / "scene.h5";
+    run.files.trace = trace.string();
+    require_replaceable(out);
+    code = run_scene(run);
+  } else {
+    require_distinct({{"--out", out}}, {{"the trace", trace}});
+  }
+  const TraceReader reader(trace);
+  write_file_atomically(out, drawn_file(options, picture, reader));
+  std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
+  return code;
+}
+
+}  // namespace
+
+std::function<int()> declare_render(Arguments& arguments) {
+  const auto options = std::make_shared<RenderOptions>();
+  const Argument trace = arguments.add("TRACE", options->trace, "Trace to draw, NAME.h5 (mssim run --trace)");
+  const Argument scene =
+      arguments.add("--scene", options->run.scene, "Simulate this scene and draw it: a name or a file")
+          .value_name("NAME|FILE")
+          .excludes(trace);
+  arguments
+      .add("--out", options->out,
+           "File to write (default: the trace's or the scene's name, and .png or .apng)")
+      .value_name("FILE");
+  arguments
+      .add("--view", options->view,
+           "From where: front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees (default: "
+           "three-quarter)")
+      .value_name("VIEW");
+  arguments
+      .add("--size", options->size,
+           "Size of a picture in pixels (default: 960x720, and 640x480 on a sheet and in a movie)")
+      .value_name("WIDTHxHEIGHT");
+  arguments.add_choice(
+      "--colour", options->colour,
+      {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
+      "What colours tell apart: object, panel (of a garment) or strain (default: object)");
+  const Argument time =
+      arguments
+          .add_number("--time", options->time_s,
+                      "Draw the frame nearest to this time (default: the last frame)", number_between(0, 1e9))
+          .value_name("SECONDS");
+  arguments
+      .add_list("--frames", options->frames,
+                "Draw of these frames only: numbers from 0 on, ranges like 10-20, last")
+      .value_name("LIST")
+      .excludes(time);
+  const Argument sheet =
+      arguments.add("--sheet", options->sheet, "Put so many moments, evenly spread, on one sheet")
+          .value_name("COLUMNSxROWS")
+          .excludes(time);
+  arguments.add_flag("--movie", options->movie, "Write an animated PNG of the frames")
+      .excludes(sheet)
+      .excludes(time);
+  declare_stepping(
+      arguments, options->run,
+      "Frames per simulated second of a scene (default: as many as are drawn, 30 of a movie), and per "
+      "second of a movie (default: as simulated)",
+      scene);
+  return [options] { return render(*options); };
+}
+
+}  // namespace mssim

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# Pictures: which frames of a trace or a scene, from where, and what is refused.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+
+# size_of FILE: WIDTHxHEIGHT of a PNG, from its header
+size_of() {
+  local -a bytes
+  read -ra bytes <<<"$(od -An -tu1 -j16 -N8 "$1" | tr '\n' ' ')"
+  echo "$((bytes[2] * 256 + bytes[3]))x$((bytes[6] * 256 + bytes[7]))"
+}
+# expect_picture FILE WIDTHxHEIGHT
+expect_picture() {
+  [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"
+  [ "$(size_of "$1")" = "$2" ] || fail "$1 has $(size_of "$1") pixels instead of $2"
+}
+# frames_of FILE: how many frames an animated PNG says that it has
+frames_of() { grep -abo acTL "$1" | head -n 1 | { IFS=: read -r at _ && od -An -tu1 -j$((at + 7)) -N1 "$1" | tr -d ' '; }; }
+
+cd "$work"
+succeed run --scene cloth2500 --duration 0.2 --fps 20 --trace t.h5
+succeed render t.h5 --size 200x150
+expect_picture t.png 200x150
+succeed render t.h5 --size 200x150 --frames last --out last.png
+cmp -s t.png last.png || fail "the last frame is not what is drawn"
+succeed render t.h5 --size 200x150 --time 0.21 --out late.png
+cmp -s t.png late.png || fail "the frame nearest to 0.21 s is not the last one"
+succeed render t.h5 --size 200x150 --time 0 --out first.png
+cmp -s first.png t.png && fail "the first frame looks like the last"
+succeed render t.h5 --size 200x150 --threads 1 --out one.png
+succeed render t.h5 --size 200x150 --threads 3 --out three.png
+cmp -s one.png three.png || fail "the picture depends on the number of threads"
+for view in front side back three-quarter -20,35; do
+  succeed render t.h5 --size 120x90 --view "$view" --out "from$view.png"
+  expect_picture "from$view.png" 120x90
+done
+for colour in object panel strain; do
+  succeed render t.h5 --size 320x240 --colour "$colour" --out "$colour.png"
+done
+cmp -s object.png panel.png || fail "a cloth has panels"
+cmp -s object.png strain.png && fail "strain is not shown"
+
+succeed render t.h5 --sheet 2x2 --size 100x80
+expect_picture t-sheet.png "$(size_of t-sheet.png)"
+[ "$(size_of t-sheet.png | cut -dx -f1)" -gt 200 ] || fail "two pictures do not fit beside each other on the sheet"
+succeed render t.h5 --movie --size 80x60
+[ "$(frames_of t.apng)" -eq 5 ] || fail "the movie has $(frames_of t.apng) frames instead of 5"
+succeed render t.h5 --movie --size 80x60 --frames 1-2,last --out some.apng
+[ "$(frames_of some.apng)" -eq 3 ] || fail "the movie has $(frames_of some.apng) frames instead of 3"
+
+# A garment that has not settled is drawn, too.
+status=0
+"$mssim" render --scene jeans1k --size 160x120 --duration 0.02 --out jeans.png >out 2>err || status=$?
+[ "$status" -eq 1 ] || fail "a garment that has not settled: exit status $status instead of 1"
+expect_picture jeans.png 160x120
+mkdir scene && cd scene
+succeed render --scene box-small --size 160x120 --duration 0.01
+expect_picture box-small.png 160x120
+[ "$(ls)" = box-small.png ] || fail "more than the picture is left: $(ls)"
+cd ..
+
+expect 2 'either a trace or --scene' render
+expect 2 'no such file' render nope.h5
+expect 2 'exclude each other' render t.h5 --scene cloth2500
+expect 2 '"top" is no view; give front' render t.h5 --view top
+expect 2 'up to 2048 pixels' render t.h5 --size 3000x10
+expect 2 'no frame 99; the last one is 4' render t.h5 --frames 0,99
+expect 2 '"a" is no frame' render t.h5 --frames a
+expect 2 '"3-1" ends before it begins' render t.h5 --frames 3-1
+expect 2 '7 s is after the last frame' render t.h5 --time 7
+expect 2 '"3" is no number of pictures' render t.h5 --sheet 3
+expect 2 'exclude each other' render t.h5 --movie --sheet 2x2
+expect 2 'the same file' render t.h5 --out t.h5
+expect 4 'cannot write' render t.h5 --out no/folder/t.png
+expect 2 '--backend' render t.h5 --backend serial
+expect 2 'no scene is named' render --scene clth2500
+head -c 5000 t.h5 >cut.h5
+expect 2 'cut.h5' render cut.h5
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
