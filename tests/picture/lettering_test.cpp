@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "picture/glyph_raster.h"
 #include "picture/glyph_table.h"
@@ -32,14 +31,14 @@ TEST(Lettering, KnowsEveryCharacterThatItPromises) {
 }
 
 TEST(Lettering, TablesAreInOrderAndDrawNoTwoCharactersAlike) {
-  std::map<std::vector<std::uint8_t>, char32_t> drawn;
+  std::map<std::string, char32_t> drawn;
   for (const auto table : {letter_glyphs, sign_glyphs}) {
     EXPECT_TRUE(std::ranges::is_sorted(table, {}, &Glyph::character));
     for (const Glyph& glyph : table) {
       const GlyphMask mask = mask_of(glyph, Pen(12));
-      std::vector<std::uint8_t> key = mask.coverage;
-      key.push_back(static_cast<std::uint8_t>(mask.height));
-      key.push_back(static_cast<std::uint8_t>(mask.top));
+      std::string key(mask.coverage.begin(), mask.coverage.end());
+      key += static_cast<char>(mask.height);
+      key += static_cast<char>(mask.top);
       const auto [at, is_new] = drawn.try_emplace(key, glyph.character);
       // The micro sign and mu are meant to look alike.
       EXPECT_TRUE(is_new || glyph.character == U'μ')
