@@ -39,8 +39,7 @@ void read_series(hid_t file, TraceContent& content) {
       time(file, position + "/time", {Hdf5Table::any}),
       positions(file, position + "/value", {Hdf5Table::any, Hdf5Table::any, 3});
   const Hdf5Table velocities(file, velocity + "/value", {Hdf5Table::any, positions.extent(1), 3});
-  const auto [fewest, most] =
-      std::ranges::minmax({step.rows(), time.rows(), positions.rows(), velocities.rows()});
+  const auto [fewest, most] = std::minmax({step.rows(), time.rows(), positions.rows(), velocities.rows()});
   if (most - fewest > 1)
     throw Hdf5ContentError("steps, times, positions and velocities are of unlike numbers of frames, " +
                            std::to_string(fewest) + " to " + std::to_string(most));
