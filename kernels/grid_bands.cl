@@ -1,5 +1,5 @@
-/* What the stage kernels of a grid have in common where a work-item has several lanes: the shape that suits a
- * CPU. The kernels themselves are generated from the table of integrators
+/* The walk over a grid where a work-item has several lanes: the shape that suits a CPU. What a stage does in
+ * a column, and the kernel that takes steps, are generated from the table of integrators
  * (src/backends/opencl/grid_program.cpp) and follow this text.
  *
  * The layout is that of BandLayout (src/backends/layouts/band_grid.h): the rows are cut into MSSIM_LANES
@@ -15,9 +15,15 @@
  * `sums` for the next two columns. The two columns left of its own it walks over too, for what they do to
  * them.
  *
- * No spring points back, so that a stage may write over what it gathers from: half the memory, which decides
- * the speed of a cloth that fills a cache. Columns of another work-item, which may be written already, are
- * gathered from its partition's ghosts, and each pair has ghosts of its own, whatever memory it shares.
+ * No spring points back, so that a stage may write over what it gathers from. The stages of a launch follow
+ * each other at a distance of two columns: what a stage gathers has just been written, and what lives between
+ * stages, the trial pairs, is kept in rings of a few columns. One pass over the state takes all steps of a
+ * launch.
+ *
+ * Work-items do not wait for each other. What a stage needs of the neighbours' columns is computed twice: two
+ * columns for every stage behind it, from ghosts that repeat the neighbours' state before the launch. Each
+ * work-item leaves its columns as ghosts for its neighbours' next launch, in other memory than they still
+ * read in this one.
  */
 #define row_floats (6 * MSSIM_LANES)
 
@@ -25,15 +31,12 @@ typedef MSSIM_PASTE(uint, MSSIM_LANES) Rows;
 
 /* Where MSSIM_LANES nodes are, one in each band. */
 typedef struct {
-  size_t first; /* offset in a pair */
+  size_t first; /* offset from row 0 of the column */
   Mask free;    /* is a node of the cloth and not pinned */
 } Tile;
 
 static inline size_t column_floats(Shape grid) { return (size_t)(grid->height + 4) * row_floats; }
-/* Offset of row 0 of a column in a pair. */
-static inline size_t column_start(size_t column, Shape grid) {
-  return column * column_floats(grid) + 2 * row_floats;
-}
+#define halo 2 /* rows or columns that a spring reaches */
 
 /* The columns of a work-item. */
 typedef struct {
@@ -46,22 +49,52 @@ static inline Partition partition_of(int number, int count, Shape grid) {
   return partition;
 }
 
-/* The ghosts of a pair: [partition][column first - 2, first - 1, end, end + 1], columns as in a pair. */
-static inline __global float* ghosts_of(int pair, __global float* ghosts, const Partition* partition,
-                                        Shape grid) {
-  return ghosts + (size_t)pair * partition->count * 4 * column_floats(grid);
-}
+/* A column of the ghosts of a partition, which are [column first - grid->ghosts .. first - 1,
+ * end .. end + grid->ghosts - 1]. */
 static inline __global float* ghost(__global float* ghosts, int partition, int number, Shape grid) {
-  return ghosts + (size_t)(4 * partition + number) * column_floats(grid) + 2 * row_floats;
+  return ghosts + (size_t)(2 * grid->ghosts * partition + number) * column_floats(grid);
 }
 
-/* Row 0 of a column that the partition gathers. */
-static inline __global const float* gathered_column(int column, __global const float* pair,
-                                                    __global float* ghosts, const Partition* partition,
-                                                    Shape grid) {
-  if (column < partition->first) return ghost(ghosts, partition->number, column - partition->first + 2, grid);
-  if (column >= partition->end) return ghost(ghosts, partition->number, column - partition->end + 2, grid);
-  return pair + column_start(column, grid);
+/* What a work-item works on. */
+typedef struct {
+  Partition partition;
+  __global float* state;
+  __global float *ghosts, *next_ghosts; /* of all partitions, for this launch and for the next one */
+  __global float* rings; /* of this partition: [pair][column % grid->ring], columns as the state's */
+  __global float* sums;  /* of this partition: [stage of the launch][column % 3][row][x y z][lane] */
+} Walk;
+
+static inline size_t sums_floats(Shape grid) { return (size_t)grid->height * 3 * MSSIM_LANES; }
+
+static inline Walk walk_of(int number, int count, int swapped, int ring_pairs, __global float* state,
+                           __global float* ghosts, __global float* rings, __global float* sums, Shape grid) {
+  __global float* second_ghosts = ghost(ghosts, count, 0, grid);
+  Walk walk = {partition_of(number, count, grid),
+               state,
+               swapped ? second_ghosts : ghosts,
+               swapped ? ghosts : second_ghosts,
+               rings + (size_t)number * ring_pairs * grid->ring * column_floats(grid),
+               sums + (size_t)number * grid->ghosts / halo * 3 * sums_floats(grid)};
+  return walk;
+}
+
+/* Row 0 of a column of the state, wherever the partition has it. */
+static inline __global float* state_column(int column, const Walk* walk, Shape grid) {
+  const Partition* partition = &walk->partition;
+  __global float* start;
+  if (column < partition->first)
+    start = ghost(walk->ghosts, partition->number, column - partition->first + grid->ghosts, grid);
+  else if (column >= partition->end)
+    start = ghost(walk->ghosts, partition->number, column - partition->end + grid->ghosts, grid);
+  else
+    start = walk->state + column * column_floats(grid);
+  return start + halo * row_floats;
+}
+
+/* Row 0 of a column of another pair. */
+static inline __global float* ring_column(int pair, int column, const Walk* walk, Shape grid) {
+  return walk->rings + (size_t)(pair * grid->ring + (column & (grid->ring - 1))) * column_floats(grid) +
+         halo * row_floats;
 }
 
 static inline Vector load_vector(__global const float* from) {
@@ -74,7 +107,7 @@ static inline void store_vector(Vector value, __global float* to) {
   store_aligned(value.z, to + 2 * MSSIM_LANES);
 }
 
-/* The tile's own vectors in a pair. */
+/* The tile's own vectors in a pair, of which `pair` is row 0 of the column. */
 static inline Vector load_position(__global const float* pair, Tile tile, Shape grid) {
   return load_vector(pair + tile.first);
 }
@@ -105,17 +138,16 @@ typedef struct {
   uint down_rows, down_2_rows, right_rows, diagonal_rows, right_2_rows;
 } Column;
 
-static inline size_t sums_floats(Shape grid) { return (size_t)grid->height * 3 * MSSIM_LANES; }
-
-/* `sums` are three columns, used in turn. */
-static inline Column column_at(int column, __global const float* pair, __global float* ghosts,
-                               __global float* sums, const Partition* partition, Shape grid) {
+/* The column that the stage of this number in the launch is at. here, next, next_2: see Column. */
+static inline Column column_at(int column, int stage, __global const float* here, __global const float* next,
+                               __global const float* next_2, const Walk* walk, Shape grid) {
   const bool has_next = column + 1 < grid->columns, has_next_2 = column + 2 < grid->columns;
   const uint rows = grid->rows;
+  __global float* sums = walk->sums + (size_t)stage * 3 * sums_floats(grid);
   Column at;
-  at.here = gathered_column(column, pair, ghosts, partition, grid);
-  at.next = gathered_column(column + 1, pair, ghosts, partition, grid);
-  at.next_2 = gathered_column(column + 2, pair, ghosts, partition, grid);
+  at.here = here;
+  at.next = next;
+  at.next_2 = next_2;
   at.on_here = sums + column % 3 * sums_floats(grid);
   at.on_next = sums + (column + 1) % 3 * sums_floats(grid);
   at.on_next_2 = sums + (column + 2) % 3 * sums_floats(grid);
@@ -127,11 +159,11 @@ static inline Column column_at(int column, __global const float* pair, __global 
   return at;
 }
 
-/* What the first two columns of a walk start from. */
-static inline void clear_sums(__global float* sums, int column, Shape grid) {
-  for (int right = 0; right < 2; ++right) {
-    __global float* begin = sums + (column + right) % 3 * sums_floats(grid);
-    for (size_t i = 0; i < sums_floats(grid); i += MSSIM_LANES) store_aligned((Real)(0.0f), begin + i);
+/* What the first column of a walk starts from. */
+static inline void clear_sums(const Column* at, Shape grid) {
+  for (size_t i = 0; i < sums_floats(grid); i += MSSIM_LANES) {
+    store_aligned((Real)(0.0f), at->on_here + i);
+    store_aligned((Real)(0.0f), at->on_next + i);
   }
 }
 
@@ -157,8 +189,9 @@ static inline void prefetch_row(__global const float* row) {
 #endif
 }
 
-/* Computes the springs that a row owns, and returns what acts on its nodes. */
-MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry, Shape grid) {
+/* Computes the springs that a row owns, and returns what acts on its nodes. `prefetch`: not 0 where the state
+ * is gathered; other pairs are in a cache. */
+MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry, int prefetch, Shape grid) {
   const Rows number = cloth_rows(row, grid);
   Vector force = plus(carry->below, load_vector(at->on_here + row * 3 * MSSIM_LANES));
   Vector on_below = carry->below_2, on_below_2 = no_vector(), on_right_2 = no_vector();
@@ -174,7 +207,7 @@ MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry,
   carry->right_below = no_vector();
   add_spring(&force, &carry->right_below, node, load_node(at->next, row + 1), number < at->diagonal_rows,
              shear, grid);
-  prefetch_row(at->next_2 + row * row_floats);
+  if (prefetch) prefetch_row(at->next_2 + row * row_floats);
   add_spring(&force, &on_right_2, node, load_node(at->next_2, row), number < at->right_2_rows, bending, grid);
   store_vector(on_right_2, at->on_next_2 + row * 3 * MSSIM_LANES);
   carry->below = on_below;
@@ -206,24 +239,32 @@ MSSIM_INLINE void end_column(const Column* at, Carry* carry, Shape grid) {
   store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES);
 }
 
-static inline void copy_column(__global const float* from, __global float* to, Shape grid) {
-  for (int i = -2 * row_floats; i < (grid->height + 2) * row_floats; i += MSSIM_LANES)
-    store_aligned(load_aligned(from + i), to + i);
+/* Repeats the rows at the ends of the bands of a column that is written in the halo rows of their neighbours.
+ * column: its row 0. */
+static inline void fill_halo_rows(__global float* column, Shape grid) {
+  const int height = grid->height * row_floats;
+  for (int i = 0; i < halo * row_floats; i += MSSIM_LANES) {
+    store_aligned(from_lane_before(load_aligned(column + height - halo * row_floats + i)),
+                  column - halo * row_floats + i);
+    store_aligned(from_lane_after(load_aligned(column + i)), column + height + i);
+  }
 }
 
-/* Makes a column that is written ready to be gathered: repeats the rows at the ends of the bands in the halo
- * rows of their neighbours, and the column in the ghosts of the partitions beside this one. */
-static inline void finish_column(int column, __global float* pair, __global float* ghosts,
-                                 const Partition* partition, Shape grid) {
-  __global float* start = pair + column_start(column, grid);
-  const int height = grid->height * row_floats;
-  for (int i = 0; i < 2 * row_floats; i += MSSIM_LANES) {
-    store_aligned(from_lane_before(load_aligned(start + height - 2 * row_floats + i)),
-                  start - 2 * row_floats + i);
-    store_aligned(from_lane_after(load_aligned(start + i)), start + height + i);
-  }
-  if (column < partition->first + 2 && partition->number > 0)
-    copy_column(start, ghost(ghosts, partition->number - 1, column - partition->first + 2, grid), grid);
-  if (column >= partition->end - 2 && partition->number + 1 < partition->count)
-    copy_column(start, ghost(ghosts, partition->number + 1, column - partition->end + 2, grid), grid);
+static inline void copy_column(__global const float* from, __global float* to, Shape grid) {
+  for (size_t i = 0; i < column_floats(grid); i += MSSIM_LANES) store_aligned(load_aligned(from + i), to + i);
+}
+
+/* Repeats a column of the state as it is after the launch in the ghosts of the partitions beside this one. */
+static inline void leave_ghosts(int column, const Walk* walk, Shape grid) {
+  const Partition* partition = &walk->partition;
+  __global const float* start = state_column(column, walk, grid) - halo * row_floats;
+  if (column < partition->first + grid->ghosts && partition->number > 0)
+    copy_column(
+        start,
+        ghost(walk->next_ghosts, partition->number - 1, column - partition->first + grid->ghosts, grid),
+        grid);
+  if (column >= partition->end - grid->ghosts && partition->number + 1 < partition->count)
+    copy_column(start,
+                ghost(walk->next_ghosts, partition->number + 1, column - partition->end + grid->ghosts, grid),
+                grid);
 }

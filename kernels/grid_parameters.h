@@ -12,4 +12,6 @@ struct GridParameters {
   int plane;  /* floats from one plane to the next */
   /* For grid_bands.cl, where it owns columns of several bands. */
   int height; /* rows of a band, at least 2 */
+  int ghosts; /* columns on each side of a partition: two for each stage of a launch */
+  int ring;   /* columns that a partition keeps of a pair other than the state, a power of two */
 };

@@ -1,6 +1,10 @@
 /* A spring of a cloth, whatever the shape of its kernels. Needs lanes.h, spring_law.h and grid_parameters.h.
  */
+#if MSSIM_LANES == 1
 typedef __constant struct GridParameters* Shape;
+#else
+typedef const struct GridParameters* Shape; /* a copy: stores to the cloth cannot change it */
+#endif
 
 /* Adds the force of one spring in every lane to what acts on its ends, m/s^2. Where there is no spring,
  * because the cloth ends, whatever the padding holds is computed with and then left out. */

@@ -131,6 +131,14 @@ constexpr Pair storage_of(const Integrator& integrator, Pair pair, Storage stora
   return Pair::state;
 }
 
+/// The arrays that a stage writes `pair` to where stages follow each other in a walk over the nodes. Whatever
+/// a step gathered its `next` in, its last stage writes it over the state, which no later stage of the step
+/// looks at.
+constexpr Pair walk_writes_to(const Integrator& integrator, std::size_t stage, Pair pair) {
+  if (pair == Pair::next && stage + 1 == integrator.stage_count) return Pair::state;
+  return storage_of(integrator, pair, Storage::in_place);
+}
+
 /// Does a step end with the state in the arrays of `next`, so that the two change roles?
 constexpr bool swaps_state(const Integrator& integrator, Storage storage) {
   return storage_of(integrator, Pair::next, storage) == Pair::next;

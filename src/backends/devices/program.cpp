@@ -17,7 +17,6 @@ constexpr std::array<std::string_view, pair_kinds> pair_names{"state", "next", "
 constexpr std::array<std::string_view, slot_kinds> slot_names{
     "x", "v", "x_next", "v_next", "x_a", "v_a", "x_b", "v_b", "a", "temporary_1", "temporary_2"};
 
-std::string name(Pair pair) { return std::string(pair_names[index(pair)]); }
 std::string name(Slot slot) { return std::string(slot_names[index(slot)]); }
 
 std::string kernel_file(const char* file) {
@@ -29,9 +28,8 @@ std::string kernel_file(const char* file) {
   }
 }
 
-bool uses_pair(const Stage& stage, Pair pair) {
-  return stage.gather == pair || writes(stage, pair) || reads(stage, position_slot(pair)) ||
-         reads(stage, velocity_slot(pair));
+bool reads_pair(const Stage& stage, Pair pair) {
+  return stage.gather == pair || reads(stage, position_slot(pair)) || reads(stage, velocity_slot(pair));
 }
 
 /// The sum of an assignment, the last term first, so that the large first term is added last.
@@ -51,33 +49,35 @@ std::string sum_of_terms(const Assignment& assignment, std::size_t stage, std::s
 /// Does the stage write into the arrays of `stored`?
 bool writes_stored(const StoredStage& stage, Pair stored) {
   for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (const Pair pair = static_cast<Pair>(i); stage.stored(pair) == stored && writes(stage.stage(), pair))
+    if (const Pair pair = static_cast<Pair>(i); stage.written(pair) == stored && writes(stage.stage(), pair))
       return true;
   return false;
 }
 
 /// The call that reads or writes the slot's memory: kernels/*_stage.cl have these functions.
-std::string access(const StoredStage& stage, const char* what, Slot slot, const std::string& value = "") {
+std::string access(const char* what, Slot slot, Pair arrays, const std::string& value = "") {
   const bool velocity = index(slot) % 2 == 1;
-  return std::string(what) + (velocity ? "_velocity(" : "_position(") + value +
-         name_of(stage, static_cast<Pair>(index(slot) / 2)) + ", tile, shape)";
+  return std::string(what) + (velocity ? "_velocity(" : "_position(") + value + name_of(arrays) +
+         ", tile, shape)";
 }
+Pair pair_of(Slot slot) { return static_cast<Pair>(index(slot) / 2); }
 
 }  // namespace
 
-std::string name_of(const StoredStage& stage, Pair pair) { return name(stage.stored(pair)); }
+std::string name_of(Pair stored) { return std::string(pair_names[index(stored)]); }
+std::string name_of(const StoredStage& stage, Pair pair) { return name_of(stage.stored(pair)); }
 
 std::string pair_parameters(const StoredStage& stage) {
   std::string text;
   for (const Pair pair : stage_arguments(stage))
     text += std::string("__global ") + (writes_stored(stage, pair) ? "" : "const ") + "float* restrict " +
-            name(pair) + ", ";
+            name_of(pair) + ", ";
   return text;
 }
 
 std::string pair_names_of(const StoredStage& stage) {
   std::string text;
-  for (const Pair pair : stage_arguments(stage)) text += name(pair) + ", ";
+  for (const Pair pair : stage_arguments(stage)) text += name_of(pair) + ", ";
   return text;
 }
 
@@ -95,7 +95,8 @@ std::string update_text(const StoredStage& stored_stage) {
   for (std::size_t i = 0; i < slot_kinds; ++i)
     if (const Slot slot = static_cast<Slot>(i); slot != Slot::a && slot != x && slot != v) {
       if (i < memory_slots && reads(stage, slot))
-        text << "  Vector " << name(slot) << " = " << access(stored_stage, "load", slot) << ";\n";
+        text << "  Vector " << name(slot) << " = " << access("load", slot, stored_stage.stored(pair_of(slot)))
+             << ";\n";
       else if (writes(stage, slot))
         text << "  Vector " << name(slot) << ";\n";
     }
@@ -107,7 +108,7 @@ std::string update_text(const StoredStage& stored_stage) {
          << ", tile.free, &step->surroundings);\n";
   for (std::size_t i = 0; i < memory_slots; ++i)
     if (const Slot slot = static_cast<Slot>(i); writes(stage, slot))
-      text << "  " << access(stored_stage, "store", slot, name(slot) + ", ") << ";\n";
+      text << "  " << access("store", slot, stored_stage.written(pair_of(slot)), name(slot) + ", ") << ";\n";
   text << "}\n";
   return text.str();
 }
@@ -116,10 +117,13 @@ std::string stage_kernel_name(std::size_t stage) { return "stage_" + std::to_str
 
 std::vector<Pair> stage_arguments(const StoredStage& stage) {
   std::vector<Pair> pairs;
+  const auto add = [&](Pair arrays) {
+    if (std::find(pairs.begin(), pairs.end(), arrays) == pairs.end()) pairs.push_back(arrays);
+  };
   for (std::size_t i = 0; i < pair_kinds; ++i) {
-    const Pair pair = static_cast<Pair>(i), stored = stage.stored(pair);
-    if (uses_pair(stage.stage(), pair) && std::find(pairs.begin(), pairs.end(), stored) == pairs.end())
-      pairs.push_back(stored);
+    const Pair pair = static_cast<Pair>(i);
+    if (reads_pair(stage.stage(), pair)) add(stage.stored(pair));
+    if (writes(stage.stage(), pair)) add(stage.written(pair));
   }
   return pairs;
 }

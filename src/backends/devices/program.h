@@ -22,15 +22,20 @@ std::string program_text(int lanes, std::initializer_list<const char*> files);
 /// Name of the stage's kernel.
 std::string stage_kernel_name(std::size_t stage);
 
-/// A stage, and which pairs share memory. Pairs that share it have one name and are one argument.
+/// A stage, and which pairs share memory. Pairs that share it have one name and are one argument. In place,
+/// stages follow each other in a walk (walk_writes_to).
 struct StoredStage {
   const Integrator& integrator;
   std::size_t number;
   Storage storage;
 
   const Stage& stage() const { return integrator.stages[number]; }
-  /// The arrays that hold `pair`.
+  /// The arrays that hold `pair` until the stage.
   Pair stored(Pair pair) const { return storage_of(integrator, pair, storage); }
+  /// The arrays that the stage writes `pair` to.
+  Pair written(Pair pair) const {
+    return storage == Storage::in_place ? walk_writes_to(integrator, number, pair) : stored(pair);
+  }
 };
 
 /// The stored pairs whose buffers are the first arguments of the stage's kernel, in their order. The step
@@ -41,7 +46,8 @@ std::vector<Pair> stage_arguments(const StoredStage& stage);
 std::string pair_parameters(const StoredStage& stage);
 std::string pair_names_of(const StoredStage& stage);
 
-/// The name by which the stage's kernel knows `pair`.
+/// The name by which kernels know the arrays of `stored`, and those that hold `pair` until the stage.
+std::string name_of(Pair stored);
 std::string name_of(const StoredStage& stage, Pair pair);
 
 /// `update_N`: the assignments of stage N for the nodes of a tile, once their springs are summed. It takes

@@ -1,6 +1,8 @@
 #include "backends/opencl/grid_program.h"
 
+#include <algorithm>
 #include <sstream>
+#include <vector>
 
 #include "backends/devices/program.h"
 #include "model/spring.h"
@@ -54,44 +56,91 @@ std::string nodes_kernel_text(const StoredStage& stage) {
   return text.str();
 }
 
-/// The ghosts of a pair. The state's and those of `next` change roles after every step.
-std::string ghosts_of(Pair pair) {
-  return "ghosts_of(" + std::to_string(index(pair)) + (index(pair) < 2 ? " ^ swapped" : "") +
-         ", ghosts, &partition, grid)";
+/// The pairs besides the state that a walk keeps columns of, in the order of their rings.
+std::vector<Pair> ring_pairs(const Integrator& integrator) {
+  std::vector<Pair> pairs = stored_pairs(integrator, Storage::in_place);
+  std::erase(pairs, Pair::state);
+  return pairs;
 }
 
-std::string bands_kernel_text(const StoredStage& stage) {
-  const Pair gather = stage.stage().gather;
+/// Where row 0 of a column of the arrays of `stored` begins.
+std::string column_of(const Integrator& integrator, Pair stored, const std::string& column) {
+  const std::string end = column + ", walk, grid)";
+  if (stored == Pair::state) return "state_column(" + end;
+  const std::vector<Pair> rings = ring_pairs(integrator);
+  const auto ring = std::ranges::find(rings, stored) - rings.begin();
+  return "ring_column(" + std::to_string(ring) + ", " + end;
+}
+
+/// Takes the stage through one column, if it is one of those that it updates or of the two before them, whose
+/// springs act on them. `number`: of the stage in the launch, before `after` others.
+std::string walk_stage_text(const StoredStage& stage) {
+  const Integrator& integrator = stage.integrator;
+  const Pair gather = stage.stored(stage.stage().gather);
+  std::ostringstream text;
+  text << "static inline void walk_stage_" << stage.number
+       << "(int column, int number, int after, const Walk* walk, __constant struct StepParameters* step,\n"
+          "    Shape grid, __global const int* restrict free_masks, __global const int* restrict is_free) {\n"
+          "  const int begin = max(walk->partition.first - halo * after, 0);\n"
+          "  const int end = min(walk->partition.end + halo * after, grid->columns);\n"
+          "  const int start = max(begin - halo, 0);\n"
+          "  if (column < start || column >= end) return;\n";
+  for (const Pair pair : stage_arguments(stage))
+    text << "  __global float* const " << name_of(pair) << " = " << column_of(integrator, pair, "column")
+         << ";\n";
+  text << "  const Column at = column_at(column, number, " << name_of(gather) << ", "
+       << column_of(integrator, gather, "column + 1") << ",\n      "
+       << column_of(integrator, gather, "column + 2")
+       << ", walk, grid);\n"
+          "  if (column == start) clear_sums(&at, grid);\n"
+          "  __global const int* mask = is_free + free_masks[column] * grid->height * MSSIM_LANES;\n"
+          "  Carry carry = begin_column(&at, grid);\n"
+          "  for (int row = 0; row < grid->height; ++row) {\n"
+          "    const Node node = load_node(at.here, row);\n"
+          "    const Vector forces = walk_row(&at, node, row, &carry, "
+       << (gather == Pair::state)
+       << ", grid);\n"
+          "    if (column < begin) continue;\n"
+          "    const Tile tile = {(size_t)row * row_floats, load_aligned_mask(mask + row * MSSIM_LANES)};\n"
+       << "    " << update_call(stage)
+       << "forces, grid, step);\n"
+          "  }\n"
+          "  end_column(&at, &carry, grid);\n"
+          "  if (column < begin) return;\n";
+  for (std::size_t i = 0; i < pair_kinds; ++i)
+    if (const Pair pair = static_cast<Pair>(i); writes_to_gather(integrator, stage.number, pair))
+      text << "  fill_halo_rows(" << name_of(stage.written(pair)) << ", grid);\n";
+  if (stage.number + 1 == integrator.stage_count)
+    text << "  if (after == 0) leave_ghosts(column, walk, grid);\n";
+  text << "}\n";
+  return text.str();
+}
+
+std::string walk_kernel_text(const Integrator& integrator) {
+  const std::string stages = std::to_string(integrator.stage_count);
   std::ostringstream text;
   text
-      << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
-      << "__global float* ghosts, int swapped, __constant struct StepParameters* step,\n"
-         "    __constant struct GridParameters* grid, __global const int* restrict free_masks,\n"
-         "    __global const int* restrict is_free, __global float* restrict sums) {\n"
-         "  const Partition partition = partition_of((int)get_global_id(0), (int)get_global_size(0), grid);\n"
-         "  sums += partition.number * 3 * sums_floats(grid);\n"
-         "  int column = max(partition.first - 2, 0);\n"
-         "  clear_sums(sums, column, grid);\n"
-         "  for (; column < partition.end; ++column) {\n"
-      << "    const Column at = column_at(column, " << name_of(stage, gather) << ", " << ghosts_of(gather)
-      << ", sums, &partition, grid);\n"
-         "    __global const int* mask = is_free + free_masks[column] * grid->height * MSSIM_LANES;\n"
-         "    Carry carry = begin_column(&at, grid);\n"
-         "    for (int row = 0; row < grid->height; ++row) {\n"
-         "      const Node node = load_node(at.here, row);\n"
-         "      const Vector forces = walk_row(&at, node, row, &carry, grid);\n"
-         "      if (column < partition.first) continue;\n"
-         "      const Tile tile = {column_start(column, grid) + row * row_floats,\n"
-         "                         load_aligned_mask(mask + row * MSSIM_LANES)};\n"
-      << "      " << update_call(stage) << "forces, grid, step);\n"
-      << "    }\n"
-         "    end_column(&at, &carry, grid);\n"
-         "    if (column < partition.first) continue;\n";
-  for (std::size_t i = 0; i < pair_kinds; ++i)
-    if (const Pair pair = static_cast<Pair>(i); writes_to_gather(stage.integrator, stage.number, pair))
-      text << "    finish_column(column, " << name_of(stage, pair) << ", " << ghosts_of(pair)
-           << ", &partition, grid);\n";
-  text << "  }\n}\n";
+      << "\n__kernel void " << steps_kernel_name()
+      << "(__global float* state, __global float* ghosts, int swapped, int steps,\n"
+         "    __constant struct StepParameters* step, __constant struct GridParameters* parameters,\n"
+         "    __global const int* restrict free_masks, __global const int* restrict is_free, __global float* "
+         "rings,\n    __global float* sums) {\n"
+      << "  const struct GridParameters copy = *parameters;\n  const struct GridParameters* const grid = "
+         "&copy;\n"
+      << "  const Walk walk = walk_of((int)get_global_id(0), (int)get_global_size(0), swapped, "
+      << ring_pairs(integrator).size()
+      << ", state, ghosts,\n      rings, sums, grid);\n"
+         "  const int last = steps * "
+      << stages
+      << " - 1;\n"
+         "  const int end = walk.partition.end + halo * last;\n"
+         "  for (int head = max(walk.partition.first - halo * (last + 1), 0); head < end; ++head)\n"
+         "    for (int first = 0; first <= last; first += "
+      << stages << ") {\n";
+  for (std::size_t number = 0; number < integrator.stage_count; ++number)
+    text << "      walk_stage_" << number << "(head - halo * (first + " << number << "), first + " << number
+         << ", last - first - " << number << ", &walk, step, grid, free_masks, is_free);\n";
+  text << "    }\n}\n";
   return text.str();
 }
 
@@ -112,9 +161,12 @@ std::string grid_program_text(const Integrator& integrator, int lanes) {
   if (!walks) text += gather_springs_text();
   for (std::size_t number = 0; number < integrator.stage_count; ++number) {
     const StoredStage stage{integrator, number, walks ? Storage::in_place : Storage::separate};
-    text += update_text(stage) + (walks ? bands_kernel_text(stage) : nodes_kernel_text(stage));
+    text += update_text(stage) + (walks ? walk_stage_text(stage) : nodes_kernel_text(stage));
   }
+  if (walks) text += walk_kernel_text(integrator);
   return text;
 }
+
+std::string steps_kernel_name() { return "take_steps"; }
 
 }  // namespace mssim

@@ -27,7 +27,7 @@ class OpenclMesh final : public OpenclStages {
  public:
   OpenclMesh(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
              DeviceMemory memory, int lanes, const SlicedGraph& graph)
-      : OpenclStages(system, integrator, dt_s, device, memory, Storage::separate, record_layout(graph),
+      : OpenclStages(system, integrator, dt_s, device, memory, record_layout(graph),
                      {graph.neighbour.size() * sizeof(cl_uint), graph.neighbour.size() * sizeof(float)}) {
     const std::size_t tiles = graph.slots() / static_cast<std::size_t>(lanes);
     const OpenclChunks chunks(tiles, device, lanes);

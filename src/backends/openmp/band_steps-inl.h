@@ -45,7 +45,7 @@ HWY_NOINLINE inline void finish_column(const BandLayout& layout, const std::vect
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void finish_written(const BandLayout& layout, BandPartition& partition, std::size_t column) {
   const auto finish = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
-    constexpr Pair pair = static_cast<Pair>(i), stored = written_to<method, stage>(pair);
+    constexpr Pair pair = static_cast<Pair>(i), stored = walk_writes_to(integrators[method], stage, pair);
     if constexpr (writes_to_gather(integrators[method], stage, pair))
       finish_column(layout, partition.pins[partition.local(column)],
                     partition.column(layout, stored, column));

@@ -41,15 +41,6 @@ static_assert(grid_stencil[3].rows == -1 && grid_stencil[3].columns == 1, "right
 static_assert(grid_stencil[4].rows == 2 && grid_stencil[4].columns == 0, "down_2");
 static_assert(grid_stencil[5].rows == 0 && grid_stencil[5].columns == 2, "right_2");
 
-/// The stored pair that a stage writes `pair` to. Whatever a step gathered its `next` in, its last stage
-/// writes it over the state, which no later stage of the step looks at.
-template <std::size_t method, std::size_t stage>
-constexpr Pair written_to(Pair pair) {
-  constexpr const Integrator& integrator = integrators[method];
-  if (pair == Pair::next && stage + 1 == integrator.stage_count) return Pair::state;
-  return storage_of(integrator, pair, Storage::in_place);
-}
-
 /// Where the walk reads and writes. Pointers to columns stand at row 0.
 struct ColumnView {
   const float* here;                     ///< gathered pair, this column
@@ -224,7 +215,7 @@ HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& colu
       },
       [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t i = index(decltype(slot)::value);
-        store3(address(written_to<method, stage>(static_cast<Pair>(i / 2)), i), value);
+        store3(address(walk_writes_to(integrators[method], stage, static_cast<Pair>(i / 2)), i), value);
       },
       [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
         const Lanes height(surroundings.floor_height);

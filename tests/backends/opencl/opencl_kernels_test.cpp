@@ -8,8 +8,10 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <variant>
 #include <vector>
 
+#include "backends/opencl/bands.h"
 #include "backends/spring_list/serial.h"
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/opencl_dressing.h"
@@ -65,6 +67,28 @@ TEST_P(OpenclKernels, TakeAFewStepsLikeTheReference) {
       EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6)
           << integrator.name << ", " << system.nodes() << " nodes";
     }
+}
+
+class BandsOpenclKernels : public testing::TestWithParam<int> {};
+
+INSTANTIATE_TEST_SUITE_P(OfEachWidth, BandsOpenclKernels,
+                         testing::ValuesIn(opencl_lanes.begin() + 1, opencl_lanes.end()),
+                         [](const auto& test) { return "bands_" + std::to_string(test.param) + "_lanes"; });
+
+TEST_P(BandsOpenclKernels, TakeAFewStepsLikeTheReferenceOnSeveralWorkItems) {
+  const DeviceInMemory copied = ways_to_memory().front();
+  const System system = held_above_a_floor(cloth_system(5, 33));
+  const auto& grid = std::get<GridPatch>(system.topology);
+  for (const char* name : {"semi-euler", "rk4"}) {
+    const Integrator& integrator = *find_integrator(name);
+    const auto reference = make_reference(system, integrator, dt_s);
+    reference->step(steps);
+    // Two work-items of rk4, in a launch of two steps and one of one.
+    const auto backend =
+        make_opencl_bands(system, grid, integrator, dt_s, copied.device, copied.memory, GetParam(), 2);
+    backend->step(steps);
+    EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6) << name;
+  }
 }
 
 class DressingOpenclKernels : public testing::TestWithParam<int> {};

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "backends/layouts/band_grid.h"
+#include "backends/opencl/pair_layout.h"
+
+namespace mssim {
+
+/// How the columns of a cloth are shared among the work-items of a launch that walks over them
+/// (kernels/grid_bands.cl), and how many steps the launch takes.
+struct BandShape {
+  BandLayout bands;
+  std::size_t steps = 1;       ///< of a launch
+  std::size_t ghosts = 0;      ///< columns on each side of a partition
+  std::size_t partitions = 0;  ///< work-items
+
+  /// Of all shapes the one whose steps take least on so many compute units with a cache of so many bytes;
+  /// with `steps_in_a_launch` if that is given.
+  BandShape(const GridPatch& grid, const Integrator& integrator, std::size_t lanes, std::size_t units,
+            std::uint64_t cache_bytes, std::optional<std::size_t> steps_in_a_launch = {});
+
+  /// First column of a partition.
+  std::size_t first(std::size_t partition) const { return bands.columns * partition / partitions; }
+  /// Columns that a partition keeps of a trial pair: at least as many as lie between the first stage and what
+  /// the last one gathers.
+  std::size_t ring() const;
+
+  /// Layout of the state, which is one piece.
+  PairLayout state_layout() const;
+  /// Layout of the ghosts, [partitions][2 ghosts] columns, all of them copies.
+  PairLayout ghost_layout() const;
+
+ private:
+  /// Places in a column of rows of the cloth: offset and row.
+  using Places = std::vector<std::pair<std::size_t, std::size_t>>;
+
+  /// The shape with so many steps a launch, and with so many partitions if the cloth has the columns.
+  BandShape with(std::size_t steps_in_a_launch, std::size_t most_partitions,
+                 const Integrator& integrator) const;
+  /// How long a step takes, in the time in which a compute unit takes a node through a stage.
+  double step_cost(const Integrator& integrator, std::size_t units) const;
+
+  PairLayout column_layout() const;
+  Places rows_in_bands() const;
+  Places rows_in_halos() const;
+  void add_column(PairLayout& pair, std::size_t start, std::size_t column, const Places& rows) const;
+};
+
+}  // namespace mssim

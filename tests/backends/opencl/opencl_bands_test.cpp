@@ -1,0 +1,111 @@
+// Launches that take several steps through all stages, against launches of one step and of one stage.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "backends/devices/offer.h"
+#include "backends/opencl/bands.h"
+#include "backends/opencl/opencl.h"
+#include "integrators/integrators.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/largest_distance.h"
+#include "tests/support/opencl_variants.h"
+
+namespace mssim {
+namespace {
+
+constexpr double dt_s = 1e-4;
+
+/// A moving cloth, pinned at some nodes all over it, the last one too, that meets the floor along a wave.
+System pinned_cloth_on_a_floor(std::uint32_t rows, std::uint32_t columns) {
+  System system = cloth_system(rows, columns);
+  const auto nodes = static_cast<std::uint32_t>(system.nodes());
+  system.floor = {.height = 0.5, .restitution = 0.3, .friction = 0.4};
+  for (std::uint32_t node = 0; node < nodes; ++node) {
+    system.start.position[node].y = 0.5 + 2e-3 * std::sin(0.3 * node);
+    system.start.velocity[node] = {0.1 * std::cos(node), 0.2 * std::sin(0.3 * node), 0.1};
+  }
+  system.pins.clear();
+  for (std::uint32_t node = 2; node + 1 < nodes; node += 17) system.pins.push_back(node);
+  if (nodes > 1) system.pins.push_back(nodes - 1);
+  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
+  round_to_single(system.start);
+  return system;
+}
+
+/// On a device with that many compute units.
+std::unique_ptr<Backend> bands_of(const System& system, const Integrator& integrator, std::uint32_t units,
+                                  std::size_t steps_in_a_launch, DeviceMemory memory = DeviceMemory::shared) {
+  OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  device.compute_units = units;
+  return make_opencl_bands(system, std::get<GridPatch>(system.topology), integrator, dt_s, device, memory,
+                           most_opencl_lanes, steps_in_a_launch);
+}
+
+TEST(OpenclBands, GiveTheSameBitsForAnyNumberOfStepsALaunchAndOfWorkItems) {
+  constexpr int steps = 31;  // no multiple of those of a launch
+  for (const auto& [rows, columns] : {std::pair{1U, 40U}, {5U, 2U}, {35U, 61U}, {3U, 90U}}) {
+    const System system = pinned_cloth_on_a_floor(rows, columns);
+    for (const char* name : {"semi-euler", "midpoint", "rk4"}) {
+      const Integrator& integrator = *find_integrator(name);
+      const auto alone = bands_of(system, integrator, 1, 1);
+      for (int step = 0; step < steps; ++step) alone->step(1);
+      const State expected = alone->state();
+      EXPECT_NE(expected.position, system.start.position);
+      for (const std::uint32_t units : {1U, 3U, 200U})
+        for (const std::size_t count : {1U, 2U, 3U}) {
+          const auto backend = bands_of(system, integrator, units, count);
+          EXPECT_EQ(backend->steps_per_pass(), static_cast<int>(count));
+          backend->step(steps - 6);
+          backend->step(6);
+          const State found = backend->state();
+          EXPECT_EQ(found.position, expected.position)
+              << name << ", " << rows << " x " << columns << ", " << units << ", " << count;
+          EXPECT_EQ(found.velocity, expected.velocity)
+              << name << ", " << rows << " x " << columns << ", " << units << ", " << count;
+        }
+    }
+  }
+}
+
+TEST(OpenclBands, AgreeWithLaunchesOfOneStage) {
+  const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  for (const auto& [rows, columns] : {std::pair{1U, 1U}, {17U, 5U}, {35U, 61U}}) {
+    const System system = pinned_cloth_on_a_floor(rows, columns);
+    for (const Integrator& integrator : integrators) {
+      const auto stages = make_opencl(system, integrator, dt_s, device, 1);
+      EXPECT_EQ(stages->steps_per_pass(), 0);
+      stages->step(23);
+      const auto bands = bands_of(system, integrator, 3, 2);
+      bands->step(23);
+      // The springs of a node are summed in another order.
+      EXPECT_LT(largest_distance(bands->state().position, stages->state().position), 1e-6)
+          << integrator.name << ", " << rows << " x " << columns;
+      EXPECT_LT(largest_distance(bands->state().velocity, stages->state().velocity), 5e-4)
+          << integrator.name << ", " << rows << " x " << columns;
+    }
+  }
+}
+
+TEST(OpenclBands, StartAgainFromTheStateTheyAreGivenAfterAnyNumberOfLaunches) {
+  const System system = pinned_cloth_on_a_floor(21, 61);
+  for (const DeviceMemory memory : {DeviceMemory::shared, DeviceMemory::copy})
+    for (const int before : {0, 1, 3, 4}) {
+      const auto fresh = bands_of(system, *find_integrator("midpoint"), 3, 3, memory);
+      fresh->step(8);
+      const auto backend = bands_of(system, *find_integrator("midpoint"), 3, 3, memory);
+      backend->step(before);
+      backend->set_state(system.start);
+      EXPECT_EQ(backend->state().position, system.start.position);
+      backend->step(8);
+      EXPECT_EQ(backend->state().position, fresh->state().position) << before;
+      EXPECT_EQ(backend->state().velocity, fresh->state().velocity) << before;
+    }
+}
+
+}  // namespace
+}  // namespace mssim
