@@ -43,9 +43,9 @@ BandShape BandShape::with(std::size_t steps_in_a_launch, std::size_t most_partit
 
 double BandShape::step_cost(const Integrator& integrator, std::size_t units) const {
   // In units of 4 ns, as measured with PoCL on two Zen 4 cores, where a launch of next to nothing took 4
-  // microseconds. Waking the device's threads takes longer on a cloth; by how much is inferred. More steps make fewer launches and more ghosts,
-  // which are computed twice; more partitions leave some of the share of a compute unit that was held up to
-  // the others.
+  // microseconds. Waking the device's threads takes longer on a cloth; by how much is inferred. More steps
+  // make fewer launches and more ghosts, which are computed twice; more partitions leave some of the share of
+  // a compute unit that was held up to the others.
   constexpr double launch = 1500;
   constexpr double unevenness = 0.05;  // of a partition's time, by which the last one is later
   const auto number = [](std::size_t count) { return static_cast<double>(count); };

@@ -20,6 +20,7 @@
 namespace mssim {
 namespace {
 
+/// A cloth in bands, a launch a few steps.
 class OpenclBands final : public Backend {
  public:
   OpenclBands(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
