@@ -1,10 +1,10 @@
 #include "geometry/closed_parts.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <utility>
+
+#include "geometry/disjoint_sets.h"
 
 namespace mssim {
 namespace {
@@ -13,19 +13,13 @@ constexpr std::uint32_t unknown = UINT32_MAX;
 
 /// For each point, one point of the part that it belongs to, the same for the whole part.
 std::vector<std::uint32_t> representatives(const Surface& surface) {
-  std::vector<std::uint32_t> parent(surface.points.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root_of = [&](std::uint32_t point) {
-    while (parent[point] != point) point = parent[point] = parent[parent[point]];
-    return point;
-  };
+  DisjointSets parts(surface.points.size());
   for (const auto& [a, b, c] : surface.triangles)
-    for (const std::uint32_t other : {b, c}) {
-      const auto [low, high] = std::minmax({root_of(a), root_of(other)});
-      parent[high] = low;
-    }
-  for (std::uint32_t point = 0; point < parent.size(); ++point) parent[point] = root_of(point);
-  return parent;
+    for (const std::uint32_t other : {b, c}) parts.unite(a, other);
+  std::vector<std::uint32_t> representative(surface.points.size());
+  for (std::uint32_t point = 0; point < representative.size(); ++point)
+    representative[point] = parts.root(point);
+  return representative;
 }
 
 }  // namespace

@@ -75,6 +75,10 @@ expect 2 '"3" is no number of pictures' render t.h5 --sheet 3
 expect 2 'exclude each other' render t.h5 --movie --sheet 2x2
 expect 2 'the same file' render t.h5 --out t.h5
 expect 4 'cannot write' render t.h5 --out no/folder/t.png
+cp "$2/scenes/cloth2500.json" mine.json
+expect 2 'the same file' render --scene mine.json --out mine.json
+cmp -s "$2/scenes/cloth2500.json" mine.json || fail "the scene is written over"
+expect 2 'a movie has 0.1 to 1000' render t.h5 --movie --fps 5000
 expect 2 '--backend' render t.h5 --backend serial
 expect 2 'no scene is named' render --scene clth2500
 head -c 5000 t.h5 >cut.h5

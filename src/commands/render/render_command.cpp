@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iomanip>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands/render/frame_choice.h"
@@ -26,6 +24,7 @@
 #include "platform/atomic_file.h"
 #include "platform/temporary_folder.h"
 #include "scene/scene_file.h"
+#include "text/decimal.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -36,7 +35,7 @@ namespace fs = std::filesystem;
 struct RenderOptions {
   std::string trace;
   RunOptions run;  ///< of --scene; its fps is that of a movie, too
-  std::string out, view = "three-quarter", size, sheet;
+  std::string out, view = "three-quarter", size, sheet_size;
   std::vector<std::string> frames;
   std::optional<double> time_s;
   bool movie = false;
@@ -46,12 +45,23 @@ struct RenderOptions {
 constexpr double movie_fps = 30;
 constexpr std::uint32_t most_on_a_sheet = 20;  // across and down
 
+using Size = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Columns and rows of the sheet; none where there is none.
+std::optional<Size> sheet_size(const RenderOptions& options) {
+  const auto sheet = two_numbers(options.sheet_size, most_on_a_sheet);
+  if (!sheet && !options.sheet_size.empty())
+    throw UsageError("--sheet: \"" + printable(options.sheet_size) + "\" is no number of pictures; give " +
+                     "COLUMNSxROWS, up to " + std::to_string(most_on_a_sheet) + " each");
+  return sheet;
+}
+
 PictureOptions picture_options(const RenderOptions& options) {
   const auto view = view_direction(options.view);
   if (!view)
     throw UsageError("--view: \"" + printable(options.view) +
                      "\" is no view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
-  const bool alone = options.sheet.empty() && !options.movie;
+  const bool alone = options.sheet_size.empty() && !options.movie;
   const std::string& wanted = options.size;
   const auto size = two_numbers(!wanted.empty() ? wanted
                                 : alone         ? "960x720"
@@ -70,7 +80,7 @@ std::string stem_of(const RenderOptions& options) {
 
 fs::path output_of(const RenderOptions& options) {
   if (!options.out.empty()) return options.out;
-  return stem_of(options) + (options.movie ? ".apng" : options.sheet.empty() ? ".png" : "-sheet.png");
+  return stem_of(options) + (options.movie ? ".apng" : options.sheet_size.empty() ? ".png" : "-sheet.png");
 }
 
 /// The frames that are drawn, in their order.
@@ -83,15 +93,9 @@ std::vector<std::size_t> chosen_frames(const RenderOptions& options, const Trace
     chosen = listed_frames(options.frames, frames);
   else
     for (std::size_t frame = 0; frame < frames; ++frame) chosen.push_back(frame);
-  if (const auto sheet = two_numbers(options.sheet, most_on_a_sheet))
+  if (const auto sheet = sheet_size(options))
     return spread_over(chosen, std::size_t{sheet->first} * sheet->second);
   return options.movie ? chosen : std::vector{chosen.back()};
-}
-
-std::string caption_of(double time_s) {
-  std::ostringstream text;
-  text << "t = " << std::fixed << std::setprecision(2) << time_s << " s";
-  return text.str();
 }
 
 /// At which a movie shows frames as fast as they follow each other in simulated time.
@@ -120,11 +124,10 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
     if (movie)
       movie->add(drawn);
     else
-      pictures.push_back({std::move(drawn), caption_of(content.time_s[frames[i]])});
+      pictures.push_back({std::move(drawn), "t = " + fixed_decimal(content.time_s[frames[i]], 2) + " s"});
   }
   if (movie) return movie->bytes();
-  if (const auto sheet = two_numbers(options.sheet, most_on_a_sheet))
-    return png_of(sheet_of(pictures, sheet->first));
+  if (const auto sheet = sheet_size(options)) return png_of(sheet_of(pictures, sheet->first));
   return png_of(pictures.front().picture);
 }
 
@@ -133,7 +136,7 @@ double fps_of_run(const RenderOptions& options) {
   if (options.run.fps) return *options.run.fps;
   if (options.movie || options.time_s || !options.frames.empty()) return movie_fps;
   const double duration_s = options.run.duration_s.value_or(default_duration_s);
-  const auto sheet = two_numbers(options.sheet, most_on_a_sheet);
+  const auto sheet = sheet_size(options);
   const std::uint32_t moments = sheet ? sheet->first * sheet->second : 2;
   // When a garment has settled nobody knows.
   if (sheet && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content)) return movie_fps;
@@ -142,9 +145,9 @@ double fps_of_run(const RenderOptions& options) {
 
 int render(const RenderOptions& options) {
   const PictureOptions picture = picture_options(options);
-  if (!options.sheet.empty() && !two_numbers(options.sheet, most_on_a_sheet))
-    throw UsageError("--sheet: \"" + printable(options.sheet) + "\" is no number of pictures; give " +
-                     "COLUMNSxROWS, up to " + std::to_string(most_on_a_sheet) + " each");
+  sheet_size(options);  // before anything is simulated
+  if (options.movie && options.run.fps && (*options.run.fps < 0.1 || *options.run.fps > 1000))
+    throw UsageError("--fps: a movie has 0.1 to 1000 frames a second, not " + decimal(*options.run.fps));
   if (options.trace.empty() == options.run.scene.empty()) throw UsageError("give either a trace or --scene");
   const fs::path out = output_of(options);
   fs::path trace = options.trace;
@@ -155,6 +158,10 @@ int render(const RenderOptions& options) {
     trace = temporary_folder_of_process() / "scene.h5";
     run.files.trace = trace.string();
     require_replaceable(out);
+    std::vector<NamedFile> read;
+    for (const fs::path& file : files_of(find_scene(run.scene)))
+      read.push_back({"a file of the scene", file});
+    require_distinct({{"--out", out}}, read);
     code = run_scene(run);
   } else {
     require_distinct({{"--out", out}}, {{"the trace", trace}});
@@ -202,7 +209,7 @@ std::function<int()> declare_render(Arguments& arguments) {
       .value_name("LIST")
       .excludes(time);
   const Argument sheet =
-      arguments.add("--sheet", options->sheet, "Put so many moments, evenly spread, on one sheet")
+      arguments.add("--sheet", options->sheet_size, "Put so many moments, evenly spread, on one sheet")
           .value_name("COLUMNSxROWS")
           .excludes(time);
   arguments.add_flag("--movie", options->movie, "Write an animated PNG of the frames")

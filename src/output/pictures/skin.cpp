@@ -5,31 +5,14 @@
 #include <cstddef>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
+
+#include "geometry/disjoint_sets.h"
 
 namespace mssim {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-
-/// Sets of whole numbers that are united two by two.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  /// The smallest number of the set.
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t ra = root(a), rb = root(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Two triangles a cell, from consecutive nodes, row by row.
 void add_grid(Skin& skin, std::string name, std::uint32_t first_node, std::uint32_t rows,
