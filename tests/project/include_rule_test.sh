@@ -56,7 +56,7 @@ output/hdf5
 output/tables         text statistics platform bench/machine bench/results
 garment/output        text garment bench/results output/hdf5 output/tables
 output/traces         text platform geometry model output/hdf5 garment/output
-output/pictures       geometry render picture model garment output/traces
+output/pictures       geometry render picture model scene/fields garment output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
 
 commands/arguments    text

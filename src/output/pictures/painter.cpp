@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstddef>
 
-#include "output/pictures/scene_floor.h"
 #include "picture/colour_bar.h"
 #include "picture/colour_map.h"
 #include "picture/legend.h"
 #include "render/srgb.h"
+#include "scene/fields/scene_floor.h"
 
 namespace mssim {
 namespace {

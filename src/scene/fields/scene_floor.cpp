@@ -1,4 +1,4 @@
-#include "output/pictures/scene_floor.h"
+#include "scene/fields/scene_floor.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
