@@ -16,13 +16,12 @@
 #include "backends/spring_list/serial.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 
 namespace mssim {
 namespace {
-
-constexpr double dt_s = 1e-4;
 
 std::string plain(std::string_view name) {
   std::string text(name);
@@ -37,7 +36,7 @@ class EachBackendAndIntegrator
   const BackendInfo& backend() const { return *find_backend(std::get<0>(GetParam())); }
   const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
   std::unique_ptr<Backend> make(const System& system, int threads = 2) const {
-    return backend().make(system, integrator(), dt_s, {threads, ""});
+    return backend().make(system, integrator(), backend_dt_s, {threads, ""});
   }
 };
 
@@ -59,11 +58,11 @@ TEST_P(EachBackendAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
   for (const auto& [rows, columns] :
        {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {2U, 2U}, {1U, 7U}, {7U, 1U}}) {
     const System system = cloth_system(rows, columns);
-    const Reference reference = run_reference(system, integrator(), dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_s);
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
     const auto simulation = make(system);
-    const Verification verification = verify(*simulation, system, reference, dt_s);
+    const Verification verification = verify(*simulation, system, reference, backend_dt_s);
     EXPECT_FALSE(verification.failure)
         << rows << " x " << columns << ": " << verification.failure.value_or("");
   }
@@ -87,11 +86,12 @@ INSTANTIATE_TEST_SUITE_P(Tables, EachOtherBackendAndIntegrator,
 TEST_P(EachOtherBackendAndIntegrator, StaysAsNearToTheReferenceAsTheSpringList) {
   // Twice what the plain list in single precision is away: no formula or order of sums gives accuracy up.
   for (const System& system : {cloth_system(50, 50), cloth_system(100, 140), solid_block(9, 9, 9)}) {
-    const Reference reference = run_reference(system, integrator(), dt_s);
-    const auto serial = make_serial(system, integrator(), dt_s, {1, ""});
-    const double usual = verify(*serial, system, reference, dt_s).position_error;
+    const Reference reference = run_reference(system, integrator(), backend_dt_s);
+    const auto serial = make_serial(system, integrator(), backend_dt_s, {1, ""});
+    const double usual = verify(*serial, system, reference, backend_dt_s).position_error;
     EXPECT_GT(usual, 0);
-    EXPECT_LE(verify(*make(system), system, reference, dt_s).position_error, 2 * usual) << system.nodes();
+    EXPECT_LE(verify(*make(system), system, reference, backend_dt_s).position_error, 2 * usual)
+        << system.nodes();
   }
 }
 
@@ -113,7 +113,7 @@ TEST_P(EachBackendAndIntegrator, TreatsTheFloorLikeTheReference) {
   // A sheet that hits the floor flat, sliding: its nodes land in the same step in any precision.
   System system = build_system(sheet_spec(20, 17, 0.00101));
   for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
-  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_s);
   const auto simulation = make(system);
   reference->step(15);
   simulation->step(15);
@@ -170,11 +170,11 @@ std::vector<System> bodies_of_any_shape() {
 
 TEST_P(EachBackendAndIntegratorOnBodies, AgreesWithTheReference) {
   for (const System& system : bodies_of_any_shape()) {
-    const Reference reference = run_reference(system, integrator(), dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_s);
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
     const auto simulation = make(system);
-    const Verification verification = verify(*simulation, system, reference, dt_s);
+    const Verification verification = verify(*simulation, system, reference, backend_dt_s);
     EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
   }
 }
@@ -210,7 +210,7 @@ TEST_P(EachBackendAndIntegratorOnBodies, TreatsTheFloorLikeTheReference) {
     const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
     spring.rest_length = static_cast<float>(std::sqrt(dot(d, d)));
   }
-  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_s);
   const auto simulation = make(system);
   reference->step(15);
   simulation->step(15);
@@ -270,12 +270,12 @@ bool has_met_floor(const System& system, const State& state) {
 
 /// Expects the same bits after a bounce with any number of threads.
 void expect_same_bits(const System& system, const Integrator& integrator) {
-  const auto alone = make_openmp(system, integrator, dt_s, {1, ""});
+  const auto alone = make_openmp(system, integrator, backend_dt_s, {1, ""});
   alone->step(steps_with_a_bounce);
   const State expected = alone->state();
   EXPECT_TRUE(has_met_floor(system, expected));
   for (const int threads : {2, 3, 4, 7}) {
-    const auto simulation = make_openmp(system, integrator, dt_s, {threads, ""});
+    const auto simulation = make_openmp(system, integrator, backend_dt_s, {threads, ""});
     simulation->step(steps_with_a_bounce);
     const State state = simulation->state();
     EXPECT_EQ(state.position, expected.position) << threads << " threads";
@@ -296,7 +296,7 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverManyStepsAPassTakes) {
     const System system = low_cloth(rows, columns);
     const auto& grid = std::get<GridPatch>(system.topology);
     const auto state_after = [&](std::size_t threads, std::size_t steps_per_pass) {
-      BandGrid bands(system, grid, integrator(), dt_s, kernel.lanes, threads, steps_per_pass);
+      BandGrid bands(system, grid, integrator(), backend_dt_s, kernel.lanes, threads, steps_per_pass);
       bands.set_state(system.start);
       kernel.step(bands, steps_with_a_bounce + 1);  // the last pass is a short one
       return bands.state();
@@ -317,8 +317,8 @@ TEST(OpenMpOnAnUncommonlyLargeCloth, TakesSeveralStepsInAPass) {
   // Half a last-level cache is exceeded by a cloth's state, 24 bytes a node, on all but a few machines.
   const System small = cloth_system(50, 50), large = cloth_system(1000, 2000);
   const Integrator& euler = *find_integrator("semi-euler");
-  EXPECT_EQ(make_openmp(small, euler, dt_s, {2, ""})->steps_per_pass(), 1);
-  const int steps = make_openmp(large, euler, dt_s, {2, ""})->steps_per_pass();
+  EXPECT_EQ(make_openmp(small, euler, backend_dt_s, {2, ""})->steps_per_pass(), 1);
+  const int steps = make_openmp(large, euler, backend_dt_s, {2, ""})->steps_per_pass();
   const long cache = sysconf(_SC_LEVEL3_CACHE_SIZE);
   EXPECT_EQ(steps, cache < 2 * 24 * 2'000'000 ? static_cast<int>(stages_under_way) : 1) << cache;
 }
@@ -334,11 +334,11 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreadsOnBodies) 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
   System system = solid_block(9, 9, 9);
   system.floor.height = 0.49;
-  const auto alone = make_openmp(system, integrator(), dt_s, {1, ""});
+  const auto alone = make_openmp(system, integrator(), backend_dt_s, {1, ""});
   // More threads than cores, with chunks for each, and other work on all cores.
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   const auto crowd =
-      make_openmp(system, integrator(), dt_s, {static_cast<int>(std::min(3 * cores, 16U)), ""});
+      make_openmp(system, integrator(), backend_dt_s, {static_cast<int>(std::min(3 * cores, 16U)), ""});
   std::vector<std::jthread> neighbours;
   for (unsigned i = 0; i < cores; ++i)
     neighbours.emplace_back([](const std::stop_token& stop) {
@@ -371,7 +371,7 @@ TEST(BackendTable, SaysWhyADeviceBackendCannotRun) {
     if (!backend.uses_device) continue;
     EXPECT_NE(reason.find("no such device"), std::string::npos) << reason;
     const System system = cloth_system(4, 4);
-    EXPECT_THROW(backend.make(system, integrators[0], dt_s, options), Unavailable);
+    EXPECT_THROW(backend.make(system, integrators[0], backend_dt_s, options), Unavailable);
   }
 }
 

@@ -18,7 +18,7 @@
 namespace mssim {
 namespace {
 
-constexpr double dt_s = 5e-5;
+constexpr double body_dt_s = 5e-5;
 
 /// A block whose springs are at rest, and which is at rest itself.
 System relaxed_block(double height_m) {
@@ -37,7 +37,7 @@ System resting_block() {
   System damped = system;
   damped.viscous_damping = 20;
   damped.floor.restitution = 0;
-  const auto backend = make_reference(damped, *find_integrator("midpoint"), dt_s);
+  const auto backend = make_reference(damped, *find_integrator("midpoint"), body_dt_s);
   backend->step(40000);
   system.start.position = backend->state().position;
   round_to_single(system.start);
@@ -76,7 +76,7 @@ class Body : public testing::TestWithParam<std::tuple<std::string_view, std::str
   const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
   bool first_order() const { return integrator().order == 1; }
   std::unique_ptr<Backend> make(const System& system) const {
-    return find_backend(std::get<0>(GetParam()))->make(system, integrator(), dt_s, {2, ""});
+    return find_backend(std::get<0>(GetParam()))->make(system, integrator(), body_dt_s, {2, ""});
   }
 };
 INSTANTIATE_TEST_SUITE_P(BackendsAndIntegrators, Body,
@@ -110,13 +110,13 @@ TEST_P(Body, InFreeFallFollowsTheParabolaWithoutDeformation) {
   System system = relaxed_block(0.5);
   system.viscous_damping = 0;
   constexpr int steps = 2000;
-  constexpr double time_s = steps * dt_s;
+  constexpr double time_s = steps * body_dt_s;
   const auto backend = make(system);
   backend->step(steps);
   const State state = backend->state();
   const double fallen = system.gravity * time_s * time_s / 2;
   // Semi-implicit Euler falls with the speed that each step ends with.
-  const double tolerance = 2e-6 + (first_order() ? system.gravity * time_s * dt_s / 2 : 0);
+  const double tolerance = 2e-6 + (first_order() ? system.gravity * time_s * body_dt_s / 2 : 0);
   for (std::size_t i = 0; i < system.nodes(); ++i) {
     const Vec3d moved = state.position[i] - system.start.position[i];
     EXPECT_NEAR(moved.y, -fallen, tolerance) << "node " << i;
@@ -143,7 +143,7 @@ TEST_P(Body, LeftToItselfKeepsItsMomenta) {
   const Momenta after = momenta_of(system, backend->state());
   EXPECT_LT(length(after.linear - before.linear), 1e-5 * length(before.linear));
   EXPECT_LT(length(after.angular - before.angular), 1e-4 * length(before.angular));
-  EXPECT_LT(length(after.centre - before.centre - 4000 * dt_s / before.mass * before.linear), 1e-5);
+  EXPECT_LT(length(after.centre - before.centre - 4000 * body_dt_s / before.mass * before.linear), 1e-5);
 }
 
 TEST_P(Body, ThatSlidesStopsWhereCoulombsLawSays) {
@@ -157,7 +157,7 @@ TEST_P(Body, ThatSlidesStopsWhereCoulombsLawSays) {
   const auto backend = make(system);
   const Vec3d start = momenta_of(system, system.start).centre;
   for (int look = 0; look < 2; ++look) {  // it sways a little on the spot, but it does not go on
-    backend->step(static_cast<int>(1.5 * stop_s / dt_s));
+    backend->step(static_cast<int>(1.5 * stop_s / body_dt_s));
     const Vec3d moved = momenta_of(system, backend->state()).centre - start;
     EXPECT_NEAR(std::hypot(moved.x, moved.z), distance, 0.1 * distance);
     EXPECT_NEAR(moved.z / moved.x, -0.75, 0.05);

@@ -16,13 +16,13 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::string complaint(const Surface& surface) {
+std::string surface_complaint(const Surface& surface) {
   return input_error_of([&] { validate_surface(surface, "cube"); });
 }
 
 TEST(Surface, ClosedSurfacesAreAccepted) {
-  EXPECT_EQ(complaint(unit_cube()), "");
-  EXPECT_EQ(complaint(both(unit_cube(), unit_cube({2, 0, 0}))), "");
+  EXPECT_EQ(surface_complaint(unit_cube()), "");
+  EXPECT_EQ(surface_complaint(both(unit_cube(), unit_cube({2, 0, 0}))), "");
 }
 
 TEST(Surface, TheVolumeIsTheEnclosedOne) {
@@ -33,7 +33,7 @@ TEST(Surface, TheVolumeIsTheEnclosedOne) {
 TEST(Surface, AHoleIsNamedByItsEdge) {
   Surface surface = unit_cube();
   surface.triangles.pop_back();
-  EXPECT_THAT(complaint(surface),
+  EXPECT_THAT(surface_complaint(surface),
               AllOf(StartsWith("cube: the edge from (0, 1, 1) to (0, 0, 1) belongs to one triangle"),
                     HasSubstr("close the hole")));
 }
@@ -42,39 +42,40 @@ TEST(Surface, AnEdgeOfManyTrianglesIsRefused) {
   Surface surface = unit_cube();
   surface.points.push_back({2, 2, 2});
   surface.triangles.push_back({surface.triangles[0][0], surface.triangles[0][1], 8});
-  EXPECT_THAT(complaint(surface), HasSubstr("belongs to 3 triangles"));
+  EXPECT_THAT(surface_complaint(surface), HasSubstr("belongs to 3 triangles"));
 }
 
 TEST(Surface, ATriangleTurnedRoundIsRefused) {
   Surface surface = unit_cube();
   std::swap(surface.triangles[4][0], surface.triangles[4][1]);
-  EXPECT_THAT(complaint(surface), HasSubstr("in the same direction; turn one of them round"));
+  EXPECT_THAT(surface_complaint(surface), HasSubstr("in the same direction; turn one of them round"));
 }
 
 TEST(Surface, ASurfaceThatPointsInwardsIsRefused) {
   Surface surface = unit_cube();
   for (auto& triangle : surface.triangles) std::swap(triangle[0], triangle[1]);
-  EXPECT_THAT(complaint(surface), HasSubstr("encloses a volume of -1 m^3; turn its triangles round"));
+  EXPECT_THAT(surface_complaint(surface), HasSubstr("encloses a volume of -1 m^3; turn its triangles round"));
 }
 
 TEST(Surface, BadPointsAndTrianglesAreNamed) {
   Surface surface = unit_cube();
   surface.points[3].y = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(complaint(surface), HasSubstr("point 3 (from 0) has the coordinates"));
+  EXPECT_THAT(surface_complaint(surface), HasSubstr("point 3 (from 0) has the coordinates"));
 
   surface = unit_cube();
   surface.triangles[2][1] = 8;
-  EXPECT_THAT(complaint(surface), HasSubstr("triangle 2 (from 0) names point 8 but there are only 8"));
+  EXPECT_THAT(surface_complaint(surface),
+              HasSubstr("triangle 2 (from 0) names point 8 but there are only 8"));
 
   surface = unit_cube();
   surface.triangles[2][1] = surface.triangles[2][0];
-  EXPECT_THAT(complaint(surface), HasSubstr("has no area"));
+  EXPECT_THAT(surface_complaint(surface), HasSubstr("has no area"));
 
   surface = unit_cube();
   surface.points.push_back({7, 8, 9});
-  EXPECT_THAT(complaint(surface), HasSubstr("the point (7, 8, 9) belongs to no triangle"));
+  EXPECT_THAT(surface_complaint(surface), HasSubstr("the point (7, 8, 9) belongs to no triangle"));
 
-  EXPECT_THAT(complaint({}), HasSubstr("no triangles"));
+  EXPECT_THAT(surface_complaint({}), HasSubstr("no triangles"));
 }
 
 TEST(Surface, GeneratedSurfacesAreClosedAndNearlyFillTheirShape) {
@@ -92,7 +93,7 @@ TEST(Surface, GeneratedSurfacesAreClosedAndNearlyFillTheirShape) {
   EXPECT_EQ(torus.points.size(), 40U * 15);
   EXPECT_NEAR(volume_of(torus), 2 * pi * pi * 0.3 * 0.01, 0.003);
 
-  for (const Surface& surface : {box, sphere, torus}) EXPECT_EQ(complaint(surface), "");
+  for (const Surface& surface : {box, sphere, torus}) EXPECT_EQ(surface_complaint(surface), "");
 }
 
 TEST(Surface, CoordinatesAreWholeMicrometres) {

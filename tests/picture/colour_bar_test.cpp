@@ -11,8 +11,6 @@
 namespace mssim {
 namespace {
 
-constexpr Rgb ground{90, 120, 60};
-
 Picture with_bar(std::uint32_t width, std::uint32_t height, const ColourBar& bar) {
   Picture picture(width, height, ground);
   draw_colour_bar(picture, bar, Corner::top_right);

@@ -10,8 +10,6 @@
 namespace mssim {
 namespace {
 
-constexpr Rgb ground{90, 120, 60};
-
 std::vector<LegendEntry> entries_of(std::size_t count, const std::string& name) {
   std::vector<LegendEntry> entries;
   for (std::size_t i = 0; i < count; ++i)

@@ -13,6 +13,7 @@
 #include "garment/garment.h"
 #include "garment/layers/cloth_cloth.h"
 #include "garment/layers/cloth_contacts.h"
+#include "garment/layers/cloth_crossings.h"
 #include "garment/layers/panel_boxes.h"
 #include "garment/layers/panel_layers.h"
 #include "geometry/vec3.h"
@@ -110,6 +111,11 @@ inline LayeredCloth folded_sheets(std::mt19937& random, std::uint32_t inner_rows
   cloth.add(0, inner_rows, inner_columns, folded(0));
   cloth.add(1, outer_rows, outer_columns, folded(0.004));
   return cloth;
+}
+
+/// The crossings of all pairs of its layers.
+inline std::size_t crossings(const LayeredCloth& cloth) {
+  return count_crossings(cloth.garment, cloth.layers, cloth.points());
 }
 
 }  // namespace mssim

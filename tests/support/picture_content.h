@@ -8,6 +8,9 @@
 
 namespace mssim {
 
+/// The colour that tests draw on, which is none of those that are drawn.
+inline constexpr Rgb ground{90, 120, 60};
+
 /// The smallest box that has all pixels for which `wanted` holds; none if there is none.
 template <class Wanted>
 std::optional<PixelBox> box_of(const Picture& picture, const Wanted& wanted) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,8 +9,12 @@
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "output/tables/paper_table.h"
+#include "output/tables/result_table.h"
 
 namespace mssim {
+
+/// The change that matters, as a fraction, in tests of comparisons.
+inline constexpr double threshold = 0.05;
 
 /// A row with a number in every column and three samples.
 inline ResultRow measured_row(const std::string& backend, double ms, std::optional<double> speedup) {
@@ -93,6 +99,13 @@ inline std::vector<ResultRow> table_rows() {
   rows.back().scene = "my-own";
   rows.back().nodes = 2501;
   return rows;
+}
+
+/// The one table of a suite that has one.
+inline ResultTable only_table(const std::vector<ResultTable>& tables, const std::string& name) {
+  EXPECT_EQ(tables.size(), 1U);
+  EXPECT_EQ(tables.front().name, name);
+  return tables.front();
 }
 
 }  // namespace mssim

@@ -16,13 +16,13 @@
 #include "backends/accumulation/spring_colouring.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 
 namespace mssim {
 namespace {
 
-constexpr double dt_s = 1e-4;
 constexpr std::array<int, 3> thread_counts{1, 2, 5};
 
 /// gather-vectors has a layout for cloths alone.
@@ -33,7 +33,7 @@ class EachWayAndIntegrator : public testing::TestWithParam<std::tuple<std::size_
   const AccumulationMethod& method() const { return accumulation_methods()[std::get<0>(GetParam())]; }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
-    return method().backend.make(system, integrator(), dt_s, {threads, ""});
+    return method().backend.make(system, integrator(), backend_dt_s, {threads, ""});
   }
   State after(const System& system, int threads, int steps) const {
     const auto simulation = make(system, threads);
@@ -61,10 +61,10 @@ INSTANTIATE_TEST_SUITE_P(Tables, EachWayAndIntegrator,
 
 TEST_P(EachWayAndIntegrator, AgreesWithTheReferenceWithAnyNumberOfThreads) {
   for (const System& system : steppable({cloth_system(37, 23)}, {solid_block(4, 5, 6), two_solid_blocks()})) {
-    const Reference reference = run_reference(system, integrator(), dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_s);
     ASSERT_FALSE(reference.failure) << *reference.failure;
     for (const int threads : thread_counts) {
-      const Verification verification = verify(*make(system, threads), system, reference, dt_s);
+      const Verification verification = verify(*make(system, threads), system, reference, backend_dt_s);
       EXPECT_FALSE(verification.failure)
           << system.nodes() << " nodes, " << threads << " threads: " << verification.failure.value_or("");
     }
@@ -73,8 +73,8 @@ TEST_P(EachWayAndIntegrator, AgreesWithTheReferenceWithAnyNumberOfThreads) {
 
 TEST_P(EachWayAndIntegrator, TakesMoreThreadsThanThereAreNodesOrSprings) {
   const System system = cloth_system(1, 3);
-  const Reference reference = run_reference(system, integrator(), dt_s);
-  const Verification verification = verify(*make(system, 9), system, reference, dt_s);
+  const Reference reference = run_reference(system, integrator(), backend_dt_s);
+  const Verification verification = verify(*make(system, 9), system, reference, backend_dt_s);
   EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
 }
 
@@ -110,7 +110,7 @@ TEST_P(EachWayAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
 TEST(RaceWays, SayWhichScenesTheyDoNotStep) {
   const System body = solid_block(3, 4, 5);
   for (const AccumulationMethod& method : accumulation_methods()) {
-    const auto make = [&] { return method.backend.make(body, integrators[0], dt_s, {1, ""}); };
+    const auto make = [&] { return method.backend.make(body, integrators[0], backend_dt_s, {1, ""}); };
     if (steps_bodies(method))
       EXPECT_NO_THROW(make()) << method.backend.name;
     else

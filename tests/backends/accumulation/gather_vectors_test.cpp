@@ -13,13 +13,12 @@
 #include "backends/spring_list/serial.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/fused_sets.h"
 
 namespace mssim {
 namespace {
-
-constexpr double dt_s = 1e-4;
 
 /// Single rows and columns, fewer columns than lanes, a last vector that is full, has one lane, lacks one or
 /// two, and whole rows of vectors inside.
@@ -46,7 +45,7 @@ class EachRowKernelAndIntegrator : public testing::TestWithParam<std::tuple<std:
   RowKernel kernel() const { return row_kernels(integrator())[std::get<0>(GetParam())]; }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
-    return make_gather_vectors(system, integrator(), dt_s, {threads, ""}, kernel());
+    return make_gather_vectors(system, integrator(), backend_dt_s, {threads, ""}, kernel());
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachRowKernelAndIntegrator,
@@ -63,9 +62,9 @@ INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachRowKernelAndIntegrator,
 TEST_P(EachRowKernelAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
   for (const auto& [rows, columns] : sizes) {
     const System system = cloth_system(rows, columns);
-    const Reference reference = run_reference(system, integrator(), dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_s);
     ASSERT_EQ(reference.steps, verification_steps);
-    const Verification verification = verify(*make(system, 2), system, reference, dt_s);
+    const Verification verification = verify(*make(system, 2), system, reference, backend_dt_s);
     EXPECT_FALSE(verification.failure)
         << rows << " x " << columns << ": " << verification.failure.value_or("");
   }
@@ -80,7 +79,7 @@ TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsThe
   constexpr int steps = 101;  // an odd number leaves the state where `next` was
   for (const auto& [rows, columns] : sizes) {
     const System system = low_cloth(rows, columns);
-    const auto alone = make_gather_vectors(system, integrator(), dt_s, {1, ""}, best);
+    const auto alone = make_gather_vectors(system, integrator(), backend_dt_s, {1, ""}, best);
     alone->step(steps);
     const State expected = alone->state();
     EXPECT_TRUE(rows < 9 || columns < 9 || has_met_floor(system, expected)) << rows << " x " << columns;
@@ -99,7 +98,7 @@ TEST_P(EachRowKernelAndIntegrator, TreatsTheFloorLikeTheReference) {
   // leave lanes without a node, which the floor must not touch.
   System system = build_system(sheet_spec(20, 37, 0.00101));
   for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
-  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_s);
   const auto simulation = make(system, 2);
   reference->step(15);
   simulation->step(15);
@@ -132,7 +131,8 @@ TEST_P(EachRowKernelAndIntegrator, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFl
 TEST_P(EachRowKernelAndIntegrator, LeavesWhatLiesOutsideOfTheClothZero) {
   System system = cloth_system(9, 11);
   system.floor.height = 0.5;  // above the zeros
-  PaddedRows cloth(system, std::get<GridPatch>(system.topology), integrator(), dt_s, kernel().lanes, 2);
+  PaddedRows cloth(system, std::get<GridPatch>(system.topology), integrator(), backend_dt_s, kernel().lanes,
+                   2);
   cloth.set_state(system.start);
   kernel().step(cloth, 21);
   for (AlignedArray& array : cloth.pairs) {
@@ -150,13 +150,13 @@ TEST_P(EachRowKernelAndIntegrator, LeavesWhatLiesOutsideOfTheClothZero) {
 TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {
   for (const Integrator& integrator : integrators) {
     const System system = cloth_system(100, 140);
-    const Reference reference = run_reference(system, integrator, dt_s);
+    const Reference reference = run_reference(system, integrator, backend_dt_s);
     const auto distance = [&](Backend& backend) {
-      return verify(backend, system, reference, dt_s).position_error;
+      return verify(backend, system, reference, backend_dt_s).position_error;
     };
-    const double usual = distance(*make_serial(system, integrator, dt_s, {1, ""}));
+    const double usual = distance(*make_serial(system, integrator, backend_dt_s, {1, ""}));
     EXPECT_GT(usual, 0);
-    EXPECT_LE(distance(*make_gather_vectors(system, integrator, dt_s, {2, ""})), 2 * usual)
+    EXPECT_LE(distance(*make_gather_vectors(system, integrator, backend_dt_s, {2, ""})), 2 * usual)
         << integrator.name;
   }
 }
@@ -165,7 +165,8 @@ TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
   const System system = cloth_system(9, 11);
   const std::vector<RowKernel> kernels = row_kernels(integrators[0]);
   const auto device = [&](Roots roots) {
-    return make_gather_vectors(system, integrators[0], dt_s, {.threads = 1, .roots = roots})->device();
+    return make_gather_vectors(system, integrators[0], backend_dt_s, {.threads = 1, .roots = roots})
+        ->device();
   };
   EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
   EXPECT_EQ(device(Roots::exact),

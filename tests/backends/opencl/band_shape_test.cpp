@@ -11,11 +11,11 @@
 namespace mssim {
 namespace {
 
-constexpr std::size_t lanes = 16;
-constexpr std::uint64_t cache = 32U << 20;
+constexpr std::size_t group_lanes = 16;
+constexpr std::uint64_t cache_bytes = 32U << 20;
 
 BandShape shape_of(const GridPatch& grid, const char* integrator, std::size_t units = 2) {
-  return {grid, *find_integrator(integrator), lanes, units, cache};
+  return {grid, *find_integrator(integrator), group_lanes, units, cache_bytes};
 }
 
 TEST(BandShape, TakesMoreStepsALaunchTheLessAStepDoes) {
@@ -29,7 +29,8 @@ TEST(BandShape, PassesOverAStateInMemoryWithFourStagesAtLeast) {
   EXPECT_GE(shape_of(grid, "semi-euler").steps, 4U);
   EXPECT_GE(shape_of(grid, "midpoint").steps, 2U);
   EXPECT_GE(shape_of(grid, "rk4").steps, 1U);
-  EXPECT_EQ(BandShape(grid, *find_integrator("semi-euler"), lanes, 2, std::uint64_t{1} << 30).steps, 1U);
+  EXPECT_EQ(BandShape(grid, *find_integrator("semi-euler"), group_lanes, 2, std::uint64_t{1} << 30).steps,
+            1U);
 }
 
 TEST(BandShape, GivesEveryComputeUnitOfAWideClothSomePartitions) {
@@ -46,7 +47,7 @@ TEST(BandShape, GivesEveryPartitionTheColumnsThatRepeatItInItsNeighbours) {
     for (const std::uint32_t columns : {1U, 2U, 3U, 7U, 16U, 61U, 300U})
       for (const std::size_t units : {1U, 2U, 64U})
         for (const std::size_t steps : {1U, 2U, 4U}) {
-          const BandShape shape({9, columns, 0.01}, integrator, lanes, units, cache, steps);
+          const BandShape shape({9, columns, 0.01}, integrator, group_lanes, units, cache_bytes, steps);
           EXPECT_EQ(shape.steps, steps);
           EXPECT_EQ(shape.ghosts, 2 * steps * integrator.stage_count);
           EXPECT_GT(shape.ring(), shape.ghosts - 1);

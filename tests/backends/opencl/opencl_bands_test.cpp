@@ -11,14 +11,13 @@
 #include "backends/opencl/bands.h"
 #include "backends/opencl/opencl.h"
 #include "integrators/integrators.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"
 #include "tests/support/opencl_variants.h"
 
 namespace mssim {
 namespace {
-
-constexpr double dt_s = 1e-4;
 
 /// A moving cloth, pinned at some nodes all over it, the last one too, that meets the floor along a wave.
 System pinned_cloth_on_a_floor(std::uint32_t rows, std::uint32_t columns) {
@@ -42,8 +41,8 @@ std::unique_ptr<Backend> bands_of(const System& system, const Integrator& integr
                                   std::size_t steps_in_a_launch, DeviceMemory memory = DeviceMemory::shared) {
   OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
   device.compute_units = units;
-  return make_opencl_bands(system, std::get<GridPatch>(system.topology), integrator, dt_s, device, memory,
-                           most_opencl_lanes, steps_in_a_launch);
+  return make_opencl_bands(system, std::get<GridPatch>(system.topology), integrator, backend_dt_s, device,
+                           memory, most_opencl_lanes, steps_in_a_launch);
 }
 
 TEST(OpenclBands, GiveTheSameBitsForAnyNumberOfStepsALaunchAndOfWorkItems) {
@@ -77,7 +76,7 @@ TEST(OpenclBands, AgreeWithLaunchesOfOneStage) {
   for (const auto& [rows, columns] : {std::pair{1U, 1U}, {17U, 5U}, {35U, 61U}}) {
     const System system = pinned_cloth_on_a_floor(rows, columns);
     for (const Integrator& integrator : integrators) {
-      const auto stages = make_opencl(system, integrator, dt_s, device, 1);
+      const auto stages = make_opencl(system, integrator, backend_dt_s, device, 1);
       EXPECT_EQ(stages->steps_per_pass(), 0);
       stages->step(23);
       const auto bands = bands_of(system, integrator, 3, 2);

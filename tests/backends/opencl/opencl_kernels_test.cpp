@@ -18,6 +18,7 @@
 #include "garment/stepping/serial_dressing.h"
 #include "integrators/integrators.h"
 #include "mesh/sphere_shape.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/largest_distance.h"
@@ -27,8 +28,7 @@
 namespace mssim {
 namespace {
 
-constexpr double dt_s = 1e-4;
-constexpr int steps = 3;  // odd: the state ends up in the other pair
+constexpr int few_steps = 3;  // odd: the state ends up in the other pair
 
 /// Pinned here and there, and partly below the floor.
 System held_above_a_floor(System system) {
@@ -59,10 +59,10 @@ TEST_P(OpenclKernels, TakeAFewStepsLikeTheReference) {
   for (const System& system :
        {held_above_a_floor(cloth_system(rows, 6)), held_above_a_floor(solid_block(3, 2, 4))})
     for (const Integrator& integrator : integrators) {
-      const auto reference = make_reference(system, integrator, dt_s);
-      reference->step(steps);
-      const auto backend = way.make_in(copied, system, integrator, dt_s);
-      backend->step(steps);
+      const auto reference = make_reference(system, integrator, backend_dt_s);
+      reference->step(few_steps);
+      const auto backend = way.make_in(copied, system, integrator, backend_dt_s);
+      backend->step(few_steps);
       // Each step rounds a position of up to 1 m to float (6e-8) a few times.
       EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6)
           << integrator.name << ", " << system.nodes() << " nodes";
@@ -81,12 +81,12 @@ TEST_P(BandsOpenclKernels, TakeAFewStepsLikeTheReferenceOnSeveralWorkItems) {
   const auto& grid = std::get<GridPatch>(system.topology);
   for (const char* name : {"semi-euler", "rk4"}) {
     const Integrator& integrator = *find_integrator(name);
-    const auto reference = make_reference(system, integrator, dt_s);
-    reference->step(steps);
+    const auto reference = make_reference(system, integrator, backend_dt_s);
+    reference->step(few_steps);
     // Two work-items of rk4, in a launch of two steps and one of one.
-    const auto backend =
-        make_opencl_bands(system, grid, integrator, dt_s, copied.device, copied.memory, GetParam(), 2);
-    backend->step(steps);
+    const auto backend = make_opencl_bands(system, grid, integrator, backend_dt_s, copied.device,
+                                           copied.memory, GetParam(), 2);
+    backend->step(few_steps);
     EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6) << name;
   }
 }
@@ -115,13 +115,13 @@ TEST_P(DressingOpenclKernels, TakeAFewStepsLikeTheReference) {
   for (Vec3d& x : system.start.position) x.y *= 1.1;  // too long, all
   round_to_single(system.start);
   const Integrator& semi_euler = *find_integrator("semi-euler");
-  const auto reference = make_reference_dressing(system, semi_euler, dt_s);
-  reference->step(steps);
+  const auto reference = make_reference_dressing(system, semi_euler, backend_dt_s);
+  reference->step(few_steps);
   const DeviceInMemory copied = ways_to_memory().front();
   const int lanes = GetParam();
-  const auto backend = make_opencl_dressing(system, semi_euler, dt_s, copied.device, copied.memory,
+  const auto backend = make_opencl_dressing(system, semi_euler, backend_dt_s, copied.device, copied.memory,
                                             {lanes, lanes == 1 ? std::size_t{8} : 1});
-  backend->step(steps);
+  backend->step(few_steps);
   EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6);
 }
 

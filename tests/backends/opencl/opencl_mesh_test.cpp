@@ -15,6 +15,7 @@
 #include "backends/spring_list/serial.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/opencl_variants.h"
 #include "tests/support/solid_system.h"
 
@@ -23,13 +24,12 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double dt_s = 1e-4;
-
 class EachWidthAndIntegrator : public testing::TestWithParam<std::tuple<bool, int, Integrator>> {
  protected:
   const Integrator& integrator() const { return *find_integrator(std::get<2>(GetParam()).name); }
   std::unique_ptr<Backend> make(const System& system) const {
-    return OpenclVariant{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator(), dt_s);
+    return OpenclVariant{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator(),
+                                                                                backend_dt_s);
   }
 };
 
@@ -48,11 +48,11 @@ TEST_P(EachWidthAndIntegrator, AgreesWithTheReferenceOnBodiesOfAnySize) {
   // One tetrahedral cube, fewer nodes than lanes, sizes that no number of lanes divides, two bodies in one.
   for (const System& system : {solid_block(2, 2, 2), solid_block(2, 3, 2), solid_block(3, 4, 5),
                                solid_block(7, 5, 6), two_solid_blocks()}) {
-    const Reference reference = run_reference(system, integrator(), dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_s);
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
     const auto simulation = make(system);
-    const Verification verification = verify(*simulation, system, reference, dt_s);
+    const Verification verification = verify(*simulation, system, reference, backend_dt_s);
     EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
   }
 }
@@ -62,10 +62,10 @@ TEST_P(EachWidthAndIntegrator, HoldsPinsExactlyAndMovesTheirNeighboursLikeTheRef
   const auto last = static_cast<std::uint32_t>(system.nodes() - 1);
   system.pins = {0, 1, 17, 50, last};
   for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
-  const Reference reference = run_reference(system, integrator(), dt_s);
+  const Reference reference = run_reference(system, integrator(), backend_dt_s);
   ASSERT_FALSE(reference.failure) << *reference.failure;
   const auto simulation = make(system);
-  const Verification verification = verify(*simulation, system, reference, dt_s);
+  const Verification verification = verify(*simulation, system, reference, backend_dt_s);
   EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
   const State state = simulation->state();
   for (const std::uint32_t pin : system.pins) {
@@ -80,7 +80,7 @@ TEST_P(EachWidthAndIntegrator, BouncesOffTheFloorLikeTheReference) {
   for (Vec3d& x : system.start.position) x.y = std::max(x.y, 0.0) + (x.y < 0.012 ? -1e-3 : 0);
   for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
   round_to_single(system.start);
-  const auto reference = make_reference(system, integrator(), dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_s);
   const auto simulation = make(system);
   reference->step(1);
   simulation->step(1);
@@ -132,8 +132,9 @@ TEST_P(EachWidthAndIntegrator, LetsNodesWithoutSpringsFall) {
   const State state = simulation->state();
   for (std::size_t node = system.nodes() - 3; node < system.nodes(); ++node) {
     EXPECT_EQ(state.position[node].x, system.start.position[node].x);
-    EXPECT_NEAR(state.position[node].y, 0.25 - 9.81 * dt_s * dt_s * fall(integrator(), 100), 1e-6);
-    EXPECT_NEAR(state.velocity[node].y, -9.81 * dt_s * 100, 1e-5);
+    EXPECT_NEAR(state.position[node].y, 0.25 - 9.81 * backend_dt_s * backend_dt_s * fall(integrator(), 100),
+                1e-6);
+    EXPECT_NEAR(state.velocity[node].y, -9.81 * backend_dt_s * 100, 1e-5);
   }
 }
 
@@ -146,7 +147,7 @@ TEST_P(EachWidthAndIntegrator, StepsNodesThatHaveNoSpringsAtAll) {
   simulation->step(10);
   const State state = simulation->state();
   for (std::size_t node = 0; node < system.nodes(); ++node)
-    EXPECT_NEAR(state.velocity[node].y, system.start.velocity[node].y - 9.81 * dt_s * 10, 1e-6);
+    EXPECT_NEAR(state.velocity[node].y, system.start.velocity[node].y - 9.81 * backend_dt_s * 10, 1e-6);
 }
 
 TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
@@ -155,9 +156,9 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
   for (std::size_t i = 0; i < system.springs.size(); i += 3) system.springs[i].kind = 1;
   for (const Integrator& integrator : integrators)
     for (const int lanes : {1, most_opencl_lanes}) {
-      const Reference reference = run_reference(system, integrator, dt_s);
-      const auto hybrid = OpenclVariant{true, lanes}.make(system, integrator, dt_s);
-      const Verification verification = verify(*hybrid, system, reference, dt_s);
+      const Reference reference = run_reference(system, integrator, backend_dt_s);
+      const auto hybrid = OpenclVariant{true, lanes}.make(system, integrator, backend_dt_s);
+      const Verification verification = verify(*hybrid, system, reference, backend_dt_s);
       EXPECT_FALSE(verification.failure) << integrator.name << ": " << verification.failure.value_or("");
     }
 }
@@ -166,7 +167,7 @@ TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
   const System system = solid_block(7, 5, 6);
   for (const Integrator& integrator : integrators) {
     const auto run = [&](const OpenclVariant& way) {
-      const auto backend = way.make(system, integrator, dt_s);
+      const auto backend = way.make(system, integrator, backend_dt_s);
       backend->step(30);
       return backend->state().position;
     };
@@ -185,7 +186,7 @@ TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
     for (const OpenclVariant way : {OpenclVariant{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
       std::vector<State> found;
       for (const DeviceInMemory& memory : ways_to_memory()) {
-        const auto backend = way.make_in(memory, system, integrator, dt_s);
+        const auto backend = way.make_in(memory, system, integrator, backend_dt_s);
         backend->step(31);
         found.push_back(backend->state());
         EXPECT_EQ(found.back().position, found[0].position) << memory.name << ", " << integrator.name;
@@ -201,9 +202,9 @@ TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
   device.max_allocation_bytes = 1000;
   for (const bool is_hybrid : {false, true}) try {
       if (is_hybrid)
-        make_hybrid(system, integrators.front(), dt_s, device, 1, 4);
+        make_hybrid(system, integrators.front(), backend_dt_s, device, 1, 4);
       else
-        make_opencl(system, integrators.front(), dt_s, device, 4);
+        make_opencl(system, integrators.front(), backend_dt_s, device, 4);
       FAIL() << "nothing was thrown";
     } catch (const Unsupported& error) {
       EXPECT_THAT(error.what(), HasSubstr("needs an OpenCL buffer of"));

@@ -11,7 +11,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::uint32_t phases = 2000, chunks = 5;
+constexpr std::uint32_t phase_count = 2000, chunk_count = 5;
 
 /// Counts who took what, and who took a chunk of another phase than is open.
 class Ledger {
@@ -19,16 +19,16 @@ class Ledger {
   void open(std::uint32_t phase) { open_phase_ = phase; }
   void take(const ChunkTickets::Ticket& ticket) {
     if (ticket.phase != open_phase_) ++out_of_turn_;
-    ++taken_[ticket.phase * chunks + ticket.chunk];
+    ++taken_[ticket.phase * chunk_count + ticket.chunk];
   }
   void expect_phase_whole(std::uint32_t phase) const {
-    for (std::uint32_t chunk = 0; chunk < chunks; ++chunk)
-      EXPECT_EQ(taken_[phase * chunks + chunk], 1) << phase << ", " << chunk;
+    for (std::uint32_t chunk = 0; chunk < chunk_count; ++chunk)
+      EXPECT_EQ(taken_[phase * chunk_count + chunk], 1) << phase << ", " << chunk;
     EXPECT_EQ(out_of_turn_, 0);
   }
 
  private:
-  std::vector<std::atomic<int>> taken_ = std::vector<std::atomic<int>>(phases * chunks);
+  std::vector<std::atomic<int>> taken_ = std::vector<std::atomic<int>>(phase_count * chunk_count);
   std::atomic<int> out_of_turn_{0};
   std::atomic<std::uint32_t> open_phase_{0};
 };
@@ -36,13 +36,13 @@ class Ledger {
 TEST(ChunkTickets, GiveEveryChunkOfEveryPhaseToOneThreadAndFinishAPhaseBeforeTheNext) {
   for (const int helpers : {0, 1, 3}) {
     SCOPED_TRACE(std::to_string(helpers) + " helpers");
-    ChunkTickets tickets(chunks);
+    ChunkTickets tickets(chunk_count);
     Ledger ledger;
     const auto act = [&](const ChunkTickets::Ticket& ticket) { ledger.take(ticket); };
     std::vector<std::jthread> group;
     for (int i = 0; i < helpers; ++i)
       group.emplace_back([&] { tickets.work_until_closed(0, 0, act, [] {}); });
-    for (std::uint32_t phase = 0; phase < phases; ++phase) {
+    for (std::uint32_t phase = 0; phase < phase_count; ++phase) {
       ledger.open(phase);
       tickets.open();
       tickets.work(0, act);
@@ -56,7 +56,7 @@ TEST(ChunkTickets, GiveEveryChunkOfEveryPhaseToOneThreadAndFinishAPhaseBeforeThe
 TEST(ChunkTickets, NeedNoLeader) {
   for (const std::uint32_t threads : {1U, 2U, 3U, 7U}) {  // seven: ranges without a chunk
     SCOPED_TRACE(std::to_string(threads) + " threads");
-    ChunkTickets tickets(chunks, threads);
+    ChunkTickets tickets(chunk_count, threads);
     Ledger ledger;
     std::uint32_t phase = 0;
     tickets.open();
@@ -67,13 +67,13 @@ TEST(ChunkTickets, NeedNoLeader) {
             thread, 100, [&](const ChunkTickets::Ticket& ticket) { ledger.take(ticket); },
             [&] {
               ledger.expect_phase_whole(phase);
-              if (++phase == phases) return tickets.close();
+              if (++phase == phase_count) return tickets.close();
               ledger.open(phase);
               tickets.open();
             });
       });
     group.clear();
-    EXPECT_EQ(phase, phases);
+    EXPECT_EQ(phase, phase_count);
   }
 }
 

@@ -16,8 +16,6 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr double threshold = 0.05;
-
 /// A row of `count` samples about `ms`, spread evenly over plus and minus `spread`.
 ResultRow row_of(const std::string& backend, double ms, double spread = 0.02, int count = 15) {
   ResultRow row = measured_row(backend, ms, std::nullopt);

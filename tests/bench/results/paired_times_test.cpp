@@ -12,11 +12,10 @@
 #include "statistics/looks.h"
 #include "statistics/rank_distribution.h"
 #include "statistics/signed_rank.h"
+#include "tests/support/result_fixture.h"
 
 namespace mssim {
 namespace {
-
-constexpr double threshold = 0.05;
 
 /// Rounds whose own speed varies by a factor of three, in which NEW takes `factor` times as long, give or
 /// take `noise`.

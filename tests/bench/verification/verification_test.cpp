@@ -14,12 +14,11 @@
 #include "integrators/integrators.h"
 #include "model/state_hash.h"
 #include "scene/scene_file.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 
 namespace mssim {
 namespace {
-
-constexpr double dt_s = 1e-4;
 
 struct Mistake {
   std::string name;
@@ -56,9 +55,9 @@ System low_cloth() {
 
 TEST(Verification, PassesARightBackend) {
   const System system = low_cloth();
-  const Reference reference = run_reference(system, integrators[0], dt_s);
-  const auto backend = make_serial(system, integrators[0], dt_s, {});
-  const Verification verification = verify(*backend, system, reference, dt_s);
+  const Reference reference = run_reference(system, integrators[0], backend_dt_s);
+  const auto backend = make_serial(system, integrators[0], backend_dt_s, {});
+  const Verification verification = verify(*backend, system, reference, backend_dt_s);
   EXPECT_FALSE(verification.failure) << *verification.failure;
   EXPECT_GT(verification.position_error, 0) << "single precision cannot be exact";
   EXPECT_LT(verification.position_error, reference.tolerance);
@@ -83,7 +82,7 @@ void expect_found(const std::vector<Mistake>& all, const System& system, double 
   }
 }
 
-TEST(Verification, FindsEveryMistake) { expect_found(mistakes, low_cloth(), dt_s); }
+TEST(Verification, FindsEveryMistake) { expect_found(mistakes, low_cloth(), backend_dt_s); }
 
 const std::vector<Mistake> body_mistakes{
     {"spring damping left out", [](System& s) { s.materials[0].damping = 0; }},
@@ -106,16 +105,16 @@ TEST(Verification, FindsEveryMistakeWithABodyOfThePaper) {
 
 TEST(Verification, FindsAStepOfTheWrongLength) {
   const System system = low_cloth();
-  const Reference reference = run_reference(system, integrators[0], dt_s);
-  const auto backend = make_serial(system, integrators[0], 1.01 * dt_s, {});
-  EXPECT_TRUE(verify(*backend, system, reference, dt_s).failure);
+  const Reference reference = run_reference(system, integrators[0], backend_dt_s);
+  const auto backend = make_serial(system, integrators[0], 1.01 * backend_dt_s, {});
+  EXPECT_TRUE(verify(*backend, system, reference, backend_dt_s).failure);
 }
 
 TEST(Verification, StopsBeforeTheFloor) {
   SceneSpec spec = cloth_spec(8, 8);
   std::get<ClothSpec>(spec.content).ceiling_height_m = 0.0015;
   const System system = build_system(spec);
-  const Reference reference = run_reference(system, integrators[0], dt_s);
+  const Reference reference = run_reference(system, integrators[0], backend_dt_s);
   EXPECT_FALSE(reference.failure);
   EXPECT_GT(reference.steps, 0);
   EXPECT_LT(reference.steps, verification_steps);
@@ -124,7 +123,7 @@ TEST(Verification, StopsBeforeTheFloor) {
 
 TEST(BlowUp, IsFoundAtTheFirstBadStepAndNode) {
   const System system = cloth_system(10, 10);
-  const double too_long = 20 * dt_s;
+  const double too_long = 20 * backend_dt_s;
   const int steps = 100;
   int first_bad = 0;
   const auto slow = make_openmp(system, integrators[0], too_long, {1, ""});
@@ -146,11 +145,11 @@ TEST(BlowUp, IsFoundAtTheFirstBadStepAndNode) {
 
 TEST(BlowUp, OfTheReferenceFailsEveryRow) {
   const System system = cloth_system(10, 10);
-  const Reference reference = run_reference(system, integrators[0], 50 * dt_s);
+  const Reference reference = run_reference(system, integrators[0], 50 * backend_dt_s);
   ASSERT_TRUE(reference.failure);
   EXPECT_NE(reference.failure->find("blew up at step"), std::string::npos) << *reference.failure;
-  const auto backend = make_serial(system, integrators[0], 50 * dt_s, {});
-  EXPECT_EQ(verify(*backend, system, reference, 50 * dt_s).failure, reference.failure);
+  const auto backend = make_serial(system, integrators[0], 50 * backend_dt_s, {});
+  EXPECT_EQ(verify(*backend, system, reference, 50 * backend_dt_s).failure, reference.failure);
 }
 
 }  // namespace

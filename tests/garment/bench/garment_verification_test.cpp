@@ -14,14 +14,13 @@
 #include "garment/fitting/dress.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
-#include "integrators/integrators.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
+#include "tests/support/dressing_step.h"
+#include "tests/support/garment_system.h"
 
 namespace mssim {
 namespace {
-
-const Integrator& semi_euler = *find_integrator("semi-euler");
 
 /// Jeans, dressed once for all tests.
 struct Jeans {
@@ -45,8 +44,6 @@ const Jeans& jeans() {
   static const Jeans once;
   return once;
 }
-
-Garment& garment_in(System& system) { return std::get<Garment>(system.topology); }
 
 Verification verify_stepping(const System& stepped) {
   return verify_garment(*make_serial_dressing(stepped, semi_euler, jeans().dt_s), jeans().system,

@@ -18,9 +18,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-constexpr SettlingRule soon{.longest_s = 2};
+constexpr SettlingRule two_seconds{.longest_s = 2};
 
-Dressed dressed_after(const std::function<void(DressingCase&)>& change, const SettlingRule& rule = soon) {
+Dressed dressed_after(const std::function<void(DressingCase&)>& change,
+                      const SettlingRule& rule = two_seconds) {
   DressingCase jeans("jeans1k");
   change(jeans);
   return dressed(jeans, rule);

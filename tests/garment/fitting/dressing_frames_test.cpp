@@ -10,14 +10,11 @@
 #include "garment/fitting/dress.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
-#include "integrators/integrators.h"
+#include "tests/support/dressing_step.h"
 #include "tests/support/garment_system.h"
 
 namespace mssim {
 namespace {
-
-constexpr double dt_s = 1.5e-4;
-const Integrator& semi_euler = *find_integrator("semi-euler");
 
 /// Two squares that are sewn, side by side, and hung by a corner.
 System hung_squares() {
@@ -37,9 +34,9 @@ System hung_squares() {
 
 std::vector<std::unique_ptr<DressingBackend>> backends(const System& system, int threads) {
   std::vector<std::unique_ptr<DressingBackend>> made;
-  made.push_back(make_serial_dressing(system, semi_euler, dt_s));
-  made.push_back(make_reference_dressing(system, semi_euler, dt_s));
-  made.push_back(make_openmp_dressing(system, semi_euler, dt_s, threads));
+  made.push_back(make_serial_dressing(system, semi_euler, dressing_dt_s));
+  made.push_back(make_reference_dressing(system, semi_euler, dressing_dt_s));
+  made.push_back(make_openmp_dressing(system, semi_euler, dressing_dt_s, threads));
   return made;
 }
 
@@ -76,12 +73,12 @@ TEST(DressingFrames, ChangeNothing) {
   const System system = hung_squares();
   for (const auto& backend : backends(system, 1)) {
     const SettlingRule soon{.distance = 1};  // it moves less in the first window after its seam has closed
-    const DressingResult alone = dress(*backend, system, dt_s, soon, always);
+    const DressingResult alone = dress(*backend, system, dressing_dt_s, soon, always);
     EXPECT_TRUE(alone.settled);
     EXPECT_EQ(alone.iterations, 2 * 333);
     for (const double steps_per_frame : {1.0, 37.3, 333.0, 1e9}) {
-      const DressingResult looked_at =
-          dress(*backend, system, dt_s, soon, always, {{steps_per_frame}, [](const State&, std::int64_t) {}});
+      const DressingResult looked_at = dress(*backend, system, dressing_dt_s, soon, always,
+                                             {{steps_per_frame}, [](const State&, std::int64_t) {}});
       EXPECT_EQ(looked_at.iterations, alone.iterations);
       EXPECT_EQ(looked_at.seamed_at, alone.seamed_at);
       EXPECT_TRUE(looked_at.settled);
@@ -92,15 +89,15 @@ TEST(DressingFrames, ChangeNothing) {
 
 TEST(DressingFrames, AreTheStartThoseOfTheGridAndTheEnd) {
   const System system = hung_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
-  const auto reference = make_serial_dressing(system, semi_euler, dt_s);
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto reference = make_serial_dressing(system, semi_euler, dressing_dt_s);
   // 0.003 s are windows of 20 steps; it does not settle in three of them.
   const SettlingRule rule{.window_s = 0.003, .longest_s = 0.009};
   const auto steps_at = [&](double steps_per_frame) {
     std::vector<std::int64_t> steps;
     std::int64_t done = 0;
     reference->set_state(system.start);
-    const DressingResult result = dress(*backend, system, dt_s, rule, always,
+    const DressingResult result = dress(*backend, system, dressing_dt_s, rule, always,
                                         {{steps_per_frame}, [&](const State& state, std::int64_t iterations) {
                                            steps.push_back(iterations);
                                            if (iterations == 0) return expect_same(state, system.start);
@@ -121,26 +118,27 @@ TEST(DressingFrames, AreTheStartThoseOfTheGridAndTheEnd) {
 
 TEST(Dressing, EndsWhenTheLongestTimeIsOverAndNoWindowThatIsCutShortCountsAsRest) {
   const System system = hung_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
   // A metre is more than any node moves: whatever counts as a window is one of rest.
   const auto dressed_for = [&](double longest_s) {
-    return dress(*backend, system, dt_s, {.window_s = 0.003, .distance = 1, .longest_s = longest_s}, always);
+    return dress(*backend, system, dressing_dt_s, {.window_s = 0.003, .distance = 1, .longest_s = longest_s},
+                 always);
   };
   const DressingResult settled = dressed_for(1);
   ASSERT_TRUE(settled.settled);
   ASSERT_EQ(settled.iterations % 20, 0);
-  const DressingResult cut = dressed_for(settled.simulated_s - 3 * dt_s);
+  const DressingResult cut = dressed_for(settled.simulated_s - 3 * dressing_dt_s);
   EXPECT_EQ(cut.iterations, settled.iterations - 3);
   EXPECT_FALSE(cut.settled);
-  EXPECT_EQ(dressed_for(dt_s).iterations, 1);
+  EXPECT_EQ(dressed_for(dressing_dt_s).iterations, 1);
 }
 
 TEST(DressingFrames, EndWhereTheDressingIsEnded) {
   const System system = hung_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
   std::vector<std::int64_t> steps;
   const DressingResult result =
-      dress(*backend, system, dt_s, {.window_s = 0.003},
+      dress(*backend, system, dressing_dt_s, {.window_s = 0.003},
             [](const State&, std::int64_t iterations) { return iterations < 40; },
             {{15}, [&](const State&, std::int64_t iterations) { steps.push_back(iterations); }});
   EXPECT_EQ(result.iterations, 40);

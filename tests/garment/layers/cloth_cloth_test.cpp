@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "garment/layers/cloth_crossings.h"
 #include "model/grid_patch.h"
 #include "tests/support/cloth_layers_fixture.h"
 
@@ -188,10 +187,6 @@ class FallingCloth {
 };
 
 constexpr float node_mass = 4e-5F;  // kg: 0.4 kg/m^2 on squares of 1 cm
-
-std::size_t crossings(const LayeredCloth& cloth) {
-  return count_crossings(cloth.garment, cloth.layers, cloth.points());
-}
 
 TEST(ClothCloth, CatchesASheetThatFallsOnAnother) {
   for (const bool on : {true, false}) {

@@ -99,7 +99,7 @@ struct BruteForce {
   }
 };
 
-constexpr double reach = 0.004;
+constexpr double search_reach = 0.004;
 
 /// Compares the contacts of the nodes of one panel with those that the brute force finds; their number.
 int expect_like_brute_force(const LayeredCloth& cloth, const std::map<std::uint32_t, ClothContact>& found,
@@ -108,10 +108,10 @@ int expect_like_brute_force(const LayeredCloth& cloth, const std::map<std::uint3
   for (std::uint32_t node = panel.first_node; node < panel.first_node + panel.nodes(); ++node) {
     const BruteForce expected = BruteForce::of(cloth, node, other);
     const auto contact = found.find(node);
-    if (std::abs(expected.distance - reach) < 1e-6) continue;  // single precision may say either
+    if (std::abs(expected.distance - search_reach) < 1e-6) continue;  // single precision may say either
     if (contact == found.end()) {
       // Beyond a border, on its wrong side, a node is none.
-      EXPECT_TRUE(expected.distance > reach || expected.border) << node << ": " << expected.distance;
+      EXPECT_TRUE(expected.distance > search_reach || expected.border) << node << ": " << expected.distance;
       continue;
     }
     ++contacts;
@@ -139,7 +139,7 @@ TEST(ClothContactSearch, FindsWhatBruteForceFindsBetweenFoldedSheets) {
         Sizes{31, 5, 2, 2}, Sizes{6, 6, 5, 5}, Sizes{10, 9, 9, 10}}) {
     for (int i = 0; i < 4; ++i) {
       const LayeredCloth cloth = folded_sheets(random, inner_rows, inner_columns, outer_rows, outer_columns);
-      ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), reach, 2);
+      ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), search_reach, 2);
       std::map<std::uint32_t, ClothContact> found;
       for (const ClothContact& contact : search.find(cloth.coordinates()))
         EXPECT_TRUE(found.emplace(contact.node, contact).second) << contact.node << " twice";
@@ -157,12 +157,12 @@ TEST(ClothContactSearch, FindsTheSameToTheLastBitWithAnyNumberOfThreads) {
     LayeredCloth cloth = folded_sheets(random, 30, 40, 50, 25);
     cloth.add(2, 20, 21, level(0.002, 0.01));
     ASSERT_EQ(cloth.layers.pairs.size(), 3U);
-    ClothContactSearch alone(cloth.garment, cloth.layers, cloth.mass.size(), reach, 1);
+    ClothContactSearch alone(cloth.garment, cloth.layers, cloth.mass.size(), search_reach, 1);
     const auto contacts = alone.find(cloth.coordinates());
     const std::vector<ClothContact> expected(contacts.begin(), contacts.end());
     EXPECT_GT(expected.size(), 300U);
     for (const int threads : {1, 2, 3, 4}) {
-      ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), reach, threads);
+      ClothContactSearch search(cloth.garment, cloth.layers, cloth.mass.size(), search_reach, threads);
       for (int again = 0; again < 3; ++again)
         EXPECT_TRUE(std::ranges::equal(search.find(cloth.coordinates()), expected)) << threads;
     }

@@ -22,10 +22,6 @@ LayeredCloth level_and_upright(std::uint32_t cells, double x, double z_from, dou
   return cloth;
 }
 
-std::size_t crossings(const LayeredCloth& cloth) {
-  return count_crossings(cloth.garment, cloth.layers, cloth.points());
-}
-
 TEST(CountCrossings, CountsEdgesThroughTriangles) {
   // The upright sheet's two sides and its diagonal go through the level one, whose diagonal goes through it.
   EXPECT_EQ(crossings(level_and_upright(1, 0.4, -0.3, -0.6)), 3U + 1U);

@@ -11,20 +11,20 @@
 #include "mesh/sphere_shape.h"
 #include "model/energy.h"
 #include "tests/support/dressed_jeans.h"
+#include "tests/support/dressing_step.h"
 #include "tests/support/garment_system.h"
 
 namespace mssim {
 namespace {
 
-const Integrator& semi_euler = *find_integrator("semi-euler");
-constexpr double radius = 0.15, sheet_dt_s = 2.5e-4;
+constexpr double sphere_radius = 0.15, sheet_dt_s = 2.5e-4;
 constexpr std::uint32_t middle = 10;  ///< row and column of the sheet's middle
 
-Surface sphere() { return surface_of(SphereShape{radius, 24}); }
+Surface sphere() { return surface_of(SphereShape{sphere_radius, 24}); }
 
 /// A sheet of 0.4 x 0.4 m, level, 1 cm above the sphere, which it meets as maps this far before its mesh.
 System sheet_above_sphere(double offset) {
-  System system = garment_of({{21, 21, 0.02, {-0.2, radius + 0.01, 0.2}, {1, 0, 0}, {0, 0, -1}}});
+  System system = garment_of({{21, 21, 0.02, {-0.2, sphere_radius + 0.01, 0.2}, {1, 0, 0}, {0, 0, -1}}});
   system.gravity = 9.81;
   system.viscous_damping = 16;
   put_on(system, sphere(), {.offset = offset});
@@ -52,7 +52,7 @@ TEST(Drape, ASheetDroppedOnASphereRestsOnItWithNoPointInside) {
   EXPECT_EQ(fit.deepest_face_sample, 0);
   // It lies on the sphere's top, maps and the sagitta of its cells above it, and hangs down around it.
   const GarmentPanel& panel = std::get<Garment>(system.topology).panels[0];
-  EXPECT_NEAR(result.state.position[panel.node(middle, middle)].y, radius + 0.003, 0.003);
+  EXPECT_NEAR(result.state.position[panel.node(middle, middle)].y, sphere_radius + 0.003, 0.003);
   for (const std::uint32_t corner : {panel.node(0, 0), panel.node(0, 20), panel.node(20, 0)})
     EXPECT_LT(result.state.position[corner].y, 0.05);
 }

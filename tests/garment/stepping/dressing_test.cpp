@@ -13,15 +13,12 @@
 #include "garment/stepping/correction_order.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
-#include "integrators/integrators.h"
+#include "tests/support/dressing_step.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/largest_distance.h"
 
 namespace mssim {
 namespace {
-
-constexpr double dt_s = 1.5e-4;  // 0.55 of the limit 2 / sqrt(2 sum k / m)
-const Integrator& semi_euler = *find_integrator("semi-euler");
 
 const FitBody nobody{[](std::span<const Vec3d> points) { return std::vector<double>(points.size()); },
                      [](const Vec3d& point) { return point; }};
@@ -31,23 +28,24 @@ TEST(Dresses, SaysWhichBackendsTakeAGarment) {
   for (const BackendInfo& backend : mssim::backends()) {
     bool refused = false;
     try {
-      make_backend(backend, system, semi_euler, dt_s, {.threads = 1});
+      make_backend(backend, system, semi_euler, dressing_dt_s, {.threads = 1});
     } catch (const Unsupported&) {
       refused = true;
     } catch (const Unavailable&) {
       continue;  // without a device nobody knows
     }
     EXPECT_EQ(dresses(backend), !refused) << backend.name;
-    EXPECT_THROW(backend.make(system, semi_euler, dt_s, {.threads = 1}), Unsupported) << backend.name;
+    EXPECT_THROW(backend.make(system, semi_euler, dressing_dt_s, {.threads = 1}), Unsupported)
+        << backend.name;
   }
 }
 
 TEST(Dressing, ClosesTheSeamOfTwoSquaresInFreeSpace) {
   const System system = two_squares();
-  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
   EXPECT_EQ(backend->progress().open_joints, 10U);
   const DressingResult result =
-      dress(*backend, system, dt_s, {}, [](const State&, std::int64_t) { return true; });
+      dress(*backend, system, dressing_dt_s, {}, [](const State&, std::int64_t) { return true; });
   ASSERT_TRUE(result.seamed_at);
   EXPECT_TRUE(result.settled);
   EXPECT_EQ(backend->progress().open_joints, 0U);
@@ -67,9 +65,9 @@ TEST(Dressing, LeavesASeamOpenWithoutForce) {
   System system = two_squares();
   garment_in(system).dressing.seam_force = 0;
   garment_in(system).dressing.longest_seaming_s = 100;
-  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
-  const DressingResult result =
-      dress(*backend, system, dt_s, {.longest_s = 1}, [](const State&, std::int64_t) { return true; });
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const DressingResult result = dress(*backend, system, dressing_dt_s, {.longest_s = 1},
+                                      [](const State&, std::int64_t) { return true; });
   EXPECT_FALSE(result.seamed_at);
   EXPECT_FALSE(result.settled);
   EXPECT_GT(fit_of(system, result.state.position, nobody).largest_gap, 0.029);
@@ -78,7 +76,7 @@ TEST(Dressing, LeavesASeamOpenWithoutForce) {
 TEST(Dressing, PullsAJointWithItsShareOfTheSeamsForceAndNotWithGravity) {
   System system = two_squares();
   system.gravity = 9.81;
-  const auto backend = make_reference_dressing(system, semi_euler, dt_s);
+  const auto backend = make_reference_dressing(system, semi_euler, dressing_dt_s);
   backend->step(1);
   const State state = backend->state();
   const Garment& garment = garment_in(system);
@@ -86,7 +84,7 @@ TEST(Dressing, PullsAJointWithItsShareOfTheSeamsForceAndNotWithGravity) {
   const double mass = 0.4 * 1e-4;
   for (const Joint& joint : garment.joints) {
     const Vec3d gap = system.start.position[joint.edge_first] - system.start.position[joint.node];
-    const Vec3d expected = dt_s * 0.04 / mass / length(gap) * gap;
+    const Vec3d expected = dressing_dt_s * 0.04 / mass / length(gap) * gap;
     // The start is rounded to single precision, which strains the springs by 1e-7.
     EXPECT_LT(length(state.velocity[joint.node] - expected), 1e-3 * length(expected));
     EXPECT_LT(length(state.velocity[joint.edge_first] + expected), 1e-3 * length(expected));
@@ -102,12 +100,13 @@ TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
   garment_in(system).dressing.seaming_damping = 0;
   for (const double fraction : {0.0, 0.5}) {
     garment_in(system).dressing.seaming_gravity = fraction;
-    const auto single = make_serial_dressing(system, semi_euler, dt_s);
-    const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 2);
+    const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
+    const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2);
     for (Backend* backend : std::initializer_list<Backend*>{single.get(), vectors.get()}) {
       backend->step(100);
       // Semi-implicit Euler falls dt^2 g n (n + 1) / 2.
-      EXPECT_NEAR(backend->state().position[0].y, -fraction * 9.81 * dt_s * dt_s * 100 * 101 / 2, 1e-6);
+      EXPECT_NEAR(backend->state().position[0].y,
+                  -fraction * 9.81 * dressing_dt_s * dressing_dt_s * 100 * 101 / 2, 1e-6);
       backend->step(1000);
       const State state = backend->state();
       const auto lowest = std::ranges::min(state.position, {}, &Vec3d::y).y;
@@ -127,9 +126,9 @@ TEST(Dressing, SewsAJointToAPointOfAnEdge) {
     garment.joints.push_back(
         {column, garment.panels[1].node(0, 0), garment.panels[1].node(0, 1), column * 0.5, 0.02 / 3, 1, 0});
   system.viscous_damping = 16;
-  const auto backend = make_serial_dressing(system, semi_euler, dt_s);
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
   const DressingResult result =
-      dress(*backend, system, dt_s, {}, [](const State&, std::int64_t) { return true; });
+      dress(*backend, system, dressing_dt_s, {}, [](const State&, std::int64_t) { return true; });
   EXPECT_LT(fit_of(system, result.state.position, nobody).largest_gap, 1e-4);
 }
 
@@ -189,8 +188,8 @@ TEST(Dressing, InVectorsIsTheReferenceButForRounding) {
   for (const std::string_view instruction_set : dressing_instruction_sets()) {
     System system = two_squares();
     system.gravity = 9.81;
-    const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 1, instruction_set);
-    const auto reference = make_reference_dressing(system, semi_euler, dt_s);
+    const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1, instruction_set);
+    const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
     vectors->step(400);
     reference->step(400);
     EXPECT_EQ(vectors->progress().draping, reference->progress().draping);
@@ -202,7 +201,7 @@ TEST(Dressing, InVectorsIsTheReferenceButForRounding) {
 TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
   const System system = stretched_sheets();
   const auto run = [&](int threads) {
-    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, threads);
+    const auto backend = make_openmp_dressing(system, semi_euler, dressing_dt_s, threads);
     backend->step(2000);
     EXPECT_TRUE(backend->progress().draping);
     return backend->state();
@@ -218,8 +217,8 @@ TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
 
 TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
   const System system = stretched_sheets();
-  const auto one = make_openmp_dressing(system, semi_euler, dt_s, 1);
-  const auto limited = make_openmp_dressing(system, semi_euler, dt_s, 3);
+  const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1);
+  const auto limited = make_openmp_dressing(system, semi_euler, dressing_dt_s, 3);
   one->step(500);
   limited->step(250);
   const int levels = omp_get_max_active_levels();
@@ -237,7 +236,7 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
        {VelocityCorrection::none, VelocityCorrection::published, VelocityCorrection::bounded}) {
     System system = stretched_sheets();
     garment_in(system).dressing.correction = correction;
-    const auto reference = make_reference_dressing(system, semi_euler, dt_s);
+    const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
     reference->step(1200);
     State stretched = reference->state();
     stretched.draped = false;
@@ -249,12 +248,12 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
     };
     const std::vector<Vec3d> exact = soon_after(*reference);
     EXPECT_GT(largest_distance(exact, stretched.position), 1e-3);
-    const auto single = make_serial_dressing(system, semi_euler, dt_s);
+    const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
     const std::vector<Vec3d> expected = soon_after(*single);
     // A spring that rounding puts on the other side of the threshold is corrected a step earlier or later.
     EXPECT_LT(largest_distance(expected, exact), 2e-5) << static_cast<int>(correction);
     for (const std::string_view instruction_set : dressing_instruction_sets()) {
-      const auto vectors = make_openmp_dressing(system, semi_euler, dt_s, 2, instruction_set);
+      const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2, instruction_set);
       EXPECT_LT(largest_distance(soon_after(*vectors), expected), 3e-7)
           << instruction_set << " " << static_cast<int>(correction);
     }
@@ -263,15 +262,15 @@ TEST(Dressing, CorrectsInVectorsAsTheReferenceDoes) {
 
 TEST(Dressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
   const System system = stretched_sheets();
-  expect_goes_on_when_draped(*make_serial_dressing(system, semi_euler, dt_s), system);
-  expect_goes_on_when_draped(*make_openmp_dressing(system, semi_euler, dt_s, 2), system);
+  expect_goes_on_when_draped(*make_serial_dressing(system, semi_euler, dressing_dt_s), system);
+  expect_goes_on_when_draped(*make_openmp_dressing(system, semi_euler, dressing_dt_s, 2), system);
 }
 
 TEST(Dressing, InSinglePrecisionIsTheReferenceButForRounding) {
   System system = two_squares();
   system.gravity = 9.81;
-  const auto single = make_serial_dressing(system, semi_euler, dt_s);
-  const auto reference = make_reference_dressing(system, semi_euler, dt_s);
+  const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
   single->step(400);
   reference->step(400);
   EXPECT_EQ(single->progress().draping, reference->progress().draping);

@@ -13,6 +13,7 @@
 #include "garment/stepping/serial_dressing.h"
 #include "integrators/integrators.h"
 #include "model/state_hash.h"
+#include "tests/support/dressing_step.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/largest_distance.h"
 #include "tests/support/opencl_variants.h"
@@ -20,12 +21,9 @@
 namespace mssim {
 namespace {
 
-constexpr double dt_s = 1.5e-4;
-const Integrator& semi_euler = *find_integrator("semi-euler");
-
 std::unique_ptr<DressingBackend> make(const System& system, const DressingShape& shape) {
-  return make_opencl_dressing(system, semi_euler, dt_s, choose_opencl_device(opencl_offer().devices, ""),
-                              DeviceMemory::shared, shape);
+  return make_opencl_dressing(system, semi_euler, dressing_dt_s,
+                              choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared, shape);
 }
 
 /// What a CPU runs, and what GPUs would, with groups that are smaller than a row, do not divide one, and are
@@ -56,14 +54,14 @@ void expect_same_progress(const DressingBackend& a, const DressingBackend& b) {
 constexpr int seaming_steps = 100;
 System soon_closed_sack() {
   System system = sack_around_a_ball();
-  garment_in(system).dressing.longest_seaming_s = (seaming_steps + 0.5) * dt_s;
+  garment_in(system).dressing.longest_seaming_s = (seaming_steps + 0.5) * dressing_dt_s;
   return system;
 }
 
 TEST_P(OpenclDressingOf, SeamsAndDrapesAroundABallLikeTheReference) {
   const System system = soon_closed_sack();
   const auto device = make(system, GetParam());
-  const auto reference = make_reference_dressing(system, semi_euler, dt_s);
+  const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
   const auto step = [&](int count) {
     device->step(count);
     reference->step(count);
@@ -78,13 +76,13 @@ TEST_P(OpenclDressingOf, SeamsAndDrapesAroundABallLikeTheReference) {
   EXPECT_EQ(device->progress().seamed_at, seaming_steps + 1);
   // A node that rounding carries to the body's plane a step later is caught a step's way farther on: the
   // fastest move at 0.6 m/s.
-  EXPECT_LT(step(100), dt_s * 0.6);
+  EXPECT_LT(step(100), dressing_dt_s * 0.6);
   const System untouched = [&] {
     System other = system;
     garment_in(other).body_maps.clear();
     return other;
   }();
-  const auto without = make_reference_dressing(untouched, semi_euler, dt_s);
+  const auto without = make_reference_dressing(untouched, semi_euler, dressing_dt_s);
   without->step(seaming_steps + 101);
   EXPECT_GT(largest_distance(without->state().position, reference->state().position), 1e-3)
       << "the ball is not touched";
@@ -107,8 +105,8 @@ TEST(OpenclDressing, GivesTheSameBitsWhateverSharesTheWorkAndHoweverStepsAreCutI
     }
   }
   for (const DeviceInMemory& memory : ways_to_memory()) {
-    const auto backend =
-        make_opencl_dressing(system, semi_euler, dt_s, memory.device, memory.memory, shapes().back());
+    const auto backend = make_opencl_dressing(system, semi_euler, dressing_dt_s, memory.device, memory.memory,
+                                              shapes().back());
     EXPECT_EQ(after(*backend, {150}).position, expected.position) << memory.name;
   }
 }
@@ -143,7 +141,7 @@ TEST(OpenclDressing, CorrectsInEverySweepAsSerialDoes) {
       backend.step(1);  // one, in which both judge the same lengths by the limit
       return backend.state().velocity;
     };
-    const auto single = make_serial_dressing(system, semi_euler, dt_s);
+    const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
     const std::vector<Vec3d> expected = soon_after(*single);
     // m/s. Another order of corrections within a block makes more than 0.5, rounding some 1e-6.
     for (const DressingShape& shape : {DressingShape{1, 7}, shapes().back()}) {
@@ -169,19 +167,20 @@ TEST(OpenclDressing, DrapesAtOnceWhatHasNoSeams) {
   EXPECT_TRUE(backend->progress().draping);
   backend->step(100);
   // Semi-implicit Euler falls dt^2 g n (n + 1) / 2.
-  EXPECT_NEAR(backend->state().position[0].y, -9.81 * dt_s * dt_s * 100 * 101 / 2, 1e-6);
+  EXPECT_NEAR(backend->state().position[0].y, -9.81 * dressing_dt_s * dressing_dt_s * 100 * 101 / 2, 1e-6);
   EXPECT_EQ(backend->progress().seamed_at, 0);
 }
 
 TEST(OpenclDressing, RefusesWhatItCannotDo) {
   System system = two_squares();
   EXPECT_THROW(
-      make_opencl_dressing(system, *find_integrator("rk4"), dt_s,
+      make_opencl_dressing(system, *find_integrator("rk4"), dressing_dt_s,
                            choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared, {}),
       Unsupported);
   OpenclDevice small = choose_opencl_device(opencl_offer().devices, "");
   small.global_memory_bytes = 1000;
-  EXPECT_THROW(make_opencl_dressing(system, semi_euler, dt_s, small, DeviceMemory::shared, {}), Unsupported);
+  EXPECT_THROW(make_opencl_dressing(system, semi_euler, dressing_dt_s, small, DeviceMemory::shared, {}),
+               Unsupported);
   garment_in(system).touching.emplace();
   EXPECT_THROW(make(system, {}), Unsupported);
 }

@@ -20,15 +20,15 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-ResultTable table_of(const std::vector<ResultRow>& rows,
-                     const Provenance& provenance = made_up_provenance()) {
+ResultTable paper_table_of(const std::vector<ResultRow>& rows,
+                           const Provenance& provenance = made_up_provenance()) {
   return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), provenance).value();
 }
 
-std::string csv_of(const std::vector<ResultRow>& rows) { return table_csv(table_of(rows).data); }
+std::string csv_of(const std::vector<ResultRow>& rows) { return table_csv(paper_table_of(rows).data); }
 
 std::string page_of(const std::vector<ResultRow>& rows, const Provenance& provenance = made_up_provenance()) {
-  return markdown(table_of(rows, provenance).page);
+  return markdown(paper_table_of(rows, provenance).page);
 }
 
 TEST(Published, TimesEqualTheDataFileEverywhere) {

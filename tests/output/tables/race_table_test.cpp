@@ -15,9 +15,9 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::vector<RaceLegend> methods{{"serial", "one thread", "none", "once", "yes"},
-                                      {"gather", "each node sums", "32 bytes a spring", "twice", "yes"},
-                                      {"atomic", "atomic adds", "none", "once", "no"}};
+const std::vector<RaceLegend> race_methods{{"serial", "one thread", "none", "once", "yes"},
+                                           {"gather", "each node sums", "32 bytes a spring", "twice", "yes"},
+                                           {"atomic", "atomic adds", "none", "once", "no"}};
 
 std::vector<ResultRow> race_rows() {
   std::vector<ResultRow> rows{measured_row("serial", 1.5, 1.0), measured_row("gather", 0.75, 2.0),
@@ -27,16 +27,13 @@ std::vector<ResultRow> race_rows() {
   return rows;
 }
 
-ResultTable table_of(const std::vector<ResultRow>& rows) {
-  const std::vector<ResultTable> tables = race_tables(methods)(rows, made_up_provenance());
-  EXPECT_EQ(tables.size(), 1U);
-  EXPECT_EQ(tables.front().name, "races");
-  return tables.front();
+ResultTable race_table_of(const std::vector<ResultRow>& rows) {
+  return only_table(race_tables(race_methods)(rows, made_up_provenance()), "races");
 }
 
 TEST(RaceTable, AsCsvHasTimesRatiosAndWhatAWayCosts) {
   EXPECT_EQ(
-      table_csv(table_of(race_rows()).data),
+      table_csv(race_table_of(race_rows()).data),
       "scene,nodes,springs_unique,integrator,method,threads,ms_per_step,ms_per_step_low,ms_per_step_high,"
       "speedup_vs_serial,extra_memory,springs_computed,same_bits,status\n"
       "cloth2500,2500,14502,semi-euler,serial,2,1.5,0.75,3,1,none,once,yes,ok\n"
@@ -46,7 +43,7 @@ TEST(RaceTable, AsCsvHasTimesRatiosAndWhatAWayCosts) {
 }
 
 TEST(RaceTable, AsMarkdownHasABlockASceneAndALineAWay) {
-  const std::string page = markdown(table_of(race_rows()).page);
+  const std::string page = markdown(race_table_of(race_rows()).page);
   EXPECT_THAT(page, HasSubstr("## cloth2500, semi-euler: 2,500 nodes, 14,502 springs\n"));
   EXPECT_THAT(page, HasSubstr("## box, semi-euler"));
   EXPECT_THAT(
@@ -62,22 +59,24 @@ TEST(RaceTable, AsMarkdownHasABlockASceneAndALineAWay) {
 TEST(RaceTable, ShowsNoTimeThatWasNotVerified) {
   std::vector<ResultRow> rows{measured_row("gather", 0.75, 2.0)};
   rows[0].verified = false;
-  const ResultTable table = table_of(rows);
+  const ResultTable table = race_table_of(rows);
   EXPECT_THAT(markdown(table.page), HasSubstr("| `gather` | failed | – | – |"));
   EXPECT_THAT(table_csv(table.data), HasSubstr("failed: not verified"));
 }
 
 TEST(RaceTable, MarksARatioThatItsTimesContradict) {
   std::vector<ResultRow> rows = race_rows();
-  EXPECT_THAT(markdown(table_of(rows).page), Not(HasSubstr("†")));
+  EXPECT_THAT(markdown(race_table_of(rows).page), Not(HasSubstr("†")));
   rows[1].speedup_vs_serial = 0.923;
-  EXPECT_THAT(markdown(table_of(rows).page), HasSubstr("| `gather` | **0.750** | 0.375 to 1.50 | 0.923×† |"));
-  EXPECT_THAT(markdown(table_of(rows).page), HasSubstr("|\n\n† the two times shown contradict this ratio: "));
+  EXPECT_THAT(markdown(race_table_of(rows).page),
+              HasSubstr("| `gather` | **0.750** | 0.375 to 1.50 | 0.923×† |"));
+  EXPECT_THAT(markdown(race_table_of(rows).page),
+              HasSubstr("|\n\n† the two times shown contradict this ratio: "));
 }
 
 TEST(RaceTable, IsNotMadeOfOtherBackends) {
   EXPECT_TRUE(
-      race_tables(methods)(std::vector{measured_row("hybrid", 1, 1.0)}, made_up_provenance()).empty());
+      race_tables(race_methods)(std::vector{measured_row("hybrid", 1, 1.0)}, made_up_provenance()).empty());
 }
 
 }  // namespace

@@ -31,15 +31,12 @@ std::vector<ResultRow> scaling_rows() {
   return rows;
 }
 
-ResultTable table_of(const std::vector<ResultRow>& rows) {
-  const std::vector<ResultTable> tables = scaling_tables("small")(rows, made_up_provenance());
-  EXPECT_EQ(tables.size(), 1U);
-  EXPECT_EQ(tables.front().name, "scaling");
-  return tables.front();
+ResultTable scaling_table_of(const std::vector<ResultRow>& rows) {
+  return only_table(scaling_tables("small")(rows, made_up_provenance()), "scaling");
 }
 
 TEST(ScalingTable, AsCsvHasNanosecondsANodeAndTheRatioToTheSameBackendsBase) {
-  EXPECT_EQ(table_csv(table_of(scaling_rows()).data),
+  EXPECT_EQ(table_csv(scaling_table_of(scaling_rows()).data),
             "integrator,backend,scene,nodes,ms_per_step,ns_per_node,ns_per_node_low,ns_per_node_high,"
             "ratio_to_small,status\n"
             "semi-euler,serial,small,1000,0.5,500,250,1000,1,ok\n"
@@ -49,7 +46,7 @@ TEST(ScalingTable, AsCsvHasNanosecondsANodeAndTheRatioToTheSameBackendsBase) {
 }
 
 TEST(ScalingTable, AsMarkdownHasAColumnASceneAndALineABackend) {
-  const std::string page = markdown(table_of(scaling_rows()).page);
+  const std::string page = markdown(scaling_table_of(scaling_rows()).page);
   EXPECT_THAT(page, HasSubstr("| backend | small<br>1,000 | large<br>4,000,000 |\n"));
   EXPECT_THAT(page, HasSubstr("| `serial` | **500** (1.00×) | **750** (1.50×) |\n"));
   EXPECT_THAT(page, HasSubstr("| `openmp` | **250** (1.00×) | unsupported |\n"));
@@ -59,7 +56,7 @@ TEST(ScalingTable, AsMarkdownHasAColumnASceneAndALineABackend) {
 TEST(ScalingTable, HasNoRatioWhereTheBaseHasNoTime) {
   std::vector<ResultRow> rows = scaling_rows();
   rows[0].verified = false;
-  const ResultTable table = table_of(rows);
+  const ResultTable table = scaling_table_of(rows);
   EXPECT_THAT(markdown(table.page), HasSubstr("| `serial` | failed | **750** |\n"));
   EXPECT_THAT(table_csv(table.data), HasSubstr("serial,large,4000000,3000,750,375,1500,,ok\n"));
   EXPECT_TRUE(scaling_tables("small")({}, made_up_provenance()).empty());

@@ -25,12 +25,12 @@ TEST(PublishedBodies, AreNineWhoseSpringsCanBeDividedByThree) {
   EXPECT_EQ(bodies.front().springs, 12921U);
 }
 
-const std::vector<StructureRow> rows{{"box-small", 700, 4307, 12921, 3256, 4.25},
-                                     {"torus-large", 1977, 13012, 39036, 10000, 1.5},
-                                     {"my-own", 4, 6, 18, 1, 70.5}};
+const std::vector<StructureRow> structure_rows{{"box-small", 700, 4307, 12921, 3256, 4.25},
+                                               {"torus-large", 1977, 13012, 39036, 10000, 1.5},
+                                               {"my-own", 4, 6, 18, 1, 70.5}};
 
 TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
-  EXPECT_EQ(table_csv(structure_table(rows, {}).data),
+  EXPECT_EQ(table_csv(structure_table(structure_rows, {}).data),
             "scene,nodes,springs_unique,springs_published,tetrahedra,smallest_dihedral_angle_deg,paper_nodes,"
             "paper_springs,same_as_paper\n"
             "box-small,700,4307,12921,3256,4.25,700,12921,true\n"
@@ -39,7 +39,7 @@ TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
 }
 
 TEST(StructureTable, AsMarkdownShowsOnlyThePapersBodiesAndSaysWhichDiffer) {
-  const std::string page = markdown(structure_table(rows, {}).page);
+  const std::string page = markdown(structure_table(structure_rows, {}).page);
   EXPECT_THAT(
       page, HasSubstr("| box | small | 700 | **700** | 12,921 | **12,921** | 4,307 | 3,256 | 4.25° | yes |"));
   EXPECT_THAT(
