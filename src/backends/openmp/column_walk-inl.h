@@ -17,6 +17,7 @@
 
 #include "backends/layouts/band_grid.h"
 #include "backends/layouts/spring_lanes-inl.h"
+#include "backends/layouts/update_lanes-inl.h"
 #include "backends/vectors/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -198,16 +199,13 @@ template <std::size_t method, std::size_t stage>
 HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& column, const NodeLanes& node,
                            const Lanes3& force, std::ptrdiff_t row) {
   const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
-  const Surroundings& surroundings = constants.surroundings;
-  // Dummies get none and stay where they are.
-  const Lanes3 a = keep(
-      below(cloth_row(constants, row), constants.rows),
-      node_acceleration(force, node.v, Lanes(surroundings.viscous_damping), Lanes(surroundings.gravity)));
   const auto address = [&](Pair pair, std::size_t slot) MSSIM_INLINE_LAMBDA {
     return column.pairs[index(pair)] + row * 6 * lanes + static_cast<std::ptrdiff_t>(slot % 2) * 3 * lanes;
   };
-  update_stage<method, stage>(
-      constants.coefficients, node.x, node.v, a,
+  // Dummies stay where they are.
+  const Mask in_cloth = below(cloth_row(constants, row), constants.rows);
+  update_lanes<method, stage>(
+      node, force, in_cloth, constants.coefficients, constants.surroundings,
       [&](auto slot) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t i = index(decltype(slot)::value);
         return load3(
@@ -216,11 +214,6 @@ HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& colu
       [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t i = index(decltype(slot)::value);
         store3(address(walk_writes_to(integrators[method], stage, static_cast<Pair>(i / 2)), i), value);
-      },
-      [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
-        const Lanes height(surroundings.floor_height);
-        touch_floor(hn::Lt(x.y.v, height.v), height, Lanes(surroundings.restitution),
-                    Lanes(surroundings.friction), x, v);
       });
 }
 
