@@ -30,3 +30,10 @@ succeed() {
 column_of() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$1"
 }
+
+# python_of_readers SOURCE: the Python with the modules that read traces: of .ci/run (scripts/lib/readers.sh), else Debian's own
+python_of_readers() {
+  local python=$1/build/readers/bin/python
+  [ -x "$python" ] || python=/usr/bin/python3
+  echo "$python"
+}
