@@ -1,30 +1,16 @@
 #include "mesh/tetgen_program.h"
 
-#include <unistd.h>
-
-#include <cstdlib>
 #include <sstream>
 
 #include "mesh/text_lines.h"
 #include "platform/child_process.h"
+#include "platform/find_program.h"
 #include "text/fnv1a.h"
 
 namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<fs::path> find_in_path(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path candidate = fs::path(folder.empty() ? "." : folder) / program;
-    std::error_code error;
-    if (fs::is_regular_file(candidate, error) && ::access(candidate.c_str(), X_OK) == 0)
-      return fs::absolute(candidate);
-  }
-  return std::nullopt;
-}
 
 /// TetGen's own shared libraries, which hold most of it in Debian's package. Asked of the dynamic loader the
 /// way ldd does: it then prints what it would load, one "NAME => FILE (ADDRESS)" a line, and runs nothing.
@@ -63,7 +49,7 @@ std::optional<std::string> version_in(std::string_view program) {
 }  // namespace
 
 std::optional<TetgenProgram> find_tetgen() {
-  const std::optional<fs::path> executable = find_in_path("tetgen");
+  const std::optional<fs::path> executable = find_program("tetgen");
   if (!executable) return std::nullopt;
   TetgenProgram program{*executable, "unknown", 0};
   std::vector<fs::path> files = libraries_of(*executable);

@@ -13,6 +13,7 @@ picture               text
 platform              text
 geometry              text
 render                geometry picture
+charts                text picture platform
 laws                  kernels geometry
 integrators           geometry laws
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mssim {
+
+/// Where the values of a series come from, which its look says: measured ones have filled points, solid lines
+/// and shaded bars; published ones open points, dashed lines and bars without a shade. References are
+/// straight lines from point to point in the colour of the text, such as the roofs of a roofline.
+enum class Origin { measured, published, reference };
+
+struct Series {
+  std::string name;  ///< as the legend has it
+  Origin origin = Origin::measured;
+  /// What is to be compared, such as a configuration of the paper: series of one family share colour, point
+  /// and pattern, and differ by their origin. Empty, or taken by a series of the same origin: one of its own.
+  std::string family;
+  std::vector<double> x;  ///< as many as y; of bars, empty
+  std::vector<double> y;  ///< of bars, one for each of Chart::groups
+  /// Intervals around y, drawn as error bars: as many as y, or none.
+  std::vector<double> low, high;
+};
+
+struct Axis {
+  std::string label;  ///< with the unit: "time of a step (ms)"
+  bool logarithmic = false;
+};
+
+enum class ChartForm { lines, points, bars };
+
+/// What is drawn, as data. A value that is not finite, or not positive on a logarithmic axis, is left out,
+/// and lines have a gap there; an interval with such an end is left out alone. What was left out is said.
+struct Chart {
+  std::string id;  ///< unique in the page: letters, digits and hyphens, a letter first
+  std::string title;
+  ChartForm form = ChartForm::lines;
+  Axis x, y;                        ///< of bars, x is the axis of groups and never logarithmic
+  std::vector<std::string> groups;  ///< of bars: the labels on x
+  std::vector<Series> series;       ///< in the order of the legend
+};
+
+}  // namespace mssim

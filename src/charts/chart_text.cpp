@@ -1,0 +1,83 @@
+#include "charts/chart_text.h"
+
+#include <algorithm>
+
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
+
+/// The first `most` characters.
+std::string_view beginning(std::string_view text, std::size_t most) {
+  std::size_t at = 0;
+  for (; at < text.size(); ++at)
+    if (begins_character(text[at]) && most-- == 0) break;
+  return text.substr(0, at);
+}
+
+void replace_all(std::string& text, std::string_view old, std::string_view replacement) {
+  for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos; at += replacement.size())
+    text.replace(at, old.size(), replacement);
+}
+
+/// Valid UTF-8 without what XML forbids.
+std::string clean(std::string_view text) {
+  std::string result(text);
+  for (const char space : {'\n', '\r', '\t'}) std::ranges::replace(result, space, ' ');
+  result = escaped(result);
+  for (const std::string_view no_character : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
+    replace_all(result, no_character, "\uFFFD");
+  return result;
+}
+
+std::string cut(std::string_view text, std::size_t most) {
+  if (characters_in(text) <= most) return std::string(text);
+  return std::string(beginning(text, most - 1)) + "…";
+}
+
+}  // namespace
+
+std::size_t characters_in(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+std::string shown_text(std::string_view text, std::size_t most) { return cut(clean(text), most); }
+
+std::vector<std::string> shown_lines(std::string_view text, std::size_t most) {
+  constexpr std::size_t most_lines = 3;
+  std::vector<std::string> lines;
+  std::string rest = clean(text);
+  while (!rest.empty()) {
+    if (lines.size() + 1 == most_lines || characters_in(rest) <= most) {
+      lines.push_back(cut(rest, most));
+      break;
+    }
+    const std::string_view line = beginning(rest, most + 1);
+    const std::size_t space = line.find_last_of(' ');
+    const std::size_t end =
+        space == std::string_view::npos || space == 0 ? beginning(rest, most).size() : space;
+    lines.push_back(rest.substr(0, end));
+    rest.erase(0, end);
+    rest.erase(0, rest.find_first_not_of(' '));
+  }
+  return lines;
+}
+
+std::string gnuplot_text(std::string_view shown) {
+  std::string quoted = "'";
+  for (const char character : shown) quoted += character == '\'' ? "''" : std::string(1, character);
+  return quoted + "'";
+}
+
+std::string xml_text(std::string_view shown) {
+  std::string text(shown);
+  replace_all(text, "&", "&amp;");
+  replace_all(text, "<", "&lt;");
+  replace_all(text, ">", "&gt;");
+  replace_all(text, "\"", "&quot;");
+  return text;
+}
+
+}  // namespace mssim

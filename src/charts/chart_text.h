@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mssim {
+
+/// Text of a chart may be anything, such as the name of a file. These are the ways that it goes into one.
+
+/// As it is shown: on one line, of characters that XML may have, at most `most` of them; the last is … where
+/// there were more.
+std::string shown_text(std::string_view text, std::size_t most);
+
+/// The same in lines of at most `most` characters, broken at spaces where there are some: at most three.
+std::vector<std::string> shown_lines(std::string_view text, std::size_t most);
+
+/// The number of characters of UTF-8.
+std::size_t characters_in(std::string_view text);
+
+/// A text of shown_text as gnuplot reads it: in single quotes, where nothing is a command, an escape or a
+/// macro, and a quote is two.
+std::string gnuplot_text(std::string_view shown);
+
+/// A text of shown_text as XML reads it, between tags or in an attribute.
+std::string xml_text(std::string_view shown);
+
+}  // namespace mssim

@@ -1,0 +1,188 @@
+#include "charts/gnuplot_script.h"
+
+#include <array>
+#include <cstdint>
+
+#include "charts/chart_text.h"
+#include "charts/series_style.h"
+#include "text/decimal.h"
+#include "text/fnv1a.h"
+
+namespace mssim {
+namespace {
+
+/// gnuplot's numbers of point shapes, for filled and open ones.
+constexpr std::array<int, point_shapes> filled_points{7, 5, 9, 13, 11, 15}, open_points{6, 4, 8, 12, 10, 14};
+
+/// Dashes of references, in units of a line's width; published lines have the first of gnuplot's.
+constexpr std::array<std::string_view, 4> reference_dashes{"solid", "(2,3)", "(10,3,2,3)", "(14,4)"};
+
+class Script {
+ public:
+  Script(const Chart& chart, const PlottedValues& values, const ChartLayout& layout)
+      : chart_(chart), values_(values), layout_(layout), styles_(series_styles(chart.series)) {}
+
+  std::string made(std::string_view output) {
+    line("set encoding utf8");
+    line("set terminal svg size ", decimal(chart_width), ',', decimal(layout_.height),
+         " dynamic noenhanced butt font 'sans-serif,", std::to_string(font_size), "' name 'chart'");
+    line("set output ", gnuplot_text(output));
+    frame();
+    texts();
+    legend();
+    for (std::size_t s = 0; s < chart_.series.size(); ++s) data(s);
+    std::string plots;
+    for (std::size_t s = 0; s < chart_.series.size(); ++s)
+      for (const std::string& plot : plots_of(s)) plots += (plots.empty() ? "" : ", ") + plot;
+    line("plot ", plots);
+    line("unset output");
+    return std::move(script_);
+  }
+
+ private:
+  template <class... Parts>
+  void line(const Parts&... parts) {
+    ((script_ += parts), ...);
+    script_ += '\n';
+  }
+
+  std::string on_screen(double x, double y) const {
+    return "screen " + decimal(x / chart_width) + ", screen " + decimal(1 - y / layout_.height);
+  }
+
+  void axis(char name, const Axis& axis, const AxisScale& scale) {
+    line("set ", name, "range [", decimal(scale.low), ':', decimal(scale.high), ']');
+    if (axis.logarithmic) line("set logscale ", name);
+    std::string ticks;
+    for (const Tick& tick : scale.ticks)
+      ticks += (ticks.empty() ? "" : ", ") + gnuplot_text(tick.label) + ' ' + decimal(tick.value);
+    line("set ", name, "tics nomirror scale 0.5 (", ticks, ')');
+  }
+
+  void frame() {
+    line("set lmargin at screen ", decimal(layout_.left / chart_width));
+    line("set rmargin at screen ", decimal(layout_.right / chart_width));
+    line("set tmargin at screen ", decimal(1 - layout_.top / layout_.height));
+    line("set bmargin at screen ", decimal(1 - layout_.bottom / layout_.height));
+    line("set border 3 lw 1");
+    axis('y', chart_.y, layout_.y);
+    if (chart_.form == ChartForm::bars) {
+      line("set xrange [", decimal(layout_.x.low), ':', decimal(layout_.x.high), ']');
+      line("unset xtics");
+    } else {
+      axis('x', chart_.x, layout_.x);
+    }
+    line("set grid xtics ytics linetype 1 linewidth 0.7 linecolor rgb 'gray'");
+    line("set errorbars 0.7");
+  }
+
+  void label(const std::string& text, const std::string& place, std::string_view more) {
+    line("set label ", gnuplot_text(text), " at ", place, ' ', more);
+  }
+
+  void texts() {
+    const std::size_t across = static_cast<std::size_t>(chart_width) / 8;
+    double y = 8 + line_height / 2;
+    for (const std::string& text : layout_.title) {
+      label(text, on_screen(8, y), "left font 'sans-serif:Bold'");
+      y += line_height;
+    }
+    label(shown_text(chart_.y.label, across), on_screen(8, y + 4), "left");
+    label(shown_text(chart_.x.label, across), on_screen((layout_.left + layout_.right) / 2, layout_.x_label),
+          "center");
+    for (std::size_t group = 0; group < layout_.groups.size(); ++group) {
+      const std::string place = "first " + std::to_string(group) + ", screen " +
+                                decimal(1 - (layout_.bottom + line_height / 2 + 2) / layout_.height);
+      label(layout_.groups[group], place, layout_.groups_tilted ? "right rotate by 35" : "center");
+    }
+  }
+
+  void legend() {
+    line("set key at ", on_screen(8, layout_.legend), " left top Left reverse vertical samplen 2.5 maxcols ",
+         std::to_string(layout_.legend_columns), " maxrows ", std::to_string(layout_.legend_rows));
+  }
+
+  /// Of bars: left and right end of those of a series in a group.
+  Interval bar(std::size_t series, double group) const {
+    const double width = 0.84 / static_cast<double>(chart_.series.size());
+    const double left = group - 0.42 + width * static_cast<double>(series);
+    return {left, left + width * 0.92};
+  }
+
+  double x_of(std::size_t series, const PlottedPoint& point) const {
+    if (chart_.form != ChartForm::bars) return point.x;
+    const Interval ends = bar(series, point.x);
+    return (ends.low + ends.high) / 2;
+  }
+
+  /// The points of a series as the data block $sN, and their intervals as $iN.
+  void data(std::size_t s) {
+    line("$s", std::to_string(s), " << EOD");
+    for (const PlottedPoint& point : values_.series[s]) {
+      if (point.after_gap) line("");
+      std::string columns = decimal(x_of(s, point)) + ' ' + decimal(point.y);
+      if (chart_.form == ChartForm::bars) {
+        const Interval ends = bar(s, point.x);
+        const double foot = chart_.y.logarithmic ? layout_.y.low : 0;
+        for (const double column : {ends.low, ends.high, foot, point.y}) columns += ' ' + decimal(column);
+      }
+      line(columns);
+    }
+    line("EOD");
+    line("$i", std::to_string(s), " << EOD");
+    for (const PlottedPoint& point : values_.series[s])
+      if (point.interval)
+        line(decimal(x_of(s, point)), ' ', decimal(point.y), ' ', decimal(point.interval->low), ' ',
+             decimal(point.interval->high));
+    line("EOD");
+  }
+
+  /// What gnuplot plots of a series, which may be nothing.
+  std::vector<std::string> plots_of(std::size_t s) const {
+    if (values_.series[s].empty()) return {};
+    const std::string number = std::to_string(s), title = " title " + gnuplot_text(layout_.names[s]);
+    const SeriesStyle& style = styles_[s];
+    const bool published = style.origin == Origin::published;
+    const std::string colour = " linecolor rgb '" + std::string(style.colour()) + "'";
+    std::vector<std::string> plots;
+    if (style.origin == Origin::reference) {
+      plots.push_back("$s" + number + " using 1:2 with lines linewidth 1.5 linecolor rgb 'black' dashtype " +
+                      std::string(reference_dashes[style.family % reference_dashes.size()]) + title);
+    } else if (chart_.form == ChartForm::bars) {
+      const std::size_t fill = 2 * style.family + (published ? 1 : 0);
+      plots.push_back("$s" + number + " using 1:2:3:4:5:6 with boxxyerror linewidth 1.5 linecolor rgb '" +
+                      std::string(fill_colour_prefix) + hexadecimal(fill).substr(14) +
+                      "' fillstyle solid 1 border" + colour + title);
+    } else {
+      const int point = (published ? open_points : filled_points)[style.shape()];
+      const bool lines = chart_.form == ChartForm::lines;
+      plots.push_back("$s" + number + " using 1:2 with " +
+                      (lines ? "linespoints linewidth 2 dashtype " : "points") +
+                      (lines ? (published ? "(4,3)" : "solid") : " linewidth 2") + colour + " pointtype " +
+                      std::to_string(point) + " pointsize 0.9" + title);
+    }
+    for (const PlottedPoint& point : values_.series[s])
+      if (point.interval) {
+        const std::string look = chart_.form == ChartForm::bars ? " linecolor rgb 'black'" : colour;
+        plots.push_back("$i" + number + " using 1:2:3:4 with yerrorbars linewidth 1.5 pointtype 0" + look +
+                        " notitle");
+        break;
+      }
+    return plots;
+  }
+
+  const Chart& chart_;
+  const PlottedValues& values_;
+  const ChartLayout& layout_;
+  std::vector<SeriesStyle> styles_;
+  std::string script_;
+};
+
+}  // namespace
+
+std::string gnuplot_script(const Chart& chart, const PlottedValues& values, const ChartLayout& layout,
+                           std::string_view output) {
+  return Script(chart, values, layout).made(output);
+}
+
+}  // namespace mssim

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "charts/chart.h"
+
+namespace mssim {
+
+/// Colours of series, each with a contrast of at least 3 to 1 on white and on near-black (WCAG 2.2, 1.4.11),
+/// so that a chart needs none of its own for dark pages.
+inline constexpr std::array<std::string_view, 8> series_colours{"#2f7ed8", "#b8720a", "#2e8f57", "#d9534f",
+                                                                "#9b59b6", "#12858c", "#c2508a", "#8a7a00"};
+
+/// Shapes of points (circle, square, triangles, diamond, pentagon), and patterns of bars.
+inline constexpr std::size_t point_shapes = 6, bar_patterns = 6;
+
+/// How a series looks beside others. Numbers count from 0; those of families go on beyond the colours, shapes
+/// and patterns, of which there are different numbers.
+struct SeriesStyle {
+  std::size_t family = 0;
+  Origin origin = Origin::measured;
+
+  std::string_view colour() const { return series_colours[family % series_colours.size()]; }
+  std::size_t shape() const { return family % point_shapes; }
+  std::size_t pattern() const { return family % bar_patterns; }
+};
+
+/// One for each series; no two are the same. References have a numbering of their own.
+std::vector<SeriesStyle> series_styles(std::span<const Series> series);
+
+}  // namespace mssim
