@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "text/decimal.h"
@@ -13,12 +12,7 @@ namespace {
 constexpr int most_ticks = 6;
 constexpr double room = 0.05;  // beside the values, as a fraction of what they span
 
-AxisScale with_ticks(double low, double high) {
-  constexpr double largest = std::numeric_limits<double>::max() / 4;
-  low = std::clamp(low, -largest, largest);
-  high = std::clamp(high, -largest, largest);
-  return {low, high, ticks_between(low, high, most_ticks)};
-}
+AxisScale with_ticks(double low, double high) { return {low, high, ticks_between(low, high, most_ticks)}; }
 
 /// 10 to the power of `exponent` as people write it, with the sign of multiplication before it.
 std::string power_of_ten(int digit, int exponent) {
@@ -74,9 +68,9 @@ AxisScale scale_from_zero(double low, double high) {
 
 AxisScale logarithmic_scale(double low, double high) {
   const double decades = std::log10(high) - std::log10(low);
-  const double factor = std::pow(10.0, std::max(room * decades, 0.1));
-  low = std::max(low / factor, std::numeric_limits<double>::min());
-  high = std::min(high * factor, std::numeric_limits<double>::max() / 4);
+  const double factor = std::pow(10.0, std::clamp(room * decades, 0.1, 1.0));
+  low /= factor;
+  high *= factor;
   std::vector<Tick> ticks;
   const int step = static_cast<int>(std::ceil((decades + 1) / (most_ticks + 2)));
   for (const auto& digits : {std::initializer_list<int>{1}, {1, 3}, {1, 2, 5}})

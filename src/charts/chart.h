@@ -11,15 +11,15 @@ namespace mssim {
 enum class Origin { measured, published, reference };
 
 struct Series {
-  std::string name;  ///< as the legend has it
+  std::string name{};  ///< as the legend has it
   Origin origin = Origin::measured;
   /// What is to be compared, such as a configuration of the paper: series of one family share colour, point
   /// and pattern, and differ by their origin. Empty, or taken by a series of the same origin: one of its own.
-  std::string family;
-  std::vector<double> x;  ///< as many as y; of bars, empty
-  std::vector<double> y;  ///< of bars, one for each of Chart::groups
+  std::string family{};
+  std::vector<double> x{};  ///< as many as y; of bars, empty
+  std::vector<double> y{};  ///< of bars, one for each of Chart::groups
   /// Intervals around y, drawn as error bars: as many as y, or none.
-  std::vector<double> low, high;
+  std::vector<double> low{}, high{};
 };
 
 struct Axis {

@@ -8,8 +8,8 @@ namespace mssim {
 namespace {
 
 constexpr double plot_height = 260;
-constexpr double edge = 8;             // around everything
-constexpr double character_width = 8;  // on the safe side: the fonts of pages differ
+constexpr double edge = 8;               // around everything
+constexpr double character_width = 8.5;  // on the safe side: the fonts of pages differ
 constexpr double legend_sample = 60;
 constexpr double legend_row = 1.5 * font_size;  // as gnuplot has it
 
@@ -50,29 +50,32 @@ ChartLayout chart_layout(const Chart& chart, const PlottedValues& values) {
   layout.x = bars ? AxisScale{-0.5, static_cast<double>(chart.groups.size()) - 0.5, {}}
                   : scale_of(chart.x, values.x_range());
 
-  layout.left = edge + widest(tick_labels(layout.y)) + 8;
+  layout.left = edge + widest(tick_labels(layout.y)) + 12;
   layout.right =
       chart_width - edge - (layout.x.ticks.empty() ? 0 : width_of(layout.x.ticks.back().label) / 2);
   layout.top = edge + line_height * static_cast<double>(layout.title.size() + 1) + 16;
   layout.bottom = layout.top + plot_height;
 
-  double below = 12 + line_height;
+  double below = 14 + line_height;
   if (bars) {
     const double place = (layout.right - layout.left) / static_cast<double>(chart.groups.size());
     for (const std::string& group : chart.groups) layout.groups.push_back(shown_text(group, 16));
     const double width = widest(layout.groups);
     layout.groups_tilted = width > place;
-    if (layout.groups_tilted) below = 14 + 0.6 * width;
+    if (layout.groups_tilted) below = 18 + 0.6 * width;
   }
   layout.x_label = layout.bottom + below + line_height / 2;
   layout.legend = layout.x_label + line_height;
 
-  for (std::size_t s = 0; s < chart.series.size(); ++s)
+  std::vector<std::string> in_legend;
+  for (std::size_t s = 0; s < chart.series.size(); ++s) {
     layout.names.push_back(
         shown_text(chart.series[s].name, characters_that_fit(chart_width - 2 * edge - legend_sample)));
-  const double column = widest(layout.names) + legend_sample;
-  layout.legend_columns = layout.names.size() > 2 && 2 * column < chart_width - 2 * edge ? 2 : 1;
-  layout.legend_rows = (layout.names.size() + layout.legend_columns - 1) / layout.legend_columns;
+    if (!values.series[s].empty()) in_legend.push_back(layout.names.back());
+  }
+  const double column = widest(in_legend) + legend_sample;
+  layout.legend_columns = in_legend.size() > 2 && 2 * column < chart_width - 2 * edge ? 2 : 1;
+  layout.legend_rows = (in_legend.size() + layout.legend_columns - 1) / layout.legend_columns;
   layout.height = layout.legend + legend_row * static_cast<double>(layout.legend_rows) + edge;
   return layout;
 }

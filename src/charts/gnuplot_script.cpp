@@ -92,7 +92,7 @@ class Script {
           "center");
     for (std::size_t group = 0; group < layout_.groups.size(); ++group) {
       const std::string place = "first " + std::to_string(group) + ", screen " +
-                                decimal(1 - (layout_.bottom + line_height / 2 + 2) / layout_.height);
+                                decimal(1 - (layout_.bottom + line_height / 2 + 5) / layout_.height);
       label(layout_.groups[group], place, layout_.groups_tilted ? "right rotate by 35" : "center");
     }
   }

@@ -12,7 +12,7 @@ namespace mssim {
 namespace {
 
 bool can_stand_on(const Axis& axis, double value) {
-  return std::isfinite(value) && (!axis.logarithmic || value > 0);
+  return std::abs(value) <= largest_plotted && (!axis.logarithmic || value >= 1 / largest_plotted);
 }
 
 void require_matching_sizes(const Chart& chart, const Series& series) {
@@ -86,8 +86,9 @@ PlottedValues plotted_values(const Chart& chart) {
         ++intervals_left_out;
     }
     const std::string why = chart.x.logarithmic || chart.y.logarithmic
-                                ? " left out: not positive numbers, which a logarithmic axis needs"
-                                : " left out: not finite numbers";
+                                ? " cannot be drawn on a logarithmic axis, which has positive numbers only"
+                                : " cannot be drawn: not finite numbers";
+    if (series.y.empty()) values.notes.push_back("\"" + printable(series.name) + "\" has no values");
     if (const std::size_t missing = series.y.size() - points.size(); missing > 0)
       values.notes.push_back(left_out(missing, series.y.size(), "value", series) + why);
     if (intervals_left_out > 0)

@@ -8,6 +8,9 @@
 
 namespace mssim {
 
+/// No axis goes beyond this, nor a logarithmic one below its inverse: the room beside values must be finite.
+inline constexpr double largest_plotted = 1e300;
+
 struct Interval {
   double low, high;
 };
