@@ -18,6 +18,7 @@
 #include "commands/list/list_command.h"
 #include "commands/measure/measure_command.h"
 #include "commands/render/render_command.h"
+#include "commands/report/report_command.h"
 #include "commands/run/run_command.h"
 #include "commands/shared/command.h"
 #include "commands/shared/exit_code.h"
@@ -36,7 +37,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 8> table{{
+constexpr std::array<Command, 9> table{{
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
     {"run", "Simulate one scene; write a trace or an energy curve if asked to",
@@ -47,6 +48,8 @@ constexpr std::array<Command, 8> table{{
      "mssim check my-cloth.json", declare_check},
     {"compare", "Compare two results or programs: which is faster, and is that certain?",
      "mssim compare results/yesterday results/today", declare_compare},
+    {"report", "Write one HTML page about results: verdict, tables, charts, provenance",
+     "mssim report results/table1 results/table3 --out report.html", declare_report},
     {"measure", "Measure a person's surface, and write a scene of jeans for it",
      "mssim measure scan.obj --scene my.json", declare_measure},
     {"list", "List scenes, suites, backends, methods, integrators, devices or a schema",

@@ -59,6 +59,7 @@ garment/output        text garment bench/results output/hdf5 output/tables
 output/traces         text platform geometry model output/hdf5 garment/output
 output/pictures       geometry render picture model scene/fields garment output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
+report                text platform statistics integrators charts bench/machine bench/results bench/roofline output/tables garment/output output/folders
 
 commands/arguments    text
 commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders commands/arguments
@@ -69,8 +70,9 @@ commands/list         text platform geometry integrators scene/fields scene back
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench
 commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/arguments commands/shared commands/run commands/bench
 commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/arguments commands/shared
+commands/report       text platform bench/machine output/tables report commands/arguments commands/shared commands/bench
 commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/bench commands/list commands/compare commands/check commands/measure commands/help
+commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/bench commands/list commands/compare commands/check commands/measure commands/report commands/help
 main.cpp              commands/shared
 ask_opencl.cpp
 '

@@ -46,15 +46,7 @@ std::vector<const BackendInfo*> all_methods() {
   return rows;
 }
 
-TableMaker tables_of_hong() {
-  PaperLegend legend;
-  for (const BackendInfo& backend : backends())
-    legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
-  for (const Integrator& integrator : integrators)
-    legend.integrators.push_back({std::string(integrator.name), std::string(integrator.paper_name),
-                                  static_cast<int>(integrator.stage_count)});
-  return paper_tables(std::move(legend), published_tables());
-}
+TableMaker tables_of_hong() { return paper_tables(paper_legend(), published_tables()); }
 
 /// Scenes of both papers are compared in the same way, and each in its own tables.
 TableMaker tables_of_the_papers() {
@@ -108,6 +100,16 @@ bool belongs(const Suite& suite, std::string_view name) {
 }
 
 }  // namespace
+
+PaperLegend paper_legend() {
+  PaperLegend legend;
+  for (const BackendInfo& backend : backends())
+    legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
+  for (const Integrator& integrator : integrators)
+    legend.integrators.push_back({std::string(integrator.name), std::string(integrator.paper_name),
+                                  static_cast<int>(integrator.stage_count)});
+  return legend;
+}
 
 std::span<const Suite> suites() { return table; }
 

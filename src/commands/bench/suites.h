@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backends/backends.h"
+#include "output/tables/paper_table.h"
 #include "output/tables/result_table.h"
 
 namespace mssim {
@@ -28,6 +29,9 @@ struct Suite {
 };
 
 std::span<const Suite> suites();
+
+/// What the tables of backends and integrators say about the papers.
+PaperLegend paper_legend();
 
 /// The names of the suites, and "tables".
 std::vector<std::string> suite_names();

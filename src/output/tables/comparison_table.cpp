@@ -79,7 +79,9 @@ Cell verdict_cell(const ComparedRow& row) {
   return cell;
 }
 
-std::string as_markdown(const RunComparison& comparison) {
+}  // namespace
+
+Document comparison_page(const RunComparison& comparison) {
   Table rows;
   for (const ComparedRow& row : comparison.rows)
     rows.add(
@@ -100,17 +102,15 @@ std::string as_markdown(const RunComparison& comparison) {
   Document page{rows};
   add_sentence(page, legend_of_ratios(rows));
   if (!comparison.means.empty()) page.emplace_back(means);
-  return markdown(page);
+  return page;
 }
-
-}  // namespace
 
 std::string to_text(const RunComparison& comparison, ComparisonFormat format) {
   switch (format) {
     case ComparisonFormat::json:
       return as_json(comparison);
     case ComparisonFormat::markdown:
-      return as_markdown(comparison);
+      return markdown(comparison_page(comparison));
     case ComparisonFormat::table:
       break;
   }

@@ -1,9 +1,8 @@
 #include "output/tables/markdown.h"
 
-#include <cstdint>
 #include <string_view>
 
-#include "text/decimal.h"
+#include "output/tables/cell_text.h"
 
 namespace mssim {
 namespace {
@@ -20,29 +19,6 @@ std::string one_cell(std::string_view text) {
       cell += character;
   }
   return cell;
-}
-
-/// A cell's value as people read it.
-struct Shown {
-  const Cell& cell;
-  const std::string& unit;
-
-  std::string operator()(std::monostate) const { return "–"; }
-  std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
-  std::string operator()(std::int64_t number) const {
-    return grouped(static_cast<std::uint64_t>(number)) + unit;
-  }
-  std::string operator()(double number) const {
-    return (cell.exact ? decimal(number) : three_digits(number)) + unit;
-  }
-  std::string operator()(const std::string& text) const { return text; }
-};
-
-std::string text_of(const Cell& cell, const Column& column) {
-  const std::string_view around = cell.strong ? "**" : "";
-  std::string text(around);
-  text.append(std::visit(Shown{cell, column.unit}, cell.value)).append(around).append(cell.suffix);
-  return one_cell(text);
 }
 
 std::string text_of(const Heading& heading) {
@@ -66,7 +42,8 @@ std::string text_of(const Table& table) {
   text += '\n' + rule + '\n';
   for (const std::vector<Cell>& row : table.rows) {
     text += '|';
-    for (std::size_t i = 0; i < row.size(); ++i) text += ' ' + text_of(row[i], table.columns[i]) + " |";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += ' ' + one_cell(cell_text(row[i], table.columns[i])) + " |";
     text += '\n';
   }
   return text;

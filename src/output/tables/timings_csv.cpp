@@ -103,15 +103,17 @@ constexpr std::size_t oldest_sample_columns = 6;
 
 }  // namespace
 
-std::string timings_csv(std::span<const ResultRow> rows) {
+Table timings_table(std::span<const ResultRow> rows) {
   Table table;
   for (const TimingsColumn& column : columns()) table.columns.push_back({std::string(column.name)});
   for (const ResultRow& row : rows) {
     std::vector<Cell>& cells = table.rows.emplace_back();
     for (const TimingsColumn& column : columns()) cells.push_back(column.write(row));
   }
-  return table_csv(table);
+  return table;
 }
+
+std::string timings_csv(std::span<const ResultRow> rows) { return table_csv(timings_table(rows)); }
 
 std::string samples_csv(std::span<const ResultRow> rows) {
   Table table;

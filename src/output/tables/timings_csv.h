@@ -7,8 +7,12 @@
 
 #include "bench/results/result.h"
 #include "output/tables/csv.h"
+#include "output/tables/table.h"
 
 namespace mssim {
+
+/// The columns of timings.csv and a row for each, absent values empty.
+Table timings_table(std::span<const ResultRow> rows);
 
 /// timings.csv: a header and one line per row, absent values empty. Numbers read back as they were.
 /// Throws std::invalid_argument for a number that is not finite.

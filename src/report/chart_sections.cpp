@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <exception>
+
+#include "charts/draw_svg.h"
+#include "report/html.h"
+#include "report/report_charts.h"
+#include "report/sections.h"
+#include "text/joined.h"
+
+namespace mssim {
+namespace {
+
+/// A chart, or the sentence why there is none.
+std::string figure_of(const Chart& chart) {
+  const DrawnChart drawn = draw_svg(chart);
+  if (drawn.svg.empty())
+    return "<p class=\"problems\">" + html_text(chart.title + ": no chart, because " + drawn.problem) +
+           ".</p>\n";
+  std::string caption = html_text(chart.title);
+  for (const std::string& note : drawn.notes) caption += "; " + html_text(note);
+  return "<figure role=\"group\">" + drawn.svg + "<figcaption>" + caption + ".</figcaption></figure>\n";
+}
+
+std::string figures_of(const std::vector<Chart>& charts) {
+  std::string text;
+  for (const Chart& chart : charts) text += figure_of(chart);
+  return text.empty() ? text : "<div class=\"figures\">\n" + text + "</div>\n";
+}
+
+/// What `content` makes of each folder and its number, below its name; `without` where all of it is empty.
+template <class Content>
+std::string of_each_folder(const ReportInput& input, const std::string& without, Content content) {
+  std::string text;
+  for (std::size_t i = 0; i < input.folders.size(); ++i)
+    if (const std::string part = content(input.folders[i], id_of(i)); !part.empty())
+      text += folder_heading(input, input.folders[i]) + part;
+  return text.empty() ? "<p>" + without + "</p>\n" : text;
+}
+
+}  // namespace
+
+std::string speedup_section(const ReportInput& input) {
+  return "<p>Published lines are dashed, with open points; measured ones have intervals. Both axes are "
+         "logarithmic "
+         "in charts of speed-ups, and neither in Figure 6 of Vassilev, which shows its own times as curves "
+         "without numbers.</p>\n" +
+         of_each_folder(
+             input, "No folder has a scene of the papers with a speed-up.",
+             [&](const ReportFolder& folder, const std::string& id) {
+               std::vector<Chart> charts;
+               for (const PublishedTable& published : input.published) {
+                 const PaperScenes scenes(folder.rows, input.legend, published);
+                 for (Chart& chart : speedup_charts(scenes, id + "-" + std::string(published.info().name)))
+                   charts.push_back(std::move(chart));
+               }
+               if (auto figure6 = figure6_chart(folder.rows, id)) charts.push_back(std::move(*figure6));
+               return figures_of(charts);
+             });
+}
+
+std::string scaling_section(const ReportInput& input) {
+  return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes: 1 "
+         "where a "
+         "node costs the same at every size.</p>\n" +
+         of_each_folder(input, "No folder has two sizes of a kind of scene.",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          const Table slopes = slope_table(folder.rows, input.legend, input.published);
+                          return figures_of(scaling_charts(folder.rows, input.legend, input.published, id)) +
+                                 (slopes.rows.empty() ? "" : html_of(slopes));
+                        });
+}
+
+std::string roofline_section(const ReportInput& input) {
+  return "<p>Operations and bytes are what a step needs at least. Roofs are what the timings say of the "
+         "machine's "
+         "peaks, measured in the same process.</p>\n" +
+         of_each_folder(input, "No folder has rows with a roofline; garments have none.",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          const auto chart = roofline_chart(folder.rows, id);
+                          return chart ? figures_of({*chart}) : std::string();
+                        });
+}
+
+std::string energy_section(const ReportInput& input) {
+  return of_each_folder(input,
+                        "No folder has an energy curve. <code>mssim run --scene cloth2500 --energy-curve "
+                        "FOLDER/cloth2500.csv</code> "
+                        "writes one into a folder.",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          std::vector<Chart> charts;
+                          std::vector<std::string> without;
+                          for (const FoundCurve& curve : folder.curves) {
+                            charts.push_back(energy_chart(curve, input.references,
+                                                          id + "-energy-" + std::to_string(charts.size())));
+                            if (!reference_of(curve, input.references)) without.push_back(curve.name);
+                          }
+                          std::string text = figures_of(charts);
+                          if (!without.empty())
+                            text += "<p>Without a reference curve: " + html_text(joined(without, ", ")) +
+                                    ".</p>\n";
+                          return text;
+                        });
+}
+
+std::string picture_section(const ReportInput& input) {
+  return of_each_folder(
+      input,
+      "No folder has a picture. <code>mssim render</code> draws one; put it into a folder as a PNG file.",
+      [](const ReportFolder& folder, const std::string&) {
+        std::string text;
+        for (const FoundPicture& picture : folder.pictures)
+          text += "<figure><img alt=\"" + html_text(picture.caption) + "\" src=\"data:image/png;base64," +
+                  base64(picture.png) + "\"><figcaption>" + html_text(picture.caption) +
+                  "</figcaption></figure>\n";
+        return text.empty() ? text : "<div class=\"figures\">\n" + text + "</div>\n";
+      });
+}
+
+}  // namespace mssim

@@ -1,0 +1,190 @@
+#include "report/report_folder.h"
+
+#include <algorithm>
+#include <exception>
+#include <string_view>
+#include <system_error>
+
+#include "garment/output/garment_csv.h"
+#include "output/folders/provenance_file.h"
+#include "output/tables/csv.h"
+#include "output/tables/timings_csv.h"
+#include "platform/whole_file.h"
+#include "text/counted.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* times_file = "timings.csv";
+constexpr const char* sample_file = "samples.csv";
+constexpr const char* dressing_file = "garment.csv";
+
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+/// What lies in a folder, by name; nothing where it cannot be listed.
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    entries.push_back(entry->path());
+  std::ranges::sort(entries);
+  return entries;
+}
+
+/// The rows of a timings.csv whose lines cannot all be read: each line that can be read alone.
+std::vector<ResultRow> readable_rows(const fs::path& file, std::string_view text, std::size_t& lost) {
+  std::vector<ResultRow> rows;
+  const std::size_t head = std::min(text.find('\n'), text.size());
+  const std::string header(text.substr(0, head));
+  std::string_view rest = text.substr(std::min(head + 1, text.size()));
+  while (!rest.empty()) {
+    const std::size_t length = std::min(rest.find('\n'), rest.size());
+    std::string line = header + '\n';
+    line.append(rest.substr(0, length)) += '\n';
+    rest.remove_prefix(std::min(length + 1, rest.size()));
+    try {
+      for (ResultRow& row : read_timings(CsvTable(file.string(), line))) rows.push_back(std::move(row));
+    } catch (const CsvError&) {
+      ++lost;
+    }
+  }
+  return rows;
+}
+
+void read_rows(const fs::path& file, ReportFolder& folder) {
+  std::string text;
+  try {
+    text = read_file(file, largest_csv_bytes);
+  } catch (const ReadError& error) {
+    folder.problems.push_back(error.sentence(file, "without it there is nothing to show"));
+    return;
+  }
+  try {
+    folder.rows = read_timings(CsvTable(file.string(), text));
+  } catch (const CsvError& error) {
+    std::size_t lost = 0;
+    folder.rows = readable_rows(file, text, lost);
+    folder.problems.push_back(std::string(error.what()) + "; " + counted(lost, "row") + " left out, " +
+                              std::to_string(folder.rows.size()) + " shown");
+  }
+  if (folder.rows.empty()) folder.problems.push_back(file.string() + " has no row that can be shown");
+}
+
+/// Reads what belongs to the rows from a file beside timings.csv; false where that cannot be read.
+template <class Read>
+bool read_beside(const fs::path& file, ReportFolder& folder, const std::string& without, Read read) {
+  std::vector<ResultRow> rows = folder.rows;
+  try {
+    read(file, rows);
+    folder.rows = std::move(rows);
+    return true;
+  } catch (const CsvError& error) {
+    folder.problems.push_back(std::string(error.what()) + "; " + without);
+    return false;
+  }
+}
+
+/// Rows of a samples.csv that ended early have fewer samples than rounds, or none.
+void drop_incomplete_samples(const fs::path& file, ReportFolder& folder) {
+  std::size_t without = 0;
+  for (ResultRow& row : folder.rows) {
+    if (!counts(row) || row.samples_ms.size() == static_cast<std::size_t>(row.rounds)) continue;
+    row.samples_ms.clear();
+    ++without;
+  }
+  if (without > 0) folder.problems.push_back(file.string() + " has no samples of " + counted(without, "row"));
+}
+
+/// A time that no clock gives would only spoil what is computed of it.
+void drop_impossible_times(ReportFolder& folder) {
+  for (ResultRow& row : folder.rows) {
+    if (!counts(row)) continue;
+    const auto bad = [](double ms) { return !(ms > 0); };
+    if (row.ms_per_step && bad(*row.ms_per_step)) row.ms_per_step.reset();
+    if (row.ms_per_step_low && bad(*row.ms_per_step_low)) row.ms_per_step_low.reset();
+    if (row.ms_per_step_high && bad(*row.ms_per_step_high)) row.ms_per_step_high.reset();
+    if (row.speedup_vs_serial && bad(*row.speedup_vs_serial)) row.speedup_vs_serial.reset();
+    if (std::ranges::any_of(row.samples_ms, bad)) row.samples_ms.clear();
+    if (!row.ms_per_step) row.status = "failed: timings.csv has no time of it";
+  }
+}
+
+void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
+  for (const fs::path& file : entries_of(path)) {
+    const std::string extension = file.extension().string();
+    if (extension != ".png" && extension != ".csv") continue;
+    try {
+      const std::string text =
+          read_file(file, extension == ".png" ? largest_picture_bytes : largest_csv_bytes);
+      if (extension == ".csv") {
+        if (auto curve = energy_curve_in(file.stem().string(), text))
+          folder.curves.push_back(std::move(*curve));
+      } else if (text.starts_with("\x89PNG\r\n\x1a\n")) {
+        folder.pictures.push_back({file.filename().string(), text});
+      } else {
+        folder.problems.push_back(file.string() + " is no PNG picture");
+      }
+    } catch (const ReadError& error) {
+      folder.problems.push_back(error.sentence(file, "it is not shown"));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> result_folders(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  if (!is_there(folder / times_file))
+    for (const fs::path& entry : entries_of(folder))
+      if (is_there(entry / times_file)) folders.push_back(entry);
+  if (folders.empty()) folders.push_back(folder);
+  return folders;
+}
+
+ReportFolder read_report_folder(const fs::path& path) {
+  ReportFolder folder;
+  folder.name = path.string();
+  read_rows(path / times_file, folder);
+  if (!folder.rows.empty()) {
+    if (read_beside(path / sample_file, folder, "intervals of ratios are those of the times",
+                    [](const fs::path& file, std::span<ResultRow> rows) { read_samples(file, rows); }))
+      drop_incomplete_samples(path / sample_file, folder);
+    if (is_there(path / dressing_file))
+      read_beside(path / dressing_file, folder, "how garments were dressed is not shown",
+                  [](const fs::path& file, std::span<ResultRow> rows) { read_dressings(file, rows); });
+  }
+  drop_impossible_times(folder);
+  try {
+    folder.provenance = read_provenance(path / "provenance.json");
+  } catch (const ProvenanceError& error) {
+    folder.problems.push_back(std::string(error.what()) + "; machine and settings are not known");
+  }
+  read_pictures_and_curves(path, folder);
+  return folder;
+}
+
+std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_view text) {
+  while (text.starts_with('#')) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  if (!text.starts_with("time_s,kinetic_j,")) return std::nullopt;
+  FoundCurve curve{name, {}, {}};
+  try {
+    const CsvTable table(name, text);
+    const auto total = std::ranges::find(table.header(), "total_j");
+    if (total == table.header().end()) return std::nullopt;
+    const auto column = static_cast<std::size_t>(total - table.header().begin());
+    for (std::size_t record = 0; record < table.size(); ++record) {
+      curve.time_s.push_back(table.number(record, 0));
+      curve.total_j.push_back(table.number(record, column));
+    }
+  } catch (const CsvError&) {
+    return std::nullopt;
+  }
+  return curve;
+}
+
+}  // namespace mssim
