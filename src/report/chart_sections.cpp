@@ -16,9 +16,10 @@ std::string figure_of(const Chart& chart) {
   if (drawn.svg.empty())
     return "<p class=\"problems\">" + html_text(chart.title + ": no chart, because " + drawn.problem) +
            ".</p>\n";
-  std::string caption = html_text(chart.title);
-  for (const std::string& note : drawn.notes) caption += "; " + html_text(note);
-  return "<figure role=\"group\">" + drawn.svg + "<figcaption>" + caption + ".</figcaption></figure>\n";
+  // The chart has its title in it.
+  const std::string notes =
+      drawn.notes.empty() ? "" : "<figcaption>" + html_text(joined(drawn.notes, "; ")) + ".</figcaption>";
+  return "<figure>" + drawn.svg + notes + "</figure>\n";
 }
 
 std::string figures_of(const std::vector<Chart>& charts) {

@@ -21,6 +21,7 @@ h4, h5, h6 { font-size: 1rem; margin: 1.2rem 0 .4rem; }
 p, ul { margin: .5rem 0; max-width: 60rem; }
 ul { padding-left: 1.2rem; }
 code { font: .9em ui-monospace, monospace; }
+td code, th code { white-space: nowrap; }
 a { color: inherit; }
 nav ul { list-style: none; padding: 0; display: flex; flex-wrap: wrap; gap: .2rem 1rem; }
 .wide { overflow-x: auto; margin: .6rem 0; max-width: 100%; }
@@ -39,7 +40,7 @@ td.number strong, td strong { font-weight: 600; }
 .findings .partly > strong:first-child { color: var(--partly); }
 .findings .no > strong:first-child { color: var(--no); }
 .problems { border-left: .3rem solid var(--no); padding-left: 1.5rem; }
-.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 30rem), 1fr)); gap: 1rem; }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 23rem), 1fr)); gap: 1rem; }
 figure { margin: .5rem 0; min-width: 0; }
 figure svg, figure img { display: block; width: 100%; height: auto; max-width: 46rem; }
 figcaption { color: var(--dim); font-size: .875rem; }
@@ -58,6 +59,7 @@ footer { margin-top: 2rem; color: var(--dim); font-size: .875rem; }
   .number { white-space: normal; overflow-wrap: normal; }
   h2, h3, h4, h5 { break-after: avoid; }
   figure, tr, .findings li { break-inside: avoid; }
+  td code, th code { white-space: normal; }
   .figures { grid-template-columns: 1fr 1fr; }
 }
 )";

@@ -1,0 +1,154 @@
+#!/usr/bin/env bash
+# mssim report: a page about the committed results is whole, in order, and needs nothing beside it; damaged folders give a page that
+# says so; mistakes at the command line are named.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+results=$2/results
+
+# check PAGE: every element is closed, ids differ, links lead to one of them, nothing is fetched or run, and the data are JSON
+check() {
+  python3 - "$1" <<'EOF' || fail "$1 is not a whole page"
+import json, sys
+from html.parser import HTMLParser
+
+void = {"meta", "img", "br", "link", "input", "hr"}
+fetching = {"src", "href", "srcset", "data", "action", "poster", "xlink:href"}
+
+
+class Page(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.links, self.data, self.wrong = [], [], [], "", []
+
+    def handle_starttag(self, tag, attributes):
+        self.handle_startendtag(tag, attributes)
+        if tag not in void:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        for name, value in attributes:
+            if name == "id":
+                self.ids.append(value)
+            if name in fetching and (value or "").startswith("#"):
+                self.links.append(value[1:])
+            elif name in fetching and not (tag == "img" and value.startswith("data:image/png;base64,")):
+                self.wrong.append(f"{tag} {name}={value[:60]}")
+            if name.startswith("on") or "url(" in (value or "").replace("url(#", ""):
+                self.wrong.append(f"{tag} {name}={value[:60]}")
+        if tag == "script" and dict(attributes).get("type") != "application/json":
+            self.wrong.append("a script")
+        if tag in ("link", "iframe", "object", "embed"):
+            self.wrong.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(f"</{tag}> closes nothing")
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] == "script":
+            self.data += data
+        if self.open and self.open[-1] == "style" and ("url(" in data or "@import" in data):
+            self.wrong.append("a style that fetches")
+
+
+text = open(sys.argv[1], encoding="utf-8").read()
+page = Page()
+page.feed(text)
+wrong = page.wrong + [f"<{tag}> is not closed" for tag in page.open]
+wrong += [f"two of the id {i}" for i in set(page.ids) if page.ids.count(i) > 1]
+wrong += [f"no id {i}" for i in page.links if i not in page.ids]
+folders = json.loads(page.data)["folders"]
+wrong += [f"{f['name']}: no verdict" for f in folders if f["timings"] and not f["verdict"]]
+print(f"{sys.argv[1]}: {len(text)} bytes, {len(folders)} folders, {len(page.ids)} ids, {text.count('<svg')} charts")
+sys.exit("\n".join(wrong) if wrong else 0)
+EOF
+}
+
+# has PATTERN, lacks PATTERN: what stands in the page that was made last
+has() { grep -q -- "$1" "$work/page.html" || fail "the page does not say \"$1\""; }
+lacks() { ! grep -q -- "$1" "$work/page.html" || fail "the page says \"$1\""; }
+
+# report FOLDER...: makes and checks a page
+report() {
+  succeed report "$@" --out "$work/page.html"
+  [ ! -s "$work/out" ] || fail "stdout is not empty"
+  check "$work/page.html"
+}
+
+# The committed results: folders of folders, sections in order, one verdict of each outcome.
+report "$results/table1" "$results/table3" "$results/garment"
+order=$(grep -o '<section id="[a-z-]*"' "$work/page.html" | cut -d'"' -f2 | tr '\n' ' ')
+[ "$order" = "machine verdict headline published speed-up scaling roofline energy pictures provenance " ] || fail "sections: $order"
+[ "$(grep -c '<h3>.*results/[a-z0-9]*/zen[45]</h3>' "$work/page.html")" -ge 36 ] || fail "not every folder is in every section"
+has 'a step of rk4 costs 1.2[0-9]* (.*about what one force evaluation costs, though the method has 4 force evaluations'
+has 'not reproduced</strong> Published: the speed-up of GPU falls in 3 of 15 steps from one size to the next, most from 10,000 to 40,000'
+has '✓ reproduced</strong> Published: GPU is faster than CPU only in 18 of 18'
+has 'Published (Figure 6 of Vassilev): an iteration takes less time with parallelisation'
+has 'all are verified against the double-precision reference'
+has 'no GPU\|the same processor'
+lacks 'What changed'
+if command -v gnuplot >/dev/null; then
+  [ "$(grep -c '<svg' "$work/page.html")" -ge 20 ] || fail "charts are missing"
+  cp "$work/page.html" "$work/first.html"
+  report "$results/table1" "$results/table3" "$results/garment"
+  cmp "$work/page.html" "$work/first.html" || fail "the same folders give another page"
+fi
+
+# Without gnuplot there are tables and a sentence.
+mkdir "$work/bin"
+PATH=$work/bin "$mssim" report "$results/table1/zen5" --out "$work/page.html" 2>/dev/null || fail "without gnuplot: $?"
+check "$work/page.html"
+lacks '<svg'
+has 'no chart, because '
+has '<table>'
+
+# Two folders: what changed, or why that cannot be said.
+cp -r "$results/table1/zen5" "$work/base"
+cp -r "$work/base" "$work/next"
+report "$work/base" "$work/next"
+has '<h2>What changed</h2>'
+has '<th scope="col">verdict</th>'
+report "$results/table1"
+has 'The two runs are not comparable: the compiler flags was'
+
+# An energy curve and its reference; a picture; the scene's name is no element.
+cp "$results/reference/cloth2500.csv" "$work/base/cloth2500-rk4.csv"
+printf '\x89PNG\r\n\x1a\nno more' >"$work/base/<b>.png"
+sed -i 's/cloth2500/<script>alert(1)<\/script>/' "$work/base/timings.csv"
+report "$work/base"
+has 'alt="&lt;b&gt;.png" src="data:image/png;base64,iVBORw0KGg'
+has '&lt;script&gt;alert(1)&lt;/script&gt;'
+lacks '<script>'
+lacks 'No folder has an energy curve'
+! command -v gnuplot >/dev/null || has 'reference of cloth2500'
+
+# Damaged folders.
+cp -r "$results/table3/zen5" "$work/damaged"
+truncate -s 5000 "$work/damaged/timings.csv"
+truncate -s 3000 "$work/damaged/samples.csv"
+echo '{' >"$work/damaged/provenance.json"
+report "$work/damaged"
+has 'What is missing or damaged'
+has '1 row left out, '
+has 'samples.csv'
+has 'malformed JSON'
+mkdir "$work/empty"
+report "$work/empty" "$work/damaged"
+has 'There are no rows'
+head -c 4000 /dev/urandom >"$work/empty/timings.csv"
+cp "$work/empty/timings.csv" "$work/empty/samples.csv"
+cp "$work/empty/timings.csv" "$work/empty/provenance.json"
+report "$work/empty"
+
+# Mistakes.
+expect 2 '^mssim: DIR... is missing' report
+expect 2 '^mssim: there is no folder /no/such: give folders that mssim bench --out wrote' report /no/such
+expect 2 'there is no folder .*timings.csv' report "$results/table1/zen5/timings.csv"
+expect 4 'cannot write' report "$work/base" --out "$work/no/such/page.html"
+expect 4 'cannot write' report "$work/base" --out "$work/empty"
+[ ! -e "$work/page.html.part" ] || fail "a temporary file stays"
+(cd "$work" && "$mssim" report base 2>/dev/null && [ -s report.html ]) || fail "--out is not report.html"
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
