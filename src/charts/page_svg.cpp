@@ -85,8 +85,8 @@ class Redrawing {
     if (tag.name == "text" && !tag.opens) add_text(piece.text);
     if (tag.name == "svg") return add_root(tag);
     if (!tag.opens) return end_element(tag);
-    restyle(tag);
     if (is_unused(tag)) return true;
+    restyle(tag);
     if (!tag.closes) opened_.push_back({page_.size(), tag.name});
     page_ += tag.written();
     if (!tag.closes) opened_.back().inside = page_.size();
@@ -156,22 +156,24 @@ class Redrawing {
         }
       }
     }
-    if (std::string* stroke = tag.find("stroke"); stroke && *stroke == "gray") {
-      *stroke = "currentColor";
-      tag.attributes.emplace_back("stroke-opacity", "0.25");
+    if (const std::string* kind = tag.find("class"); kind && *kind == "gridline") {
+      tag.remove("class");
+      tag.remove("stroke");
+      tag.attributes.insert(tag.attributes.end(), {{"stroke", "currentColor"}, {"stroke-opacity", "0.2"}});
     }
   }
 
-  /// Shapes of points that no point has, the empty rectangle behind everything, and the white disc behind the
-  /// middle of an interval.
+  /// What gnuplot draws in the middle of an interval, where the point of the series is: a dot on a white
+  /// disc; shapes of points that no point has; the empty rectangle behind everything.
   bool is_unused(SvgTag& tag) const {
-    if (const std::string* colour = tag.find("color"); colour && *colour == "white") return true;
-    if (const std::string* id = tag.find("id")) {
-      const std::string reference = "#" + id->substr(words_.id.size() + 1) + "'";
-      return drawing_.find(reference) == std::string_view::npos;
-    }
-    const std::string* fill = tag.find("fill");
-    return tag.name == "rect" && fill && *fill == "none";
+    const auto is = [&](std::string_view attribute, std::string_view value) {
+      const std::string* found = tag.find(attribute);
+      return found && *found == value;
+    };
+    if (tag.name == "use" && (is("xlink:href", "#gpDot") || is("color", "white"))) return true;
+    if (const std::string* id = tag.find("id"); id && tag.name != "g")
+      return *id == "gpDot" || drawing_.find('#' + *id + '\'') == std::string_view::npos;
+    return tag.name == "rect" && is("fill", "none");
   }
 
   std::string fill_id(std::size_t fill) const { return words_.id + "-fill-" + std::to_string(fill); }

@@ -33,7 +33,8 @@ TEST(PageSvg, IsAnElementWithANameAndWithoutASize) {
 TEST(PageSvg, BlackIsTheColourOfThePageInTagsAlone) {
   EXPECT_THAT(page_of("<g color=\"black\"><path stroke='black'  d='M1,2\n\t\tL3,4  '/></g>"),
               HasSubstr("<g><path stroke=\"currentColor\" d=\"M1,2 L3,4\"/></g>"));
-  EXPECT_THAT(page_of("<path stroke='gray'/>"), HasSubstr("stroke=\"currentColor\" stroke-opacity=\"0.25\""));
+  EXPECT_THAT(page_of("<path stroke='rgb(190, 190, 190)' class=\"gridline\" d='M0,0'/>"),
+              HasSubstr("<path d=\"M0,0\" stroke=\"currentColor\" stroke-opacity=\"0.2\"/>"));
   EXPECT_THAT(page_of("<path stroke='rgb(  0,   0,   0)'/>"), HasSubstr("<path stroke=\"currentColor\"/>"));
   EXPECT_THAT(page_of("<text fill=\"black\">stroke='black' id=\"gpPt1\" ]]></text>"),
               HasSubstr("<text fill=\"currentColor\">stroke='black' id=\"gpPt1\" ]]&gt;</text>"));
@@ -60,7 +61,9 @@ TEST(PageSvg, WhatShowsNothingIsLeftOut) {
   EXPECT_EQ(
       page_of("<g fill='none'>\n\t<g>\n</g>\n</g>\n<rect fill=\"none\"/><filter id='a'><feFlood/></filter>"),
       empty);
-  EXPECT_EQ(page_of("<use xlink:href='#gpPt6' color='white'/>"), empty);
+  EXPECT_EQ(page_of("<defs><circle id='gpDot'/></defs><use xlink:href='#gpPt6' color='white'/><use "
+                    "xlink:href='#gpDot'/>"),
+            empty);
 }
 
 TEST(PageSvg, IsNoneWhereADrawingIsNotCompleteOrNotGnuplots) {
