@@ -1,6 +1,6 @@
 #!/bin/bash
-# Every relative link of every Markdown file leads to a file or folder of the repository, and an anchor to a heading of its file;
-# README.md stays a page to start from. Arguments: mssim (unused), the source folder.
+# Every relative link of every Markdown file, and every picture in its HTML, leads to a file or folder of the repository, and an
+# anchor to a heading of its file; README.md stays a page to start from. Arguments: mssim (unused), the source folder.
 set -euo pipefail
 cd -- "$2"
 
@@ -28,7 +28,7 @@ for page in "${pages[@]}"; do
     elif [[ $anchor ]] && ! anchors "$path" | grep -qxF -- "$anchor"; then
       complain "$page: $path has no heading for #$anchor"
     fi
-  done < <(grep -vE '^    ' -- "$page" | grep -oP '\]\(\K[^) ]+' || true)
+  done < <(grep -vE '^    ' -- "$page" | grep -oP '(\]\(|\b(src|srcset)=")\K[^)" ]+' || true)
 done
 ((${#pages[@]} > 10 && links > 50)) || complain "only $links links in ${#pages[@]} pages were looked at"
 
