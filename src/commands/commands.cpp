@@ -14,6 +14,7 @@
 #include "commands/bench/bench_command.h"
 #include "commands/check/check_command.h"
 #include "commands/compare/compare_command.h"
+#include "commands/export/export_command.h"
 #include "commands/help/help_command.h"
 #include "commands/list/list_command.h"
 #include "commands/measure/measure_command.h"
@@ -37,13 +38,15 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 9> table{{
+constexpr std::array<Command, 10> table{{
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
     {"run", "Simulate one scene; write a trace or an energy curve if asked to",
      "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
     {"render", "Draw pictures or a movie of a trace or a scene",
      "mssim render --scene jeans4k --out jeans.png", declare_render},
+    {"export", "Write frames of a trace as OBJ, PLY or VTKHDF for other programs",
+     "mssim export fall.h5 --format vtkhdf --frames all", declare_export},
     {"check", "Check scene files: size, memory, time and stability limit, without a run",
      "mssim check my-cloth.json", declare_check},
     {"compare", "Compare two results or programs: which is faster, and is that certain?",

@@ -53,11 +53,12 @@ bench/job             text statistics integrators backends/interface backends ga
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
 bench                 text platform garment/stepping bench/roofline bench/verification bench/job garment/bench
 
-output/hdf5
+output/hdf5           platform
 output/tables         text statistics platform bench/machine bench/results
 garment/output        text garment bench/results output/hdf5 output/tables
 output/traces         text platform geometry model output/hdf5 garment/output
 output/pictures       geometry render picture model scene/fields garment output/traces
+output/exports        text platform geometry model output/hdf5 output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
 report                text platform statistics integrators charts bench/machine bench/results bench/roofline output/tables garment/output output/folders
 
@@ -65,6 +66,7 @@ commands/arguments    text
 commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders commands/arguments
 commands/run          platform model scene garment/stepping garment/fitting backends/interface backends/spring_list backends bench/verification output/tables output/traces commands/arguments commands/shared
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
+commands/export       text platform output/exports output/traces commands/arguments commands/shared
 commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared
 commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/arguments commands/shared commands/bench
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench
@@ -72,7 +74,7 @@ commands/check        text platform integrators scene garment/stepping backends 
 commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/arguments commands/shared
 commands/report       text platform bench/machine output/tables report commands/arguments commands/shared commands/bench
 commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/bench commands/list commands/compare commands/check commands/measure commands/report commands/help
+commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/bench commands/list commands/compare commands/check commands/measure commands/report commands/help
 main.cpp              commands/shared
 ask_opencl.cpp
 '

@@ -31,9 +31,11 @@ column_of() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$1"
 }
 
-# python_of_readers SOURCE: the Python with the modules that read traces: of .ci/run (scripts/lib/readers.sh), else Debian's own
-python_of_readers() {
-  local python=$1/build/readers/bin/python
+# run_python SOURCE SCRIPT ARGUMENTS...: SOURCE/tests/SCRIPT, by the Python with the modules that read traces: that of .ci/run
+# (scripts/lib/readers.sh), else Debian's own
+run_python() {
+  local source=$1 script=$2 python=$1/build/readers/bin/python
+  shift 2
   [ -x "$python" ] || python=/usr/bin/python3
-  echo "$python"
+  PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$source/tests/support "$python" -W ignore "$source/tests/$script" "$@"
 }

@@ -9,10 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "commands/render/frame_choice.h"
+#include "commands/render/sheet_choice.h"
 #include "commands/run/run_scene.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
+#include "commands/shared/frame_choice.h"
 #include "commands/shared/output_names.h"
 #include "commands/shared/progress_line.h"
 #include "garment/spec/garment_spec.h"
@@ -36,8 +37,7 @@ struct RenderOptions {
   std::string trace;
   RunOptions run;  ///< of --scene; its fps is that of a movie, too
   std::string out, view = "three-quarter", size, sheet_size;
-  std::vector<std::string> frames;
-  std::optional<double> time_s;
+  FrameOptions frames;
   bool movie = false;
   ColourBy colour = ColourBy::object;
 };
@@ -84,15 +84,8 @@ fs::path output_of(const RenderOptions& options) {
 }
 
 /// The frames that are drawn, in their order.
-std::vector<std::size_t> chosen_frames(const RenderOptions& options, const TraceContent& content) {
-  const std::size_t frames = content.step.size();
-  std::vector<std::size_t> chosen;
-  if (options.time_s)
-    chosen = {frame_at(*options.time_s, content.time_s)};
-  else if (!options.frames.empty())
-    chosen = listed_frames(options.frames, frames);
-  else
-    for (std::size_t frame = 0; frame < frames; ++frame) chosen.push_back(frame);
+std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceContent& content) {
+  std::vector<std::size_t> chosen = chosen_frames(options.frames, content.time_s);
   if (const auto sheet = sheet_size(options))
     return spread_over(chosen, std::size_t{sheet->first} * sheet->second);
   return options.movie ? chosen : std::vector{chosen.back()};
@@ -109,7 +102,7 @@ double natural_fps(const TraceContent& content, const std::vector<std::size_t>& 
 std::string drawn_file(const RenderOptions& options, const PictureOptions& picture,
                        const TraceReader& trace) {
   const TraceContent& content = trace.content();
-  const std::vector<std::size_t> frames = chosen_frames(options, content);
+  const std::vector<std::size_t> frames = drawn_frames(options, content);
   Painter painter(content, trace.positions(0), picture);
   for (const std::size_t frame : frames) painter.make_room_for(trace.positions(frame));
   ProgressLine progress(1, ProgressLine::Log::nothing);
@@ -134,7 +127,7 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
 /// Frames per simulated second that the pictures need of a run: a scene may be large, and its trace with it.
 double fps_of_run(const RenderOptions& options) {
   if (options.run.fps) return *options.run.fps;
-  if (options.movie || options.time_s || !options.frames.empty()) return movie_fps;
+  if (options.movie || options.frames.given()) return movie_fps;
   const double duration_s = options.run.duration_s.value_or(default_duration_s);
   const auto sheet = sheet_size(options);
   const std::uint32_t moments = sheet ? sheet->first * sheet->second : 2;
@@ -198,16 +191,7 @@ std::function<int()> declare_render(Arguments& arguments) {
       "--colour", options->colour,
       {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
       "What colours tell apart: object, panel (of a garment) or strain (default: object)");
-  const Argument time =
-      arguments
-          .add_number("--time", options->time_s,
-                      "Draw the frame nearest to this time (default: the last frame)", number_between(0, 1e9))
-          .value_name("SECONDS");
-  arguments
-      .add_list("--frames", options->frames,
-                "Draw of these frames only: numbers from 0 on, ranges like 10-20, last")
-      .value_name("LIST")
-      .excludes(time);
+  const Argument time = declare_frames(arguments, options->frames);
   const Argument sheet =
       arguments.add("--sheet", options->sheet_size, "Put so many moments, evenly spread, on one sheet")
           .value_name("COLUMNSxROWS")

@@ -21,6 +21,7 @@ class Hdf5Table {
 
   hsize_t rows() const { return extents_.front(); }
   hsize_t extent(std::size_t axis) const { return extents_.at(axis); }
+  hsize_t bytes_per_number() const { return bytes_per_number_; }
 
   /// Throws unless these rows are in the file.
   void require_stored(hsize_t first_row, hsize_t rows) const;

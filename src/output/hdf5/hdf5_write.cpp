@@ -144,17 +144,17 @@ Hdf5Dataset create_dataset(hid_t parent, const std::string& path, hid_t type, st
           "creating " + path};
 }
 
-void write_row(const Hdf5Dataset& dataset, const std::string& name, hsize_t row, hid_t memory_type,
-               const void* data) {
+void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t first, hsize_t count,
+                hid_t memory_type, const void* data) {
   const std::string action = "writing " + name;
   std::array<hsize_t, max_rank> shape{}, start{};
   Hdf5Space space(H5Dget_space(dataset.get()), action);
   const int rank = checked(H5Sget_simple_extent_ndims(space.get()), action);
   checked(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr), action);
-  shape[0] = row + 1;
+  shape[0] = first + count;
   checked(H5Dset_extent(dataset.get(), shape.data()), action);
-  shape[0] = 1;
-  start[0] = row;
+  shape[0] = count;
+  start[0] = first;
   const Hdf5Space memory(H5Screate_simple(rank, shape.data(), nullptr), action);
   space = Hdf5Space(H5Dget_space(dataset.get()), action);
   checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr),

@@ -50,8 +50,15 @@ Hdf5Properties chunked(std::span<const hsize_t> chunk, Packing packing);
 Hdf5Dataset create_dataset(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> shape,
                            bool grows, const Hdf5Properties& properties);
 
-/// Grows the dataset's first dimension to row + 1 and writes `row`; `data` holds one row in `memory_type`.
-void write_row(const Hdf5Dataset& dataset, const std::string& name, hsize_t row, hid_t memory_type,
-               const void* data);
+/// Grows the dataset's first dimension to first + count and writes the rows from `first` on; `data` holds
+/// them in `memory_type`.
+void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t first, hsize_t count,
+                hid_t memory_type, const void* data);
+
+/// The same with one row.
+inline void write_row(const Hdf5Dataset& dataset, const std::string& name, hsize_t row, hid_t memory_type,
+                      const void* data) {
+  write_rows(dataset, name, row, 1, memory_type, data);
+}
 
 }  // namespace mssim

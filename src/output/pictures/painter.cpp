@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "output/traces/node_strain.h"
 #include "picture/colour_bar.h"
 #include "picture/colour_map.h"
 #include "picture/legend.h"
@@ -62,24 +63,6 @@ std::vector<Vec3d> Painter::points_at(const std::vector<Vec3d>& positions) const
   return points;
 }
 
-std::vector<double> Painter::strain_at(const std::vector<Vec3d>& positions) const {
-  std::vector<double> strain(content_.nodes);
-  std::vector<std::uint32_t> springs(content_.nodes);
-  for (std::size_t i = 0; i < content_.springs.size(); ++i) {
-    const auto& [first, second] = content_.springs[i];
-    const double rest = content_.rest_length[i];
-    if (rest <= 0) continue;
-    const double stretched = length(positions[second] - positions[first]) / rest - 1;
-    for (const std::uint32_t node : {first, second}) {
-      strain[node] += stretched;
-      ++springs[node];
-    }
-  }
-  for (std::size_t node = 0; node < strain.size(); ++node)
-    if (springs[node] > 0) strain[node] /= springs[node];
-  return strain;
-}
-
 void Painter::make_room_for(const std::vector<Vec3d>& positions) {
   const std::vector<Vec3d> points = points_at(positions);
   const Box<double> seen = seen_box(camera_, points);
@@ -87,7 +70,7 @@ void Painter::make_room_for(const std::vector<Vec3d>& positions) {
   if (!world_) world_ = {points.front(), points.front()};
   for (const Vec3d& point : points) extend(*world_, point);
   if (options_.colour == ColourBy::strain)
-    most_strain_ = std::max(most_strain_, usual_most(strain_at(positions)));
+    most_strain_ = std::max(most_strain_, usual_most(node_strain(content_, positions)));
 }
 
 void Painter::write_legend(Picture& picture) const {
@@ -119,7 +102,7 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions) const {
   Subject subject{{points_at(positions), skin_.triangles}, {}, {}};
   subject.front.reserve(subject.surface.points.size());
   if (options_.colour == ColourBy::strain) {
-    const std::vector<double> strain = strain_at(positions);
+    const std::vector<double> strain = node_strain(content_, positions);
     for (const std::uint32_t node : skin_.node)
       subject.front.push_back(light_of(diverging_map().at(0.5 + 0.5 * strain[node] / most_strain_)));
     subject.back = subject.front;

@@ -41,7 +41,6 @@ class Painter {
 
  private:
   std::vector<Vec3d> points_at(const std::vector<Vec3d>& positions) const;
-  std::vector<double> strain_at(const std::vector<Vec3d>& positions) const;
   Shot shot() const;
   void write_legend(Picture& picture) const;
 

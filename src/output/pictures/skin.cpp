@@ -14,43 +14,6 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Two triangles a cell, from consecutive nodes, row by row.
-void add_grid(Skin& skin, std::string name, std::uint32_t first_node, std::uint32_t rows,
-              std::uint32_t columns) {
-  const auto first = static_cast<std::uint32_t>(skin.node.size());
-  for (std::uint32_t i = 0; i < rows * columns; ++i) skin.node.push_back(first_node + i);
-  skin.part.resize(skin.node.size(), static_cast<std::uint32_t>(skin.parts.size()));
-  skin.parts.push_back(std::move(name));
-  for (std::uint32_t row = 0; row + 1 < rows; ++row)
-    for (std::uint32_t column = 0; column + 1 < columns; ++column) {
-      const std::uint32_t a = first + row * columns + column, b = a + 1, c = a + columns, d = c + 1;
-      skin.triangles.push_back({a, b, d});
-      skin.triangles.push_back({a, d, c});
-    }
-}
-
-/// The faces that belong to one tetrahedron, outwards.
-std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra) {
-  std::vector<std::pair<Triangle, Triangle>> faces;  // its corners in order, and as it is
-  faces.reserve(4 * tetrahedra.size());
-  for (const auto& [a, b, c, d] : tetrahedra)
-    for (const Triangle& face :
-         {Triangle{a, c, b}, Triangle{a, b, d}, Triangle{a, d, c}, Triangle{b, c, d}}) {
-      Triangle key = face;
-      std::ranges::sort(key);
-      faces.emplace_back(key, face);
-    }
-  std::ranges::sort(faces);
-  std::vector<Triangle> boundary;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t end = i + 1;
-    while (end < faces.size() && faces[end].first == faces[i].first) ++end;
-    if (end == i + 1) boundary.push_back(faces[i].second);
-    i = end;
-  }
-  return boundary;
-}
-
 Vec3d normal_of(const Triangle& triangle, const std::vector<Vec3d>& points) {
   const Vec3d& a = points[triangle[0]];
   const Vec3d normal = cross(points[triangle[1]] - a, points[triangle[2]] - a);
@@ -80,49 +43,31 @@ DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::v
   return corners;
 }
 
-/// [nodes] which body each belongs to, from 0 on in the order of their first nodes.
-std::vector<std::uint32_t> bodies_of(const std::vector<Tetrahedron>& tetrahedra, std::size_t nodes) {
-  DisjointSets sets(nodes);
-  for (const Tetrahedron& corners : tetrahedra)
-    for (const std::uint32_t corner : corners) sets.unite(corners[0], corner);
-  std::vector<std::uint32_t> body(nodes);
-  std::map<std::uint32_t, std::uint32_t> number;
-  for (std::uint32_t node = 0; node < nodes; ++node)
-    body[node] = number.try_emplace(sets.root(node), static_cast<std::uint32_t>(number.size())).first->second;
-  return body;
-}
-
-Skin skin_of_bodies(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Vec3d>& start) {
-  Skin skin;
-  skin.triangles = boundary_of(tetrahedra);
-  const std::vector<std::uint32_t> body = bodies_of(tetrahedra, start.size());
-  DisjointSets corners = smooth_corners(skin.triangles, start);
-  std::vector<std::uint32_t> point(3 * skin.triangles.size());
+/// A point for each smooth side of a node.
+void divide_at_creases(Skin& skin, const std::vector<Vec3d>& start) {
+  std::vector<Vec3d> position;
+  position.reserve(skin.node.size());
+  for (const std::uint32_t node : skin.node) position.push_back(start[node]);
+  DisjointSets corners = smooth_corners(skin.triangles, position);
+  std::vector<std::uint32_t> node, part, point(3 * skin.triangles.size());
   for (std::uint32_t corner = 0; corner < point.size(); ++corner) {
-    std::uint32_t& node_or_point = skin.triangles[corner / 3][corner % 3];
+    std::uint32_t& shown = skin.triangles[corner / 3][corner % 3];
     if (corners.root(corner) == corner) {
-      point[corner] = static_cast<std::uint32_t>(skin.node.size());
-      skin.node.push_back(node_or_point);
-      skin.part.push_back(body[node_or_point]);
+      point[corner] = static_cast<std::uint32_t>(node.size());
+      node.push_back(skin.node[shown]);
+      part.push_back(skin.part[shown]);
     }
-    node_or_point = point[corners.root(corner)];
+    shown = point[corners.root(corner)];
   }
-  for (std::uint32_t i = 0; i < 1 + std::ranges::max(body); ++i)
-    skin.parts.push_back("body " + std::to_string(i + 1));
-  return skin;
+  skin.node = std::move(node);
+  skin.part = std::move(part);
 }
 
 }  // namespace
 
 Skin skin_of(const Topology& topology, const std::vector<Vec3d>& start) {
-  Skin skin;
-  if (const auto* grid = std::get_if<GridPatch>(&topology))
-    add_grid(skin, "cloth", 0, grid->rows, grid->columns);
-  else if (const auto* garment = std::get_if<Garment>(&topology))
-    for (const GarmentPanel& panel : garment->panels)
-      add_grid(skin, panel.name, panel.first_node, panel.rows, panel.columns);
-  else
-    skin = skin_of_bodies(std::get<TetrahedralMesh>(topology).tetrahedra, start);
+  Skin skin = surface_of(topology, start.size());
+  if (std::holds_alternative<TetrahedralMesh>(topology)) divide_at_creases(skin, start);
   return skin;
 }
 

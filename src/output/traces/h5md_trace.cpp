@@ -4,6 +4,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "output/hdf5/hdf5_space.h"
 #include "output/hdf5/hdf5_write.h"
 #include "output/traces/h5md_body.h"
 #include "platform/atomic_file.h"
@@ -137,7 +138,8 @@ void H5mdTrace::write_frame(std::int64_t step, double time_s, const State& state
 void H5mdTrace::append(std::int64_t step, double time_s, const State& state, const Energy& energy,
                        const EnergyLosses& losses) {
   const hsize_t frame = times_s_.size();
-  reserve(2 * dimensions * mesh_.nodes * mesh_.bytes_per_number() + room_for_metadata);
+  reserve_room(file_.get(), name(),
+               2 * dimensions * mesh_.nodes * mesh_.bytes_per_number() + room_for_metadata);
   // HDF5 rounds to single precision where that is what the dataset holds.
   static_assert(sizeof(Vec3d) == dimensions * sizeof(double));
   write_row(position_, "positions", frame, H5T_NATIVE_DOUBLE, state.position.data());
@@ -155,7 +157,8 @@ void H5mdTrace::append(std::int64_t step, double time_s, const State& state, con
 void H5mdTrace::close() {
   guard([&] {
     const std::string action = "finishing the trace";
-    reserve(room_for_metadata + times_s_.size() * mesh_.parts.size() * xdmf_bytes_per_part_and_frame);
+    reserve_room(file_.get(), name(),
+                 room_for_metadata + times_s_.size() * mesh_.parts.size() * xdmf_bytes_per_part_and_frame);
     map_frames_for_xdmf(file_.get(), mesh_, times_s_.size());
     checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), action);
     for (Hdf5Dataset* dataset : {&step_, &time_, &position_, &velocity_}) dataset->close(action);
@@ -165,15 +168,6 @@ void H5mdTrace::close() {
     output_.move_into_place();
   });
   write_xdmf(name(), mesh_, times_s_);
-}
-
-void H5mdTrace::reserve(std::size_t bytes) {
-  // HDF5 spoils a file that it cannot write to its end: the head then promises more than there is.
-  void* descriptor = nullptr;
-  checked(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor), "asking for the file descriptor");
-  const int error_number = reserve_space(*static_cast<const int*>(descriptor), bytes);
-  if (error_number != 0)
-    throw WriteError(write_failure(name(), "reserving " + std::to_string(bytes) + " bytes", error_number));
 }
 
 void H5mdTrace::guard(const std::function<void()>& write) {

@@ -79,7 +79,6 @@ class H5mdTrace {
   std::string particles() const { return "/particles/" + mesh_.particles; }
   void append(std::int64_t step, double time_s, const State& state, const Energy& energy,
               const EnergyLosses& losses);
-  void reserve(std::size_t bytes);
   void guard(const std::function<void()>& write);
 
   AtomicFile output_;

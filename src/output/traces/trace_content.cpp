@@ -46,6 +46,7 @@ void read_series(hid_t file, TraceContent& content) {
   if (fewest == 0) throw Hdf5ContentError("it has no frames");
   if (positions.extent(1) > std::numeric_limits<std::uint32_t>::max())
     throw Hdf5ContentError(position + "/value has more nodes than mssim can number");
+  content.in_double = positions.bytes_per_number() == sizeof(double);
   content.nodes = positions.extent(1);
   content.step = step.integers(0, fewest);
   content.time_s = time.doubles(0, fewest);

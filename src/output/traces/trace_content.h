@@ -24,6 +24,7 @@ struct TraceContent {
   Surface body;                                 ///< that does not move; may be empty
   std::string scene_json, backend, integrator;  ///< as written
   double dt_s = 0;
+  bool in_double = false;          ///< the positions, and not in single precision
   std::size_t nodes = 0;           ///< one at least
   std::vector<std::int64_t> step;  ///< [frames] increasing; one frame at least
   std::vector<double> time_s;      ///< [frames] increasing

@@ -6,63 +6,10 @@ import csv
 import importlib
 import sys
 
-missing = []
+from trace_in_python import Trace, check_all, h5py, missing, module, np, require, require_refused
 
 
-def module(name):
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        missing.append(f"module {name}")
-        return None
-
-
-h5py = module("h5py")
-np = module("numpy")
-if not h5py or not np:
-    sys.exit(print(f"SKIPPED: {sys.executable} has no " + " and no ".join(missing)) or 77)
-
-
-def require(good, what):
-    if not good:
-        sys.exit(f"FAILED: {what}")
-
-
-def require_refused(read, error, what):
-    """docs/traces.md says that `what` is not possible."""
-    try:
-        read()
-    except error:
-        return
-    sys.exit(f"FAILED: docs/traces.md says that {what}, but it can")
-
-
-class Trace:
-    """All that h5py reads."""
-
-    def __init__(self, name):
-        self.name = name
-        with h5py.File(name + ".h5") as file:
-            (self.particles,) = file["particles"]
-            group = file["particles"][self.particles]
-            self.position, self.velocity = group["position/value"][:], group["velocity/value"][:]
-            self.time, self.step, self.mass = group["position/time"][:], group["position/step"][:], group["mass"][:]
-            self.springs = file["connectivity/springs"][:]
-            self.tetrahedra = file["connectivity/tetrahedra"][:] if "tetrahedra" in file["connectivity"] else None
-            self.spring = {key: values[:] for key, values in file["parameters/springs"].items()}
-            self.grids = []  # first node, rows, columns
-            if self.particles == "cloth":
-                parameters = file["parameters"].attrs
-                self.grids = [(0, parameters["rows"], parameters["columns"])]
-            elif self.particles == "garment":
-                self.grids = list(zip(*(file["parameters/panels/" + key][:].tolist() for key in ("first_node", "rows", "columns"))))
-                self.body = file["body/points"][:], file["body/triangles"][:]
-
-    def nodes(self):
-        return self.position.shape[1]
-
-
-def check_h5py(trace):
+def check_h5py(_, trace):
     """Energies of the positions, velocities and springs, and times, are those of the energy curve."""
     with open(trace.name + ".csv") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
@@ -152,20 +99,9 @@ def check_meshio(meshio, trace):
         require(list(of_points) == ["velocity"] and np.array_equal(of_points["velocity"], trace.velocity[frame]), "meshio: velocities")
 
 
-traces = [Trace(name) for name in sys.argv[1:]]
-for trace in traces:
-    check_h5py(trace)
-print("h5py", h5py.__version__, "agrees with the energy curves")
 vtk = module("vtk")
 if vtk and not hasattr(vtk, "vtkXdmfReader"):
     missing.append(f"vtkXdmfReader in its VTK {vtk.VTK_VERSION}")
     vtk = None
-for reader, check in ((module("MDAnalysis"), check_mdanalysis), (vtk, check_vtk), (module("meshio"), check_meshio)):
-    if not reader:
-        continue
-    for trace in traces:
-        check(reader, trace)
-    print(reader.__name__, getattr(reader, "VTK_VERSION", None) or reader.__version__, "agrees with h5py")
-if missing:
-    print(f"SKIPPED: {sys.executable} has no " + " and no ".join(missing))
-    sys.exit(77)
+checks = ((h5py, check_h5py), (module("MDAnalysis"), check_mdanalysis), (vtk, check_vtk), (module("meshio"), check_meshio))
+check_all(checks, [Trace(name) for name in sys.argv[1:]])

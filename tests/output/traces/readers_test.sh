@@ -6,7 +6,6 @@ set -euo pipefail
 mssim=$1
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
-python=$(python_of_readers "$2")
 cd "$work"
 
 succeed run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5 --energy-curve cloth.csv
@@ -15,4 +14,4 @@ succeed run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies
 succeed run --scene jeans1k --threads 1 --fps 5 --trace garment.h5 --energy-curve garment.csv
 
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
-"$python" -W ignore "$2/tests/output/traces/readers.py" cloth double bodies garment
+run_python "$2" output/traces/readers.py cloth double bodies garment

@@ -36,6 +36,7 @@ class TraceReading : public Trace {
     EXPECT_EQ(content.backend, "openmp");
     EXPECT_EQ(content.integrator, "rk4");
     EXPECT_EQ(content.dt_s, 1e-3);
+    EXPECT_EQ(content.in_double, in_double);
     EXPECT_EQ(content.step, (std::vector<std::int64_t>{0, 10, 20}));
     EXPECT_EQ(content.time_s, (std::vector<double>{0, 0.1, 0.1 * 2}));
     EXPECT_EQ(content.springs.size(), system.springs.size());

@@ -1,8 +1,9 @@
-#include "commands/render/frame_choice.h"
+#include "commands/shared/frame_choice.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include "commands/shared/exit_code.h"
 #include "text/decimal.h"
@@ -17,17 +18,42 @@ std::size_t frame_number(const std::string& word, std::size_t frames) {
   const auto number = number_in<std::int64_t>(word);
   if (!number || *number < 0)
     throw UsageError("--frames: \"" + printable(word) +
-                     "\" is no frame; give numbers from 0 on, ranges like 10-20, or last");
+                     "\" is no frame; give numbers from 0 on, ranges like 10-20, last, or all");
   if (static_cast<std::uint64_t>(*number) >= frames)
     throw UsageError("--frames: there is no frame " + std::to_string(*number) + "; the last one is " +
                      std::to_string(frames - 1));
   return static_cast<std::size_t>(*number);
 }
 
+std::vector<std::size_t> all_of(std::size_t frames) {
+  std::vector<std::size_t> list(frames);
+  std::iota(list.begin(), list.end(), std::size_t{0});
+  return list;
+}
+
 }  // namespace
+
+Argument declare_frames(Arguments& arguments, FrameOptions& options) {
+  Argument time = arguments.add_number("--time", options.time_s,
+                                       "Take the frame nearest to this time (default: the last frame)",
+                                       number_between(0, 1e9));
+  time.value_name("SECONDS");
+  arguments
+      .add_list("--frames", options.frames,
+                "Take these frames only: numbers from 0 on, ranges like 10-20, last, all")
+      .value_name("LIST")
+      .excludes(time);
+  return time;
+}
+
+std::vector<std::size_t> chosen_frames(const FrameOptions& options, const std::vector<double>& times_s) {
+  if (options.time_s) return {frame_at(*options.time_s, times_s)};
+  return options.frames.empty() ? all_of(times_s.size()) : listed_frames(options.frames, times_s.size());
+}
 
 std::vector<std::size_t> listed_frames(const std::vector<std::string>& words, std::size_t frames) {
   std::vector<std::size_t> list;
+  if (words == std::vector<std::string>{"all"}) return all_of(frames);
   for (const std::string& word : words) {
     const std::size_t dash = word.find('-', 1);
     const std::size_t first = frame_number(word.substr(0, dash), frames);
@@ -46,26 +72,6 @@ std::size_t frame_at(double time_s, const std::vector<double>& times_s) {
     throw UsageError("--time: " + decimal(time_s) + " s is after the last frame, at " +
                      decimal(times_s.back()) + " s");
   return static_cast<std::size_t>(nearest - times_s.begin());
-}
-
-std::vector<std::size_t> spread_over(const std::vector<std::size_t>& frames, std::size_t count) {
-  if (frames.size() <= count) return frames;
-  if (count == 1) return {frames.back()};
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < count; ++i)
-    chosen.push_back(frames[(i * (frames.size() - 1) + (count - 1) / 2) / (count - 1)]);
-  return chosen;
-}
-
-std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_view text,
-                                                                   std::uint32_t most) {
-  const std::size_t x = text.find('x');
-  if (x == std::string_view::npos) return std::nullopt;
-  const auto first = number_in<std::int64_t>(std::string(text.substr(0, x)));
-  const auto second = number_in<std::int64_t>(std::string(text.substr(x + 1)));
-  const auto good = [&](const std::optional<std::int64_t>& n) { return n && *n >= 1 && *n <= most; };
-  if (!good(first) || !good(second)) return std::nullopt;
-  return std::pair{static_cast<std::uint32_t>(*first), static_cast<std::uint32_t>(*second)};
 }
 
 }  // namespace mssim

@@ -1,0 +1,94 @@
+#include "model/node_surface.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "geometry/disjoint_sets.h"
+
+namespace mssim {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Two triangles a cell, from consecutive nodes, row by row.
+void add_grid(NodeSurface& surface, std::string name, std::uint32_t first_node, std::uint32_t rows,
+              std::uint32_t columns) {
+  const auto first = static_cast<std::uint32_t>(surface.node.size());
+  for (std::uint32_t i = 0; i < rows * columns; ++i) surface.node.push_back(first_node + i);
+  surface.part.resize(surface.node.size(), static_cast<std::uint32_t>(surface.parts.size()));
+  surface.parts.push_back(std::move(name));
+  for (std::uint32_t row = 0; row + 1 < rows; ++row)
+    for (std::uint32_t column = 0; column + 1 < columns; ++column) {
+      const std::uint32_t a = first + row * columns + column, b = a + 1, c = a + columns, d = c + 1;
+      surface.triangles.push_back({a, b, d});
+      surface.triangles.push_back({a, d, c});
+    }
+}
+
+/// The faces that belong to one tetrahedron, outwards.
+std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra) {
+  std::vector<std::pair<Triangle, Triangle>> faces;  // its corners in order, and as it is
+  faces.reserve(4 * tetrahedra.size());
+  for (const auto& [a, b, c, d] : tetrahedra)
+    for (const Triangle& face :
+         {Triangle{a, c, b}, Triangle{a, b, d}, Triangle{a, d, c}, Triangle{b, c, d}}) {
+      Triangle key = face;
+      std::ranges::sort(key);
+      faces.emplace_back(key, face);
+    }
+  std::ranges::sort(faces);
+  std::vector<Triangle> boundary;
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t end = i + 1;
+    while (end < faces.size() && faces[end].first == faces[i].first) ++end;
+    if (end == i + 1) boundary.push_back(faces[i].second);
+    i = end;
+  }
+  return boundary;
+}
+
+NodeSurface surface_of_bodies(const std::vector<Tetrahedron>& tetrahedra, std::size_t nodes) {
+  NodeSurface surface;
+  surface.triangles = boundary_of(tetrahedra);
+  for (const Triangle& triangle : surface.triangles)
+    surface.node.insert(surface.node.end(), triangle.begin(), triangle.end());
+  std::ranges::sort(surface.node);
+  surface.node.erase(std::ranges::unique(surface.node).begin(), surface.node.end());
+  std::vector<std::uint32_t> point(nodes);
+  for (std::uint32_t i = 0; i < surface.node.size(); ++i) point[surface.node[i]] = i;
+  for (Triangle& triangle : surface.triangles)
+    for (std::uint32_t& corner : triangle) corner = point[corner];
+  const std::vector<std::uint32_t> body = bodies_of(tetrahedra, nodes);
+  for (const std::uint32_t node : surface.node) surface.part.push_back(body[node]);
+  for (std::uint32_t i = 0; i < 1 + std::ranges::max(body); ++i)
+    surface.parts.push_back("body " + std::to_string(i + 1));
+  return surface;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> bodies_of(const std::vector<Tetrahedron>& tetrahedra, std::size_t nodes) {
+  DisjointSets sets(nodes);
+  for (const Tetrahedron& corners : tetrahedra)
+    for (const std::uint32_t corner : corners) sets.unite(corners[0], corner);
+  std::vector<std::uint32_t> body(nodes);
+  std::map<std::uint32_t, std::uint32_t> number;
+  for (std::uint32_t node = 0; node < nodes; ++node)
+    body[node] = number.try_emplace(sets.root(node), static_cast<std::uint32_t>(number.size())).first->second;
+  return body;
+}
+
+NodeSurface surface_of(const Topology& topology, std::size_t nodes) {
+  NodeSurface surface;
+  if (const auto* grid = std::get_if<GridPatch>(&topology))
+    add_grid(surface, "cloth", 0, grid->rows, grid->columns);
+  else if (const auto* garment = std::get_if<Garment>(&topology))
+    for (const GarmentPanel& panel : garment->panels)
+      add_grid(surface, panel.name, panel.first_node, panel.rows, panel.columns);
+  else
+    surface = surface_of_bodies(std::get<TetrahedralMesh>(topology).tetrahedra, nodes);
+  return surface;
+}
+
+}  // namespace mssim

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# mssim export: what other programs read of it (exports.py), and what is refused. Python's modules may be missing: see readers_test.sh.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+succeed run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5
+succeed run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5
+succeed run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies.h5
+succeed run --scene jeans1k --threads 1 --fps 5 --trace garment.h5
+for trace in cloth double bodies garment; do
+  succeed export "$trace.h5" --format vtkhdf --frames all
+  [ "$(cat err)" = "mssim: wrote $trace.vtkhdf" ] || fail "export says $(cat err)"
+  for format in obj ply; do succeed export "$trace.h5" --format "$format" --frames all; done
+  succeed export "$trace.h5" --format vtkhdf --out "$trace-last.vtkhdf"
+done
+[ "$(cat err)" = "mssim: wrote garment-last.vtkhdf" ] || fail "export says $(cat err)"
+
+# One frame of one file each, by its number, by its time, and the last unasked.
+mkdir one
+succeed export cloth.h5 --format ply --out one/last.ply
+cmp -s one/last.ply cloth-000004.ply || fail "not the last frame is written"
+succeed export cloth.h5 --format ply --frames 1 --out one/first.ply
+cmp -s one/first.ply cloth-000001.ply || fail "frame 1 is not what is written"
+succeed export cloth.h5 --format OBJ --time 0.051 --out one/time.obj
+cmp -s one/time.obj cloth-000002.obj || fail "the frame nearest to 0.051 s is not frame 2"
+succeed export cloth.h5 --format obj --frames last,0-1,0 --out one/some.obj
+[ "$(cat err)" = "mssim: wrote one/some-000000.obj to some-000004.obj, 3 files" ] || fail "export says $(cat err)"
+[ "$(echo one/*)" = "one/first.ply one/last.ply one/some-000000.obj one/some-000001.obj one/some-000004.obj one/time.obj" ] ||
+  fail "written: $(echo one/*)"
+
+# What does not go, in a sentence, and nothing is written.
+mkdir never
+expect 2 '--format WORD is missing; see mssim export --help' export cloth.h5
+expect 2 'TRACE is missing' export --format ply
+expect 2 'unknown value "stl": known are obj, ply and vtkhdf' export cloth.h5 --format stl
+expect 2 '--time and --frames exclude each other' export cloth.h5 --format ply --frames 0 --time 0
+expect 2 'there is no frame 5; the last one is 4' export cloth.h5 --format ply --frames 0,5 --out never/a.ply
+expect 2 '"none" is no frame; give numbers from 0 on' export cloth.h5 --format ply --frames none --out never/a.ply
+expect 2 '1 s is after the last frame, at 0.1 s' export cloth.h5 --format vtkhdf --time 1 --out never/a.vtkhdf
+expect 2 'no such file' export nope.h5 --format obj
+expect 2 'give the trace, cloth.h5' export cloth.xdmf --format obj
+expect 2 'cloth.vtkhdf: it is an HDF5 file, but no H5MD trace' export cloth.vtkhdf --format obj --out never/a.obj
+expect 2 'the same file' export cloth.h5 --format vtkhdf --out ./cloth.h5
+cp cloth.h5 same-000001.h5
+expect 2 'the same file' export same-000001.h5 --format ply --frames 0,1 --out same.h5
+expect 4 'cannot write no/such/a.ply' export cloth.h5 --format ply --out no/such/a.ply
+expect 4 'cannot write no/such/a.vtkhdf' export cloth.h5 --format vtkhdf --out no/such/a.vtkhdf
+expect 4 'never' export cloth.h5 --format vtkhdf --out never
+head -c 5000 cloth.h5 >cut.h5
+expect 2 'cut.h5' export cut.h5 --format ply --out never/a.ply
+[ -z "$(ls never)" ] || fail "left: $(ls never)"
+
+# A disk that is full, as a limit on the size of files: what stood there before stays.
+for format in obj ply vtkhdf; do
+  echo before >"full.$format"
+  status=0
+  (
+    trap '' XFSZ
+    ulimit -f 100
+    exec "$mssim" export cloth.h5 --format "$format" --out "full.$format" --frames last >out 2>err
+  ) || status=$?
+  [ "$status" -eq 4 ] || fail "a full disk gives exit status $status: $(cat err)"
+  grep -q "cannot write full.$format: .* failed: File too large; raise the limit" err || fail "a full disk: $(cat err)"
+  [ "$(cat "full.$format")" = before ] && [ ! -e "full.$format.part" ] || fail "a full disk leaves $(ls full.*)"
+done
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
+run_python "$2" commands/exports.py cloth double bodies garment
