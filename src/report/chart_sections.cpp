@@ -28,6 +28,14 @@ std::string figures_of(const std::vector<Chart>& charts) {
   return text.empty() ? text : "<div class=\"figures\">\n" + text + "</div>\n";
 }
 
+std::string pictures_of(const std::vector<FoundPicture>& pictures) {
+  std::string text;
+  for (const FoundPicture& picture : pictures)
+    text += "<figure><img alt=\"" + html_text(picture.caption) + "\" src=\"data:image/png;base64," +
+            base64(picture.png) + "\"><figcaption>" + html_text(picture.caption) + "</figcaption></figure>\n";
+  return text.empty() ? text : "<div class=\"figures\">\n" + text + "</div>\n";
+}
+
 /// What `content` makes of each folder and its number, below its name; `without` where all of it is empty.
 template <class Content>
 std::string of_each_folder(const ReportInput& input, const std::string& without, Content content) {
@@ -35,7 +43,7 @@ std::string of_each_folder(const ReportInput& input, const std::string& without,
   for (std::size_t i = 0; i < input.folders.size(); ++i)
     if (const std::string part = content(input.folders[i], id_of(i)); !part.empty())
       text += folder_heading(input, input.folders[i]) + part;
-  return text.empty() ? "<p>" + without + "</p>\n" : text;
+  return text.empty() ? without : text;
 }
 
 }  // namespace
@@ -46,7 +54,7 @@ std::string speedup_section(const ReportInput& input) {
          "in charts of speed-ups, and neither in Figure 6 of Vassilev, which shows its own times as curves "
          "without numbers.</p>\n" +
          of_each_folder(
-             input, "No folder has a scene of the papers with a speed-up.",
+             input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
              [&](const ReportFolder& folder, const std::string& id) {
                std::vector<Chart> charts;
                for (const PublishedTable& published : input.published) {
@@ -63,7 +71,7 @@ std::string scaling_section(const ReportInput& input) {
   return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes: 1 "
          "where a "
          "node costs the same at every size.</p>\n" +
-         of_each_folder(input, "No folder has two sizes of a kind of scene.",
+         of_each_folder(input, "<p>No folder has two sizes of a kind of scene.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           const Table slopes = slope_table(folder.rows, input.legend, input.published);
                           return figures_of(scaling_charts(folder.rows, input.legend, input.published, id)) +
@@ -75,7 +83,7 @@ std::string roofline_section(const ReportInput& input) {
   return "<p>Operations and bytes are what a step needs at least. Roofs are what the timings say of the "
          "machine's "
          "peaks, measured in the same process.</p>\n" +
-         of_each_folder(input, "No folder has rows with a roofline; garments have none.",
+         of_each_folder(input, "<p>No folder has rows with a roofline; garments have none.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           const auto chart = roofline_chart(folder.rows, id);
                           return chart ? figures_of({*chart}) : std::string();
@@ -84,9 +92,9 @@ std::string roofline_section(const ReportInput& input) {
 
 std::string energy_section(const ReportInput& input) {
   return of_each_folder(input,
-                        "No folder has an energy curve. <code>mssim run --scene cloth2500 --energy-curve "
+                        "<p>No folder has an energy curve. <code>mssim run --scene cloth2500 --energy-curve "
                         "FOLDER/cloth2500.csv</code> "
-                        "writes one into a folder.",
+                        "writes one into a folder.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           std::vector<Chart> charts;
                           std::vector<std::string> without;
@@ -104,17 +112,18 @@ std::string energy_section(const ReportInput& input) {
 }
 
 std::string picture_section(const ReportInput& input) {
-  return of_each_folder(
-      input,
-      "No folder has a picture. <code>mssim render</code> draws one; put it into a folder as a PNG file.",
-      [](const ReportFolder& folder, const std::string&) {
-        std::string text;
-        for (const FoundPicture& picture : folder.pictures)
-          text += "<figure><img alt=\"" + html_text(picture.caption) + "\" src=\"data:image/png;base64," +
-                  base64(picture.png) + "\"><figcaption>" + html_text(picture.caption) +
-                  "</figcaption></figure>\n";
-        return text.empty() ? text : "<div class=\"figures\">\n" + text + "</div>\n";
-      });
+  const std::string drawn =
+      input.pictures.empty()
+          ? ""
+          : "<p>A scene of each kind, simulated anew for this page by <code>openmp</code>.</p>\n" +
+                pictures_of(input.pictures);
+  return drawn +
+         of_each_folder(
+             input,
+             drawn.empty() ? "<p>No folder has a picture. <code>mssim render</code> draws one; put it "
+                             "into a folder as a PNG file.</p>\n"
+                           : "",
+             [](const ReportFolder& folder, const std::string&) { return pictures_of(folder.pictures); });
 }
 
 }  // namespace mssim

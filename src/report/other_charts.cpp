@@ -9,6 +9,9 @@
 namespace mssim {
 namespace {
 
+/// More points on a curve of energy would hide the reference.
+constexpr std::size_t most_points = 40;
+
 /// Where a row stands in a roofline: operations a byte, and 1e9 operations a second.
 struct RoofDot {
   double intensity = 0, gigaflops = 0;
@@ -94,7 +97,13 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
   chart.title = "Total energy: " + curve.name;
   chart.x = {"time (s)", false};
   chart.y = {"total energy (J)", false};
-  chart.series.push_back({curve.name, Origin::measured, "", curve.time_s, curve.total_j, {}, {}});
+  Series points{curve.name, Origin::measured, "", {}, {}, {}, {}};
+  const std::size_t count = curve.time_s.size(), apart = std::max<std::size_t>(1, count / most_points);
+  for (std::size_t i = 0; i < count; i += apart) {
+    points.x.push_back(curve.time_s[i]);
+    points.y.push_back(curve.total_j[i]);
+  }
+  chart.series.push_back(std::move(points));
   if (const FoundCurve* reference = reference_of(curve, references))
     chart.series.push_back({"reference of " + reference->name,
                             Origin::reference,

@@ -40,11 +40,12 @@ td.number strong, td strong { font-weight: 600; }
 .findings .partly > strong:first-child { color: var(--partly); }
 .findings .no > strong:first-child { color: var(--no); }
 .problems { border-left: .3rem solid var(--no); padding-left: 1.5rem; }
-.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 23rem), 1fr)); gap: 1rem; }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 28rem), 1fr)); gap: 1rem; }
 figure { margin: .5rem 0; min-width: 0; }
-figure svg, figure img { display: block; width: 100%; height: auto; max-width: 46rem; }
+figure svg, figure img { display: block; width: 100%; height: auto; max-width: 38rem; }
 figcaption { color: var(--dim); font-size: .875rem; }
 summary { cursor: pointer; margin: .5rem 0; }
+@media (max-width: 45rem) { table { width: max-content; } th, td { max-width: 15rem; } }
 footer { margin-top: 2rem; color: var(--dim); font-size: .875rem; }
 @page { size: A4; margin: 14mm 12mm; }
 @media print {
@@ -55,11 +56,10 @@ footer { margin-top: 2rem; color: var(--dim); font-size: .875rem; }
   details { display: none; }
   .wide { overflow: visible; }
   table { font-size: 7pt; width: 100%; }
-  th, td { padding: .1rem .25rem; overflow-wrap: anywhere; max-width: none; }
-  .number { white-space: normal; overflow-wrap: normal; }
+  th, td { padding: .1rem .25rem; overflow-wrap: break-word; max-width: none; }
+  .number { white-space: normal; }
   h2, h3, h4, h5 { break-after: avoid; }
   figure, tr, .findings li { break-inside: avoid; }
-  td code, th code { white-space: normal; }
   .figures { grid-template-columns: 1fr 1fr; }
 }
 )";

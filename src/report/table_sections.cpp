@@ -26,12 +26,12 @@ Table times_of(const std::vector<const ResultRow*>& rows, std::span<const Result
                {"integrator"},
                {"backend"},
                {"threads"},
-               {"time of a step", Align::right, " ms"},
-               {"95 % interval", Align::right, " ms"},
+               {"time of a step (ms)", Align::right},
+               {"95 % interval (ms)", Align::right},
                {"speed-up", Align::right, "×"},
                {"95 % interval", Align::right},
-               {"published", Align::right, " ms"},
-               {"of the roof", Align::right, " %"},
+               {"published (ms)", Align::right},
+               {"of the roof (%)", Align::right},
                {"verified"}},
               {}};
   const std::vector<const ResultRow*> pointers = pointers_to(all);
@@ -41,10 +41,11 @@ Table times_of(const std::vector<const ResultRow*>& rows, std::span<const Result
     const bool shown = counts(*row);
     Cell published = row->paper_ms;
     published.exact = true;
-    table.rows.push_back({row->scene, row->integrator, "`" + row->backend + "`", row->threads,
+    table.rows.push_back({row->scene, row->integrator, "`" + row->backend + "`",
+                          row->threads > 0 ? Cell(row->threads) : Cell(),
                           shown ? Cell(row->ms_per_step) : Cell(),
                           shown && row->ms_per_step_low && row->ms_per_step_high
-                              ? Cell(interval(*row->ms_per_step_low, *row->ms_per_step_high) + " ms")
+                              ? Cell(interval(*row->ms_per_step_low, *row->ms_per_step_high))
                               : Cell(),
                           speedup ? Cell(speedup->ratio) : Cell(),
                           speedup ? Cell(interval(speedup->low, speedup->high)) : Cell(), published,

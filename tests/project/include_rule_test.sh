@@ -72,7 +72,7 @@ commands/list         text platform geometry integrators scene/fields scene back
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench
 commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/arguments commands/shared commands/run commands/bench
 commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/arguments commands/shared
-commands/report       text platform bench/machine output/tables report commands/arguments commands/shared commands/bench
+commands/report       text platform picture render scene/spec scene bench/machine output/tables output/traces output/pictures report commands/arguments commands/shared commands/run commands/bench
 commands/help         text commands/arguments commands/shared
 commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/bench commands/list commands/compare commands/check commands/measure commands/report commands/help
 main.cpp              commands/shared

@@ -8,6 +8,7 @@
 
 #include "bench/machine/build_info.h"
 #include "commands/bench/suites.h"
+#include "commands/report/scene_pictures.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/output_names.h"
 #include "commands/shared/tell_first.h"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 struct ReportOptions {
   std::vector<std::string> folders;
   std::string out = "report.html";
+  bool no_pictures = false;
 };
 
 /// The result folders that the given ones stand for. Throws UsageError for one that is none.
@@ -64,6 +66,7 @@ int report(const ReportOptions& options) {
     input.problems.push_back(std::string(error.what()) + "; nothing published is shown");
   }
   for (const fs::path& folder : folders) input.folders.push_back(read_report_folder(folder));
+  if (!options.no_pictures) input.pictures = scene_pictures(input.folders, input.problems);
   write_file_atomically(options.out, report_page(input));
   for (const ReportFolder& folder : input.folders)
     input.problems.insert(input.problems.end(), folder.problems.begin(), folder.problems.end());
@@ -82,6 +85,8 @@ std::function<int()> declare_report(Arguments& arguments) {
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })
       .required();
   arguments.add("--out", options->out, "File to write (default: report.html)").value_name("FILE");
+  arguments.add_flag("--no-pictures", options->no_pictures,
+                     "Draw no scenes, which takes seconds; pictures that lie in the folders are shown");
   return [options] { return report(*options); };
 }
 

@@ -17,8 +17,8 @@
 namespace mssim {
 
 int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
-                 const SettlingRule& rule, const FrameGrid& frames, RunRecorder& recorder,
-                 StopRequest& stop) {
+                 const SettlingRule& rule, const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop,
+                 bool silent) {
   const auto require_finite = [](const State& state, std::int64_t iterations) {
     if (const auto node = first_bad_node(state))
       throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
@@ -69,7 +69,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
                  {"value", check.value},
                  {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
                  {"within", check.within}});
-  std::cout << table_text(dressing) << '\n' << table_text(fitting);
+  if (!silent) std::cout << table_text(dressing) << '\n' << table_text(fitting);
   if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
     std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
               << " s the garment is still moving; a longer --duration gives it more time\n";

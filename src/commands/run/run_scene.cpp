@@ -110,7 +110,7 @@ int run_garment(const RunOptions& options, const PreparedScene& scene, const Int
   const FrameGrid frames = frame_grid(options.fps.value_or(default_fps), scene.dt_s);
   const SettlingRule rule = settling_rule(options, plan);
   RunRecorder recorder(options.files, scene, headers);
-  return run_dressing(scene, *backend, options.backend, rule, frames, recorder, stop);
+  return run_dressing(scene, *backend, options.backend, rule, frames, recorder, stop, options.silent);
 }
 
 int run_simulation(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
@@ -164,7 +164,7 @@ int run_simulation(const RunOptions& options, const PreparedScene& scene, const 
              {"bounce_loss_j", loss(&EnergyLosses::bounce)},
              {"integration_loss_j", loss(&EnergyLosses::integration)},
              {"energy_imbalance", losses ? Cell(energy_imbalance(curve, *losses)) : Cell()}});
-  std::cout << table_text(table);
+  if (!options.silent) std::cout << table_text(table);
   return exit_ok;
 }
 

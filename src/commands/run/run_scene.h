@@ -23,6 +23,7 @@ struct RunOptions {
   std::optional<double> fps;         ///< frames per simulated second, 60 where it is not given
   RunFiles files;
   bool losses = false;
+  bool silent = false;  ///< prints no tables of how it went
   ExecutionOptions execution;
 };
 
