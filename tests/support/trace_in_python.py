@@ -13,10 +13,15 @@ def module(name):
         return None
 
 
+def skip():
+    print(f"SKIPPED: {sys.executable} has no " + " and no ".join(missing) + "; .ci/run installs scripts/readers.txt into build/readers")
+    sys.exit(77)
+
+
 h5py = module("h5py")
 np = module("numpy")
 if not h5py or not np:
-    sys.exit(print(f"SKIPPED: {sys.executable} has no " + " and no ".join(missing)) or 77)
+    skip()
 
 
 def require(good, what):
@@ -67,5 +72,4 @@ def check_all(checks, subjects):
             check(reader, subject)
         print(reader.__name__, getattr(reader, "VTK_VERSION", None) or reader.__version__, "agrees")
     if missing:
-        print(f"SKIPPED: {sys.executable} has no " + " and no ".join(missing))
-        sys.exit(77)
+        skip()
