@@ -15,12 +15,15 @@ namespace {
 /// What a step costs, in steps of the cheapest integrator, over the sizes of a table.
 struct StepCosts {
   double mean = 1, least = 1, most = 1;  ///< the geometric mean, and the range
+  std::uint64_t cheaper = 0;             ///< sizes at which it costs less than the cheapest
   std::uint64_t sizes = 0;
 };
 
 std::optional<StepCosts> summary_of(const std::vector<double>& ratios) {
   if (ratios.empty()) return std::nullopt;
-  return StepCosts{geometric_mean(ratios), std::ranges::min(ratios), std::ranges::max(ratios), ratios.size()};
+  const auto cheaper = std::ranges::count_if(ratios, [](double ratio) { return ratio < 1; });
+  return StepCosts{geometric_mean(ratios), std::ranges::min(ratios), std::ranges::max(ratios),
+                   static_cast<std::uint64_t>(cheaper), ratios.size()};
 }
 
 std::optional<StepCosts> published_costs(const PaperScenes& scenes, const std::string& integrator,
@@ -93,8 +96,8 @@ std::vector<Finding> cost_findings(const PaperScenes& scenes) {
                                                     : Outcome::partly;
       findings.push_back(
           {outcome,
-           "Published: with " + std::string(configuration.caption) + " a step of " + integrator.paper_name +
-               " costs " + range_of(*published) + " steps of " + cheapest + ", " +
+           scenes.label() + ": with " + std::string(configuration.caption) + " a step of " +
+               integrator.paper_name + " costs " + range_of(*published) + " steps of " + cheapest + ", " +
                suggestion(*published, evaluations) + ". Measured, `" + integrator.name + "` with " +
                counted(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation") + ": " +
                joined(costs, ", ") + "."});

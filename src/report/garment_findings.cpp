@@ -40,17 +40,16 @@ std::optional<Finding> parallel_finding(const std::string& backend, const std::v
     slower += side_of_one(*ratio) == -1;
   }
   if (all == 0) return std::nullopt;
-  return Finding{
-      outcome_of(all, faster, slower),
-      "Published (Figure 6 of Vassilev): an iteration takes less time with parallelisation than without. "
-      "Measured: `" +
-          backend + "` is faster than `serial` in " + std::to_string(faster) + " of " + counted(all, "size") +
-          ", slower in " + std::to_string(slower) + "."};
+  return Finding{outcome_of(all, faster, slower),
+                 "Figure 6 of Vassilev: an iteration takes less time with parallelisation than without. "
+                 "Measured: `" +
+                     backend + "` is faster than `serial` in " + std::to_string(faster) + " of " +
+                     counted(all, "size") + ", slower in " + std::to_string(slower) + "."};
 }
 
 Finding dressing_finding(const std::string& backend, const ResultRow& row) {
   const double seconds = row.dressing->wall_s;
-  return {Outcome::fact, "Published: dressing a body in jeans takes " + three_digits(published_dressing_s) +
+  return {Outcome::fact, "Vassilev: dressing a body in jeans takes " + three_digits(published_dressing_s) +
                              " s on a smart phone. Measured: `" + backend + "` dresses `" + row.scene +
                              "` (" + grouped(row.nodes) + " vertices) in " + three_digits(seconds) +
                              " s on this machine."};

@@ -72,12 +72,13 @@ std::string crossovers(const std::vector<std::string>& list) {
   return list.empty() ? "" : " It becomes faster from " + joined(list, ", ") + " on.";
 }
 
-Finding order_finding(const OrderCount& count, std::string_view first, std::string_view second,
-                      const std::string& first_backend, const std::string& second_backend) {
+Finding order_finding(const PaperScenes& scenes, const OrderCount& count, std::string_view first,
+                      std::string_view second, const std::string& first_backend,
+                      const std::string& second_backend) {
   Finding finding;
   finding.outcome = outcome_of(count.all, count.as_published, count.contrary);
   const std::string of_all = " of " + counted(count.all, "combination") + " of size and integrator";
-  finding.sentence = "Published: " + std::string(caption_of(second)) + " is faster than " +
+  finding.sentence = scenes.label() + ": " + std::string(caption_of(second)) + " is faster than " +
                      std::string(caption_of(first)) + " in " + std::to_string(count.published_faster) +
                      of_all + "." + crossovers(count.published_crossovers) + " Measured: `" + second_backend +
                      "` is faster than `" + first_backend + "` in " + std::to_string(count.faster) +
@@ -99,7 +100,7 @@ std::vector<Finding> order_findings(const PaperScenes& scenes) {
               count_orders(scenes, first->name, second->name, first_backend, second_backend);
           if (count.all > 0)
             findings.push_back(
-                order_finding(count, first->name, second->name, first_backend, second_backend));
+                order_finding(scenes, count, first->name, second->name, first_backend, second_backend));
         }
   return findings;
 }

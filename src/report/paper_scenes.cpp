@@ -14,6 +14,13 @@ PaperScenes::PaperScenes(std::span<const ResultRow> rows, const PaperLegend& leg
   std::ranges::stable_sort(scenes_, {}, &PaperScene::nodes);
 }
 
+std::string PaperScenes::label() const {
+  // The title says what is measured, the table, and whose it is: "Cloth: Table 1 of Hong et al. (2016)".
+  const std::string_view title = published_.info().title;
+  const std::size_t colon = title.find(": "), from = colon == std::string_view::npos ? 0 : colon + 2;
+  return std::string(title.substr(from, title.find(" of ", from) - from));
+}
+
 std::optional<double> PaperScenes::published_ms(const PaperScene& scene, std::string_view integrator,
                                                 std::string_view configuration) const {
   return published_.ms(integrator, configuration, scene.nodes, scene.springs_published);

@@ -29,6 +29,8 @@ class PaperScenes {
   const std::vector<PaperScene>& scenes() const { return scenes_; }  ///< by size
   const PaperLegend& legend() const { return legend_; }
   const PublishedTable& published() const { return published_; }
+  /// "Table 1", for sentences.
+  std::string label() const;
 
   std::optional<double> published_ms(const PaperScene& scene, std::string_view integrator,
                                      std::string_view configuration) const;

@@ -46,8 +46,8 @@ std::vector<SizeStep> steps_of(const PaperScenes& scenes, std::string_view confi
 
 std::string from_to(double from, double to) { return three_digits(from) + "× to " + three_digits(to) + "×"; }
 
-Finding trend_finding(const std::vector<SizeStep>& steps, std::string_view configuration,
-                      const std::string& backend) {
+Finding trend_finding(const PaperScenes& scenes, const std::vector<SizeStep>& steps,
+                      std::string_view configuration, const std::string& backend) {
   std::uint64_t falls = 0, also_falls = 0, rises = 0, any_falls = 0;
   const SizeStep* deepest = nullptr;
   for (const SizeStep& step : steps) {
@@ -62,15 +62,15 @@ Finding trend_finding(const std::vector<SizeStep>& steps, std::string_view confi
   const std::string caption(caption_of(configuration)), of_steps = counted(steps.size(), "step");
   if (!deepest)
     return {any_falls == 0 ? Outcome::reproduced : Outcome::not_reproduced,
-            "Published: the speed-up of " + caption +
+            scenes.label() + ": the speed-up of " + caption +
                 " never falls from one size to the next. Measured: that of `" + backend + "` falls in " +
                 std::to_string(any_falls) + " of " + of_steps + "."};
   const std::string what = deepest->measured_falls()   ? "falls, too"
                            : deepest->measured_rises() ? "rises"
                                                        : "does not certainly change";
   return {outcome_of(falls, also_falls, rises),
-          "Published: the speed-up of " + caption + " falls in " + std::to_string(falls) + " of " + of_steps +
-              " from one size to the next, most from " + grouped(deepest->from->nodes) + " to " +
+          scenes.label() + ": the speed-up of " + caption + " falls in " + std::to_string(falls) + " of " +
+              of_steps + " from one size to the next, most from " + grouped(deepest->from->nodes) + " to " +
               grouped(deepest->to->nodes) + " nodes with " + deepest->integrator + " (" +
               from_to(deepest->published_from, deepest->published_to) + "). There the measured one of `" +
               backend + "` " + what + " (" +
@@ -90,7 +90,7 @@ std::vector<Finding> trend_findings(const PaperScenes& scenes) {
     if (configuration.name == one_thread_configuration) continue;
     for (const std::string& backend : scenes.backends_of(configuration.name)) {
       const auto steps = steps_of(scenes, configuration.name, backend, one_thread.front());
-      if (!steps.empty()) findings.push_back(trend_finding(steps, configuration.name, backend));
+      if (!steps.empty()) findings.push_back(trend_finding(scenes, steps, configuration.name, backend));
     }
   }
   return findings;

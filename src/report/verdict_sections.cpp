@@ -79,7 +79,10 @@ std::vector<Finding> findings_of(const ReportFolder& folder, const ReportInput& 
 }
 
 std::string verdict_section(const ReportInput& input) {
-  std::string text;
+  std::string text =
+      "<p>Each sentence says first what a paper published, then what was measured. A row that is not "
+      "verified counts "
+      "nowhere. Tables 1 and 3 are those of Hong et al. (2016).</p>\n";
   for (const ReportFolder& folder : input.folders) {
     const std::vector<Finding> findings = findings_of(folder, input);
     text += folder_heading(input, folder);

@@ -30,6 +30,10 @@ ordered_json table_json(const Table& table) {
 
 std::string table_json_text(const Table& table) { return json_text(table_json(table)); }
 
+std::string json_string(const std::string& text) {
+  return ordered_json(text).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
 std::string json_number(double number) { return ordered_json(number).dump(); }
 
 std::string json_text(const ordered_json& json) {

@@ -12,6 +12,9 @@ nlohmann::ordered_json table_json(const Table& table);
 /// The same as text.
 std::string table_json_text(const Table& table);
 
+/// A text as JSON spells it, in quotes. Bytes that are no UTF-8 are replaced.
+std::string json_string(const std::string& text);
+
 /// A real as JSON spells it: with a point or an exponent.
 std::string json_number(double number);
 
