@@ -30,6 +30,7 @@ th, td { padding: .25rem .6rem; border-bottom: 1px solid var(--line); text-align
   font-weight: normal; max-width: 32rem; }
 thead th { font-weight: 600; background: var(--fill); vertical-align: bottom; }
 .number { text-align: right; white-space: nowrap; }
+thead .number { white-space: normal; }
 td.number strong, td strong { font-weight: 600; }
 .findings { list-style: none; padding: 0; }
 .findings li { padding: .3rem .8rem; margin: .4rem 0; border-left: .3rem solid var(--line); background: var(--fill); }
