@@ -54,8 +54,11 @@ bool is_like(const StepCosts& measured, const StepCosts& published) {
 }
 
 std::string range_of(const StepCosts& costs) {
+  const std::string below = costs.cheaper == 0 ? ""
+                                               : ", below 1 at " + std::to_string(costs.cheaper) + " of " +
+                                                     counted(costs.sizes, "size");
   return three_digits(costs.mean) + " (" + three_digits(costs.least) + " to " + three_digits(costs.most) +
-         ")";
+         below + ")";
 }
 
 /// What a published cost suggests of a method that evaluates the forces so many times.

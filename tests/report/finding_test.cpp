@@ -91,6 +91,18 @@ TEST(CostFindings, HoldMeasuredCostsAgainstPublishedOnes) {
   EXPECT_EQ(outcome(with("rk4", 1.23 * cost_tolerance * 0.99), published), Outcome::reproduced);
 }
 
+TEST(CostFindings, CountTheSizesAtWhichAStepCostsLess) {
+  const auto findings = about(
+      cost_findings, {small("opencl", 1), small("opencl", 0.9, "rk4"), small("opencl", 1.1, "rk4-frozen")});
+  EXPECT_EQ(
+      outcome(findings,
+              "costs 0.924 (0.924 to 0.924, below 1 at 1 of 1 size) steps of semi-euler, about what one "
+              "force evaluation costs, though the method has 4 force evaluations. Measured, `rk4` with "
+              "4 force evaluations: `opencl` 0.900 (0.900 to 0.900, below 1 at 1 of 1 size)."),
+      Outcome::reproduced);
+  EXPECT_EQ(outcome(findings, "`opencl` 1.10 (1.10 to 1.10)."), Outcome::reproduced);
+}
+
 TEST(CostFindings, ArePartlyReproducedWhereBackendsDiffer) {
   const auto findings = about(cost_findings, {small("threads-mutex", 1), small("openmp", 1),
                                               small("threads-mutex", 4, "rk4"), small("openmp", 1.2, "rk4")});
