@@ -7,13 +7,19 @@
 namespace mssim {
 namespace {
 
-bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
+/// Of the character that begins with this byte of UTF-8, in those of Latin letters: Chinese and Japanese
+/// characters, pictures and what else begins at U+3000 are twice as wide. 0 within a character.
+std::size_t width_of_character(char byte) {
+  const auto code = static_cast<unsigned char>(byte);
+  if ((code & 0xC0U) == 0x80U) return 0;
+  return code < 0xE3 ? 1 : 2;
+}
 
-/// The first `most` characters.
+/// What fits into this width.
 std::string_view beginning(std::string_view text, std::size_t most) {
-  std::size_t at = 0;
+  std::size_t at = 0, width = 0;
   for (; at < text.size(); ++at)
-    if (begins_character(text[at]) && most-- == 0) break;
+    if ((width += width_of_character(text[at])) > most) break;
   return text.substr(0, at);
 }
 
@@ -33,14 +39,16 @@ std::string clean(std::string_view text) {
 }
 
 std::string cut(std::string_view text, std::size_t most) {
-  if (characters_in(text) <= most) return std::string(text);
+  if (width_in_letters(text) <= most) return std::string(text);
   return std::string(beginning(text, most - 1)) + "…";
 }
 
 }  // namespace
 
-std::size_t characters_in(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+std::size_t width_in_letters(std::string_view text) {
+  std::size_t width = 0;
+  for (const char byte : text) width += width_of_character(byte);
+  return width;
 }
 
 std::string shown_text(std::string_view text, std::size_t most) { return cut(clean(text), most); }
@@ -50,7 +58,7 @@ std::vector<std::string> shown_lines(std::string_view text, std::size_t most) {
   std::vector<std::string> lines;
   std::string rest = clean(text);
   while (!rest.empty()) {
-    if (lines.size() + 1 == most_lines || characters_in(rest) <= most) {
+    if (lines.size() + 1 == most_lines || width_in_letters(rest) <= most) {
       lines.push_back(cut(rest, most));
       break;
     }

@@ -9,15 +9,15 @@ namespace mssim {
 
 /// Text of a chart may be anything, such as the name of a file. These are the ways that it goes into one.
 
-/// As it is shown: on one line, of characters that XML may have, at most `most` of them; the last is … where
-/// there were more.
+/// The width of a text in letters: Chinese characters count as two.
+std::size_t width_in_letters(std::string_view text);
+
+/// As it is shown: on one line, of characters that XML may have, at most `most` letters wide; the last is …
+/// where it was wider.
 std::string shown_text(std::string_view text, std::size_t most);
 
-/// The same in lines of at most `most` characters, broken at spaces where there are some: at most three.
+/// The same in lines that are at most `most` wide, broken at spaces where there are some: at most three.
 std::vector<std::string> shown_lines(std::string_view text, std::size_t most);
-
-/// The number of characters of UTF-8.
-std::size_t characters_in(std::string_view text);
 
 /// A text of shown_text as gnuplot reads it: in single quotes, where nothing is a command, an escape or a
 /// macro, and a quote is two.

@@ -88,9 +88,12 @@ DrawnChart draw_svg(const Chart& chart) {
   file.close();
   if (!file)
     return without("cannot write " + script.string() + "; make room in the folder of temporary files");
-  // Without the user's own settings.
-  const ChildResult ended = run(
-      {*gnuplot, {"--default-settings", script.filename().string()}, {}, folder.path(), most_cpu_seconds});
+  // Without the user's own settings, and with a point in numbers.
+  const ChildResult ended = run({*gnuplot,
+                                 {"--default-settings", script.filename().string()},
+                                 {"LC_ALL=C"},
+                                 folder.path(),
+                                 most_cpu_seconds});
   const bool well = ended.signal == 0 && ended.exit_code == 0 && fs::is_regular_file(output);
   if (const auto svg = well ? page_svg(read_file(output), words_of(chart, values.notes)) : std::nullopt)
     drawn.svg = *svg;

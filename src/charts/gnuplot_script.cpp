@@ -1,5 +1,6 @@
 #include "charts/gnuplot_script.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -14,8 +15,12 @@ namespace {
 /// gnuplot's numbers of point shapes, for filled and open ones.
 constexpr std::array<int, point_shapes> filled_points{7, 5, 9, 13, 11, 15}, open_points{6, 4, 8, 12, 10, 14};
 
-/// Dashes of references, in units of a line's width; published lines have the first of gnuplot's.
+/// Dashes, in lengths of strokes and gaps.
+constexpr std::string_view published_dashes = "(4,3)";
 constexpr std::array<std::string_view, 4> reference_dashes{"solid", "(2,3)", "(10,3,2,3)", "(14,4)"};
+
+/// What stands for a fill until page_svg() draws its pattern.
+std::string fill_colour(std::size_t fill) { return "#0102" + hexadecimal(fill).substr(14); }
 
 class Script {
  public:
@@ -46,9 +51,10 @@ class Script {
     script_ += '\n';
   }
 
-  std::string on_screen(double x, double y) const {
-    return "screen " + decimal(x / chart_width) + ", screen " + decimal(1 - y / layout_.height);
-  }
+  /// gnuplot counts from 0 on the left to 1 on the right, and from 0 below to 1 above.
+  static std::string across(double x) { return decimal(x / chart_width); }
+  std::string up(double y) const { return decimal(1 - y / layout_.height); }
+  std::string on_screen(double x, double y) const { return "screen " + across(x) + ", screen " + up(y); }
 
   void axis(char name, const Axis& axis, const AxisScale& scale) {
     line("set ", name, "range [", decimal(scale.low), ':', decimal(scale.high), ']');
@@ -60,10 +66,10 @@ class Script {
   }
 
   void frame() {
-    line("set lmargin at screen ", decimal(layout_.left / chart_width));
-    line("set rmargin at screen ", decimal(layout_.right / chart_width));
-    line("set tmargin at screen ", decimal(1 - layout_.top / layout_.height));
-    line("set bmargin at screen ", decimal(1 - layout_.bottom / layout_.height));
+    line("set lmargin at screen ", across(layout_.left));
+    line("set rmargin at screen ", across(layout_.right));
+    line("set tmargin at screen ", up(layout_.top));
+    line("set bmargin at screen ", up(layout_.bottom));
     line("set border 3 lw 1");
     axis('y', chart_.y, layout_.y);
     if (chart_.form == ChartForm::bars) {
@@ -81,25 +87,23 @@ class Script {
   }
 
   void texts() {
-    const std::size_t across = static_cast<std::size_t>(chart_width) / 8;
-    double y = 8 + line_height / 2;
+    double y = chart_edge + line_height / 2;
     for (const std::string& text : layout_.title) {
-      label(text, on_screen(8, y), "left font 'sans-serif:Bold'");
+      label(text, on_screen(chart_edge, y), "left font 'sans-serif:Bold'");
       y += line_height;
     }
-    label(shown_text(chart_.y.label, across), on_screen(8, y + 4), "left");
-    label(shown_text(chart_.x.label, across), on_screen((layout_.left + layout_.right) / 2, layout_.x_label),
-          "center");
+    label(layout_.y_label, on_screen(chart_edge, layout_.y_label_middle), "left");
+    label(layout_.x_label, on_screen((layout_.left + layout_.right) / 2, layout_.x_label_middle), "center");
     for (std::size_t group = 0; group < layout_.groups.size(); ++group) {
-      const std::string place = "first " + std::to_string(group) + ", screen " +
-                                decimal(1 - (layout_.bottom + line_height / 2 + 5) / layout_.height);
+      const std::string place = "first " + std::to_string(group) + ", screen " + up(layout_.group_labels);
       label(layout_.groups[group], place, layout_.groups_tilted ? "right rotate by 35" : "center");
     }
   }
 
   void legend() {
-    line("set key at ", on_screen(8, layout_.legend), " left top Left reverse vertical samplen 2.5 maxcols ",
-         std::to_string(layout_.legend_columns), " maxrows ", std::to_string(layout_.legend_rows));
+    line("set key at ", on_screen(chart_edge, layout_.legend),
+         " left top Left reverse vertical samplen 2.5 maxcols ", std::to_string(layout_.legend_columns),
+         " maxrows ", std::to_string(layout_.legend_rows));
   }
 
   /// Of bars: left and right end of those of a series in a group.
@@ -139,37 +143,35 @@ class Script {
 
   /// What gnuplot plots of a series, which may be nothing.
   std::vector<std::string> plots_of(std::size_t s) const {
-    if (values_.series[s].empty()) return {};
-    const std::string number = std::to_string(s), title = " title " + gnuplot_text(layout_.names[s]);
-    const SeriesStyle& style = styles_[s];
-    const bool published = style.origin == Origin::published;
-    const std::string colour = " linecolor rgb '" + std::string(style.colour()) + "'";
-    std::vector<std::string> plots;
-    if (style.origin == Origin::reference) {
-      plots.push_back("$s" + number + " using 1:2 with lines linewidth 1.5 linecolor rgb 'black' dashtype " +
-                      std::string(reference_dashes[style.family % reference_dashes.size()]) + title);
-    } else if (chart_.form == ChartForm::bars) {
-      const std::size_t fill = 2 * style.family + (published ? 1 : 0);
-      plots.push_back("$s" + number + " using 1:2:3:4:5:6 with boxxyerror linewidth 1.5 linecolor rgb '" +
-                      std::string(fill_colour_prefix) + hexadecimal(fill).substr(14) +
-                      "' fillstyle solid 1 border" + colour + title);
-    } else {
-      const int point = (published ? open_points : filled_points)[style.shape()];
-      const bool lines = chart_.form == ChartForm::lines;
-      plots.push_back("$s" + number + " using 1:2 with " +
-                      (lines ? "linespoints linewidth 2 dashtype " : "points") +
-                      (lines ? (published ? "(4,3)" : "solid") : " linewidth 2") + colour + " pointtype " +
-                      std::to_string(point) + " pointsize 0.9" + title);
-    }
-    for (const PlottedPoint& point : values_.series[s])
-      if (point.interval) {
-        const std::string look = chart_.form == ChartForm::bars ? " linecolor rgb 'black'" : colour;
-        plots.push_back("$i" + number + " using 1:2:3:4 with yerrorbars linewidth 1.5 pointtype 0" + look +
-                        " notitle");
-        break;
-      }
+    const std::vector<PlottedPoint>& points = values_.series[s];
+    if (points.empty()) return {};
+    const std::string number = std::to_string(s);
+    std::vector<std::string> plots{"$s" + number + " using " + look(styles_[s]) + " title " +
+                                   gnuplot_text(layout_.names[s])};
+    if (std::ranges::any_of(points, [](const PlottedPoint& point) { return point.interval.has_value(); }))
+      plots.push_back("$i" + number + " using 1:2:3:4 with yerrorbars linewidth 1.5 pointtype 0" +
+                      colour(chart_.form == ChartForm::bars ? "black" : styles_[s].colour()) + " notitle");
     return plots;
   }
+
+  /// The columns of a series and how they are drawn.
+  std::string look(const SeriesStyle& style) const {
+    if (style.origin == Origin::reference)
+      return "1:2 with lines linewidth 1.5" + colour("black") + " dashtype " +
+             std::string(reference_dashes[style.family % reference_dashes.size()]);
+    if (chart_.form == ChartForm::bars)
+      return "1:2:3:4:5:6 with boxxyerror linewidth 1.5" + colour(fill_colour(style.fill())) +
+             " fillstyle solid 1 border" + colour(style.colour());
+    const bool published = style.origin == Origin::published;
+    const int shape = (published ? open_points : filled_points)[style.shape()];
+    std::string look = "1:2 with points";
+    if (chart_.form == ChartForm::lines)
+      look = "1:2 with linespoints dashtype " + std::string(published ? published_dashes : "solid");
+    return look + " linewidth 2" + colour(style.colour()) + " pointtype " + std::to_string(shape) +
+           " pointsize 0.9";
+  }
+
+  static std::string colour(std::string_view name) { return " linecolor rgb '" + std::string(name) + "'"; }
 
   const Chart& chart_;
   const PlottedValues& values_;

@@ -42,7 +42,7 @@ std::string fill_pattern(const std::string& id, std::size_t fill) {
                                                              "M-1,5 L1,7 M0,0 L6,6 M5,-1 L7,1",
                                                              "M1.5,0 V6 M4.5,0 V6",
                                                              "M0,0 L6,6 M0,6 L6,0"};
-  const SeriesStyle style{fill / 2, fill % 2 == 0 ? Origin::measured : Origin::published};
+  const SeriesStyle style = style_of_fill(fill);
   const std::string colour(style.colour());
   const bool solid = lines[style.pattern()].empty();
   std::string pattern =

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ inline constexpr std::array<std::string_view, 8> series_colours{"#2f7ed8", "#b87
 /// Shapes of points (circle, square, triangles, diamond, pentagon), and patterns of bars.
 inline constexpr std::size_t point_shapes = 6, bar_patterns = 6;
 
+/// Combinations of colour and shape, or colour and pattern, that differ.
+inline constexpr std::size_t looks = std::lcm(series_colours.size(), bar_patterns);
+
 /// How a series looks beside others. Numbers count from 0; those of families go on beyond the colours, shapes
 /// and patterns, of which there are different numbers.
 struct SeriesStyle {
@@ -27,7 +31,14 @@ struct SeriesStyle {
   std::string_view colour() const { return series_colours[family % series_colours.size()]; }
   std::size_t shape() const { return family % point_shapes; }
   std::size_t pattern() const { return family % bar_patterns; }
+  /// Of bars, a number for colour, pattern and origin.
+  std::size_t fill() const { return 2 * (family % looks) + (origin == Origin::published ? 1 : 0); }
 };
+
+/// The style that has this fill().
+inline SeriesStyle style_of_fill(std::size_t fill) {
+  return {fill / 2, fill % 2 == 0 ? Origin::measured : Origin::published};
+}
 
 /// One for each series; no two are the same. References have a numbering of their own.
 std::vector<SeriesStyle> series_styles(std::span<const Series> series);

@@ -15,9 +15,16 @@ TEST(ChartText, IsOneLineOfCharactersThatXmlMayHave) {
 }
 
 TEST(ChartText, IsCutBetweenCharacters) {
-  EXPECT_EQ(shown_text("äöü漢", 4), "äöü漢");
-  EXPECT_EQ(shown_text("äöü漢字", 4), "äöü…");
-  EXPECT_EQ(characters_in("äöü漢字"), 5U);
+  EXPECT_EQ(shown_text("äöü−", 4), "äöü−");
+  EXPECT_EQ(shown_text("äöü−ß", 4), "äöü…");
+  EXPECT_EQ(width_in_letters("äöü−ß"), 5U);
+}
+
+TEST(ChartText, ChineseCharactersAreWide) {
+  EXPECT_EQ(width_in_letters("漢字ok"), 6U);
+  EXPECT_EQ(shown_text("漢字漢字", 8), "漢字漢字");
+  EXPECT_EQ(shown_text("漢字漢字", 7), "漢字漢…");
+  EXPECT_THAT(shown_lines("漢字漢字", 4), ElementsAre("漢字", "漢字"));
 }
 
 TEST(ChartText, LinesBreakAtSpaces) {

@@ -61,5 +61,16 @@ TEST(SeriesStyle, SixFamiliesDifferWithoutColours) {
   }
 }
 
+TEST(SeriesStyle, AFillSaysWhatItLooksLike) {
+  for (const Origin origin : {Origin::measured, Origin::published})
+    for (std::size_t family = 0; family < 300; ++family) {
+      const SeriesStyle style{family, origin}, same = style_of_fill(style.fill());
+      EXPECT_LT(style.fill(), 100U) << "more than two digits";
+      EXPECT_EQ(same.colour(), style.colour());
+      EXPECT_EQ(same.pattern(), style.pattern());
+      EXPECT_EQ(same.origin, style.origin);
+    }
+}
+
 }  // namespace
 }  // namespace mssim
