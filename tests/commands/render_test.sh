@@ -50,6 +50,10 @@ succeed render t.h5 --movie --size 80x60
 [ "$(frames_of t.apng)" -eq 5 ] || fail "the movie has $(frames_of t.apng) frames instead of 5"
 succeed render t.h5 --movie --size 80x60 --frames 1-2,last --out some.apng
 [ "$(frames_of some.apng)" -eq 3 ] || fail "the movie has $(frames_of some.apng) frames instead of 3"
+succeed render t.h5 --size 80x60 --movie named.apng
+cmp -s t.apng named.apng || fail "--movie FILE writes something else than --movie"
+expect 2 'put the trace before it' render --movie t.h5
+expect 2 '--movie and --out both name the file' render t.h5 --movie a.apng --out b.apng
 
 # A garment that has not settled is drawn, too.
 status=0

@@ -42,6 +42,19 @@ expect 2 '--energy-curve and a file of the scene are the same file' run --scene 
 cmp -s mine.json "$source/scenes/cloth2500.json" || fail "a scene was overwritten"
 [ -z "$(find . -name 'x.*')" ] || fail "a refused run leaves a file"
 
+# Pictures while it runs: one a frame, into a folder of their own, and the last is what the trace shows at the end.
+succeed "${fall[@]}" --duration 0.1 --fps 20 --pictures new/shots --size 160x120 --view side --trace shots.h5
+[ "$(ls new/shots | tr '\n' ' ')" = 'frame-000000.png frame-000001.png frame-000002.png ' ] ||
+  fail "the folder of pictures holds $(ls new/shots)"
+succeed render shots.h5 --frames 0 --size 160x120 --view side --out start.png
+cmp -s start.png new/shots/frame-000000.png || fail "the first picture is not the trace's first frame"
+expect 4 'new/shots, which is not empty; empty it or choose another folder' \
+  "${fall[@]}" --duration 0.01 --pictures new/shots --trace refused.h5
+[ -z "$(find . -name 'refused*')" ] || fail "a refused run leaves a file"
+expect 2 '--size needs --pictures' "${fall[@]}" --size 160x120
+expect 2 '"up" is no view' "${fall[@]}" --pictures unseen --view up
+[ ! -e unseen ] || fail "a refused run leaves a folder"
+
 # A disk that is full: the trace and the energies of its frames are kept.
 status=0
 (

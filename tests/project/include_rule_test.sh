@@ -57,14 +57,14 @@ output/hdf5           platform
 output/tables         text statistics platform bench/machine bench/results
 garment/output        text garment bench/results output/hdf5 output/tables
 output/traces         text platform geometry model output/hdf5 garment/output
-output/pictures       geometry render picture model scene/fields garment output/traces
+output/pictures       platform geometry render picture model scene/fields garment output/traces
 output/exports        text platform geometry model output/hdf5 output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
 report                text platform statistics integrators charts bench/machine bench/results bench/roofline output/tables garment/output output/folders
 
 commands/arguments    text
-commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/folders commands/arguments
-commands/run          platform model scene garment/stepping garment/fitting backends/interface backends/spring_list backends bench/verification output/tables output/traces commands/arguments commands/shared
+commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/pictures output/folders commands/arguments
+commands/run          platform model scene garment/stepping garment/fitting backends/interface backends/spring_list backends bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/export       text platform output/exports output/traces commands/arguments commands/shared
 commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared

@@ -54,6 +54,13 @@ Argument Arguments::add_flag(const std::string& name, bool& target, const std::s
   return Argument(*command_->add_flag(name, target, description));
 }
 
+Argument Arguments::add_flag_with_text(const std::string& name, std::optional<std::string>& target,
+                                       const std::string& description) {
+  const auto take = [&target](const std::string& text) { target = text; };
+  return Argument(
+      *command_->add_option_function<std::string>(name, take, description)->expected(0, 1)->default_str(""));
+}
+
 std::string Arguments::help_page(const std::string& name) const {
   const CLI::App* program = command_;
   while (program->get_parent() != nullptr) program = program->get_parent();

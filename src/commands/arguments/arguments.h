@@ -75,6 +75,10 @@ class Arguments {
   /// True when it is given.
   Argument add_flag(const std::string& name, bool& target, const std::string& description);
 
+  /// A flag that may be followed by a text: the target is empty where that is left out.
+  Argument add_flag_with_text(const std::string& name, std::optional<std::string>& target,
+                              const std::string& description);
+
   /// The help page of the program that the command belongs to or, with a name, of that command of it; empty
   /// where there is no such command.
   std::string help_page(const std::string& name) const;

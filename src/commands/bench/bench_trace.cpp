@@ -20,11 +20,7 @@ constexpr int frames = 10;
 void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
                         const Provenance& provenance, const std::filesystem::path& folder, bool keep_existing,
                         const BenchWatch& watch) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw WriteError(folder.string() + " cannot be made a folder (" + error.message() +
-                     "); choose another --out");
+  make_folder(folder);
   const double duration_s = verification_steps * scene.dt_s;
   for (const ResultRow& row : rows) {
     const std::filesystem::path file =

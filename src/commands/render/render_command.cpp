@@ -36,10 +36,10 @@ namespace fs = std::filesystem;
 struct RenderOptions {
   std::string trace;
   RunOptions run;  ///< of --scene; its fps is that of a movie, too
-  std::string out, view = "three-quarter", size, sheet_size;
+  std::string out, sheet_size;
+  PictureChoice look;
   FrameOptions frames;
-  bool movie = false;
-  ColourBy colour = ColourBy::object;
+  std::optional<std::string> movie;  ///< the file, where it is named here and not by `out`
 };
 
 constexpr double movie_fps = 30;
@@ -56,21 +56,12 @@ std::optional<Size> sheet_size(const RenderOptions& options) {
   return sheet;
 }
 
-PictureOptions picture_options(const RenderOptions& options) {
-  const auto view = view_direction(options.view);
-  if (!view)
-    throw UsageError("--view: \"" + printable(options.view) +
-                     "\" is no view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
+constexpr const char* size_of_many = "640x480";  // on a sheet and in a movie
+
+PictureOptions pictures_of(const RenderOptions& options) {
   const bool alone = options.sheet_size.empty() && !options.movie;
-  const std::string& wanted = options.size;
-  const auto size = two_numbers(!wanted.empty() ? wanted
-                                : alone         ? "960x720"
-                                                : "640x480",
-                                most_picture_pixels);
-  if (!size)
-    throw UsageError("--size: \"" + printable(wanted) + "\" is no size; give WIDTHxHEIGHT, up to " +
-                     std::to_string(most_picture_pixels) + " pixels each");
-  return {*view, size->first, size->second, options.colour, complete(options.run.execution).threads};
+  return picture_options(options.look, alone ? usual_picture_size : size_of_many,
+                         complete(options.run.execution).threads);
 }
 
 /// "bodies20587" of a scene's name or file, "fall" of fall.h5.
@@ -79,6 +70,7 @@ std::string stem_of(const RenderOptions& options) {
 }
 
 fs::path output_of(const RenderOptions& options) {
+  if (options.movie && !options.movie->empty()) return *options.movie;
   if (!options.out.empty()) return options.out;
   return stem_of(options) + (options.movie ? ".apng" : options.sheet_size.empty() ? ".png" : "-sheet.png");
 }
@@ -137,11 +129,18 @@ double fps_of_run(const RenderOptions& options) {
 }
 
 int render(const RenderOptions& options) {
-  const PictureOptions picture = picture_options(options);
+  const PictureOptions picture = pictures_of(options);
   sheet_size(options);  // before anything is simulated
   if (options.movie && options.run.fps && (*options.run.fps < 0.1 || *options.run.fps > 1000))
     throw UsageError("--fps: a movie has 0.1 to 1000 frames a second, not " + decimal(*options.run.fps));
-  if (options.trace.empty() == options.run.scene.empty()) throw UsageError("give either a trace or --scene");
+  if (options.movie && !options.movie->empty() && !options.out.empty())
+    throw UsageError("--movie and --out both name the file: \"" + printable(*options.movie) + "\" and \"" +
+                     printable(options.out) + "\"; leave one of them out");
+  if (options.trace.empty() == options.run.scene.empty())
+    throw UsageError(options.movie && fs::path(*options.movie).extension() == ".h5"
+                         ? "--movie took \"" + printable(*options.movie) +
+                               "\" for the file to write; put the trace before it"
+                         : std::string("give either a trace or --scene"));
   const fs::path out = output_of(options);
   fs::path trace = options.trace;
   int code = exit_ok;
@@ -178,25 +177,17 @@ std::function<int()> declare_render(Arguments& arguments) {
       .add("--out", options->out,
            "File to write (default: the trace's or the scene's name, and .png or .apng)")
       .value_name("FILE");
-  arguments
-      .add("--view", options->view,
-           "From where: front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees (default: "
-           "three-quarter)")
-      .value_name("VIEW");
-  arguments
-      .add("--size", options->size,
-           "Size of a picture in pixels (default: 960x720, and 640x480 on a sheet and in a movie)")
-      .value_name("WIDTHxHEIGHT");
-  arguments.add_choice(
-      "--colour", options->colour,
-      {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
-      "What colours tell apart: object, panel (of a garment) or strain (default: object)");
+  declare_pictures(arguments, options->look,
+                   std::string(usual_picture_size) + ", and " + size_of_many + " on a sheet and in a movie");
   const Argument time = declare_frames(arguments, options->frames);
   const Argument sheet =
       arguments.add("--sheet", options->sheet_size, "Put so many moments, evenly spread, on one sheet")
           .value_name("COLUMNSxROWS")
           .excludes(time);
-  arguments.add_flag("--movie", options->movie, "Write an animated PNG of the frames")
+  arguments
+      .add_flag_with_text("--movie", options->movie,
+                          "Write an animated PNG of the frames, to this file or that of --out")
+      .value_name("[FILE]")
       .excludes(sheet)
       .excludes(time);
   declare_stepping(

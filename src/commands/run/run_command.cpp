@@ -11,8 +11,9 @@ std::function<int()> declare_run(Arguments& arguments) {
   arguments.add("--scene", options->scene, "Scene to simulate: a name (see mssim list scenes) or a file")
       .required()
       .value_name("NAME|FILE");
-  declare_stepping(arguments, *options,
-                   "Frames per simulated second of the trace and the energy curve (default: 60)");
+  declare_stepping(
+      arguments, *options,
+      "Frames per simulated second of the trace, the energy curve and the pictures (default: 60)");
   arguments
       .add("--precision", options->precision, "single, or double with --backend serial (default: single)",
            one_of("precision", {"single", "double"}))
@@ -24,6 +25,12 @@ std::function<int()> declare_run(Arguments& arguments) {
   arguments
       .add("--energy-curve", options->files.energy_curve, "Write the energies of all frames to this CSV file")
       .value_name("FILE");
+  const Argument pictures =
+      arguments
+          .add("--pictures", options->files.pictures,
+               "Draw every frame into this folder while the simulation runs, as PNG; it must be new or empty")
+          .value_name("DIR");
+  declare_pictures(arguments, options->look, usual_picture_size, pictures);
   arguments.add_flag(
       "--losses", options->losses,
       "Account for the energy lost to damping, friction, bounces and the integrator; computes a "

@@ -26,8 +26,10 @@ RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, cons
       comment.append("\nleft out: ").append(work);
     curve_.emplace(files.energy_curve, comment);
   }
-  if (!files.trace.empty())
-    trace_.emplace(files.trace, scene.system, headers.trace, scene.body ? scene.body->surface : Surface{});
+  const Surface body = scene.body ? scene.body->surface : Surface{};
+  if (!files.trace.empty()) trace_.emplace(files.trace, scene.system, headers.trace, body);
+  if (!files.pictures.empty())
+    pictures_.emplace(files.pictures, trace_content_of(scene.system, headers.trace, body), headers.pictures);
 }
 
 void RunRecorder::record(const Frame& frame) {
@@ -35,6 +37,7 @@ void RunRecorder::record(const Frame& frame) {
   // First the curve, so that it has the energies of every frame of the trace, whichever of the two fails.
   if (curve_) curve_->append(sample);
   if (trace_) trace_->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+  if (pictures_) pictures_->draw(frame.state.position);
   energies_.push_back(sample);
 }
 

@@ -7,23 +7,26 @@
 
 #include "commands/shared/prepared_scene.h"
 #include "commands/shared/simulation.h"
+#include "output/pictures/picture_folder.h"
 #include "output/traces/energy_curve.h"
 #include "output/traces/h5md_trace.h"
 
 namespace mssim {
 
-/// The files that a run writes from its frames, each only where it has a name.
+/// What a run writes from its frames, each only where it has a name.
 struct RunFiles {
   std::string trace;
   std::string energy_curve;
+  std::string pictures;  ///< a folder
 
-  bool any() const { return !trace.empty() || !energy_curve.empty(); }
+  bool any() const { return !trace.empty() || !energy_curve.empty() || !pictures.empty(); }
 };
 
-/// What the files say about how they came about, beside what the scene says.
+/// What the files say about how they came about, beside what the scene says, and how pictures look.
 struct FileHeaders {
   TraceHeader trace;
   std::string command_line;  ///< of the energy curve
+  PictureOptions pictures;
 };
 
 /// Throws UsageError when two of the files, the XDMF of the trace, and the files that the scene is read from,
@@ -37,15 +40,15 @@ class RunRecorder {
   RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers);
 
   /// Whether anything is written.
-  bool wanted() const { return trace_ || curve_; }
+  bool wanted() const { return trace_ || curve_ || pictures_; }
   /// Throws WriteError.
   void record(const Frame& frame);
   const std::vector<EnergySample>& energies() const { return energies_; }
 
   /// Runs `simulation`, which records, and finishes the files: also when it blows up or is interrupted,
-  /// because the frames before that are good and show what happened. Where a file cannot be written any more,
-  /// both stay under their temporary names with all frames that were recorded before, and the WriteError says
-  /// so. Passes on what `simulation` throws.
+  /// because the frames before that are good and show what happened. Where one cannot be written any more,
+  /// files stay under their temporary names with all frames that were recorded before, and the WriteError
+  /// says so. Passes on what `simulation` throws.
   void finish_after(const std::function<void()>& simulation);
 
  private:
@@ -55,6 +58,7 @@ class RunRecorder {
 
   std::optional<H5mdTrace> trace_;
   std::optional<EnergyCurve> curve_;
+  std::optional<PictureFolder> pictures_;
   std::vector<EnergySample> energies_;
 };
 

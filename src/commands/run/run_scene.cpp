@@ -31,6 +31,10 @@ namespace {
 
 constexpr double default_fps = 60;
 
+PictureOptions pictures_of(const RunOptions& options) {
+  return picture_options(options.look, usual_picture_size, complete(options.execution).threads);
+}
+
 /// The chosen backend, made by `in_single`, make_backend or make_dressing_backend, or by `in_double`.
 template <class InSingle, class InDouble>
 auto chosen_backend(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
@@ -89,7 +93,7 @@ FileHeaders headers_of(const RunOptions& options, const PreparedScene& scene, co
   Provenance provenance = run_provenance(backend.threads(), require_backend(options.backend).uses_device);
   add_scene(provenance, scene.spec.name, scene.spec.source);
   FileHeaders headers{trace_header(scene, backend, options.backend, integrator, provenance),
-                      command_line(provenance)};
+                      command_line(provenance), pictures_of(options)};
   headers.trace.with_losses = options.losses;
   headers.trace.in_double = options.precision == "double";
   return headers;
@@ -174,6 +178,7 @@ int run_scene(const RunOptions& options) {
   if (!options.files.trace.empty())
     if (const auto problem = trace_name_problem(options.files.trace))
       throw UsageError("--trace: " + *problem);
+  pictures_of(options);  // refuses what cannot be drawn
   const Integrator& integrator = require_integrator(options.integrator);
   require_backend(options.backend);
   PreparedScene scene = prepare_scene(find_scene(options.scene));

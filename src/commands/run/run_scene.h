@@ -6,6 +6,7 @@
 #include "backends/interface/backend.h"
 #include "commands/arguments/arguments.h"
 #include "commands/run/run_recorder.h"
+#include "commands/shared/picture_choice.h"
 
 namespace mssim {
 
@@ -22,6 +23,7 @@ struct RunOptions {
   std::optional<double> duration_s;  ///< default_duration_s where it is not given
   std::optional<double> fps;         ///< frames per simulated second, 60 where it is not given
   RunFiles files;
+  PictureChoice look;  ///< of files.pictures
   bool losses = false;
   bool silent = false;  ///< prints no tables of how it went
   ExecutionOptions execution;

@@ -32,14 +32,6 @@ constexpr const char* github_name = "github.json";
 std::string csv_of(std::string_view table) { return std::string(table) + ".csv"; }
 std::string markdown_of(std::string_view table) { return std::string(table) + ".md"; }
 
-/// The folder, which is there afterwards.
-const fs::path& made(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw WriteError(write_failure(folder, "creating the folder", error.value()));
-  return folder;
-}
-
 std::vector<ResultFolder::File> files_of(const ResultTable& table) {
   return {{csv_of(table.name), table_csv(table.data)}, {markdown_of(table.name), markdown(table.page)}};
 }
@@ -48,7 +40,7 @@ std::vector<ResultFolder::File> files_of(const ResultTable& table) {
 
 ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker tables)
     : folder_(std::move(folder)),
-      lock_(made(folder_)),
+      lock_(make_folder(folder_)),
       provenance_(std::move(provenance)),
       tables_(std::move(tables)) {}
 

@@ -129,6 +129,24 @@ TraceContent read_trace_content(hid_t file) {
   return content;
 }
 
+TraceContent trace_content_of(const System& system, const TraceHeader& header, const Surface& body) {
+  TraceContent content;
+  content.particles = xdmf_mesh_of(system, body).particles;
+  content.topology = system.topology;
+  for (const Spring& spring : system.springs) {
+    content.springs.push_back({spring.first, spring.second});
+    content.rest_length.push_back(spring.rest_length);
+  }
+  content.body = body;
+  content.scene_json = header.scene_json;
+  content.backend = header.backend;
+  content.integrator = header.integrator;
+  content.dt_s = header.dt_s;
+  content.in_double = header.in_double;
+  content.nodes = system.nodes();
+  return content;
+}
+
 std::string particles_group(const TraceContent& content) { return "/particles/" + content.particles; }
 
 }  // namespace mssim

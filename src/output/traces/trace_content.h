@@ -10,6 +10,7 @@
 
 #include "geometry/surface.h"
 #include "model/system.h"
+#include "output/traces/h5md_head.h"
 
 namespace mssim {
 
@@ -33,6 +34,9 @@ struct TraceContent {
 /// Reads and checks all of it; indices lie below the number of nodes, and the topology fits these. Throws
 /// Hdf5Error, Hdf5ContentError, and std::invalid_argument with the rule that a trace breaks.
 TraceContent read_trace_content(hid_t file);
+
+/// What a trace of the system says, without frames. `body` as in H5mdTrace.
+TraceContent trace_content_of(const System& system, const TraceHeader& header, const Surface& body);
 
 /// Where the particles of a trace are, for example /particles/cloth.
 std::string particles_group(const TraceContent& content);

@@ -10,16 +10,7 @@
 namespace mssim {
 namespace {
 
-TraceContent content_of(const System& system) {
-  TraceContent content;
-  content.topology = system.topology;
-  for (const Spring& spring : system.springs) {
-    content.springs.push_back({spring.first, spring.second});
-    content.rest_length.push_back(spring.rest_length);
-  }
-  content.nodes = system.nodes();
-  return content;
-}
+TraceContent content_of(const System& system) { return trace_content_of(system, {}, {}); }
 
 PictureOptions options(ColourBy colour = ColourBy::object) { return {{35, 18}, 320, 240, colour, 2}; }
 
