@@ -38,6 +38,8 @@ struct Chart {
   Axis x, y;                        ///< of bars, x is the axis of groups and never logarithmic
   std::vector<std::string> groups;  ///< of bars: the labels on x
   std::vector<Series> series;       ///< in the order of the legend
+  /// Families that look the same in every chart that names them in the same order; others come after them.
+  std::vector<std::string> families{};
 };
 
 }  // namespace mssim

@@ -25,7 +25,10 @@ std::string fill_colour(std::size_t fill) { return "#0102" + hexadecimal(fill).s
 class Script {
  public:
   Script(const Chart& chart, const PlottedValues& values, const ChartLayout& layout)
-      : chart_(chart), values_(values), layout_(layout), styles_(series_styles(chart.series)) {}
+      : chart_(chart),
+        values_(values),
+        layout_(layout),
+        styles_(series_styles(chart.series, chart.families)) {}
 
   std::string made(std::string_view output) {
     line("set encoding utf8");

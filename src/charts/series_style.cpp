@@ -6,10 +6,11 @@
 
 namespace mssim {
 
-std::vector<SeriesStyle> series_styles(std::span<const Series> series) {
+std::vector<SeriesStyle> series_styles(std::span<const Series> series, std::span<const std::string> fixed) {
   std::vector<SeriesStyle> styles;
   std::map<std::string, std::size_t> families;
   std::size_t next = 0, next_reference = 0;
+  for (const std::string& family : fixed) families.try_emplace(family, next++);
   for (const Series& one : series) {
     if (one.origin == Origin::reference) {
       styles.push_back({next_reference++, one.origin});

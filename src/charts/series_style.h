@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <numeric>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,7 +41,9 @@ inline SeriesStyle style_of_fill(std::size_t fill) {
   return {fill / 2, fill % 2 == 0 ? Origin::measured : Origin::published};
 }
 
-/// One for each series; no two are the same. References have a numbering of their own.
-std::vector<SeriesStyle> series_styles(std::span<const Series> series);
+/// One for each series; no two are the same. The families `fixed` have the first numbers, whether they occur
+/// or not. References have a numbering of their own.
+std::vector<SeriesStyle> series_styles(std::span<const Series> series,
+                                       std::span<const std::string> fixed = {});
 
 }  // namespace mssim

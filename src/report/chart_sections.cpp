@@ -90,24 +90,39 @@ std::string roofline_section(const ReportInput& input) {
                         });
 }
 
+namespace {
+
+std::string energies_of(const std::vector<FoundCurve>& curves, std::span<const FoundCurve> references,
+                        const std::string& id) {
+  std::vector<Chart> charts;
+  std::vector<std::string> without;
+  for (const FoundCurve& curve : curves) {
+    charts.push_back(energy_chart(curve, references, id + "-energy-" + std::to_string(charts.size())));
+    if (!reference_of(curve, references)) without.push_back(curve.name);
+  }
+  std::string text = figures_of(charts);
+  if (!without.empty())
+    text += "<p>Without a reference curve: " + html_text(joined(without, ", ")) + ".</p>\n";
+  return text;
+}
+
+}  // namespace
+
 std::string energy_section(const ReportInput& input) {
-  return of_each_folder(input,
-                        "<p>No folder has an energy curve. <code>mssim run --scene cloth2500 --energy-curve "
-                        "FOLDER/cloth2500.csv</code> "
-                        "writes one into a folder.</p>\n",
+  const std::string simulated = input.curves.empty()
+                                    ? ""
+                                    : "<p>Simulated anew for this page, beside a reference in double "
+                                      "precision with steps of rk4.</p>\n" +
+                                          energies_of(input.curves, input.references, "simulated");
+  return simulated +
+         of_each_folder(input,
+                        simulated.empty()
+                            ? "<p>No folder has an energy curve. <code>mssim run --scene cloth2500 "
+                              "--energy-curve FOLDER/cloth2500.csv</code> "
+                              "writes one into a folder.</p>\n"
+                            : "",
                         [&](const ReportFolder& folder, const std::string& id) {
-                          std::vector<Chart> charts;
-                          std::vector<std::string> without;
-                          for (const FoundCurve& curve : folder.curves) {
-                            charts.push_back(energy_chart(curve, input.references,
-                                                          id + "-energy-" + std::to_string(charts.size())));
-                            if (!reference_of(curve, input.references)) without.push_back(curve.name);
-                          }
-                          std::string text = figures_of(charts);
-                          if (!without.empty())
-                            text += "<p>Without a reference curve: " + html_text(joined(without, ", ")) +
-                                    ".</p>\n";
-                          return text;
+                          return energies_of(folder.curves, input.references, id);
                         });
 }
 

@@ -64,6 +64,7 @@ std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const std::
   chart.form = ChartForm::points;
   chart.x = {"operations a byte", true};
   chart.y = {"operations a second (10⁹)", true};
+  chart.families = backend_families;
   std::map<int, std::vector<RoofDot>> under_roof;  // by threads
   double least = INFINITY, most = 0;
   for (const ResultRow& row : rows) {

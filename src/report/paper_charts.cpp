@@ -8,14 +8,9 @@ namespace {
 
 /// Adds the published line of a configuration; nothing where it has none.
 void add_published_speedups(Chart& chart, const PaperScenes& scenes, const std::string& integrator,
-                            const PaperConfiguration& configuration) {
-  Series series{std::string(configuration.caption) + ", published",
-                Origin::published,
-                std::string(configuration.name),
-                {},
-                {},
-                {},
-                {}};
+                            const PaperConfiguration& configuration, const std::string& family) {
+  Series series{
+      std::string(configuration.caption) + ", published", Origin::published, family, {}, {}, {}, {}};
   for (const PaperScene& scene : scenes.scenes())
     if (const auto speedup = scenes.published_speedup(scene, integrator, configuration.name)) {
       series.x.push_back(static_cast<double>(scene.nodes));
@@ -25,9 +20,8 @@ void add_published_speedups(Chart& chart, const PaperScenes& scenes, const std::
 }
 
 void add_measured_speedups(Chart& chart, const PaperScenes& scenes, const std::string& integrator,
-                           const std::string& configuration, const std::string& backend,
-                           const std::string& one_thread) {
-  Series series{backend + ", measured", Origin::measured, configuration, {}, {}, {}, {}};
+                           const std::string& backend, const std::string& one_thread) {
+  Series series{backend + ", measured", Origin::measured, backend, {}, {}, {}, {}};
   for (const PaperScene& scene : scenes.scenes()) {
     const ResultRow* row = scenes.row(scene, backend, integrator);
     const ResultRow* base = scenes.row(scene, one_thread, integrator);
@@ -54,12 +48,14 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& 
     chart.title = integrator.name + ": speed-up over one thread";
     chart.x = {"nodes", true};
     chart.y = {"times as fast as one thread", true};
+    chart.families = backend_families;
     for (const PaperConfiguration& configuration : paper_configurations) {
       if (configuration.name == one_thread_configuration) continue;
-      add_published_speedups(chart, scenes, integrator.paper_name, configuration);
-      for (const std::string& backend : scenes.backends_of(configuration.name))
-        add_measured_speedups(chart, scenes, integrator.name, std::string(configuration.name), backend,
-                              one_thread.front());
+      const std::vector<std::string> backends = scenes.backends_of(configuration.name);
+      add_published_speedups(chart, scenes, integrator.paper_name, configuration,
+                             backends.empty() ? std::string() : backends.front());
+      for (const std::string& backend : backends)
+        add_measured_speedups(chart, scenes, integrator.name, backend, one_thread.front());
     }
     const bool measured = std::ranges::any_of(
         chart.series, [](const Series& series) { return series.origin == Origin::measured; });
@@ -74,6 +70,7 @@ std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::s
   chart.title = "Figure 6: one iteration of jeans";
   chart.x = {"vertices", false};
   chart.y = {"time of an iteration (ms)", false};
+  chart.families = backend_families;
   for (const ResultRow& row : rows) {
     if (!row.dressing || !counts(row)) continue;
     const std::string name =

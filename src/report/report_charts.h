@@ -14,6 +14,10 @@
 
 namespace mssim {
 
+/// Backends have the same look in every chart.
+inline const std::vector<std::string> backend_families{"serial", "threads-mutex", "openmp", "opencl",
+                                                       "hybrid"};
+
 /// What becomes charts. `id` begins the ids of the charts, so that those of several folders differ. A chart
 /// without anything to show is none.
 

@@ -18,6 +18,7 @@ struct ReportInput {
   TableMaker tables;                   ///< of published beside measured numbers
   std::vector<FoundCurve> references;  ///< energy curves, named as their scenes
   std::vector<FoundPicture> pictures;  ///< of scenes of the folders, drawn for the report
+  std::vector<FoundCurve> curves;      ///< of energy, of scenes simulated for the report
   double threshold = 0.05;             ///< a change that matters between two folders
   std::vector<std::string> problems;   ///< of all that is no folder, without a full stop
   std::string made_by;                 ///< the program and its version

@@ -48,8 +48,9 @@ Series measured_line(const std::vector<const ResultRow*>& list, const std::strin
 
 /// The published times of the scenes of these rows.
 Series published_line(const std::vector<const ResultRow*>& list, std::span<const PublishedTable> published,
-                      std::string_view integrator, const std::string& configuration) {
-  Series series{"", Origin::published, configuration, {}, {}, {}, {}};
+                      std::string_view integrator, const std::string& configuration,
+                      const std::string& family = {}) {
+  Series series{"", Origin::published, family, {}, {}, {}, {}};
   for (const ResultRow* row : list)
     for (const PublishedTable& table : published)
       if (const auto ms = table.ms(integrator, configuration, row->nodes, row->springs_published)) {
@@ -93,17 +94,19 @@ std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLe
     chart.title = "Time of a " + integrator + " step of " + std::string(name_of(kind));
     chart.x = {"nodes", true};
     chart.y = {"time of a step (ms)", true};
+    chart.families = backend_families;
     std::vector<std::string> shown;
     for (const std::string& backend : distinct(rows, &ResultRow::backend)) {
       const auto list = rows_by_size(rows, kind, backend, integrator);
       const std::string configuration = configuration_of(legend, backend);
-      Series measured = measured_line(list, configuration);
+      Series measured = measured_line(list, backend);
       if (!exponent_of(measured.x, measured.y)) continue;
       measured.name = with_slope(backend + ", measured", measured);
       chart.series.push_back(std::move(measured));
       if (configuration.empty() || std::ranges::find(shown, configuration) != shown.end()) continue;
       shown.push_back(configuration);
-      Series line = published_line(list, published, paper_name_of(legend, integrator), configuration);
+      Series line =
+          published_line(list, published, paper_name_of(legend, integrator), configuration, backend);
       if (line.x.empty()) continue;
       line.name = with_slope(std::string(caption_of(configuration)) + ", published", line);
       chart.series.push_back(std::move(line));

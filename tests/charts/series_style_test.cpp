@@ -43,6 +43,17 @@ TEST(SeriesStyle, AFamilyDiffersByOriginAlone) {
   EXPECT_NE(styles[1].family, styles[0].family);
 }
 
+TEST(SeriesStyle, AFixedFamilyLooksTheSameInEveryChart) {
+  const std::vector<std::string> fixed{"serial", "openmp", "opencl"};
+  const std::vector<Series> one{{.name = "a", .family = "opencl"}, {.name = "b", .family = "mine"}};
+  const std::vector<Series> other{
+      {.name = "c", .family = "mine"}, {.name = "d", .family = "serial"}, {.name = "e", .family = "opencl"}};
+  EXPECT_EQ(series_styles(one, fixed)[0].family, 2U);
+  EXPECT_EQ(series_styles(one, fixed)[1].family, 3U);
+  EXPECT_EQ(series_styles(other, fixed)[2].family, 2U);
+  EXPECT_EQ(series_styles(other, fixed)[1].family, 0U);
+}
+
 TEST(SeriesStyle, NoTwoOfAHundredSeriesShareFamilyAndOrigin) {
   std::vector<Series> series;
   for (int i = 0; i < 100; ++i)

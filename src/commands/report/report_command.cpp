@@ -8,7 +8,7 @@
 
 #include "bench/machine/build_info.h"
 #include "commands/bench/suites.h"
-#include "commands/report/scene_pictures.h"
+#include "commands/report/simulated_scenes.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/output_names.h"
 #include "commands/shared/tell_first.h"
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 struct ReportOptions {
   std::vector<std::string> folders;
   std::string out = "report.html";
-  bool no_pictures = false;
+  bool no_runs = false;
 };
 
 /// The result folders that the given ones stand for. Throws UsageError for one that is none.
@@ -66,7 +66,11 @@ int report(const ReportOptions& options) {
     input.problems.push_back(std::string(error.what()) + "; nothing published is shown");
   }
   for (const fs::path& folder : folders) input.folders.push_back(read_report_folder(folder));
-  if (!options.no_pictures) input.pictures = scene_pictures(input.folders, input.problems);
+  if (!options.no_runs) {
+    SimulatedScenes simulated = simulated_scenes(input.folders, input.references, input.problems);
+    input.pictures = std::move(simulated.pictures);
+    input.curves = std::move(simulated.curves);
+  }
   write_file_atomically(options.out, report_page(input));
   for (const ReportFolder& folder : input.folders)
     input.problems.insert(input.problems.end(), folder.problems.begin(), folder.problems.end());
@@ -85,8 +89,9 @@ std::function<int()> declare_report(Arguments& arguments) {
                 [](std::string_view folder) { return std::vector{std::string(folder)}; })
       .required();
   arguments.add("--out", options->out, "File to write (default: report.html)").value_name("FILE");
-  arguments.add_flag("--no-pictures", options->no_pictures,
-                     "Draw no scenes, which takes seconds; pictures that lie in the folders are shown");
+  arguments.add_flag("--no-runs", options->no_runs,
+                     "Simulate no scenes for pictures and energies, which takes seconds; what lies in the "
+                     "folders is shown");
   return [options] { return report(*options); };
 }
 
