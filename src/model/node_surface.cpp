@@ -54,7 +54,7 @@ NodeSurface surface_of_bodies(const std::vector<Tetrahedron>& tetrahedra, std::s
   for (const Triangle& triangle : surface.triangles)
     surface.node.insert(surface.node.end(), triangle.begin(), triangle.end());
   std::ranges::sort(surface.node);
-  surface.node.erase(std::ranges::unique(surface.node).begin(), surface.node.end());
+  surface.node.erase(std::unique(surface.node.begin(), surface.node.end()), surface.node.end());
   std::vector<std::uint32_t> point(nodes);
   for (std::uint32_t i = 0; i < surface.node.size(); ++i) point[surface.node[i]] = i;
   for (Triangle& triangle : surface.triangles)

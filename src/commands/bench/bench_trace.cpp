@@ -7,7 +7,7 @@
 #include "commands/shared/simulation.h"
 #include "integrators/integrators.h"
 #include "output/traces/h5md_trace.h"
-#include "platform/write_error.h"
+#include "platform/folder_lock.h"
 
 namespace mssim {
 namespace {

@@ -50,7 +50,7 @@ std::vector<std::size_t> exported_frames(const FrameOptions& options, const std:
   if (!options.given()) return {times_s.size() - 1};
   std::vector<std::size_t> frames = chosen_frames(options, times_s);
   std::ranges::sort(frames);
-  frames.erase(std::ranges::unique(frames).begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   return frames;
 }
 

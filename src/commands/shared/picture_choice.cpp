@@ -1,6 +1,6 @@
 #include "commands/shared/picture_choice.h"
 
-#include "commands/arguments/usage_error.h"
+#include "commands/shared/exit_code.h"
 #include "text/number_in.h"
 #include "text/printable.h"
 

@@ -25,8 +25,8 @@ void require_trace_of_mssim(hid_t file) {
 }
 
 std::string read_particles(hid_t file) {
-  for (const std::string name : {"cloth", "bodies", "garment"})
-    if (exists(file, "/particles/" + name)) return name;
+  for (const char* name : {"cloth", "bodies", "garment"})
+    if (exists(file, std::string("/particles/") + name)) return name;
   throw Hdf5ContentError("there is none of /particles/cloth, /particles/bodies and /particles/garment");
 }
 
