@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/bench_memory.h"
 #include "bench/job/combination.h"
 #include "bench/roofline/machine_peak.h"
 #include "bench/roofline/step_cost.h"
@@ -25,9 +26,6 @@ namespace mssim {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// The share of the whole that verification and calibration take, for the progress only.
-constexpr double preparation = 0.3;
 
 /// Peaks of this machine, by integrator (the working set is its own) and threads.
 using Peaks = std::map<std::pair<const Integrator*, int>, MachinePeak>;
@@ -43,7 +41,7 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
     const auto key = std::pair(combination.integrator, threads);
     if (!combination.backend || !combination.on_host || peaks.contains(key)) continue;
     watch.progress("machine peak with " + counted(static_cast<std::uint64_t>(threads), "thread"),
-                   preparation);
+                   job.preparation);
     const double bytes = working_set_bytes(*combination.integrator, size);
     peaks[key] = measure_peak(threads, static_cast<std::size_t>(bytes));
   }
@@ -160,13 +158,37 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
   return static_cast<int>(complete);
 }
 
+/// With which round this run began to measure, and when.
+struct FirstRound {
+  int number = 0;
+  Clock::time_point start = Clock::now();
+};
+
+/// Says which sample comes next. `rounds`: those before it, and the share of its own that is done.
+void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, const SceneJob& job,
+                 const BenchWatch& watch) {
+  std::string activity = "round " + std::to_string(static_cast<int>(rounds) + 1);
+  double done = (rounds - first.number) / (job.rounds - first.number);
+  if (job.deadline) {
+    const std::chrono::duration<double> spent = Clock::now() - first.start, all = *job.deadline - first.start;
+    done = all > spent ? std::max(done, spent / all) : 1;
+  } else {
+    activity += '/' + std::to_string(job.rounds);
+  }
+  watch.progress(activity + ": " + row.integrator + ' ' + row.backend,
+                 job.preparation + (1 - job.preparation) * done);
+}
+
 /// One sample of every combination, in this order. False when it was stopped, and then without a trace.
-bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order,
-                const SceneJob& job, const BenchWatch& watch) {
+bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
+                const FirstRound& first, const SceneJob& job, const BenchWatch& watch) {
   std::vector<std::pair<Combination*, double>> samples;
-  for (const std::size_t i : order) {
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    const std::size_t i = order[place];
     if (!combinations[i].backend) continue;
     if (watch.stop()) return false;
+    tell_sample(combinations[i].row, round + static_cast<double>(place) / static_cast<double>(order.size()),
+                first, job, watch);
     samples.emplace_back(&combinations[i], sample_ms(combinations[i], job));
   }
   for (const auto& [combination, ms] : samples) {
@@ -176,24 +198,12 @@ bool take_round(std::vector<Combination>& combinations, const std::vector<std::s
   return true;
 }
 
-void tell_round(int round, const SceneJob& job, Clock::time_point start, const BenchWatch& watch) {
-  std::string activity = "round " + std::to_string(round + 1);
-  double done = static_cast<double>(round) / job.rounds;
-  if (job.deadline) {
-    const std::chrono::duration<double> spent = Clock::now() - start, all = *job.deadline - start;
-    done = all > spent ? std::max(done, spent / all) : 1;
-  } else {
-    activity += " of " + std::to_string(job.rounds);
-  }
-  watch.progress(activity, preparation + (1 - preparation) * done);
-}
-
 }  // namespace
 
 std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch) {
   const auto total = static_cast<double>(combinations(job));
   std::vector<Combination> all;
-  const auto done = [&] { return preparation * static_cast<double>(all.size()) / total; };
+  const auto done = [&] { return job.preparation * static_cast<double>(all.size()) / total; };
   std::optional<State> draped;
   if (job.garment && std::ranges::any_of(job.integrators, [](const Integrator* i) { return dresses(*i); })) {
     watch.progress("drape", 0);
@@ -210,8 +220,8 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   for (std::size_t i = 0; i < job.integrators.size(); ++i) {
     const Integrator* integrator = job.integrators[i];
     for (const BackendInfo* info : job.backends) {
-      watch.progress((job.verified ? "prepare " : "verify ") + std::string(info->name) + " " +
-                         std::string(integrator->name),
+      watch.progress((job.verified ? "prepare: " : "verify: ") + std::string(integrator->name) + " " +
+                         std::string(info->name),
                      done());
       if (watch.stop()) return {};
       auto& [verifier, serial] = references[i];
@@ -232,16 +242,15 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(20160101);  // any fixed seed: a run can be repeated
-  const int restored = restore(all, job.earlier);
-  const auto begun = Clock::now();
+  const FirstRound first{restore(all, job.earlier)};
   for (int round = 0; round < job.rounds; ++round) {
     std::ranges::shuffle(order, random);
-    if (round < restored) continue;
-    const int measured = round - restored;
-    if (job.deadline && measured > 0 && Clock::now() + (Clock::now() - begun) / measured > *job.deadline)
+    if (round < first.number) continue;
+    const int measured = round - first.number;
+    if (job.deadline && measured > 0 &&
+        Clock::now() + (Clock::now() - first.start) / measured > *job.deadline)
       break;
-    tell_round(round, job, begun, watch);
-    if (!take_round(all, order, job, watch)) {
+    if (!take_round(all, order, round, first, job, watch)) {
       if (round == 0) return {};
       break;
     }

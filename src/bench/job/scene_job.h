@@ -46,6 +46,8 @@ struct SceneJob : BenchSettings {
   double dt_s = 0;
   /// No round begins that would probably not end before it, but for the first.
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
+  /// The share of the whole that what precedes the rounds takes, about: for the progress only.
+  double preparation = 0.3;
   std::vector<ResultRow> earlier = {};  ///< rows of the same combinations, whose samples are kept
 };
 

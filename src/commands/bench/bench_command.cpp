@@ -1,5 +1,7 @@
 #include "commands/bench/bench_command.h"
 
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 #include <string>
@@ -87,7 +89,7 @@ int run(const BenchOptions& options) {
   if (!plan.timed.empty()) {
     measure_scenes(plan, budget, stop, results);
     if (!plan.described.empty() && format == SummaryFormat::table) std::cout << '\n';
-    std::cout << summary(results.rows(), format, plan.settings.execution.threads);
+    std::cout << summary(results.rows(), format, plan.settings.execution.threads, terminal_of(STDOUT_FILENO));
     if (format == SummaryFormat::github) results.keep_for_github();
     const BenchVerdict verdict = verdict_of(results.rows(), options.backends, options.integrators);
     tell_first(verdict.reasons);

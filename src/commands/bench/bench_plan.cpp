@@ -114,6 +114,12 @@ void require_traceable(const SceneSpec& spec) {
 
 }  // namespace
 
+double expected_rounds(const BenchPlan& plan) {
+  const double most = plan.settings.rounds;
+  return plan.time_budget_s ? std::min(most, rounds_within(*plan.time_budget_s, total(times_of(plan.timed))))
+                            : most;
+}
+
 BenchPlan plan_of(const BenchOptions& options) {
   const Comparison& comparison = comparison_of_suite(options.suite);
   BenchPlan plan;

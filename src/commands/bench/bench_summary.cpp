@@ -1,7 +1,9 @@
 #include "commands/bench/bench_summary.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -9,7 +11,9 @@
 #include "output/tables/listing.h"
 #include "output/tables/ratio_mark.h"
 #include "output/tables/result_table.h"
+#include "output/tables/row_table.h"
 #include "output/tables/table_json.h"
+#include "text/columns.h"
 #include "text/joined.h"
 
 namespace mssim {
@@ -37,26 +41,28 @@ std::vector<std::string> devices_of(RowPointers rows) {
   return sentences;
 }
 
-/// What stands below a table of rows.
-std::string remarks(RowPointers rows, const Table& table, int threads) {
+/// What stands below `table`, a row_table.
+std::string remarks(RowPointers rows, std::string_view table, int threads, std::optional<int> width) {
   std::vector<std::string> sentences = devices_of(rows);
   sentences.insert(sentences.end(),
                    {legend_of_ratios(table), legend_of_excess(rows, threads), reason_without_speedups(rows)});
   std::string text;
   for (const std::string& sentence : sentences)
-    if (!sentence.empty()) text += sentence + '\n';
+    if (!sentence.empty())
+      text += wrapped(sentence, width ? static_cast<std::size_t>(*width) : SIZE_MAX, "") + '\n';
   return text;
 }
 
 }  // namespace
 
-std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads) {
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads,
+                    const Terminal& terminal) {
   if (format == SummaryFormat::github) return table_json_text(github_table(rows));
-  const std::vector<const ResultRow*> pointers = pointers_to(rows);
-  const auto marked = [](Cell cell, std::string_view mark) {
-    cell.suffix = mark;
-    return cell;
-  };
+  if (format == SummaryFormat::table) {
+    const std::vector<const ResultRow*> pointers = pointers_to(rows);
+    const std::string text = row_table(pointers, threads, terminal);
+    return text + remarks(pointers, text, threads, terminal.width);
+  }
   Table table;
   for (const ResultRow& row : rows)
     table.add({{"scene", row.scene},
@@ -64,17 +70,17 @@ std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int t
                {"springs_published", row.springs_published},
                {"integrator", row.integrator},
                {"backend", row.backend},
-               {"threads", marked(row.threads, mark_of_excess(row, threads))},
+               {"threads", row.threads},
                {"ms_per_step", row.ms_per_step},
                {"low", row.ms_per_step_low},
                {"high", row.ms_per_step_high},
-               {"speedup", marked(row.speedup_vs_serial, mark_of_speedup(pointers, row))},
+               {"speedup", row.speedup_vs_serial},
                {"paper_ms", row.paper_ms},
                {"roofline", row.roofline_fraction},
                {"position_error", row.position_error},
                {"verified", row.verified},
                {"status", row.status}});
-  return text_of(table, format) + (format == SummaryFormat::table ? remarks(pointers, table, threads) : "");
+  return text_of(table, format);
 }
 
 std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {

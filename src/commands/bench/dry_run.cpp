@@ -1,6 +1,5 @@
 #include "commands/bench/dry_run.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -10,8 +9,7 @@ namespace mssim {
 
 void tell_plan(const BenchPlan& plan) {
   const ExpectedTime all = total(times_of(plan.timed));
-  double rounds = plan.settings.rounds;
-  if (plan.time_budget_s) rounds = std::min(rounds, rounds_within(*plan.time_budget_s, all));
+  const double rounds = expected_rounds(plan);
   const auto seconds = [&](const ExpectedTime& time) {
     return std::lround(std::ceil(time.preparation + rounds * time.round));
   };

@@ -26,7 +26,11 @@ void add_scene(SceneJob& job, const PreparedScene& scene) {
 }  // namespace
 
 void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
-  ProgressLine progress(plan.timed.size());
+  const double rounds = expected_rounds(plan);
+  std::vector<double> seconds;
+  for (const ExpectedTime& time : times_of(plan.timed))
+    seconds.push_back(time.preparation + rounds * time.round);
+  ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
   for (PlannedScene& planned : plan.timed) {
     SceneJob job{plan.settings};
     job.name = planned.spec.name;
@@ -35,12 +39,14 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
     progress.begin_scene(job.name);
     const bool finished = is_finished(job, job.name, job.earlier);
     if (finished && !plan.output.trace) {
+      progress.skip_scene();
       planned.parts = {};
       continue;
     }
     const PreparedScene scene = planned.prepare();
     warn_of_note(scene);
     add_scene(job, scene);
+    job.preparation = planned.time.preparation / (planned.time.preparation + rounds * planned.time.round);
     bool first_round = true;
     const BenchWatch watch{
         .progress = [&](const std::string& activity, double done) { progress.update(activity, done); },

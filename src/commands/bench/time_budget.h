@@ -18,6 +18,8 @@ class TimeBudget {
   /// each scene.
   TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> scenes);
 
+  /// When all is to have ended; none without a limit.
+  std::optional<Clock::time_point> end() const { return end_; }
   /// When the rounds of the next scene, which begins now, are to end; none without a limit.
   std::optional<Clock::time_point> begin_scene();
   /// The scene's first round has ended, which tells how far to believe what was expected.

@@ -142,7 +142,7 @@ RunComparison compare_programs(const AbOptions& options) {
   double longest_s = 0;
   std::size_t rounds = 0;
   {
-    ProgressLine progress(1);
+    ProgressLine progress({1});
     progress.begin_scene(options.base + " and " + options.next + " alternately");
     series = verify(programs, options, progress);
     while (!settled() && (rounds == 0 || seconds_since(start) + longest_s <= options.time_budget_s)) {

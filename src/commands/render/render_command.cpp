@@ -97,7 +97,7 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   const std::vector<std::size_t> frames = drawn_frames(options, content);
   Painter painter(content, trace.positions(0), picture);
   for (const std::size_t frame : frames) painter.make_room_for(trace.positions(frame));
-  ProgressLine progress(1, ProgressLine::Log::nothing);
+  ProgressLine progress({1}, ProgressLine::Log::nothing);
   progress.begin_scene(stem_of(options));
   std::optional<AnimatedPng> movie;
   if (options.movie) movie.emplace(options.run.fps.value_or(natural_fps(content, frames)));

@@ -34,7 +34,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
   double seconds = 0;
   recorder.finish_after([&] {
     const auto before = std::chrono::steady_clock::now();
-    ProgressLine progress(1, ProgressLine::Log::nothing);
+    ProgressLine progress({1}, ProgressLine::Log::nothing);
     progress.begin_scene(scene.spec.name);
     progress.update("closing seams", 0);
     result = dress(

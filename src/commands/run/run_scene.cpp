@@ -129,7 +129,7 @@ int run_simulation(const RunOptions& options, const PreparedScene& scene, const 
   double seconds = 0;
   recorder.finish_after([&] {
     const auto before = std::chrono::steady_clock::now();
-    ProgressLine progress(1, ProgressLine::Log::nothing);
+    ProgressLine progress({1}, ProgressLine::Log::nothing);
     progress.begin_scene(scene.spec.name);
     simulate(*backend, scene.system, integrator, plan,
              {[&](const Frame& frame) {

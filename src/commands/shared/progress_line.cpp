@@ -2,54 +2,102 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <numeric>
+#include <utility>
+
+#include "platform/terminal.h"
+#include "text/columns.h"
+#include "text/printable.h"
 
 namespace mssim {
 namespace {
 
-/// minutes:seconds
-std::string clock_text(double seconds) {
-  const int whole = static_cast<int>(seconds + 0.5);
-  char text[32];
-  std::snprintf(text, sizeof text, "%d:%02d", whole / 60, whole % 60);
+double seconds_between(ProgressLine::Clock::time_point from, ProgressLine::Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+/// "about 1:05 left", or nothing.
+std::string time_left(const Progress& progress) {
+  if (!progress.seconds_left) return {};
+  const long seconds = std::lround(*progress.seconds_left);
+  char text[48];
+  std::snprintf(text, sizeof text, "  about %ld:%02ld left", seconds / 60, seconds % 60);
   return text;
 }
 
-constexpr const char* clear_line = "\r\033[K";
-
 }  // namespace
 
-ProgressLine::ProgressLine(std::size_t scenes, Log log)
-    : scenes_(scenes),
-      terminal_(isatty(STDERR_FILENO) != 0),
-      logs_scenes_(!terminal_ && log == Log::scenes),
-      start_(std::chrono::steady_clock::now()) {}
+std::string progress_text(const Progress& progress, int width, bool utf8) {
+  constexpr std::size_t shortest_bar = 6, longest_bar = 24, around = 54;  // time left, and most activities
+  std::string text = progress.scene;
+  if (progress.scenes > 1)
+    text += " (" + std::to_string(progress.number) + " of " + std::to_string(progress.scenes) + ")";
+  text += "  ";
+  // A terminal may break the line behind a character in its last column.
+  const auto columns = static_cast<std::size_t>(std::max(1, width - 1));
+  if (const std::size_t taken = width_of(text) + around; taken + shortest_bar <= columns) {
+    const std::size_t length = std::min(longest_bar, columns - taken);
+    const std::string filled = bar(progress.fraction, length, utf8);
+    text += '[' + filled + std::string(length - width_of(filled), ' ') + ']';
+  } else {
+    text += std::to_string(static_cast<int>(100 * progress.fraction)) + " %";
+  }
+  return std::string(clipped(text + time_left(progress) + "  " + progress.activity, columns));
+}
 
-ProgressLine::~ProgressLine() {
-  if (terminal_) std::cerr << clear_line << std::flush;
+ProgressLine::ProgressLine(std::vector<double> weights, Log log, std::optional<Clock::time_point> end)
+    : weights_(std::move(weights)),
+      rewrites_(terminal_of(STDERR_FILENO).rewrites),
+      logs_scenes_(!rewrites_ && log == Log::scenes),
+      start_(Clock::now()),
+      end_(end) {}
+
+ProgressLine::~ProgressLine() { wipe(); }
+
+void ProgressLine::wipe() const {
+  if (rewrites_) std::cerr << "\r\033[K" << std::flush;
 }
 
 void ProgressLine::begin_scene(const std::string& name) {
+  wipe();
   scene_ = name;
   ++begun_;
-  if (logs_scenes_) std::cerr << "mssim: " << name << " (" << begun_ << " of " << scenes_ << ")\n";
+  if (logs_scenes_) std::cerr << "mssim: " << name << " (" << begun_ << " of " << weights_.size() << ")\n";
 }
+
+void ProgressLine::skip_scene() { weights_[begun_ - 1] = 0; }
 
 void ProgressLine::update_often(const std::string& activity, double done) {
   constexpr std::chrono::milliseconds between_lines{100};
-  if (std::chrono::steady_clock::now() - shown_ >= between_lines) update(activity, done);
+  if (Clock::now() - shown_ >= between_lines) update(activity, done);
+}
+
+std::optional<double> ProgressLine::seconds_left(double fraction) const {
+  std::optional<double> seconds;
+  if (fraction > 0.02) seconds = seconds_between(start_, shown_) * (1 - fraction) / fraction;
+  if (end_) {
+    const double until_end = std::max(0.0, seconds_between(shown_, *end_));
+    seconds = std::min(seconds.value_or(until_end), until_end);
+  }
+  return seconds;
 }
 
 void ProgressLine::update(const std::string& activity, double done) {
-  if (!terminal_) return;
-  shown_ = std::chrono::steady_clock::now();
-  // Scenes take about the same time, whatever their size: samples are so long.
-  const double fraction = (static_cast<double>(begun_ - 1) + done) / static_cast<double>(scenes_);
-  const double elapsed = std::chrono::duration<double>(shown_ - start_).count();
-  std::cerr << clear_line << scene_ << ": " << activity;
-  if (fraction > 0.02) std::cerr << ", about " << clock_text(elapsed * (1 - fraction) / fraction) << " left";
-  std::cerr << std::flush;
+  if (!rewrites_) return;
+  shown_ = Clock::now();
+  const auto present = weights_.begin() + static_cast<std::ptrdiff_t>(begun_) - 1;
+  const double before = std::accumulate(weights_.begin(), present, 0.0) + done * *present;
+  const double fraction = before / std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  Progress progress{escaped(scene_), begun_, weights_.size(), activity, std::clamp(fraction, 0.0, 1.0), {}};
+  // What is done at the end, such as traces, counts as no part of the whole.
+  if (fraction < 1) progress.seconds_left = seconds_left(fraction);
+  const Terminal terminal = terminal_of(STDERR_FILENO);
+  std::cerr << "\r\033[K" << progress_text(progress, terminal.width.value_or(80), terminal.utf8)
+            << std::flush;
 }
 
 }  // namespace mssim

@@ -44,6 +44,10 @@ std::string_view mark_of_ratio(double ratio, double time, double other) {
 
 std::string legend_of_ratios(const Table& table) { return legend(has_mark(table)); }
 
+std::string legend_of_ratios(std::string_view table) {
+  return legend(table.find(mark) != std::string_view::npos);
+}
+
 std::string legend_of_ratios(const Document& page) {
   return legend(std::ranges::any_of(page, [](const auto& block) {
     const auto* table = std::get_if<Table>(&block);

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <variant>
 
+#include "text/columns.h"
+
 namespace mssim {
 namespace {
 
@@ -22,12 +24,6 @@ struct Shown {
   }
   std::string operator()(const std::string& text) const { return text; }
 };
-
-/// How many characters a terminal shows of UTF-8.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }));
-}
 
 }  // namespace
 
