@@ -10,15 +10,15 @@ namespace mssim {
 struct StreamFacts {
   bool is_terminal = false;
   int columns = 0;  ///< as the terminal says; 0 where it does not
-  std::string_view term, no_color, lc_all, lc_ctype, lang;
+  std::string_view term = {}, no_color = {}, lc_all = {}, lc_ctype = {}, lang = {};
 };
 
 /// What may be written to an output stream.
 struct Terminal {
-  std::optional<int> width;  ///< columns; none where it is no terminal, and nothing has to fit
-  bool rewrites = false;     ///< lines may be written over, by escape sequences
-  bool colours = false;      ///< in addition to what characters say
-  bool utf8 = false;         ///< characters beyond ASCII are shown
+  std::optional<int> width = {};  ///< columns; none where it is no terminal, and nothing has to fit
+  bool rewrites = false;          ///< lines may be written over, by escape sequences
+  bool colours = false;           ///< in addition to what characters say
+  bool utf8 = false;              ///< characters beyond ASCII are shown
 };
 
 /// Colours need a terminal that knows escape sequences and no NO_COLOR (no-color.org).

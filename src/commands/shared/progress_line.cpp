@@ -32,7 +32,7 @@ std::string time_left(const Progress& progress) {
 }  // namespace
 
 std::string progress_text(const Progress& progress, int width, bool utf8) {
-  constexpr std::size_t shortest_bar = 6, longest_bar = 24, around = 54;  // time left, and most activities
+  constexpr std::size_t shortest_bar = 10, longest_bar = 24, around = 54;  // time left, and most activities
   std::string text = progress.scene;
   if (progress.scenes > 1)
     text += " (" + std::to_string(progress.number) + " of " + std::to_string(progress.scenes) + ")";
@@ -44,7 +44,8 @@ std::string progress_text(const Progress& progress, int width, bool utf8) {
     const std::string filled = bar(progress.fraction, length, utf8);
     text += '[' + filled + std::string(length - width_of(filled), ' ') + ']';
   } else {
-    text += std::to_string(static_cast<int>(100 * progress.fraction)) + " %";
+    const std::string percent = std::to_string(static_cast<int>(100 * progress.fraction)) + " %";
+    text.append(4 - std::min<std::size_t>(4, percent.size()), ' ').append(percent);
   }
   return std::string(clipped(text + time_left(progress) + "  " + progress.activity, columns));
 }
@@ -77,8 +78,9 @@ void ProgressLine::update_often(const std::string& activity, double done) {
 }
 
 std::optional<double> ProgressLine::seconds_left(double fraction) const {
+  constexpr double enough = 0.1;  // before, what is slower or faster than expected counts for too much
   std::optional<double> seconds;
-  if (fraction > 0.02) seconds = seconds_between(start_, shown_) * (1 - fraction) / fraction;
+  if (fraction > enough) seconds = seconds_between(start_, shown_) * (1 - fraction) / fraction;
   if (end_) {
     const double until_end = std::max(0.0, seconds_between(shown_, *end_));
     seconds = std::min(seconds.value_or(until_end), until_end);

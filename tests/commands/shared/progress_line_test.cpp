@@ -30,7 +30,7 @@ TEST(ProgressText, NeverTakesTheLastColumn) {
 
 TEST(ProgressText, SaysNothingOfTimeWhileNobodyKnowsIt) {
   const Progress begun{"mine", 1, 1, "references", 0, {}};
-  EXPECT_EQ(progress_text(begun, 40, true), "mine  0 %  references");
+  EXPECT_EQ(progress_text(begun, 40, true), "mine   0 %  references");
 }
 
 TEST(ProgressText, KeepsItsPlacesWhateverTheActivity) {
