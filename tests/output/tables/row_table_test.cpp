@@ -13,7 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::StartsWith;
 
 std::string table_of(const std::vector<ResultRow>& rows, const Terminal& terminal) {
   return row_table(pointers_to(rows), 2, terminal);
@@ -82,7 +81,7 @@ TEST(RowTable, ColoursSayNothingThatCharactersDoNot) {
   EXPECT_THAT(plain, Not(HasSubstr("\033")));
   EXPECT_THAT(coloured, HasSubstr("\033[32m✓\033[0m"));
   EXPECT_THAT(coloured, HasSubstr("\033[31m✗\033[0m"));
-  for (std::size_t at; (at = coloured.find('\033')) != std::string::npos;)
+  for (std::size_t at = coloured.find('\033'); at != std::string::npos; at = coloured.find('\033'))
     coloured.erase(at, coloured.find('m', at) + 1 - at);
   EXPECT_EQ(coloured, plain);
 }
