@@ -16,7 +16,6 @@ namespace {
 constexpr std::uint32_t samples = 4;
 static_assert(band_rows % samples == 0, "a band is whole rows of pixels");
 
-constexpr double margin = 0.06;
 constexpr Light background{0.91F, 0.92F, 0.94F};
 
 /// Everything that the light of a sample depends on.
@@ -105,6 +104,11 @@ Box<double> seen_box(const Camera& camera, const std::vector<Vec3d>& points) {
   return box;
 }
 
+PixelGrid drawn_points(const Shot& shot) {
+  constexpr double margin = 0.06;
+  return grid_around(shot.seen, samples * shot.width, samples * shot.height, margin);
+}
+
 Picture drawn(const Subject& subject, const Shot& shot) {
   const Camera camera(shot.direction);
   const Lights lights(shot.direction);
@@ -113,7 +117,7 @@ Picture drawn(const Subject& subject, const Shot& shot) {
   Surface seen{{}, subject.surface.triangles};
   seen.points.reserve(subject.surface.points.size());
   for (const Vec3d& point : subject.surface.points) seen.points.push_back(camera.seen(point));
-  const PixelGrid grid = grid_around(shot.seen, samples * shot.width, samples * shot.height, margin);
+  const PixelGrid grid = drawn_points(shot);
   const Stage stage{subject, shot, camera, grid, light, shadow, seen, lights.on_ground()};
   Picture picture(shot.width, shot.height);
   rasterise(seen, grid, ViewFrom::front, shot.threads,

@@ -25,6 +25,10 @@ struct Shot {
 /// The box of Camera::seen around points.
 Box<double> seen_box(const Camera& camera, const std::vector<Vec3d>& points);
 
+/// The points that a picture is drawn at, as the pixels of a grid: four by four in each of its own pixels.
+/// What it must show lies inside a margin of 6 % on each side.
+PixelGrid drawn_points(const Shot& shot);
+
 /// Draws a subject, which has points: shaded by two lights and the sky, with the shadow of the first on
 /// itself and on the ground, each pixel the mean of sixteen points. The same picture whatever the number of
 /// threads.

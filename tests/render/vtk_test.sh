@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Pictures have the silhouettes that VTK sees, and the rasteriser that draws them finds the depths that VTK finds (vtk_pictures.py).
+# Python's modules may be missing: see readers_test.sh.
+# $1: mssim, $2: the source folder, $3: what runs programs of another machine, or nothing
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+succeed run --scene cloth2500 --threads 1 --duration 0.5 --fps 2 --trace cloth.h5
+succeed run --scene box-small --threads 1 --duration 0.4 --fps 3 --trace bodies.h5
+succeed run --scene jeans1k --threads 1 --fps 1 --trace garment.h5
+pictures=()
+for trace in cloth bodies garment; do
+  succeed export "$trace.h5" --format obj
+  # From above, where ground and shadow are drawn as well, and from below.
+  for view in 35,18 -110,-15; do
+    succeed render "$trace.h5" --view "$view" --size 320x240 --out "$trace-$view.png"
+    ${3:+"$3"} "${mssim%/*}/../bin/depth_map" "$trace.h5" "$view" 320 240 "$trace-$view.depths" || fail "there are no depths of $trace"
+    pictures+=("$trace-$view")
+  done
+done
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
+run_python "$2" render/vtk_pictures.py "${pictures[@]}"
