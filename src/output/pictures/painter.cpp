@@ -107,10 +107,11 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions) const {
       subject.front.push_back(light_of(diverging_map().at(0.5 + 0.5 * strain[node] / most_strain_)));
     subject.back = subject.front;
   } else {
+    std::vector<Light> colour;  // by part: a skin has many more points
+    for (const Rgb& code : colour_) colour.push_back(light_of(code));
     for (const std::uint32_t part : skin_.part) {
-      const Light colour = light_of(colour_[part]);
-      subject.front.push_back(colour);
-      subject.back.push_back(inside_of(colour));
+      subject.front.push_back(colour[part]);
+      subject.back.push_back(inside_of(colour[part]));
     }
   }
   const auto first = static_cast<std::uint32_t>(skin_.node.size());
