@@ -37,7 +37,7 @@ struct ReportFolder {
 /// have one, by name; itself where none has.
 std::vector<std::filesystem::path> result_folders(const std::filesystem::path& folder);
 
-ReportFolder read_report_folder(const std::filesystem::path& folder);
+ReportFolder read_report_folder(const std::filesystem::path& path);
 
 /// An energy curve of a text; none where it is no such curve. `text` may begin with lines of comment.
 std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_view text);
