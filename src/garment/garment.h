@@ -43,6 +43,12 @@ struct Joint {
   std::uint32_t seam = 0;         ///< index into Garment::seams
 };
 
+/// Nodes whose distance from the body belongs to the fit, where they hang between two heights.
+struct CloseCloth {
+  std::vector<std::uint32_t> nodes;
+  double lowest = 0, highest = 0;  ///< m, y, both included
+};
+
 /// A garment: how its panels lie in the list of nodes, what joins them, and how it is dressed.
 struct Garment {
   std::vector<GarmentPanel> panels;
@@ -53,6 +59,7 @@ struct Garment {
   /// [layers] The body as the panels of each layer meet it; layers beyond the last one meet it as that does.
   /// Empty: nothing to dress.
   std::vector<std::shared_ptr<const BodyMaps>> body_maps;
+  CloseCloth close;                        ///< to the body; no nodes: anywhere else it may hang as it likes
   std::optional<TouchingLayers> touching;  ///< none: layers go through each other
 
   /// The panel that a node belongs to.

@@ -31,7 +31,7 @@ jeans=(--scene jeans1k --backend "serial,openmp" --integrator semi-euler --threa
 bench 0 "${jeans[@]}" --rounds 1 --out jeans
 for backend in serial openmp; do
   for yes in verified settled largest_gap_mm_within deepest_node_mm_within deepest_face_mm_within elongation_99_within \
-    elongation_999_within upper_edge_rise_mm_within crotch_rise_mm_within rows_astray_within; do
+    elongation_999_within upper_edge_rise_mm_within crotch_rise_mm_within rows_astray_within side_distance_mm_within; do
     has jeans/garment.csv "$yes" "$backend" true
   done
   has jeans/garment.csv status "$backend" ok

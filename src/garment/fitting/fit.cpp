@@ -24,6 +24,19 @@ double largest_gap(const Garment& garment, const std::vector<Vec3d>& position) {
   return largest;
 }
 
+void measure_side_distance(const CloseCloth& close, const std::vector<Vec3d>& position, const FitBody& body,
+                           Fit& fit) {
+  std::vector<Vec3d> points;
+  for (const std::uint32_t node : close.nodes)
+    if (position[node].y >= close.lowest && position[node].y <= close.highest)
+      points.push_back(position[node]);
+  if (points.empty()) return;
+  const std::vector<double> distances = body.distances(points, close.lowest, close.highest);
+  const auto farthest = std::ranges::max_element(distances);
+  fit.side_distance = *farthest;
+  fit.side_distance_height = points[static_cast<std::size_t>(farthest - distances.begin())].y;
+}
+
 /// Whether a spring of the 12-neighbour stencil is one whose elongation counts: one that spans a single cell.
 /// Bending springs, two cells long, may change length by bending.
 bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
@@ -158,6 +171,7 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
     const std::vector<double> depths = body.depths(face_samples(panel, position));
     fit.deepest_face_sample = std::max(fit.deepest_face_sample, std::ranges::max(depths));
   }
+  measure_side_distance(garment.close, position, body, fit);
   fit.upper_edge_rise = upper_edge_rise(garment, position);
   fit.meeting_rise = mean_rise(garment, position, where_seams_meet(garment));
   for (const std::vector<std::uint32_t>& loop : sewn_rows(garment)) {

@@ -16,6 +16,10 @@ struct Fit {
   std::size_t nodes_inside = 0;    ///< of the body
   double deepest_node = 0;         ///< m below the body's surface
   double deepest_face_sample = 0;  ///< m, of 5 x 5 samples in every cell
+  /// m, the largest distance from the body of a node that is to lie close to it (CloseCloth), and the height
+  /// of that node; 0 where there is none. Hollows of the body are bridged, as taut cloth does, so that no
+  /// point of a face is further away than the face's nodes.
+  double side_distance = 0, side_distance_height = 0;
   /// m, how far the upper edges of a layer's panels hang above where the pattern puts them, on average;
   /// below, where negative: of the layer where that is farthest off. The same of the nodes at which seams
   /// meet: the crotch.
@@ -36,6 +40,10 @@ struct FitBody {
   std::function<std::vector<double>(std::span<const Vec3d> points)> depths;
   /// The middle of the limb that a point is about, at the point's height.
   std::function<Vec3d(const Vec3d& point)> limb_middle;
+  /// How far points are outside of the body whose hollows between two heights, m, are bridged, m; asked where
+  /// a garment has cloth that is to lie close.
+  std::function<std::vector<double>(std::span<const Vec3d> points, double lowest, double highest)> distances =
+      {};
 };
 
 /// `system.topology` is a Garment.

@@ -35,7 +35,7 @@ struct FitNumber {
 constexpr double mm = 1e3;
 constexpr double percent = 100;
 
-constexpr std::array<FitNumber, 13> numbers{{
+constexpr std::array<FitNumber, 15> numbers{{
     {"largest_gap_mm",
      [](const Fit& f) { return f.largest_gap; },
      &FitBounds::largest_gap,
@@ -96,6 +96,17 @@ constexpr std::array<FitNumber, 13> numbers{{
      1,
      {"layers went through each other",
       "layers that touch (\"layers\"), a larger thickness_m or more nodes"}},
+    {"side_distance_mm",
+     [](const Fit& f) { return f.side_distance; },
+     &FitBounds::side_distance,
+     mm,
+     false,
+     "the largest distance of the side seams' cloth from the body between hip and thigh",
+     " mm",
+     mm,
+     {"the garment stands off at the sides",
+      "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"}},
+    {"side_distance_height_m", [](const Fit& f) { return f.side_distance_height; }, nullptr, 1},
 }};
 
 bool is_within(const FitNumber& number, const Fit& fit, const FitBounds& bounds) {

@@ -13,6 +13,7 @@ namespace mssim {
 struct FitBounds {
   double largest_gap = 1e-3;       ///< m
   double deepest = 1e-3;           ///< m that any point of the cloth may be inside the body
+  double side_distance = 0.012;    ///< m
   double elongation_99 = 0.06;     ///< that 99 % of the structural and shear springs stay below
   double elongation_999 = 0.08;    ///< the same of 99.9 %
   double upper_edge_shift = 0.02;  ///< m, up or down

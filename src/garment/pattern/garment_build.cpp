@@ -31,8 +31,8 @@ void add_panel(const PatternPanel& panel, const BodyDepth& body, Workshop& works
   require_cloth(name, panel.cloth);
   const PanelMesh& mesh = workshop.meshes.emplace_back(mesh_panel(panel.piece, panel.grid));
   garment.panels.push_back(
-      {name, mesh.rows, mesh.columns, static_cast<std::uint32_t>(build.flat.size()), panel.layer});
-  append(build.flat, mesh.nodes);
+      {name, mesh.rows, mesh.columns, static_cast<std::uint32_t>(garment.flat.size()), panel.layer});
+  append(garment.flat, mesh.nodes);
   append(build.placed, place_panel(name, mesh, panel.placement, body));
   append(build.node_mass, node_masses(mesh, panel.cloth));
   append(workshop.strengths, seam_factors(mesh, panel.cloth.waistband));
@@ -68,6 +68,7 @@ GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body)
            [&](const PatternPanel& panel) { add_panel(panel, body, workshop, build); });
   add_each(pattern.seams, PatternError::Part::seam,
            [&](const Seam& seam) { add_seam(seam, workshop, build.garment); });
+  build.garment.close = close_cloth(pattern.close, build.garment);
   return build;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "garment/garment.h"
+#include "garment/pattern/close_cloth.h"
 #include "garment/pattern/panel_mesh.h"
 #include "garment/pattern/panel_springs.h"
 #include "garment/pattern/placement.h"
@@ -27,12 +28,12 @@ struct PatternPanel {
 struct GarmentPattern {
   std::vector<PatternPanel> panels;
   std::vector<Seam> seams;
+  CloseSeams close = {};
 };
 
 /// A garment as it is simulated. Vectors over nodes go panel by panel.
 struct GarmentBuild {
   Garment garment;
-  std::vector<Vec3d> flat;        ///< m, in the plane of each node's pattern piece, z = 0
   std::vector<Vec3d> placed;      ///< m, where the nodes start
   std::vector<double> node_mass;  ///< kg
   std::vector<Spring> springs;    ///< panel by panel; kind is an index into materials

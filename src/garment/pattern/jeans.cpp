@@ -124,6 +124,12 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
       {"centre front", {"front left", at_left, front_crotch, 1}, {"front right", at_right, front_crotch, 1}},
       {"centre back", {"back left", at_right, back_crotch, 1}, {"back right", at_left, back_crotch, 1}},
   };
+  // The landmark of the thigh is just below the crotch.
+  constexpr double below_the_crotch = 0.01, beside_the_seam = 0.05;  // m
+  pattern.close = {{"outer left", "outer right"},
+                   beside_the_seam,
+                   measures.crotch_height - below_the_crotch,
+                   measures.hip_height};
   return pattern;
 }
 

@@ -27,8 +27,9 @@ using LegAxis = std::function<double(double)>;
 
 /// Jeans of four panels ("front left", "back left", "front right", "back right", by the wearer's sides) and
 /// six seams ("outer left", "outer right", "inner left", "inner right", "centre front", "centre back"), of
-/// `cloth`, with about as many nodes as wanted. The wearer looks to +z, its left is +x. Throws InputError as
-/// draft_jeans and jeans_grid do.
+/// `cloth`, with about as many nodes as wanted. The wearer looks to +z, its left is +x. At the
+/// outer seams, and 5 cm beside them, they are to lie close to the body, from the thigh (1 cm below the
+/// crotch) up to the hip. Throws InputError as draft_jeans and jeans_grid do.
 GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelMaterial& cloth,
                              const LegAxis& leg_axis);
 

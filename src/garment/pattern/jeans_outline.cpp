@@ -1,5 +1,6 @@
 #include "garment/pattern/jeans_outline.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -24,10 +25,14 @@ struct Half {
   double inseam_hollow;    ///< m, how far the inseam's control point stands back from the crotch point
   double fork_flatness;    ///< of the fork: length of the crotch curve's lower control
 };
-constexpr Half front_half{-0.010, 1.0 / 16, 0, 0.25, -0.005, 0, 0.075, 0.018, 0.60};
-constexpr Half back_half{0.010, 1.0 / 8, 0.005, 0.40, 0.035, 0.015, 0.09, 0.040, 0.62};
+constexpr Half front_half{-0.010, 1.0 / 16, 0, 0.5, -0.009, 0, 0.075, 0.018, 0.60};
+constexpr Half back_half{0.010, 1.0 / 8, 0.005, 0.8, 0.025, 0.015, 0.09, 0.040, 0.62};
 
-constexpr double side_raised = 0.012;  // m, of the waist at the side
+/// By how much of the body's girth jeans without ease are stretched at hip and waist. Around a body that is
+/// round both ways the cloth is too long at the side seams; without tension it stands off there.
+constexpr double hip_stretch = 0.033, waist_stretch = 0.006;
+
+constexpr double side_raised = 0.006;  // m, of the waist at the side
 constexpr double side_slope = 0.2;     // by which the waist falls away from there
 
 Curve line(const Vec3d& from, const Vec3d& to) { return Curve({from, to}); }
@@ -95,8 +100,9 @@ class Drafting {
   /// A quarter of the jeans at a height from hip to waist.
   double width_at(double y) const {
     const double fraction = (y - m_.hip_height) / (m_.waist_height - m_.hip_height);
-    const double ease = (1 - fraction) * m_.hip_ease + fraction * m_.waist_ease;
     const double girth = m_.girth(y);
+    const double ease = (1 - fraction) * (m_.hip_ease - hip_stretch * girth) +
+                        fraction * (m_.waist_ease - waist_stretch * girth);
     if (!(girth > 0.2 && girth < 5))
       throw InputError("jeans: the body's girth at the height " + shown(y) + " m is " + shown(girth) +
                        " m; give a body that has one from 0.2 to 5 m there");
@@ -105,20 +111,27 @@ class Drafting {
 
   double centre_taken() const { return half_.centre_share * (hip_width_ - waist_width_); }
 
-  /// x of the straight part of the centre seam, prolonged.
+  /// The height at which the centre seam begins to lean to the side; the crotch curve ends there.
+  double centre_bend() const { return crotch_line_ + half_.curve_height; }
+  double centre_height() const { return m_.waist_height + half_.raised - centre_bend(); }
+
+  /// x of the centre seam, and of its line prolonged below: upright at the bend, over seat and belly a cubic
+  /// of the height that leans the more the higher, as the body does.
   double centre_x(double y) const {
-    return hip_width_ - centre_taken() * (y - crotch_line_) / (m_.waist_height + half_.raised - crotch_line_);
+    const double t = std::max(0.0, (y - centre_bend()) / centre_height());
+    return hip_width_ - centre_taken() * t * t * (3 - top_lean + (top_lean - 2) * t);
   }
+  /// -dx/dy of the centre seam at the waist.
+  double centre_lean() const { return top_lean * centre_taken() / centre_height(); }
 
   /// The upper edge, as long as the waist is wide. It rises to the side, where front and back would make a
   /// notch otherwise, and stands at right angles to the centre seam.
   Curve waist(const Vec3d& at_centre) const {
-    const double lean = centre_taken() / (at_centre.y - crotch_line_);
     double width = waist_width_;
     const auto drawn = [&] {
       const Vec3d at_side{at_centre.x - width, m_.waist_height + side_raised, 0};
       return bezier(at_side, at_side + (width / 3) * Vec3d{1, -side_slope, 0},
-                    at_centre - (width / 3) * Vec3d{1, lean, 0}, at_centre);
+                    at_centre - (width / 3) * Vec3d{1, centre_lean(), 0}, at_centre);
     };
     // The slope adds 2 % at the most, so that each turn leaves 2 % of the error.
     for (int turn = 0; turn < 12; ++turn) width *= waist_width_ / drawn().length();
@@ -145,13 +158,14 @@ class Drafting {
                   crotch_point - Vec3d{half_.inseam_hollow, 0.43 * height, 0}, crotch_point);
   }
 
-  /// The crotch curve, nearly level at its point, and the straight seam above it.
+  /// The crotch curve, nearly level at its point, and the seam above it, which centre_x describes.
   Curve centre(const Vec3d& crotch_point, const Vec3d& at_waist) const {
-    const double y = crotch_line_ + half_.curve_height;
-    const Vec3d begin{centre_x(y), y, 0};
-    return bezier(crotch_point, crotch_point - Vec3d{half_.fork_flatness * fork_, -0.002, 0},
-                  begin - 0.75 * half_.curve_height * along(begin, at_waist), begin)
-        .followed_by(line(begin, at_waist));
+    const Vec3d bend{hip_width_, centre_bend(), 0}, up{0, 1, 0};
+    const double third = centre_height() / 3;
+    return Curve::bezier(std::array{crotch_point,
+                                    crotch_point - Vec3d{half_.fork_flatness * fork_, -0.002, 0},
+                                    bend - 0.75 * half_.curve_height * up, bend, bend + third * up,
+                                    at_waist - third * Vec3d{-centre_lean(), 1, 0}, at_waist});
   }
 
   /// The direction of the line between two points, scaled so that it rises by 1.
@@ -162,6 +176,9 @@ class Drafting {
     for (Vec3d& point : points) point.x -= crease_;
     return Curve(std::move(points));
   }
+
+  /// The centre seam's lean at the waist over its mean one.
+  static constexpr double top_lean = 1.2;
 
   const JeansMeasures& m_;
   const Half& half_;

@@ -16,10 +16,10 @@ struct JeansMeasures {
   double crotch_height = 0.768;  ///< of the body
   double knee_height = 0.47;
   double hem_height = 0.07;
-  double knee = 0.42;   ///< of the jeans, all round one leg
-  double hem = 0.36;    ///< of the jeans, all round one leg
-  double hip_ease = 0;  ///< what the jeans are wider than body and offset, all round
-  double waist_ease = 0.01;
+  double knee = 0.42;          ///< of the jeans, all round one leg
+  double hem = 0.36;           ///< of the jeans, all round one leg
+  double hip_ease = 0;         ///< what the jeans are wider than 0.967 of the body, and offset, all round
+  double waist_ease = 0.01;    ///< what they are wider than 0.994 of the body, and offset
   double crotch_ease = 0.03;   ///< how far the crotch line lies below the body's
   double body_offset = 0.004;  ///< between body and cloth: both waist and hip grow by 2 pi of it
 };

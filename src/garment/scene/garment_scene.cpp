@@ -36,10 +36,11 @@ void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
   visit_length(fields, {"hem_m", "Around one leg of the jeans at the hem, m."}, jeans.measures.hem);
   fields.number(
       {"hip_ease_m",
-       "How much wider than the body and what lies between the jeans are at the hip, all round, m."},
+       "How much wider than 0.967 of the body, and what lies between, the jeans are at the hip, all "
+       "round, m."},
       jeans.measures.hip_ease, from(0, largest_length_m));
-  fields.number({"waist_ease_m", "The same at the waist, m."}, jeans.measures.waist_ease,
-                from(0, largest_length_m));
+  fields.number({"waist_ease_m", "The same at the waist, over 0.994 of the body, m."},
+                jeans.measures.waist_ease, from(0, largest_length_m));
   fields.number({"crotch_ease_m", "How far the crotch of the jeans lies below the body's, m."},
                 jeans.measures.crotch_ease, from(0, largest_length_m));
 }
@@ -151,7 +152,6 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
 
   Garment dressed = build.garment;
   dressed.dressing = garment.dressing;
-  dressed.flat = build.flat;
   if (garment.layers) dressed.touching = {{layer_pairs(dressed), {}}, *garment.layers};
   const TrunkAndLegs& met = body->profile.trunk_and_legs();
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);

@@ -14,6 +14,7 @@ namespace mssim {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
@@ -38,6 +39,7 @@ TEST(DressedJeans, FitWithinAllBounds) {
   EXPECT_THAT(jeans.found, IsEmpty());
   EXPECT_EQ(jeans.fit.rows_astray, 0U);
   EXPECT_GE(jeans.fit.rows, 40U);
+  EXPECT_GT(jeans.fit.side_distance, 0.003) << "the skin alone";
 }
 
 TEST(DressedJeans, WithoutForceAreNotSewn) {
@@ -96,10 +98,23 @@ TEST(DressedJeans, ThatFallWhileTheyAreSewnPassTheNaiveChecksAndAreFoundTooLow) 
 }
 
 TEST(DressedJeans, ThatAreDrawnUpHaveTheirCrotchTooHigh) {
-  const Dressed jeans = dressed_after([](DressingCase& on) { on.system.gravity = -50; });
+  SceneSpec spec = find_scene("jeans1k");
+  std::get<GarmentSpec>(spec.content).jeans.value().measures.crotch_ease = 0.04;
+  spec.gravity_m_per_s2 = -50;
+  const Dressed jeans = dressed(DressingCase(spec), two_seconds);
   EXPECT_THAT(jeans.found,
               Contains(HasSubstr("the distance of the crotch from its place in the pattern is ")));
   EXPECT_GT(jeans.fit.meeting_rise, 0.03);
+}
+
+TEST(DressedJeans, ThatAreWideAtTheHipStandOffAtTheSides) {
+  SceneSpec spec = find_scene("jeans1k");
+  std::get<GarmentSpec>(spec.content).jeans.value().measures.hip_ease = 0.08;
+  const Dressed jeans = dressed(DressingCase(spec), two_seconds);
+  EXPECT_THAT(jeans.found, ElementsAre(HasSubstr("stands off at the sides: ")));
+  EXPECT_GT(jeans.fit.side_distance, 0.015);
+  EXPECT_GT(jeans.fit.side_distance_height, 0.758);
+  EXPECT_LT(jeans.fit.side_distance_height, 0.86);
 }
 
 TEST(DressedJeans, SewnBeforeTheBodyDoNotGoAroundIt) {

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "garment/fitting/fit_bounds.h"
@@ -77,6 +79,40 @@ TEST(Fit, TellsHowFarUpperEdgesAndMeetingSeamsHangFromThePattern) {
   const Fit fit = fit_of(system, position, nobody_around({}));
   EXPECT_NEAR(fit.upper_edge_rise, 0.005, 1e-12);
   EXPECT_NEAR(fit.meeting_rise, -0.02, 1e-12);
+}
+
+TEST(Fit, TellsHowFarCloseClothIsFromTheBodyAndAtWhichHeight) {
+  System system = tube();
+  // A cylinder of 0.09 m in the tube of 0.1 m.
+  FitBody body = nobody_around({});
+  body.distances = [](std::span<const Vec3d> points, double lowest, double highest) {
+    EXPECT_EQ(lowest, 0.04);
+    EXPECT_EQ(highest, 0.13);
+    std::vector<double> distances;
+    for (const Vec3d& point : points) distances.push_back(std::hypot(point.x, point.z) - 0.09);
+    return distances;
+  };
+  std::vector<Vec3d> position = system.start.position;
+  const auto side_distance = [&] {
+    const Fit fit = fit_of(system, position, body);
+    return std::pair(fit.side_distance, fit.side_distance_height);
+  };
+  EXPECT_EQ(side_distance(), std::pair(0.0, 0.0)) << "nothing is to lie close";
+  Garment& garment = garment_in(system);
+  const std::uint32_t seam = garment.panels[0].node(2, 0), beside = garment.panels[0].node(3, 1),
+                      elsewhere = garment.panels[0].node(3, 4), above = garment.panels[0].node(4, 0);
+  garment.close = {{seam, beside, above}, 0.04, 0.13};
+  EXPECT_NEAR(side_distance().first, 0.01, 1e-7);
+  position[seam].x += 0.005;
+  EXPECT_NEAR(side_distance().first, 0.015, 1e-7);
+  EXPECT_NEAR(side_distance().second, 0.08, 1e-7);
+  position[beside] = 1.2 * position[beside];  // which lifts it to 0.144 m, above what counts
+  position[elsewhere].z += 0.1;
+  position[above].x += 0.1;
+  EXPECT_NEAR(side_distance().first, 0.015, 1e-7);
+  position[beside].y = 0.12;
+  EXPECT_NEAR(side_distance().first, 0.03, 1e-7);
+  EXPECT_NEAR(side_distance().second, 0.12, 1e-7);
 }
 
 TEST(Fit, MeasuresGapsElongationsAndDepths) {
@@ -191,6 +227,7 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
          .nodes_inside = 1,
          .deepest_node = 0.0012,
          .deepest_face_sample = 0.002,
+         .side_distance = 0.0125,
          .upper_edge_rise = -0.021,
          .meeting_rise = 0.031,
          .rows = 3,
@@ -215,7 +252,10 @@ TEST(FitBounds, NameEveryNumberThatIsOutAndNoneThatIsIn) {
           AllOf(StartsWith("the crotch was drawn up: "),
                 HasSubstr("the crotch from its place in the pattern is 31 mm, beyond ±30 mm")),
           HasSubstr("rows that do not go once around their limb is 1, beyond 0"),
-          HasSubstr("layers of the cloth cross is 4, beyond 0")));
+          HasSubstr("layers of the cloth cross is 4, beyond 0"),
+          AllOf(StartsWith("the garment stands off at the sides: "),
+                HasSubstr(
+                    "from the body between hip and thigh is 12.5 mm, beyond 12 mm; try less hip_ease_m"))));
 }
 
 }  // namespace
