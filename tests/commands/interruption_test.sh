@@ -45,7 +45,7 @@ start_and_signal() {
 start_and_signal INT int/timings.csv "${bench[@]}" --out int
 [ "$status" -eq 130 ] || fail "SIGINT gives exit status $status"
 grep -q 'results so far are in int; --resume continues' err || fail "SIGINT: $(cat err)"
-grep -q '^cloth2500 .*serial' out || fail "after SIGINT nothing is printed"
+grep -q '^cloth2500: ' out && grep -q '^  [a-z0-9-]*  *serial ' out || fail "after SIGINT nothing is printed"
 whole int
 case $(rounds int) in
   '6 6 6 6 ') fail "SIGINT came too late to be tested" ;;
@@ -64,7 +64,7 @@ whole int
 cp int/samples.csv kept
 "$mssim" "${bench[@]}" --out int --resume >out 2>err || fail "--resume of a finished folder exits with $?"
 cmp -s kept int/samples.csv || fail "--resume measured a finished folder again"
-grep -q '^cloth4900 .*openmp' out || fail "--resume of a finished folder prints no table"
+sed -n '/^cloth4900: /,$p' out | grep -q ' openmp ' || fail "--resume of a finished folder prints no table"
 
 # Results are neither replaced nor mixed unawares.
 expect 2 'int already holds results: give another --out, --resume .*or --overwrite' "${bench[@]}" --out int

@@ -81,9 +81,9 @@ done
 
 # On a terminal a run says how far it is, and takes the line away; elsewhere it says nothing.
 script -qec "'$mssim' run --scene cloth2500 --threads 1 --duration 1" /dev/null </dev/null >terminal
-grep -q 'cloth2500: step [0-9]* of 20000, about 0:[0-9][0-9] left' terminal || fail "no progress: $(head -c 500 terminal)"
+grep -q 'cloth2500  \[.*\]  about 0:[0-9][0-9] left  step [0-9]* of 20000' terminal || fail "no progress: $(head -c 500 terminal)"
 script -qec "'$mssim' run --scene jeans1k --threads 1" /dev/null </dev/null >terminal
-grep -q 'jeans1k: draping, [0-9.]* s simulated of at most 4' terminal || fail "no progress of a dressing"
+grep -q 'jeans1k  \[ *\]  draping, [0-9.]* s simulated of at most 4' terminal || fail "no progress of a dressing"
 "$mssim" "${fall[@]}" --duration 0.1 >out 2>err
 [ ! -s err ] || fail "a run that is no terminal's writes to stderr: $(cat err)"
 
