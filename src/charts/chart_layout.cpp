@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "charts/chart_text.h"
+#include "text/columns.h"
 
 namespace mssim {
 namespace {
@@ -12,13 +13,11 @@ constexpr double letter_width = 8.5;  // on the safe side: the fonts of pages di
 constexpr double legend_sample = 60;
 constexpr double legend_row = 1.5 * font_size;  // as gnuplot has it
 
-double width_of(const std::string& text) {
-  return letter_width * static_cast<double>(width_in_letters(text));
-}
+double drawn_width(const std::string& text) { return letter_width * static_cast<double>(width_of(text)); }
 
 double widest(const std::vector<std::string>& texts) {
   double width = 0;
-  for (const std::string& text : texts) width = std::max(width, width_of(text));
+  for (const std::string& text : texts) width = std::max(width, drawn_width(text));
   return width;
 }
 
@@ -55,7 +54,7 @@ void lay_out_plot(ChartLayout& layout, const Chart& chart, const PlottedValues& 
                  : scale_of(chart.x, values.x_range());
   layout.left = chart_edge + widest(tick_labels(layout.y)) + 12;
   // The last label of the x axis may stand half beside it.
-  const double beside = layout.x.ticks.empty() ? 0 : width_of(layout.x.ticks.back().label) / 2;
+  const double beside = layout.x.ticks.empty() ? 0 : drawn_width(layout.x.ticks.back().label) / 2;
   layout.right = chart_width - chart_edge - beside;
   layout.bottom = layout.top + plot_height;
 }

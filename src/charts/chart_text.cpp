@@ -2,26 +2,11 @@
 
 #include <algorithm>
 
+#include "text/columns.h"
 #include "text/printable.h"
 
 namespace mssim {
 namespace {
-
-/// Of the character that begins with this byte of UTF-8, in those of Latin letters: Chinese and Japanese
-/// characters, pictures and what else begins at U+3000 are twice as wide. 0 within a character.
-std::size_t width_of_character(char byte) {
-  const auto code = static_cast<unsigned char>(byte);
-  if ((code & 0xC0U) == 0x80U) return 0;
-  return code < 0xE3 ? 1 : 2;
-}
-
-/// What fits into this width.
-std::string_view beginning(std::string_view text, std::size_t most) {
-  std::size_t at = 0, width = 0;
-  for (; at < text.size(); ++at)
-    if ((width += width_of_character(text[at])) > most) break;
-  return text.substr(0, at);
-}
 
 void replace_all(std::string& text, std::string_view old, std::string_view replacement) {
   for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos; at += replacement.size())
@@ -39,17 +24,11 @@ std::string clean(std::string_view text) {
 }
 
 std::string cut(std::string_view text, std::size_t most) {
-  if (width_in_letters(text) <= most) return std::string(text);
-  return std::string(beginning(text, most - 1)) + "…";
+  if (width_of(text) <= most) return std::string(text);
+  return std::string(clipped(text, most - 1)) + "…";
 }
 
 }  // namespace
-
-std::size_t width_in_letters(std::string_view text) {
-  std::size_t width = 0;
-  for (const char byte : text) width += width_of_character(byte);
-  return width;
-}
 
 std::string shown_text(std::string_view text, std::size_t most) { return cut(clean(text), most); }
 
@@ -58,14 +37,14 @@ std::vector<std::string> shown_lines(std::string_view text, std::size_t most) {
   std::vector<std::string> lines;
   std::string rest = clean(text);
   while (!rest.empty()) {
-    if (lines.size() + 1 == most_lines || width_in_letters(rest) <= most) {
+    if (lines.size() + 1 == most_lines || width_of(rest) <= most) {
       lines.push_back(cut(rest, most));
       break;
     }
-    const std::string_view line = beginning(rest, most + 1);
+    const std::string_view line = clipped(rest, most + 1);
     const std::size_t space = line.find_last_of(' ');
     const std::size_t end =
-        space == std::string_view::npos || space == 0 ? beginning(rest, most).size() : space;
+        space == std::string_view::npos || space == 0 ? clipped(rest, most).size() : space;
     lines.push_back(rest.substr(0, end));
     rest.erase(0, end);
     rest.erase(0, rest.find_first_not_of(' '));

@@ -9,9 +9,6 @@ namespace mssim {
 
 /// Text of a chart may be anything, such as the name of a file. These are the ways that it goes into one.
 
-/// The width of a text in letters: Chinese characters count as two.
-std::size_t width_in_letters(std::string_view text);
-
 /// As it is shown: on one line, of characters that XML may have, at most `most` letters wide; the last is …
 /// where it was wider.
 std::string shown_text(std::string_view text, std::size_t most);

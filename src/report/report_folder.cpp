@@ -7,6 +7,7 @@
 
 #include "garment/output/garment_csv.h"
 #include "output/folders/provenance_file.h"
+#include "output/folders/result_folder.h"
 #include "output/tables/csv.h"
 #include "output/tables/timings_csv.h"
 #include "platform/whole_file.h"
@@ -16,10 +17,6 @@ namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* times_file = "timings.csv";
-constexpr const char* sample_file = "samples.csv";
-constexpr const char* dressing_file = "garment.csv";
 
 bool is_there(const fs::path& path) {
   std::error_code error;
@@ -139,9 +136,9 @@ void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
 
 std::vector<fs::path> result_folders(const fs::path& folder) {
   std::vector<fs::path> folders;
-  if (!is_there(folder / times_file))
+  if (!is_there(folder / timings_name))
     for (const fs::path& entry : entries_of(folder))
-      if (is_there(entry / times_file)) folders.push_back(entry);
+      if (is_there(entry / timings_name)) folders.push_back(entry);
   if (folders.empty()) folders.push_back(folder);
   return folders;
 }
@@ -149,13 +146,13 @@ std::vector<fs::path> result_folders(const fs::path& folder) {
 ReportFolder read_report_folder(const fs::path& path) {
   ReportFolder folder;
   folder.name = path.string();
-  read_rows(path / times_file, folder);
+  read_rows(path / timings_name, folder);
   if (!folder.rows.empty()) {
-    if (read_beside(path / sample_file, folder, "intervals of ratios are those of the times",
+    if (read_beside(path / samples_name, folder, "intervals of ratios are those of the times",
                     [](const fs::path& file, std::span<ResultRow> rows) { read_samples(file, rows); }))
-      drop_incomplete_samples(path / sample_file, folder);
-    if (is_there(path / dressing_file))
-      read_beside(path / dressing_file, folder, "how garments were dressed is not shown",
+      drop_incomplete_samples(path / samples_name, folder);
+    if (is_there(path / garment_name))
+      read_beside(path / garment_name, folder, "how garments were dressed is not shown",
                   [](const fs::path& file, std::span<ResultRow> rows) { read_dressings(file, rows); });
   }
   drop_impossible_times(folder);

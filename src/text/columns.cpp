@@ -6,18 +6,26 @@
 namespace mssim {
 namespace {
 
-bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
+/// Columns of the character that begins with this byte of UTF-8: Chinese and Japanese characters, pictures
+/// and what else begins at U+3000 take two. 0 within a character.
+std::size_t width_of_character(char byte) {
+  const auto code = static_cast<unsigned char>(byte);
+  if ((code & 0xC0U) == 0x80U) return 0;
+  return code < 0xE3 ? 1 : 2;
+}
 
 }  // namespace
 
 std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+  std::size_t width = 0;
+  for (const char byte : text) width += width_of_character(byte);
+  return width;
 }
 
 std::string_view clipped(std::string_view text, std::size_t width) {
-  std::size_t end = 0;
-  for (std::size_t seen = 0; end < text.size(); ++end)
-    if (begins_character(text[end]) && seen++ == width) break;
+  std::size_t end = 0, seen = 0;
+  for (; end < text.size(); ++end)
+    if ((seen += width_of_character(text[end])) > width) break;
   return text.substr(0, end);
 }
 

@@ -6,10 +6,10 @@
 
 namespace mssim {
 
-/// How many characters a terminal shows of UTF-8.
+/// Columns that UTF-8 takes, in a terminal or in letters of a chart: one a character, two for wide ones.
 std::size_t width_of(std::string_view text);
 
-/// The first `width` characters of UTF-8.
+/// What of UTF-8 fits into so many columns.
 std::string_view clipped(std::string_view text, std::size_t width);
 
 /// `text` in lines of at most `width` characters, broken between words, those but the first behind `indent`.

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "text/columns.h"
+
 namespace mssim {
 namespace {
 
@@ -17,11 +19,11 @@ TEST(ChartText, IsOneLineOfCharactersThatXmlMayHave) {
 TEST(ChartText, IsCutBetweenCharacters) {
   EXPECT_EQ(shown_text("äöü−", 4), "äöü−");
   EXPECT_EQ(shown_text("äöü−ß", 4), "äöü…");
-  EXPECT_EQ(width_in_letters("äöü−ß"), 5U);
+  EXPECT_EQ(width_of("äöü−ß"), 5U);
 }
 
 TEST(ChartText, ChineseCharactersAreWide) {
-  EXPECT_EQ(width_in_letters("漢字ok"), 6U);
+  EXPECT_EQ(width_of("漢字ok"), 6U);
   EXPECT_EQ(shown_text("漢字漢字", 8), "漢字漢字");
   EXPECT_EQ(shown_text("漢字漢字", 7), "漢字漢…");
   EXPECT_THAT(shown_lines("漢字漢字", 4), ElementsAre("漢字", "漢字"));

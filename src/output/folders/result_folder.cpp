@@ -23,9 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* timings_name = "timings.csv";
-constexpr const char* samples_name = "samples.csv";
-constexpr const char* garment_name = "garment.csv";
 constexpr const char* benchmark_name = "benchmark.json";
 constexpr const char* github_name = "github.json";
 

@@ -13,6 +13,10 @@
 
 namespace mssim {
 
+/// Files of a result folder: times, samples, and dressings of garments.
+inline constexpr const char *timings_name = "timings.csv", *samples_name = "samples.csv",
+                            *garment_name = "garment.csv";
+
 /// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, of garments garment.csv,
 /// benchmark.json, provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md. One at
 /// a time writes into it.
