@@ -14,6 +14,7 @@ platform              text
 geometry              text
 render                geometry picture
 charts                text picture platform
+hdf5                  platform
 laws                  kernels geometry
 integrators           geometry laws
 
@@ -53,12 +54,11 @@ bench/job             text statistics integrators backends/interface backends ga
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
 bench                 text platform garment/stepping bench/roofline bench/verification bench/job garment/bench
 
-output/hdf5           platform
 output/tables         text statistics platform bench/machine bench/results
-garment/output        text garment bench/results output/hdf5 output/tables
-output/traces         text platform geometry model output/hdf5 garment/output
+garment/output        text garment bench/results hdf5 output/tables
+output/traces         text platform geometry model hdf5 garment/output
 output/pictures       platform geometry render picture model scene/fields garment output/traces
-output/exports        text platform geometry model output/hdf5 output/traces
+output/exports        text platform geometry model hdf5 output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
 report                text platform statistics integrators charts bench/machine bench/results bench/roofline output/tables garment/output output/folders
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "garment/output/h5md_garment.h"
-#include "output/hdf5/hdf5_read.h"
-#include "output/hdf5/hdf5_table.h"
+#include "hdf5/hdf5_read.h"
+#include "hdf5/hdf5_table.h"
 
 namespace mssim {
 namespace {

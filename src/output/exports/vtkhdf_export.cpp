@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "output/hdf5/hdf5_space.h"
-#include "output/hdf5/hdf5_write.h"
+#include "hdf5/hdf5_space.h"
+#include "hdf5/hdf5_write.h"
 #include "platform/file_space.h"
 #include "platform/write_error.h"
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "hdf5/hdf5_handle.h"
 #include "output/exports/export_mesh.h"
-#include "output/hdf5/hdf5_handle.h"
 #include "platform/atomic_file.h"
 
 namespace mssim {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "output/hdf5/hdf5_write.h"
+#include "hdf5/hdf5_write.h"
 #include "output/traces/xdmf.h"
 
 namespace mssim {

@@ -4,8 +4,8 @@
 #include <array>
 #include <stdexcept>
 
-#include "output/hdf5/hdf5_space.h"
-#include "output/hdf5/hdf5_write.h"
+#include "hdf5/hdf5_space.h"
+#include "hdf5/hdf5_write.h"
 #include "output/traces/h5md_body.h"
 #include "platform/atomic_file.h"
 #include "platform/file_space.h"

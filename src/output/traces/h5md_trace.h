@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "geometry/surface.h"
+#include "hdf5/hdf5_handle.h"
 #include "model/energy.h"
 #include "model/system.h"
-#include "output/hdf5/hdf5_handle.h"
 #include "output/traces/h5md_head.h"
 #include "output/traces/xdmf.h"
 #include "platform/atomic_file.h"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "garment/output/h5md_garment_read.h"
-#include "output/hdf5/hdf5_read.h"
-#include "output/hdf5/hdf5_table.h"
+#include "hdf5/hdf5_read.h"
+#include "hdf5/hdf5_table.h"
 #include "output/traces/h5md_body.h"
 #include "output/traces/h5md_head.h"
 #include "output/traces/xdmf.h"

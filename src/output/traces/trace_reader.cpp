@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "output/hdf5/hdf5_read.h"
+#include "hdf5/hdf5_read.h"
 #include "platform/trial_process.h"
 #include "platform/whole_file.h"
 #include "text/printable.h"

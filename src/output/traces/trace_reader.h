@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "geometry/vec3.h"
-#include "output/hdf5/hdf5_handle.h"
-#include "output/hdf5/hdf5_table.h"
+#include "hdf5/hdf5_handle.h"
+#include "hdf5/hdf5_table.h"
 #include "output/traces/trace_content.h"
 #include "output/traces/trace_error.h"
 

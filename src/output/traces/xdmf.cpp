@@ -4,7 +4,7 @@
 #include <functional>
 #include <numeric>
 
-#include "output/hdf5/hdf5_write.h"
+#include "hdf5/hdf5_write.h"
 #include "platform/atomic_file.h"
 #include "text/decimal.h"
 #include "text/printable.h"

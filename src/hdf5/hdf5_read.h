@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "output/hdf5/hdf5_handle.h"
+#include "hdf5/hdf5_handle.h"
 
 namespace mssim {
 

@@ -1,4 +1,4 @@
-#include "output/hdf5/hdf5_read.h"
+#include "hdf5/hdf5_read.h"
 
 #include <algorithm>
 #include <array>

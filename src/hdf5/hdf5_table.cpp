@@ -1,4 +1,4 @@
-#include "output/hdf5/hdf5_table.h"
+#include "hdf5/hdf5_table.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "output/hdf5/hdf5_write.h"
+#include "hdf5/hdf5_write.h"
 
 namespace mssim {
 namespace {

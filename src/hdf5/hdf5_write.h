@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "output/hdf5/hdf5_handle.h"
+#include "hdf5/hdf5_handle.h"
 
 namespace mssim {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "output/hdf5/hdf5_read.h"
+#include "hdf5/hdf5_read.h"
 
 namespace mssim {
 

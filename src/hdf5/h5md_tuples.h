@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "output/hdf5/hdf5_write.h"
+#include "hdf5/hdf5_write.h"
 
 namespace mssim {
 

@@ -1,8 +1,8 @@
-#include "output/hdf5/hdf5_space.h"
+#include "hdf5/hdf5_space.h"
 
 #include <string>
 
-#include "output/hdf5/hdf5_handle.h"
+#include "hdf5/hdf5_handle.h"
 #include "platform/file_space.h"
 #include "platform/write_error.h"
 
