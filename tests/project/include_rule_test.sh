@@ -77,6 +77,7 @@ commands/help         text commands/arguments commands/shared
 commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/bench commands/list commands/compare commands/check commands/measure commands/report commands/help
 main.cpp              commands/shared
 ask_opencl.cpp
+supervise.cpp         platform
 '
 
 # offences ROOT: prints FILE:LINE: what is wrong with each include under ROOT/src and ROOT/kernels that breaks the rule, and

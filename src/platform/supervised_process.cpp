@@ -1,0 +1,232 @@
+#include "platform/supervised_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+#include "platform/data_folder.h"
+#include "platform/process_cpus.h"
+
+namespace mssim {
+namespace {
+
+/// How long the supervisor may take for what takes it a millisecond, and to end what SIGKILL ends.
+constexpr std::chrono::seconds supervisor_patience{30};
+
+std::string reason(int error) { return " (" + std::string(std::strerror(error)) + ")"; }
+
+[[noreturn]] void fail(const SupervisedProgram& program, const std::string& why) {
+  throw std::runtime_error("cannot run " + program.program.string() + ": " + why);
+}
+
+/// Why execve failed. For a missing interpreter it says the same as for a missing program.
+std::string why_not_executed(const SupervisedProgram& program, int error) {
+  const std::filesystem::path file = program.folder / program.program;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) return "it is a folder";
+  if (error == ENOENT && !std::filesystem::exists(file, ignored)) return "there is no such file";
+  if (error == EACCES && ::access(file.c_str(), X_OK) != 0) return "it is not executable (chmod +x)";
+  if (error == ENOEXEC)
+    return "it is neither a program for this machine nor a script whose first line names an interpreter "
+           "(#!/usr/bin/env python3)";
+  std::string line;
+  std::getline(std::ifstream(file), line);
+  if (!line.starts_with("#!")) return "the system does not start it" + reason(error);
+  if (line.ends_with('\r'))
+    return "its lines end as Windows has it (CR LF), also the name of its interpreter";
+  line = line.substr(std::min(line.find_first_not_of(" \t", 2), line.size()), 200);
+  return "its interpreter " + line.substr(0, line.find_first_of(" \t")) + " cannot be started" +
+         reason(error);
+}
+
+std::string why_not_started(const SupervisedProgram& program, const SupervisorAnswer& answer) {
+  switch (answer.word) {
+    case SupervisorWord::no_folder:
+      return "its folder " + program.folder.string() + " cannot be entered" + reason(answer.value);
+    case SupervisorWord::no_processors:
+      return "it cannot be bound to its processors" + reason(answer.value);
+    case SupervisorWord::no_program:
+      return why_not_executed(program, answer.value);
+    default:
+      return "the system has no room for it" + reason(answer.value);
+  }
+}
+
+/// Starts the supervisor with its end of the channel as descriptor 3, and none but that: descriptors that are
+/// not closed by exec, it closes itself.
+pid_t start_supervisor(const SupervisedProgram& program, int channel) {
+  const std::string supervisor = helper_program("supervise").string();
+  std::string cpus;
+  for (const int cpu : program.cpus) cpus += std::to_string(cpu) + ',';
+  std::vector<std::string> words{supervisor, program.folder.string(), cpus,
+                                 std::to_string(program.environment.size())};
+  words.insert(words.end(), program.environment.begin(), program.environment.end());
+  words.push_back(program.program.string());
+  words.insert(words.end(), program.arguments.begin(), program.arguments.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  sigset_t none, all;
+  ::sigemptyset(&none);
+  ::sigfillset(&all);
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setsigmask(&attributes, &none);
+  ::posix_spawnattr_setsigdefault(&attributes, &all);
+  // A session of its own: no terminal, and so no Ctrl-C.
+  ::posix_spawnattr_setflags(&attributes,
+                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, channel, 3);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    ::posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", O_RDWR, 0);
+  pid_t process = 0;
+  const OnAllProcessCpus inherited;
+  const int error =
+      ::posix_spawn(&process, supervisor.c_str(), &actions, &attributes, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  ::posix_spawnattr_destroy(&attributes);
+  if (error != 0) fail(program, "mssim's own program " + supervisor + " cannot be started" + reason(error));
+  return process;
+}
+
+/// False after that time; also when the other end is closed there is something to be read.
+bool readable(int descriptor, std::chrono::milliseconds patience) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point limit = Clock::now() + patience;
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - Clock::now());
+    pollfd event{descriptor, POLLIN, 0};
+    if (::poll(&event, 1, static_cast<int>(std::clamp<long>(left.count(), 0, 1'000'000'000))) > 0)
+      return true;
+    if (Clock::now() >= limit) return false;
+  }
+}
+
+bool receive(int descriptor, void* bytes, std::size_t count) {
+  auto* next = static_cast<char*>(bytes);
+  while (count > 0) {
+    if (!readable(descriptor, supervisor_patience)) return false;
+    const ssize_t received = ::recv(descriptor, next, count, 0);
+    if (received < 0 && errno == EINTR) continue;
+    if (received <= 0) return false;
+    next += received;
+    count -= static_cast<std::size_t>(received);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string describe(const ProgramEnd& end) {
+  if (!end.trouble.empty()) return end.trouble;
+  if (end.signal == 0) return "ended with exit code " + std::to_string(end.exit_code);
+  const char* name = ::sigdescr_np(end.signal);
+  return "was ended by signal " + std::to_string(end.signal) +
+         (name != nullptr ? " (" + std::string(name) + ")" : "");
+}
+
+SupervisedProcess::SupervisedProcess(const SupervisedProgram& program) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    fail(program, "opening a socket failed" + reason(errno));
+  channel_ = Descriptor(ends[0]);
+  Descriptor other(ends[1]);
+  supervisor_ = start_supervisor(program, other.get());
+  other.close();
+  SupervisorAnswer answer;
+  if (!hear(answer)) {
+    end(std::chrono::milliseconds{0});
+    fail(program, "mssim's own program supervise ended before it");
+  }
+  if (answer.word != SupervisorWord::started) {
+    ::waitpid(supervisor_, nullptr, 0);
+    fail(program, why_not_started(program, answer));
+  }
+  program_ = answer.value;
+}
+
+SupervisedProcess::~SupervisedProcess() { end(std::chrono::milliseconds{0}); }
+
+void SupervisedProcess::pause() { paused_ = ask(SupervisorRequest::pause) || paused_; }
+
+void SupervisedProcess::resume() {
+  ask(SupervisorRequest::resume);
+  paused_ = false;
+}
+
+double SupervisedProcess::processor_seconds() const {
+  ask(SupervisorRequest::processor_time);
+  return processor_seconds_;
+}
+
+const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
+  if (ended_) return end_;
+  if (paused_ && patience.count() > 0) resume();
+  if (!ended_ && !readable(channel_.get(), patience)) ::shutdown(channel_.get(), SHUT_WR);
+  SupervisorAnswer answer;
+  if (!ended_) hear(answer);
+  return end_;
+}
+
+/// Asks and takes the answer. False where the program has ended.
+bool SupervisedProcess::ask(SupervisorRequest request) const {
+  if (ended_) return false;
+  // Where the supervisor is gone, hear() finds that out.
+  ::send(channel_.get(), &request, sizeof request, MSG_NOSIGNAL);
+  SupervisorAnswer answer;
+  return hear(answer);
+}
+
+/// Takes an answer. False where it is that the program has ended, or where there is none.
+bool SupervisedProcess::hear(SupervisorAnswer& answer) const {
+  if (!readable(channel_.get(), supervisor_patience)) {
+    lose("could not be ended: some process of it does not end by SIGKILL");
+    return false;
+  }
+  if (!receive(channel_.get(), &answer, sizeof answer)) {
+    lose("was ended because mssim's program supervise, which watches over it, was ended");
+    return false;
+  }
+  processor_seconds_ = std::max(processor_seconds_, answer.processor_seconds);
+  if (answer.word == SupervisorWord::ended) take_end(answer);
+  return answer.word != SupervisorWord::ended;
+}
+
+void SupervisedProcess::take_end(const SupervisorAnswer& answer) const {
+  end_.output.resize(std::min(answer.output_bytes, kept_output_bytes));
+  if (!receive(channel_.get(), end_.output.data(), end_.output.size())) end_.output.clear();
+  if (WIFSIGNALED(answer.value))
+    end_.signal = WTERMSIG(answer.value);
+  else
+    end_.exit_code = WEXITSTATUS(answer.value);
+  while (::waitpid(supervisor_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  ended_ = true;
+}
+
+/// The supervisor is gone, or does not answer: ends what is known of the program.
+void SupervisedProcess::lose(const std::string& trouble) const {
+  if (program_ > 0) ::kill(-program_, SIGKILL);
+  ::shutdown(channel_.get(), SHUT_RDWR);
+  ::waitpid(supervisor_, nullptr, WNOHANG);
+  end_.signal = SIGKILL;
+  end_.trouble = trouble;
+  ended_ = true;
+}
+
+}  // namespace mssim
