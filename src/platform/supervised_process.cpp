@@ -121,11 +121,11 @@ bool receive(int descriptor, void* bytes, std::size_t count) {
   auto* next = static_cast<char*>(bytes);
   while (count > 0) {
     if (!readable(descriptor, supervisor_patience)) return false;
-    const ssize_t received = ::recv(descriptor, next, count, 0);
-    if (received < 0 && errno == EINTR) continue;
-    if (received <= 0) return false;
-    next += received;
-    count -= static_cast<std::size_t>(received);
+    const ssize_t taken = ::recv(descriptor, next, count, 0);
+    if (taken < 0 && errno == EINTR) continue;
+    if (taken <= 0) return false;
+    next += taken;
+    count -= static_cast<std::size_t>(taken);
   }
   return true;
 }
