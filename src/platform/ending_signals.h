@@ -8,6 +8,15 @@ namespace mssim {
 /// The signals by which a user ends a program: Ctrl-C, kill, a closed terminal.
 inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
 
+/// Notes that such a signal has come, for those who look. Async-signal-safe.
+void note_ending_signal(int signal);
+
+/// The signal that was noted last and that nobody has taken, or 0.
+int noted_ending_signal();
+
+/// The same, and takes it: nothing is noted any more.
+int take_ending_signal();
+
 /// While it lives, those signals call a handler, but for those that are ignored (nohup), which stay so.
 class EndingSignals {
  public:

@@ -5,14 +5,18 @@ namespace {
 
 // What a signal handler may touch has to be global.
 volatile std::sig_atomic_t watched_group = 0;
-volatile std::sig_atomic_t received = 0;
+volatile std::sig_atomic_t received_signal = 0;
 
 void end_group(int signal) {
-  received = signal;
+  received_signal = signal;
   if (watched_group > 0) ::kill(-watched_group, SIGKILL);
 }
 
 }  // namespace
+
+void throw_if_ending_signal_noted() {
+  if (const int signal = take_ending_signal(); signal != 0) throw Interrupted{signal};
+}
 
 InterruptionGuard::InterruptionGuard() {
   sigset_t held;
@@ -20,7 +24,7 @@ InterruptionGuard::InterruptionGuard() {
   for (const int signal : ending_signals) ::sigaddset(&held, signal);
   ::pthread_sigmask(SIG_BLOCK, &held, &before_);
   watched_group = 0;
-  received = 0;
+  received_signal = 0;
   signals_.emplace(end_group, SA_RESTART);
 }
 
@@ -28,7 +32,7 @@ InterruptionGuard::~InterruptionGuard() {
   watched_group = 0;
   signals_.reset();
   ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  if (received != 0) std::raise(received);  // came after it was asked for
+  if (received_signal != 0) std::raise(received_signal);  // came after it was asked for
 }
 
 void InterruptionGuard::release_child() const {
@@ -42,9 +46,9 @@ void InterruptionGuard::watch(pid_t group) {
 }
 
 void InterruptionGuard::throw_if_interrupted() {
-  if (received == 0) return;
-  const int signal = received;
-  received = 0;
+  if (received_signal == 0) return;
+  const int signal = received_signal;
+  received_signal = 0;
   throw Interrupted{signal};
 }
 

@@ -16,11 +16,17 @@ std::optional<TemporaryFolder>& folder_of_process() {
   return folder;
 }
 
+/// The system's folder for temporary files.
+std::filesystem::path system_folder() {
+  const char* chosen = std::getenv("TMPDIR");
+  return chosen && *chosen ? chosen : "/tmp";
+}
+
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  const char* chosen = std::getenv("TMPDIR");
-  const std::filesystem::path parent = chosen && *chosen ? chosen : "/tmp";
+TemporaryFolder::TemporaryFolder() : TemporaryFolder(system_folder()) {}
+
+TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
   std::string name = (parent / "mssim-XXXXXX").string();
   if (!::mkdtemp(name.data()))
     throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +

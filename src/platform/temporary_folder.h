@@ -9,6 +9,8 @@ namespace mssim {
 class TemporaryFolder {
  public:
   TemporaryFolder();
+  /// The same in a folder that the caller names.
+  explicit TemporaryFolder(const std::filesystem::path& parent);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -13,11 +13,8 @@ namespace {
 constexpr std::string_view notice =
     "\nmssim: stopping after the current measurement or frame; a second signal stops at once\n";
 
-// What a signal handler may touch has to be global.
-volatile std::sig_atomic_t received = 0;
-
 void remember(int signal) {
-  received = signal;
+  note_ending_signal(signal);
   static_cast<void>(!::write(STDERR_FILENO, notice.data(), notice.size()));
 }
 
@@ -27,20 +24,14 @@ StopRequest::StopRequest() : signals_(remember, static_cast<int>(SA_RESTART | SA
 
 StopRequest::~StopRequest() {
   signals_.restore();
-  if (received == 0) return;
-  const int signal = received;
-  received = 0;
+  const int signal = take_ending_signal();
+  if (signal == 0) return;
   remove_temporary_folder_of_process();
   std::raise(signal);
 }
 
-bool StopRequest::requested() const { return received != 0; }
+bool StopRequest::requested() const { return noted_ending_signal() != 0; }
 
-void StopRequest::throw_if_requested() {
-  if (received == 0) return;
-  const int signal = received;
-  received = 0;
-  throw Interrupted{signal};
-}
+void StopRequest::throw_if_requested() { throw_if_ending_signal_noted(); }
 
 }  // namespace mssim
