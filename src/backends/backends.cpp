@@ -7,6 +7,7 @@
 #include "backends/hybrid/hybrid.h"
 #include "backends/opencl/opencl.h"
 #include "backends/openmp/openmp.h"
+#include "backends/process/process_backend.h"
 #include "backends/spring_list/serial.h"
 #include "backends/spring_list/threads_mutex.h"
 #include "garment/stepping/opencl_dressing.h"
@@ -25,6 +26,8 @@ constexpr MemoryUse slices{.node = 130, .pair_node = 32, .storage = Storage::sep
 constexpr MemoryUse planes{.node = 56, .pair_node = 24, .storage = Storage::separate};
 constexpr MemoryUse device_slices{.node = 130, .pair_node = 32, .storage = Storage::separate, .spring = 38};
 constexpr MemoryUse packed{.node = 64, .pair_node = 32, .spring = 50};
+// What a program holds is its own affair: that of a plain list in double precision, and the state's file.
+constexpr MemoryUse own_program{.node = 64, .pair_node = 24, .spring = 40};
 
 std::unique_ptr<DressingBackend> dress_serially(const System& system, const Integrator& integrator,
                                                 double dt_s, const ExecutionOptions& /*options*/) {
@@ -68,10 +71,23 @@ const BackendInfo* find_backend(std::string_view name) {
   return nullptr;
 }
 
+BackendInfo own_backend(const BackendProgram& program) {
+  return {.name = program.name,
+          .paper_configuration = "",
+          .description = program.description,
+          .uses_device = false,
+          .make = nullptr,
+          .grid_memory = own_program,
+          .mesh_memory = own_program,
+          .program = &program};
+}
+
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& options) {
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, options);
+  if (backend.program != nullptr)
+    return make_process_backend(*backend.program, system, integrator, dt_s, options);
   return backend.make(system, integrator, dt_s, options);
 }
 
@@ -83,6 +99,7 @@ std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backen
 }
 
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options) {
+  if (backend.program != nullptr) return backend.program->missing;
   if (!backend.uses_device) return "";
   try {
     find_opencl_device(options.device);
@@ -95,7 +112,7 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
 std::string excess_of(const Backend& backend, int threads) {
   if (backend.threads() <= threads) return "";
   return "on " + std::to_string(backend.threads()) + " processors instead of " + std::to_string(threads) +
-         ": the driver of " + backend.device() + " cannot divide it";
+         ": " + backend.reason_for_excess();
 }
 
 }  // namespace mssim

@@ -5,12 +5,13 @@
 #include <string>
 #include <string_view>
 
-#include "backends/backends.h"
+#include "backends/interface/backend.h"
+#include "backends/process/backend_program.h"
 #include "garment/stepping/dressing_backend.h"
 
 namespace mssim {
 
-/// A row of the TABLE of backends.
+/// A row of the TABLE of backends, or of those that a user brings (own_backend).
 struct BackendInfo {
   std::string_view name;
   std::string_view
@@ -26,7 +27,12 @@ struct BackendInfo {
   /// Makes one that dresses a garment; null where it has not Algorithm 1.
   std::unique_ptr<DressingBackend> (*make_dressing)(const System& system, const Integrator& integrator,
                                                     double dt_s, const ExecutionOptions& options) = nullptr;
+  /// The program that takes its steps; `make` is null then. It outlives the row.
+  const BackendProgram* program = nullptr;
 };
+
+/// The row of a program that is a backend. `program` must outlive it.
+BackendInfo own_backend(const BackendProgram& program);
 
 /// The TABLE of backends, in the order of every listing and result. A new backend is one row in backends.cpp.
 std::span<const BackendInfo> backends();
@@ -37,7 +43,7 @@ const BackendInfo* find_backend(std::string_view name);
 /// Empty when the backend can run here, else the reason why not.
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options);
 
-/// Makes the backend for any system. Throws Unavailable or Unsupported.
+/// Makes the backend for any system. Throws Unavailable, Unsupported or BackendFailure.
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& options);

@@ -20,6 +20,7 @@
 #include "garment/bench/garment_verification.h"
 #include "garment/stepping/dressing_backend.h"
 #include "platform/process_cpus.h"
+#include "statistics/statistics.h"
 #include "text/counted.h"
 
 namespace mssim {
@@ -82,7 +83,7 @@ Combination make_verified(const SceneJob& job, const BackendInfo& info, const In
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)
-    take_verification(combination, verifier(*combination.backend));
+    attempt(combination, [&] { take_verification(combination, verifier(*combination.backend)); });
   return combination;
 }
 
@@ -131,6 +132,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
     });
     ResultRow& row = rows.emplace_back(combination.row);
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);
+    if (!combination.processors.empty()) row.processors_used = median(combination.processors);
     compare_with_peaks(combination, size, peaks, row);
   }
   return rows;
@@ -146,6 +148,7 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
     if (row != earlier.end()) {
       combination.row.samples_ms = row->samples_ms;
       combination.row.sample_steps = row->sample_steps;
+      combination.row.processors_used = row->processors_used;
     }
     complete = std::min(complete, combination.row.samples_ms.size());
   }
@@ -182,7 +185,7 @@ void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, c
 /// One sample of every combination, in this order. False when it was stopped, and then without a trace.
 bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
                 const FirstRound& first, const SceneJob& job, const BenchWatch& watch) {
-  std::vector<std::pair<Combination*, double>> samples;
+  std::vector<std::pair<Combination*, std::optional<double>>> samples;
   for (std::size_t place = 0; place < order.size(); ++place) {
     const std::size_t i = order[place];
     if (!combinations[i].backend) continue;
@@ -192,7 +195,8 @@ bool take_round(std::vector<Combination>& combinations, const std::vector<std::s
     samples.emplace_back(&combinations[i], sample_ms(combinations[i], job));
   }
   for (const auto& [combination, ms] : samples) {
-    combination->row.samples_ms.push_back(ms);
+    if (!ms) continue;
+    combination->row.samples_ms.push_back(*ms);
     combination->row.sample_steps.push_back(combination->steps);
   }
   return true;
@@ -256,6 +260,8 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     }
     watch.after_round(rows_of(all, size, peaks));
   }
+  for (Combination& combination : all)
+    if (combination.backend) combination.row.program_output = combination.backend->end();
   return rows_of(all, size, peaks);
 }
 

@@ -29,7 +29,7 @@ double list_step_time(const Integrator& integrator, const SceneSize& size) {
 }
 
 double step_time(const BackendInfo& backend, double list_step) {
-  return list_step * (backend.name == "serial" ? 1 : other_backends);
+  return list_step * (backend.name == "serial" || backend.program != nullptr ? 1 : other_backends);
 }
 
 }  // namespace

@@ -82,6 +82,8 @@ int run_guarded(const std::function<int()>& run) {
     return 128 + interrupted.signal;  // where the signal is blocked
   } catch (const NotVerified& error) {
     return fail(exit_not_verified, error.what());
+  } catch (const BackendFailure& error) {
+    return fail(exit_not_verified, error.what());
   } catch (const UsageError& error) {
     return fail(exit_bad_input, error.what());
   } catch (const SceneError& error) {

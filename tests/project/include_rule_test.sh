@@ -41,8 +41,10 @@ backends/spring_list  platform integrators model backends/interface
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/opencl       kernels integrators model backends/interface backends/layouts backends/devices
 backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices
+backends/process      text platform hdf5 integrators model backends/interface
+backends/described    text platform integrators scene/fields backends/process
 garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
-backends              backends/interface backends/devices backends/spring_list backends/openmp backends/opencl backends/hybrid garment/stepping
+backends              backends/interface backends/devices backends/spring_list backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
 backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 
@@ -52,7 +54,7 @@ bench/roofline        integrators model
 bench/verification    text integrators model backends/interface backends/spring_list
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
-bench                 text platform garment/stepping bench/roofline bench/verification bench/job garment/bench
+bench                 text platform statistics garment/stepping bench/roofline bench/verification bench/job garment/bench
 
 output/tables         text statistics platform bench/machine bench/results
 garment/output        text garment bench/results hdf5 output/tables
@@ -63,7 +65,7 @@ output/folders        text platform bench/machine bench/results output/tables ga
 report                text platform statistics integrators charts bench/machine bench/results bench/roofline output/tables garment/output output/folders
 
 commands/arguments    text
-commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends bench/machine bench/verification output/tables output/traces output/pictures output/folders commands/arguments
+commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends/process backends/described backends bench/machine bench/verification output/tables output/traces output/pictures output/folders commands/arguments
 commands/run          platform model scene garment/stepping garment/fitting backends/interface backends/spring_list backends bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/export       text platform output/exports output/traces commands/arguments commands/shared

@@ -41,6 +41,7 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.position_error = 1e-5;
   row.energy_drift = -2e-7;
   row.state_hash = 0x0123456789abcdef;
+  row.processors_used = 1.5;
   row.verified = true;
   row.warm_up_trials = 4;
   row.samples_ms = {2 * ms, ms / 2, ms};
@@ -55,6 +56,7 @@ inline ResultRow failed_row(const std::string& backend, const std::string& statu
   row.springs_per_second = row.gigabytes_per_second = row.roofline_fraction = std::nullopt;
   row.paper_ms = row.position_error = row.energy_drift = std::nullopt;
   row.state_hash = std::nullopt;
+  row.processors_used = std::nullopt;
   row.samples_ms.clear();
   row.sample_steps.clear();
   row.rounds = 0;

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <time.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "integrators/integrator.h"
 #include "model/system.h"
@@ -34,6 +37,7 @@ struct ExecutionOptions {
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
   DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
   Roots roots = Roots::fast;
+  std::string scene = {};  ///< its name, which a program that is a backend is told
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.
@@ -44,6 +48,14 @@ struct Unavailable : std::runtime_error {
 /// Thrown when a backend runs here but not this scene or integrator; what() is the reason.
 struct Unsupported : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/// Thrown by any call of a backend behind which a program stands that failed; what() is the reason for the
+/// row.
+struct BackendFailure : std::runtime_error {
+  BackendFailure(const std::string& reason, std::string last_output)
+      : std::runtime_error(reason), output(std::move(last_output)) {}
+  std::string output;  ///< what the program wrote last
 };
 
 /// The mass of every node, kg. Throws Unsupported when they differ.
@@ -87,6 +99,21 @@ class Backend {
   virtual int steps_per_pass() const { return 0; }
   /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
   virtual bool runs_on_host() const { return true; }
+  /// What a reader of its times must know of it, or nothing.
+  virtual std::string note() const { return {}; }
+  /// Why it takes more processors than it was asked to, where it does.
+  virtual std::string reason_for_excess() const { return "the driver of " + device() + " cannot divide it"; }
+  /// Says that nothing will be asked of it for a while: it shall not disturb what is timed meanwhile.
+  virtual void rest() {}
+  /// Ends the program behind it, where there is one, and returns what that wrote last. Nothing but another
+  /// end() may be asked of it then.
+  virtual std::string end() { return {}; }
+  /// Processor time so far of the process that takes the steps, s.
+  virtual double processor_seconds() const {
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
 };
 
 /// Memory that a backend takes at its peak, which is mostly while it is made: bytes a node, a node and pair

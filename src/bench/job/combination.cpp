@@ -22,8 +22,13 @@ namespace {
 /// filling the caches little more.
 constexpr double long_step_s = 0.01;
 
-/// Runs the steps of one sample and returns its wall-clock seconds.
-double time_sample(Combination& combination, int steps) {
+struct SampleTime {
+  double wall_s = 0;
+  double processor_s = 0;
+};
+
+/// Runs the steps of one sample.
+SampleTime time_sample(Combination& combination, int steps) {
   using Clock = std::chrono::steady_clock;
   Backend& backend = *combination.backend;
   backend.set_state(*combination.start);
@@ -31,9 +36,11 @@ double time_sample(Combination& combination, int steps) {
     backend.step(1);  // wakes threads and caches up
     backend.set_state(*combination.start);
   }
+  const double processor_before = backend.processor_seconds();
   const auto before = Clock::now();
   backend.step(steps);
-  return std::chrono::duration<double>(Clock::now() - before).count();
+  const std::chrono::duration<double> wall = Clock::now() - before;
+  return {wall.count(), backend.processor_seconds() - processor_before};
 }
 
 /// What a row is about, beyond its names.
@@ -49,8 +56,18 @@ std::string subject_of(const ResultRow& row) {
 void fail(Combination& combination, const std::string& status) {
   combination.row.status = status;
   combination.row.verified = false;
+  if (combination.backend) combination.row.program_output = combination.backend->end();
   combination.backend.reset();
   combination.dressing = nullptr;
+}
+
+void attempt(Combination& combination, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const BackendFailure& failure) {
+    fail(combination, std::string("failed: ") + failure.what());
+    combination.row.program_output = failure.output;
+  }
 }
 
 Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
@@ -67,19 +84,23 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   row.backend = info.name;
   row.integrator = integrator.name;
   row.dt_s = job.dt_s;
-  try {
+  const auto make = [&] {
     if (job.garment) {
       auto dressing = make_dressing_backend(info, *job.system, integrator, job.dt_s, job.execution);
       combination.dressing = dressing.get();
       combination.backend = std::move(dressing);
     } else {
-      combination.backend = info.make(*job.system, integrator, job.dt_s, job.execution);
+      combination.backend = make_backend(info, *job.system, integrator, job.dt_s, job.execution);
     }
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
+    add_to_note(row.note, combination.backend->note());
     add_to_note(row.note, excess_of(*combination.backend, job.execution.threads));
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
+  };
+  try {
+    attempt(combination, make);
   } catch (const Unavailable& reason) {
     fail(combination, std::string("unavailable: ") + reason.what());
   } catch (const Unsupported& reason) {
@@ -114,9 +135,11 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   add_to_note(row.note, "verified by an earlier process");
 }
 
-void calibrate(Combination& combination, const SceneJob& job) {
+namespace {
+
+void find_sample_steps(Combination& combination, const SceneJob& job) {
   static const double resolution_s = clock_resolution_s();
-  const auto time_steps = [&](int steps) { return time_sample(combination, steps); };
+  const auto time_steps = [&](int steps) { return time_sample(combination, steps).wall_s; };
   int steps = 1;
   for (;;) {
     combination.step_seconds = time_steps(steps) / steps;
@@ -140,14 +163,30 @@ void calibrate(Combination& combination, const SceneJob& job) {
   combination.steps = sample_steps(combination.step_seconds, job.sample_seconds, resolution_s);
 }
 
-double sample_ms(Combination& combination, const SceneJob& job) {
-  const double seconds = time_sample(combination, combination.steps);
-  if (first_bad_node(combination.backend->state())) {
-    const auto blow_up = find_blow_up(*combination.backend, *combination.start, combination.steps);
-    fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s)
-                                            : "not finite in one run, finite in the next: a data race"));
-  }
-  return 1000 * seconds / combination.steps;
+}  // namespace
+
+void calibrate(Combination& combination, const SceneJob& job) {
+  attempt(combination, [&] {
+    find_sample_steps(combination, job);
+    combination.backend->rest();
+  });
+}
+
+std::optional<double> sample_ms(Combination& combination, const SceneJob& job) {
+  std::optional<double> ms;
+  attempt(combination, [&] {
+    const SampleTime time = time_sample(combination, combination.steps);
+    if (first_bad_node(combination.backend->state())) {
+      const auto blow_up = find_blow_up(*combination.backend, *combination.start, combination.steps);
+      fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s)
+                                              : "not finite in one run, finite in the next: a data race"));
+    } else {
+      combination.backend->rest();
+    }
+    combination.processors.push_back(time.processor_s / time.wall_s);
+    ms = 1000 * time.wall_s / combination.steps;
+  });
+  return ms;
 }
 
 void summarise(ResultRow& row, const ResultRow* serial) {

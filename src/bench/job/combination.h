@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ struct Combination {
   std::unique_ptr<Backend> backend;     ///< null where the row has no times: it cannot run, or has failed
   DressingBackend* dressing = nullptr;  ///< the same, of a garment
   int steps = 1;                        ///< in a sample
+  std::vector<double> processors;       ///< that each sample of this run took: processor seconds a second
   double step_seconds = 0;              ///< what calibrate has found; 0 before
 };
 
@@ -29,8 +32,11 @@ struct Combination {
 Combination make_combination(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
                              const State& start);
 
-/// Ends the combination with a reason.
+/// Ends the combination with a reason, and keeps what a program behind it wrote.
 void fail(Combination& combination, const std::string& status);
+
+/// Does something with the combination's backend; the row has failed where the program behind it fails.
+void attempt(Combination& combination, const std::function<void()>& work);
 
 /// Takes what a comparison with the reference has found. The row has failed where it is not near enough.
 void take_verification(Combination& combination, const Verification& verification);
@@ -41,12 +47,14 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
 
 /// Finds how many steps fill a sample, from ever longer trials, and goes on until the backend is warm. With
 /// job.verified the first trial of a tenth of a sample decides, and the first samples warm the backend up:
-/// the processes that are only sampled are many and short, and each counts with its least sample.
+/// the processes that are only sampled are many and short, and each counts with its least sample. The backend
+/// rests afterwards.
 void calibrate(Combination& combination, const SceneJob& job);
 
 /// Milliseconds a step, in a sample of combination.steps from their start. Sets and warms up what is
-/// needed outside the timed region. The row has failed where the result is not finite.
-double sample_ms(Combination& combination, const SceneJob& job);
+/// needed outside the timed region, after which the backend rests. The row has failed where the result is not
+/// finite, and where the program behind the backend fails: then there is no sample.
+std::optional<double> sample_ms(Combination& combination, const SceneJob& job);
 
 /// Computes all that follows from the row's samples. `serial`: the baseline's row of the same integrator, or
 /// null.

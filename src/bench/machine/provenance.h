@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,23 @@ struct SceneHash {
   std::uint64_t fnv1a_64 = 0;
 };
 
+/// A file that a program was run from, as its command names it.
+struct FileHash {
+  std::string name;
+  std::uint64_t fnv1a_64 = 0;
+
+  friend bool operator==(const FileHash& a, const FileHash& b) = default;
+};
+
+/// A program of the user's that is a backend.
+struct BackendProgramRecord {
+  std::string name;
+  std::vector<std::string> command;  ///< as its user wrote it
+  std::vector<FileHash> files;       ///< the program, and those of its arguments that are files
+
+  friend bool operator==(const BackendProgramRecord& a, const BackendProgramRecord& b) = default;
+};
+
 /// Where numbers come from: enough to judge them and to measure them again. Names neither the user nor the
 /// host, and of the environment only what steers threads.
 struct Provenance {
@@ -33,6 +51,7 @@ struct Provenance {
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
   std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/machine/noise.h)
   std::vector<SceneHash> scenes;
+  std::vector<BackendProgramRecord> backend_programs;
   std::vector<std::string>
       command_line;  ///< the program without its folder; the home folder reads ~; escaped()
   std::vector<std::string> earlier_starts_utc;  ///< of runs that this one goes on with, as below
@@ -42,6 +61,11 @@ struct Provenance {
 /// Gathers all that can be known at the start; scenes, OpenCL devices and TetGen are the caller's to add.
 /// `arguments` are main's.
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
+
+/// Adds a program that is a backend: `program` is the file of the command's first word, `folder` the one it
+/// runs in.
+void add_program(Provenance& provenance, std::string_view name, const std::vector<std::string>& command,
+                 const std::filesystem::path& program, const std::filesystem::path& folder);
 
 /// Adds the hash of a scene file's text.
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);

@@ -59,8 +59,10 @@ struct ResultRow {
   std::string note;           ///< what a reader of the numbers should know, or empty
   int warm_up_trials = 0;     ///< before the samples, until the backend was warm
   int outliers = 0;           ///< samples that lie far from the rest (statistics/outliers.h); they count too
-  std::vector<double> samples_ms;          ///< [rounds] ms per step, in the order of the rounds
-  std::vector<int> sample_steps;           ///< [rounds] steps in each sample
+  std::optional<double> processors_used;  ///< processor seconds a second of the samples, median
+  std::string program_output;      ///< what the program behind the backend wrote last, where there is one
+  std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
+  std::vector<int> sample_steps;   ///< [rounds] steps in each sample
   std::optional<DressingRecord> dressing;  ///< of a garment
 };
 

@@ -114,8 +114,14 @@ std::function<int()> declare_bench(Arguments& arguments) {
                " (see mssim list suites); tables stands for table1, table2 and table3",
            one_of("suite", names))
       .value_name("NAME");
-  arguments.add_list("--backend", options->backends, "Backends, or methods with --suite races (default: all)")
-      .value_name("NAME,...");
+  arguments
+      .add_list(
+          "--backend", options->backends,
+          "Backends, or methods with --suite races (default: all of mssim's); a path with a slash, or a "
+          "described name, is a program of your own")
+      .value_name("NAME|FILE,...");
+  declare_backend_folders(arguments, options->own_backends);
+  declare_backend_limit(arguments, options->own_backends);
   arguments
       .add_list("--integrator", options->integrators,
                 "Integrators, or all (default: semi-euler,midpoint,rk4; with --suite races, scaling or "

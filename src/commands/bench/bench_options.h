@@ -6,6 +6,7 @@
 
 #include "backends/interface/backend.h"
 #include "commands/bench/bench_summary.h"
+#include "commands/shared/backend_choice.h"
 
 namespace mssim {
 
@@ -23,6 +24,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;
   std::string suite;
   std::vector<std::string> backends;
+  OwnBackendOptions own_backends;
   std::vector<std::string> integrators;
   ExecutionOptions execution;
   std::optional<int> rounds;  ///< none: the usual number, or as many as the budget allows

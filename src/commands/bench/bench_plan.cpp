@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <span>
 #include <string>
@@ -30,13 +31,15 @@ std::vector<std::string> timed_names(const BenchOptions& options) {
   return scenes;
 }
 
-/// All that there are, or those asked for in the table's order.
+/// All of the table, or those asked for in the table's order, and the user's own behind them.
 std::vector<const BackendInfo*> backends_of(const BenchOptions& options,
-                                            const std::vector<const BackendInfo*>& known) {
+                                            const std::vector<const BackendInfo*>& known,
+                                            BackendChoice& choice) {
   std::vector<const BackendInfo*> asked, all;
-  for (const std::string& name : options.backends) asked.push_back(&require_backend(name, known));
+  for (const std::string& name : options.backends) asked.push_back(&choice.require(name));
   for (const BackendInfo* backend : known)
     if (asked.empty() || std::ranges::find(asked, backend) != asked.end()) all.push_back(backend);
+  std::ranges::copy(choice.own(), std::back_inserter(all));
   return all;
 }
 
@@ -53,9 +56,9 @@ std::vector<const Integrator*> integrators_of(const BenchOptions& options,
   return all;
 }
 
-BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison) {
+BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison, BackendChoice& choice) {
   BenchSettings settings;
-  settings.backends = backends_of(options, comparison.backends());
+  settings.backends = backends_of(options, comparison.backends(), choice);
   settings.integrators = integrators_of(options, comparison.integrators);
   settings.execution = complete(options.execution);
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
@@ -123,7 +126,8 @@ double expected_rounds(const BenchPlan& plan) {
 BenchPlan plan_of(const BenchOptions& options) {
   const Comparison& comparison = comparison_of_suite(options.suite);
   BenchPlan plan;
-  plan.settings = settings_of(options, comparison);
+  plan.backends = BackendChoice(comparison.backends(), options.own_backends, options.scenes);
+  plan.settings = settings_of(options, comparison, plan.backends);
   plan.time_budget_s = options.time_budget_s;
   plan.output = options.output;
   const std::vector<std::string> timed_ones = timed_names(options);
@@ -146,6 +150,7 @@ BenchPlan plan_of(const BenchOptions& options) {
 
   plan.uses_device = !timed.empty() && std::ranges::any_of(plan.settings.backends, &BackendInfo::uses_device);
   plan.provenance = run_provenance(plan.settings.execution.threads, plan.uses_device && !options.dry_run);
+  add_programs(plan.provenance, plan.backends.own());
   plan.provenance.device_memory = name_of(plan.settings.execution.memory);
   for (const UnbuiltScene& scene : plan.described)
     add_scene(plan.provenance, scene.spec.name, scene.spec.source);

@@ -17,6 +17,7 @@ namespace mssim {
 /// of scenes, which are dropped one after the other. Every scene file has been read, and every file that it
 /// names; none is read again.
 struct BenchPlan {
+  BackendChoice backends;
   BenchSettings settings;  ///< of every scene
   std::optional<double> time_budget_s;
   std::vector<PlannedScene> timed;      ///< scenes that are measured

@@ -34,6 +34,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   for (PlannedScene& planned : plan.timed) {
     SceneJob job{plan.settings};
     job.name = planned.spec.name;
+    job.execution.scene = job.name;
     job.deadline = budget.begin_scene();
     job.earlier = results.of_scene(job.name);
     progress.begin_scene(job.name);

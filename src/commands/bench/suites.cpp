@@ -6,6 +6,7 @@
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
+#include "commands/shared/backend_choice.h"
 #include "garment/output/garment_table.h"
 #include "integrators/integrators.h"
 #include "output/tables/paper_table.h"
@@ -33,12 +34,6 @@ constexpr std::array<std::string_view, 6> jeans{"jeans1k", "jeans2k",  "jeans4k"
 /// The real methods, those that are a paper's integrator under its own name.
 constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
 constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
-
-std::vector<const BackendInfo*> all_backends() {
-  std::vector<const BackendInfo*> rows;
-  for (const BackendInfo& backend : backends()) rows.push_back(&backend);
-  return rows;
-}
 
 std::vector<const BackendInfo*> all_methods() {
   std::vector<const BackendInfo*> rows;
@@ -69,7 +64,7 @@ TableMaker table_of_races() {
 
 TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
 
-constexpr Comparison of_backends{all_backends, real_methods, tables_of_the_papers};
+constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
 
 constexpr std::array<Suite, 6> table{{
     {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
@@ -86,13 +81,13 @@ constexpr std::array<Suite, 6> table{{
      false,
      true,
      ever_larger_cloths,
-     {all_backends, cheapest_method, table_of_scaling}},
+     {table_backends, cheapest_method, table_of_scaling}},
     {"garment",
      "jeans on a body, draped and dressed: Figure 6 of Vassilev",
      false,
      true,
      jeans,
-     {all_backends, cheapest_method, garment_tables}},
+     {table_backends, cheapest_method, garment_tables}},
 }};
 
 bool belongs(const Suite& suite, std::string_view name) {

@@ -1,7 +1,9 @@
 #include "commands/list/list_command.h"
 
+#include <algorithm>
 #include <array>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +14,7 @@
 #include "backends/backends.h"
 #include "backends/devices/offer.h"
 #include "commands/bench/suites.h"
+#include "commands/shared/backend_choice.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
@@ -25,6 +28,13 @@
 
 namespace mssim {
 namespace {
+
+struct ListOptions {
+  std::string subject;
+  ListingFormat format = ListingFormat::table;
+  ExecutionOptions execution;
+  OwnBackendOptions own_backends;
+};
 
 /// Counts what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why:
 /// once, since one cause (TetGen is missing) is behind all of them.
@@ -58,7 +68,7 @@ class SceneCounter {
   std::string first_reason_;
 };
 
-Table list_scenes(const ExecutionOptions& /*options*/) {
+Table list_scenes(const ListOptions& /*options*/) {
   Table table;
   SceneCounter counter;
   for (const SceneSpec& spec : shipped_scenes()) {
@@ -75,20 +85,23 @@ Table list_scenes(const ExecutionOptions& /*options*/) {
   return table;
 }
 
-Table list_backends(const ExecutionOptions& options) {
+Table list_backends(const ListOptions& options) {
   Table table;
-  for (const BackendInfo& backend : backends()) {
-    const std::string reason = unavailable_reason(backend, options);
-    table.add({{"backend", backend.name},
-               {"paper_configuration", backend.paper_configuration},
+  BackendChoice choice(table_backends(), options.own_backends);
+  std::vector<const BackendInfo*> all = table_backends();
+  std::ranges::copy(choice.described(), std::back_inserter(all));
+  for (const BackendInfo* backend : all) {
+    const std::string reason = unavailable_reason(*backend, options.execution);
+    table.add({{"backend", backend->name},
+               {"paper_configuration", backend->paper_configuration},
                {"available", reason.empty()},
                {"reason", reason.empty() ? Cell() : Cell(reason)},
-               {"description", backend.description}});
+               {"description", backend->description}});
   }
   return table;
 }
 
-Table list_methods(const ExecutionOptions& /*options*/) {
+Table list_methods(const ListOptions& /*options*/) {
   Table table;
   for (const AccumulationMethod& method : accumulation_methods())
     table.add({{"method", method.backend.name},
@@ -99,7 +112,7 @@ Table list_methods(const ExecutionOptions& /*options*/) {
   return table;
 }
 
-Table list_suites(const ExecutionOptions& /*options*/) {
+Table list_suites(const ListOptions& /*options*/) {
   Table table;
   for (const Suite& suite : suites())
     table.add({{"suite", suite.name},
@@ -110,7 +123,7 @@ Table list_suites(const ExecutionOptions& /*options*/) {
   return table;
 }
 
-Table list_integrators(const ExecutionOptions& /*options*/) {
+Table list_integrators(const ListOptions& /*options*/) {
   Table table;
   for (const Integrator& integrator : integrators)
     table.add({{"integrator", integrator.name},
@@ -120,7 +133,7 @@ Table list_integrators(const ExecutionOptions& /*options*/) {
   return table;
 }
 
-Table list_devices(const ExecutionOptions& /*options*/) {
+Table list_devices(const ListOptions& /*options*/) {
   Table table;
   for (const OpenclDevice& device : opencl_offer().devices)
     table.add({{"number", device.number},
@@ -140,7 +153,7 @@ Table list_devices(const ExecutionOptions& /*options*/) {
 /// The TABLE of what can be listed.
 struct Subject {
   std::string_view name;
-  Table (*list)(const ExecutionOptions& options);
+  Table (*list)(const ListOptions& options);
 };
 constexpr std::array<Subject, 6> subjects{{{"scenes", list_scenes},
                                            {"suites", list_suites},
@@ -149,19 +162,13 @@ constexpr std::array<Subject, 6> subjects{{{"scenes", list_scenes},
                                            {"integrators", list_integrators},
                                            {"devices", list_devices}}};
 
-struct ListOptions {
-  std::string subject;
-  ListingFormat format = ListingFormat::table;
-  ExecutionOptions execution;
-};
-
 constexpr std::string_view schema_subject = "schema";
 
 int run_list(const ListOptions& options) {
   if (options.subject == schema_subject) std::cout << scene_schema();
   for (const Subject& subject : subjects) {
     if (subject.name != options.subject) continue;
-    std::cout << to_text(subject.list(options.execution), options.format);
+    std::cout << to_text(subject.list(options), options.format);
   }
   return exit_ok;
 }
@@ -182,6 +189,7 @@ std::function<int()> declare_list(Arguments& arguments) {
       .add("--device", options->execution.device,
            "OpenCL device that backends are checked with: its number or a part of its name")
       .value_name("N|NAME");
+  declare_backend_folders(arguments, options->own_backends);
   return [options] { return run_list(*options); };
 }
 

@@ -37,11 +37,11 @@ PictureOptions pictures_of(const RunOptions& options) {
 
 /// The chosen backend, made by `in_single`, make_backend or make_dressing_backend, or by `in_double`.
 template <class InSingle, class InDouble>
-auto chosen_backend(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
-                    const InSingle& in_single, const InDouble& in_double) {
-  const BackendInfo& info = require_backend(options.backend);
+auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                    const Integrator& integrator, const InSingle& in_single, const InDouble& in_double) {
   if (options.precision == "single") {
-    const ExecutionOptions execution = complete(options.execution);
+    ExecutionOptions execution = complete(options.execution);
+    execution.scene = scene.spec.name;
     auto backend = in_single(info, scene.system, integrator, scene.dt_s, execution);
     if (info.uses_device) tell_of_opencl();
     if (const std::string excess = excess_of(*backend, execution.threads); !excess.empty())
@@ -49,8 +49,9 @@ auto chosen_backend(const RunOptions& options, const PreparedScene& scene, const
     return backend;
   }
   if (info.make != make_serial)
-    throw UsageError("--precision double needs --backend serial, not \"" + options.backend +
-                     "\": the other backends compute in single precision only");
+    throw UsageError(
+        "--precision double needs --backend serial, not \"" + options.backend +
+        "\": the other backends of mssim compute in single precision only, and a program in its own");
   return in_double(scene.system, integrator, scene.dt_s);
 }
 
@@ -87,40 +88,41 @@ std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, c
   return (curve.back().energy.total() + losses.total() - curve.front().energy.total()) / in_motion;
 }
 
-FileHeaders headers_of(const RunOptions& options, const PreparedScene& scene, const Backend& backend,
-                       const Integrator& integrator) {
+FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                       const Backend& backend, const Integrator& integrator) {
   if (!options.files.any()) return {};
-  Provenance provenance = run_provenance(backend.threads(), require_backend(options.backend).uses_device);
+  Provenance provenance = run_provenance(backend.threads(), info.uses_device);
+  add_programs(provenance, {&info});
   add_scene(provenance, scene.spec.name, scene.spec.source);
-  FileHeaders headers{trace_header(scene, backend, options.backend, integrator, provenance),
+  FileHeaders headers{trace_header(scene, backend, std::string(info.name), integrator, provenance),
                       command_line(provenance), pictures_of(options)};
   headers.trace.with_losses = options.losses;
   headers.trace.in_double = options.precision == "double";
   return headers;
 }
 
-int run_garment(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
-                const SimulationPlan& plan) {
+int run_garment(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                const Integrator& integrator, const SimulationPlan& plan) {
   const auto backend =
-      chosen_backend(options, scene, integrator, make_dressing_backend, make_reference_dressing);
+      chosen_backend(options, info, scene, integrator, make_dressing_backend, make_reference_dressing);
   if (options.losses)
     throw UsageError(
         "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
         "leave it out");
-  const FileHeaders headers = headers_of(options, scene, *backend, integrator);
+  const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
   // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
   // file.
   StopRequest stop;
   const FrameGrid frames = frame_grid(options.fps.value_or(default_fps), scene.dt_s);
   const SettlingRule rule = settling_rule(options, plan);
   RunRecorder recorder(options.files, scene, headers);
-  return run_dressing(scene, *backend, options.backend, rule, frames, recorder, stop, options.silent);
+  return run_dressing(scene, *backend, std::string(info.name), rule, frames, recorder, stop, options.silent);
 }
 
-int run_simulation(const RunOptions& options, const PreparedScene& scene, const Integrator& integrator,
-                   const SimulationPlan& plan) {
-  const auto backend = chosen_backend(options, scene, integrator, make_backend, make_reference);
-  const FileHeaders headers = headers_of(options, scene, *backend, integrator);
+int run_simulation(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                   const Integrator& integrator, const SimulationPlan& plan) {
+  const auto backend = chosen_backend(options, info, scene, integrator, make_backend, make_reference);
+  const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
   StopRequest stop;  // where run_garment has it
   RunRecorder recorder(options.files, scene, headers);
   if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
@@ -151,7 +153,7 @@ int run_simulation(const RunOptions& options, const PreparedScene& scene, const 
   const Energy &first = curve.front().energy, &last = curve.back().energy;
   Table table;
   table.add({{"scene", scene.spec.name},
-             {"backend", options.backend},
+             {"backend", info.name},
              {"device", backend->device()},
              {"threads", backend->threads()},
              {"integrator", options.integrator},
@@ -180,15 +182,16 @@ int run_scene(const RunOptions& options) {
       throw UsageError("--trace: " + *problem);
   pictures_of(options);  // refuses what cannot be drawn
   const Integrator& integrator = require_integrator(options.integrator);
-  require_backend(options.backend);
+  BackendChoice choice(table_backends(), options.own_backends, {options.scene});
+  const BackendInfo& info = choice.require(options.backend);
   PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
                             options.fps.value_or(default_fps), options.losses};
-  return is_garment(scene.system) ? run_garment(options, scene, integrator, plan)
-                                  : run_simulation(options, scene, integrator, plan);
+  return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
+                                  : run_simulation(options, info, scene, integrator, plan);
 }
 
 void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps,
@@ -197,8 +200,13 @@ void declare_stepping(Arguments& arguments, RunOptions& options, const std::stri
     argument.value_name(value_name);
     if (needed) argument.needs(*needed);
   };
-  of_a_simulation(arguments.add("--backend", options.backend, "Backend that simulates it (default: openmp)"),
-                  "NAME");
+  of_a_simulation(
+      arguments.add("--backend", options.backend,
+                    "Backend that simulates it: a name (see mssim list backends), or a program of "
+                    "your own, a path with a slash (default: openmp)"),
+      "NAME|FILE");
+  of_a_simulation(declare_backend_folders(arguments, options.own_backends), "DIR,...");
+  of_a_simulation(declare_backend_limit(arguments, options.own_backends), "SECONDS");
   of_a_simulation(arguments.add("--integrator", options.integrator, "Integrator (default: semi-euler)"),
                   "NAME");
   of_a_simulation(

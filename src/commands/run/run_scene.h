@@ -6,6 +6,7 @@
 #include "backends/interface/backend.h"
 #include "commands/arguments/arguments.h"
 #include "commands/run/run_recorder.h"
+#include "commands/shared/backend_choice.h"
 #include "commands/shared/picture_choice.h"
 
 namespace mssim {
@@ -17,6 +18,7 @@ inline constexpr double default_duration_s = 1;
 struct RunOptions {
   std::string scene;
   std::string backend = "openmp";
+  OwnBackendOptions own_backends;
   std::string integrator = "semi-euler";
   std::string precision = "single";
   std::optional<double> dt_s;

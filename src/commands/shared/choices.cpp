@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/backends.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/scene_list.h"
 #include "integrators/integrators.h"
@@ -21,21 +20,6 @@ const std::map<std::string, DeviceMemory> device_memories{{"copy", DeviceMemory:
                                                           {"shared", DeviceMemory::shared}};
 
 }  // namespace
-
-const BackendInfo& require_backend(const std::string& name) {
-  std::vector<const BackendInfo*> known;
-  for (const BackendInfo& backend : backends()) known.push_back(&backend);
-  return require_backend(name, known);
-}
-
-const BackendInfo& require_backend(const std::string& name, const std::vector<const BackendInfo*>& known) {
-  std::vector<std::string_view> names;
-  for (const BackendInfo* backend : known) {
-    if (backend->name == name) return *backend;
-    names.push_back(backend->name);
-  }
-  throw UsageError(unknown_name("backend", name, names));
-}
 
 const Integrator& require_integrator(const std::string& name) {
   if (const Integrator* integrator = find_integrator(name)) return *integrator;

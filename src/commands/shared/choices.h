@@ -3,20 +3,14 @@
 #include <string>
 #include <vector>
 
-#include "backends/backends.h"
+#include "backends/interface/backend.h"
 #include "commands/arguments/arguments.h"
 #include "integrators/integrator.h"
 #include "output/tables/listing.h"
 
 namespace mssim {
 
-/// The backend of that name. Throws UsageError naming the nearest or listing the known.
-const BackendInfo& require_backend(const std::string& name);
-
-/// The same among `known` ones.
-const BackendInfo& require_backend(const std::string& name, const std::vector<const BackendInfo*>& known);
-
-/// The integrator of that name. Throws like require_backend.
+/// The integrator of that name. Throws UsageError naming the nearest or listing the known.
 const Integrator& require_integrator(const std::string& name);
 
 /// More host threads than this are a typing error, and would only fail later and less clearly.

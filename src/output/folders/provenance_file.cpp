@@ -142,6 +142,23 @@ Machine read_machine(const Place& document) {
   return machine;
 }
 
+BackendProgramRecord read_program(const std::string& name, const Place& program) {
+  return {name, program["command"].list([](const Place& word) { return word.text(); }),
+          program["files_fnv1a_64"].members([](const std::string& file, const Place& value) {
+            return FileHash{file, value.hash()};
+          })};
+}
+
+json programs_json(const std::vector<BackendProgramRecord>& programs) {
+  json all = json::object();
+  for (const BackendProgramRecord& program : programs) {
+    json files = json::object();
+    for (const FileHash& file : program.files) files[file.name] = hexadecimal(file.fnv1a_64);
+    all[program.name] = {{"command", program.command}, {"files_fnv1a_64", files}};
+  }
+  return all;
+}
+
 Provenance read_document(const Place& document) {
   const auto text_of = [](const Place& place) { return place.text(); };
   const Place threads = document["threads"];
@@ -164,6 +181,8 @@ Provenance read_document(const Place& document) {
   provenance.command_line = document["command_line"].list(text_of);
   provenance.started_utc = document["started_utc"].text();
   if (const auto noise = document.find("noise")) provenance.noise = noise->list(text_of);
+  if (const auto programs = document.find("backend_programs"))
+    provenance.backend_programs = programs->members(read_program);
   if (const auto earlier = document.find("earlier_starts_utc"))
     provenance.earlier_starts_utc = earlier->list(text_of);
   return provenance;
@@ -206,6 +225,7 @@ json to_json(const Provenance& provenance) {
           {"device_memory", provenance.device_memory.empty() ? json() : json(provenance.device_memory)},
           {"opencl_devices", provenance.opencl_devices},
           {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
+          {"backend_programs", programs_json(provenance.backend_programs)},
           {"noise", provenance.noise},
           {"scenes_fnv1a_64", scenes}};
 }

@@ -93,6 +93,7 @@ const std::vector<TimingsColumn>& columns() {
       field("warm_up_trials", &Row::warm_up_trials),
       field("outliers", &Row::outliers),
       hash("state_hash", &Row::state_hash),
+      field("processors_used", &Row::processors_used),
   };
   return table;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec3.h"
@@ -68,6 +69,12 @@ class FieldVisitor {
                        std::uint32_t maximum) = 0;
   /// One line of at most `longest_text` characters.
   virtual void text(const Field& field, Presence presence, std::string& target) = 0;
+  /// A list of `least` to `most` such texts.
+  virtual void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
+                     std::vector<std::string>& target) = 0;
+  /// An object of at most `most` such texts, whose keys may be any.
+  virtual void named_texts(const Field& field, std::size_t most,
+                           std::vector<std::pair<std::string, std::string>>& target) = 0;
   /// One of several words, of which the target becomes the number.
   virtual void choice(const Field& field, Presence presence, std::span<const std::string_view> words,
                       std::uint32_t& target) = 0;

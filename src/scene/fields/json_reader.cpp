@@ -90,15 +90,33 @@ class JsonReader final : public FieldVisitor {
   }
 
   void text(const Field& field, Presence presence, std::string& target) override {
-    const std::string wanted = "one line of text of at most " + std::to_string(longest_text) + " characters";
+    if (const json* value = find(field.key, presence, one_text))
+      target = text_of(json_pointer(pointer_, field.key), *value);
+  }
+
+  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
+             std::vector<std::string>& target) override {
+    const std::string wanted =
+        "a list, [ ... ], of " + std::to_string(least) + " to " + std::to_string(most) + " texts";
     const json* value = find(field.key, presence, wanted);
     if (value == nullptr) return;
-    if (!value->is_string()) refuse(field.key, *value, wanted);
-    const auto& words = value->get_ref<const std::string&>();
-    const bool one_line =
-        std::none_of(words.begin(), words.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
-    if (!one_line || count_characters(words) > longest_text) refuse(field.key, *value, wanted);
-    target = words;
+    const std::string list = json_pointer(pointer_, field.key);
+    require_length(list, *value, least, most, wanted);
+    target.clear();
+    for (std::size_t i = 0; i < value->size(); ++i)
+      target.push_back(text_of(json_pointer(list, std::to_string(i)), (*value)[i]));
+  }
+
+  void named_texts(const Field& field, std::size_t most,
+                   std::vector<std::pair<std::string, std::string>>& target) override {
+    const std::string wanted = "an object, { ... }, of at most " + std::to_string(most) + " texts";
+    const json* value = find(field.key, Presence::optional, wanted);
+    if (value == nullptr) return;
+    if (!value->is_object() || value->size() > most) refuse(field.key, *value, wanted);
+    const std::string object = json_pointer(pointer_, field.key);
+    target.clear();
+    for (const auto& [name, text] : value->items())
+      target.emplace_back(name, text_of(json_pointer(object, name), text));
   }
 
   void vector(const Field& field, Presence presence, Vec3d& target, const Range& each) override {
@@ -228,12 +246,25 @@ class JsonReader final : public FieldVisitor {
     return number_of(json_pointer(list, std::to_string(i)), value[i], each, "a number " + described(each));
   }
 
+  std::string text_of(std::string_view pointer, const json& value) const {
+    if (value.is_string()) {
+      const auto& text = value.get_ref<const std::string&>();
+      const bool one_line =
+          std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+      if (one_line && count_characters(text) <= longest_text) return text;
+    }
+    fail(pointer, "is " + described(value) + ": give " + one_text);
+  }
+
   double number_of(std::string_view pointer, const json& value, const Range& range,
                    const std::string& wanted) const {
     if (value.is_number())
       if (const auto number = value.get<double>(); contains(range, number)) return number;
     fail(pointer, "is " + described(value) + ": give " + wanted);
   }
+
+  inline static const std::string one_text =
+      "one line of text of at most " + std::to_string(longest_text) + " characters";
 
   const std::filesystem::path& file_;
   std::string pointer_;

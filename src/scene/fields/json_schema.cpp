@@ -26,6 +26,10 @@ ordered_json array_of(ordered_json items, std::size_t least, std::size_t most) {
 
 ordered_json words(std::span<const std::string_view> known) { return {{"type", "string"}, {"enum", known}}; }
 
+ordered_json one_text() {
+  return {{"type", "string"}, {"maxLength", longest_text}, {"pattern", "^[^\\u0000-\\u001f]*$"}};
+}
+
 /// Describes one object.
 class SchemaWriter final : public FieldVisitor {
  public:
@@ -45,8 +49,16 @@ class SchemaWriter final : public FieldVisitor {
     add(field, Presence::required, numbers("integer", from(minimum, maximum)));
   }
   void text(const Field& field, Presence presence, std::string& /*target*/) override {
-    add(field, presence,
-        {{"type", "string"}, {"maxLength", longest_text}, {"pattern", "^[^\\u0000-\\u001f]*$"}});
+    add(field, presence, one_text());
+  }
+  void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
+             std::vector<std::string>& /*target*/) override {
+    add(field, presence, array_of(one_text(), least, most));
+  }
+  void named_texts(const Field& field, std::size_t most,
+                   std::vector<std::pair<std::string, std::string>>& /*target*/) override {
+    add(field, Presence::optional,
+        {{"type", "object"}, {"maxProperties", most}, {"additionalProperties", one_text()}});
   }
   void choice(const Field& field, Presence presence, std::span<const std::string_view> known,
               std::uint32_t& /*target*/) override {

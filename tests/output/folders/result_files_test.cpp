@@ -43,11 +43,11 @@ TEST_F(ResultFiles, TimingsHaveTheDocumentedColumnsAndQuoteWhatNeedsIt) {
       "scene,nodes,springs_unique,springs_published,backend,device,threads,integrator,dt_s,rounds,"
       "ms_per_step,ms_per_step_low,ms_per_step_high,ms_per_step_min,springs_per_second,"
       "gigabytes_per_second,roofline_fraction,speedup_vs_serial,paper_ms,position_error,energy_drift,"
-      "verified,status,note,warm_up_trials,outliers,state_hash\n"
+      "verified,status,note,warm_up_trials,outliers,state_hash,processors_used\n"
       "cloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,116016000,1.5,"
-      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0,0123456789abcdef\n"
+      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0,0123456789abcdef,1.5\n"
       "cloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
-      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0,\n");
+      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0,,\n");
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
@@ -97,7 +97,7 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
   std::istringstream lines(timings_csv(rows));
   std::string text;
   for (std::string line; std::getline(lines, line);) {
-    for (int columns = 0; columns < 3; ++columns) line.resize(line.rfind(','));
+    for (int columns = 0; columns < 4; ++columns) line.resize(line.rfind(','));
     text += line + '\n';
   }
   EXPECT_THAT(text, HasSubstr("status,note\n"));
@@ -106,6 +106,7 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
   EXPECT_EQ(back[0].ms_per_step, 0.5);
   EXPECT_EQ(back[0].warm_up_trials, 0);
   EXPECT_EQ(back[0].state_hash, std::nullopt);
+  EXPECT_EQ(back[0].processors_used, std::nullopt);
 }
 
 TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {

@@ -1,0 +1,122 @@
+#include "backends/described/backend_description.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "integrators/integrators.h"
+#include "platform/find_program.h"
+#include "platform/whole_file.h"
+#include "scene/fields/json_reader.h"
+#include "scene/fields/scene_error.h"
+#include "text/nearest_name.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_words = 64;
+constexpr std::string_view cloth = "cloth", bodies = "bodies";
+constexpr std::string_view remedy = "give the description of a backend, NAME.json";
+
+/// What a description says, field by field.
+struct Description {
+  std::vector<std::string> command, scenes, integrators;
+  std::string text;
+  std::vector<std::pair<std::string, std::string>> environment;
+  std::optional<double> time_limit_s;
+};
+
+void visit(FieldVisitor& fields, Description& description) {
+  fields.texts(
+      {"command", "The program, in PATH or with a slash relative to this file's folder, and its arguments."},
+      Presence::required, 1, most_words, description.command);
+  fields.text({"description", "One line for mssim list backends."}, Presence::optional, description.text);
+  fields.texts({"scenes", "What it steps: cloth, bodies (default: both)."}, Presence::optional, 1, 2,
+               description.scenes);
+  fields.texts({"integrators", "Those that it has (default: all)."}, Presence::optional, 1,
+               integrators.size(), description.integrators);
+  fields.named_texts({"environment", "Variables that it is given beside mssim's."}, most_words,
+                     description.environment);
+  fields.optional_number({"time_limit_s", "Longest time of an answer, s (default: 120)."},
+                         description.time_limit_s, above(0, longest_time_limit_s));
+}
+
+void require_known(const fs::path& file, const std::string& list, const std::vector<std::string>& words,
+                   const std::vector<std::string_view>& known) {
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (std::ranges::find(known, words[i]) == known.end())
+      refuse(file, list + '/' + std::to_string(i),
+             "is the text \"" + printable(words[i]) + "\": give " + listed(known, "or"));
+}
+
+/// Sets the file that is run, or why there is none.
+void find_file(BackendProgram& program, const fs::path& file) {
+  const std::string& word = program.command.front();
+  if (word.find('/') == std::string::npos) {
+    if (const auto found = find_program(word))
+      program.program = *found;
+    else
+      program.missing = "there is no program " + printable(word) + " in PATH";
+    return;
+  }
+  std::error_code error;
+  program.program = program.folder / word;
+  if (!fs::is_regular_file(program.program, error))
+    program.missing = "there is no file " + printable(word) + " beside " + escaped(file.string());
+  else if (::access(program.program.c_str(), X_OK) != 0)
+    program.missing = escaped(program.program.string()) + " may not be executed; chmod +x it";
+}
+
+}  // namespace
+
+BackendProgram parse_description(const fs::path& file, const std::string& text) {
+  if (text.empty()) throw SceneError(escaped(file.string()) + " is empty: " + std::string(remedy));
+  Description description;
+  read_fields(file, text, [&](FieldVisitor& fields) { visit(fields, description); });
+  if (description.command.front().empty())
+    refuse(file, "/command/0", "is empty: give the name of a program, or a path with a slash");
+  std::vector<std::string_view> known_integrators;
+  for (const Integrator& integrator : integrators) known_integrators.push_back(integrator.name);
+  require_known(file, "/scenes", description.scenes, {cloth, bodies});
+  require_known(file, "/integrators", description.integrators, known_integrators);
+  BackendProgram program;
+  program.name = file.stem().string();
+  program.description = description.text;
+  program.command = std::move(description.command);
+  program.folder = fs::absolute(file).parent_path();
+  if (!description.scenes.empty()) {
+    const auto steps = [&](std::string_view word) {
+      return std::ranges::find(description.scenes, word) != description.scenes.end();
+    };
+    program.steps_cloths = steps(cloth);
+    program.steps_bodies = steps(bodies);
+  }
+  program.integrators = std::move(description.integrators);
+  for (const auto& [name, value] : description.environment) {
+    if (name.empty() || name.find_first_of("=\n") != std::string::npos)
+      refuse(file, "/environment", "has the name \"" + printable(name) + "\": give a variable's name");
+    program.environment.push_back(name + '=' + value);
+  }
+  if (description.time_limit_s) program.time_limit_s = *description.time_limit_s;
+  find_file(program, file);
+  return program;
+}
+
+BackendProgram read_description(const fs::path& file) {
+  try {
+    return parse_description(file, read_file(file, largest_description_bytes));
+  } catch (const ReadError& error) {
+    throw SceneError(error.sentence(file, remedy));
+  }
+}
+
+}  // namespace mssim

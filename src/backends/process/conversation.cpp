@@ -1,0 +1,148 @@
+#include "backends/process/conversation.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/un.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+
+#include "platform/interruption.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+/// Longest line, its newline included.
+constexpr std::size_t longest_line = 4096;
+/// How long a wait goes on before it looks at the clock, the program and the signals.
+constexpr int slice_ms = 100;
+
+[[noreturn]] void fail_to_listen(const std::filesystem::path& socket, const std::string& reason) {
+  throw std::runtime_error("cannot listen at " + socket.string() + " (" + reason +
+                           "); set TMPDIR to a writable folder with a short name");
+}
+
+bool is_readable(int descriptor) {
+  pollfd waiting{descriptor, POLLIN, 0};
+  return descriptor >= 0 && ::poll(&waiting, 1, 0) > 0;
+}
+
+/// What of a line can be shown in a sentence.
+std::string in_quotes(std::string_view line) { return '"' + printable(line) + '"'; }
+
+}  // namespace
+
+Conversation::Conversation(const std::filesystem::path& folder) : socket_(folder / "socket") {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (socket_.native().size() >= sizeof address.sun_path) fail_to_listen(socket_, "its name is too long");
+  std::ranges::copy(socket_.native(), std::begin(address.sun_path));
+  listener_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!listener_.is_open() ||
+      ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listener_.get(), 2) != 0)
+    fail_to_listen(socket_, std::strerror(errno));
+}
+
+void Conversation::fail(ConversationFailure::Cause cause, const std::string& sentence) const {
+  throw ConversationFailure(cause, sentence);
+}
+
+void Conversation::begin(std::chrono::duration<double> time_limit, int end_descriptor) {
+  time_limit_ = time_limit;
+  end_descriptor_ = end_descriptor;
+  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit);
+  accept();
+  // A wait for bytes alone is the fastest answer there is; every slice it looks at all else.
+  const timeval slice{0, slice_ms * 1000};
+  if (::setsockopt(connection_.get(), SOL_SOCKET, SO_RCVTIMEO, &slice, sizeof slice) != 0)
+    throw std::runtime_error(std::string("cannot set a socket's time limit (") + std::strerror(errno) + ")");
+}
+
+void Conversation::accept() {
+  using Cause = ConversationFailure::Cause;
+  for (;;) {
+    throw_if_ending_signal_noted();
+    std::array<pollfd, 2> waiting{{{listener_.get(), POLLIN, 0}, {end_descriptor_, POLLIN, 0}}};
+    ::poll(waiting.data(), waiting.size(), slice_ms);
+    connection_ = Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (connection_.is_open()) return;
+    if (is_readable(end_descriptor_)) fail(Cause::closed, "before it connected to MSSIM_SOCKET");
+    if (Clock::now() > deadline_) {
+      std::ostringstream text;
+      text << "did not connect to MSSIM_SOCKET within " << time_limit_.count() << " s";
+      fail(Cause::silence, text.str());
+    }
+  }
+}
+
+void Conversation::ask(std::string_view lines, const std::string& asked) {
+  using Cause = ConversationFailure::Cause;
+  std::array<char, longest_line> early;
+  if (received_.empty()) {
+    const ssize_t bytes = ::recv(connection_.get(), early.data(), early.size(), MSG_DONTWAIT);
+    if (bytes > 0) received_.assign(early.data(), static_cast<std::size_t>(bytes));
+  }
+  if (!received_.empty())
+    fail(Cause::answer, "sent " + in_quotes(received_.substr(0, received_.find('\n'))) +
+                            " after its answer to " + asked_ + ", where nothing was asked");
+  asked_ = '"' + asked + '"';
+  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit_);
+  while (!lines.empty()) {
+    const ssize_t bytes = ::send(connection_.get(), lines.data(), lines.size(), MSG_NOSIGNAL);
+    if (bytes < 0 && errno == EINTR) continue;
+    if (bytes < 0) fail(Cause::closed, "before it was asked " + asked_);
+    lines.remove_prefix(static_cast<std::size_t>(bytes));
+  }
+}
+
+std::string Conversation::answer() {
+  using Cause = ConversationFailure::Cause;
+  std::size_t searched = 0;
+  for (;;) {
+    const std::size_t end = received_.find('\n', searched);
+    if (std::min(end, received_.size()) >= longest_line)
+      fail(Cause::answer, "answered " + asked_ + " with a line of more than " + std::to_string(longest_line) +
+                              " bytes, which begins " + in_quotes(received_.substr(0, 40)));
+    if (end != std::string::npos) {
+      std::string line = received_.substr(0, end);
+      received_.erase(0, end + 1);
+      return line;
+    }
+    searched = received_.size();
+    std::array<char, longest_line> bytes;
+    const ssize_t count = ::recv(connection_.get(), bytes.data(), bytes.size(), 0);
+    if (count > 0)
+      received_.append(bytes.data(), static_cast<std::size_t>(count));
+    else if (count == 0 || (errno != EAGAIN && errno != EINTR))
+      fail(Cause::closed, "before it answered " + asked_);
+    else
+      look_around();
+  }
+}
+
+void Conversation::look_around() const {
+  using Cause = ConversationFailure::Cause;
+  throw_if_ending_signal_noted();
+  // What it sent before it ended has been read.
+  if (is_readable(end_descriptor_)) fail(Cause::closed, "before it answered " + asked_);
+  if (is_readable(listener_.get()))
+    fail(Cause::answer, "connected a second time before it answered " + asked_);
+  if (Clock::now() > deadline_) {
+    std::ostringstream text;
+    text << "did not answer " << asked_ << " within " << time_limit_.count() << " s";
+    fail(Cause::silence, text.str());
+  }
+}
+
+void Conversation::say_last(std::string_view lines) {
+  if (connection_.is_open())
+    static_cast<void>(::send(connection_.get(), lines.data(), lines.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
+}
+
+}  // namespace mssim

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "platform/descriptor.h"
+
+namespace mssim {
+
+/// Why a conversation cannot go on. what() is what the program did, without its name: "did not answer ...".
+struct ConversationFailure : std::runtime_error {
+  enum class Cause {
+    silence,  ///< no answer in time
+    closed,   ///< no connection any more: the program has ended, or has closed its socket
+    answer    ///< an answer that is none
+  };
+  Cause cause;
+
+  ConversationFailure(Cause why, const std::string& sentence) : std::runtime_error(sentence), cause(why) {}
+};
+
+/// Lines of text with one program over a Unix socket: mssim listens, the program connects once, and then each
+/// line that mssim asks something with is answered. What the program sends is bounded in length and in time.
+/// All calls throw ConversationFailure, and Interrupted (platform/interruption.h) within a tenth of a second
+/// after the user has asked mssim to end.
+class Conversation {
+ public:
+  /// Listens at a socket in this folder. Throws std::runtime_error with one sentence where that cannot be.
+  explicit Conversation(const std::filesystem::path& folder);
+
+  const std::filesystem::path& socket() const { return socket_; }
+
+  /// Waits so long for the program to connect, and for every answer. `end_descriptor` becomes readable when
+  /// the program has ended.
+  void begin(std::chrono::duration<double> time_limit, int end_descriptor);
+
+  /// Sends lines, each ended by a newline, of which an answer is expected. `asked` says in messages what they
+  /// ask for. An answer that came before it was asked for is an error.
+  void ask(std::string_view lines, const std::string& asked);
+
+  /// The next line that the program sends, without its newline. The time counts from ask().
+  std::string answer();
+
+  /// Where the program has connected: tells it something that is not answered, and nothing of what it sends
+  /// is read any more.
+  void say_last(std::string_view lines);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[noreturn]] void fail(ConversationFailure::Cause cause, const std::string& sentence) const;
+  void accept();
+  /// Looks after a tenth of a second without an answer whether one can still come.
+  void look_around() const;
+
+  std::filesystem::path socket_;
+  Descriptor listener_, connection_;
+  std::chrono::duration<double> time_limit_{};
+  int end_descriptor_ = -1;
+  Clock::time_point deadline_;
+  std::string asked_;     ///< in quotes
+  std::string received_;  ///< what has come of the next line, and perhaps more
+};
+
+}  // namespace mssim

@@ -1,0 +1,268 @@
+#include "backends/process/process_backend.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <iomanip>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "backends/process/conversation.h"
+#include "backends/process/method_text.h"
+#include "backends/process/state_file.h"
+#include "backends/process/system_file.h"
+#include "platform/data_folder.h"
+#include "platform/process_cpus.h"
+#include "platform/supervised_process.h"
+#include "platform/temporary_folder.h"
+#include "text/note.h"
+#include "text/number_in.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How long a program that has closed its connection, or was asked to end, gets to end by itself.
+constexpr std::chrono::milliseconds patience = 2s;
+/// Lines that a program may say of itself before it is ready.
+constexpr int most_lines = 100;
+constexpr std::size_t longest_shown = 300;
+constexpr int most_threads = 4096;
+
+/// A line's first word, and what follows it.
+std::pair<std::string_view, std::string_view> split(std::string_view line) {
+  const std::size_t space = line.find(' ');
+  return {line.substr(0, space), space == std::string_view::npos ? "" : line.substr(space + 1)};
+}
+
+/// The last line of a program's output that is not empty.
+std::string last_line(std::string_view output) {
+  const std::size_t end = output.find_last_not_of(" \t\r\n");
+  if (end == std::string_view::npos) return "";
+  output = output.substr(0, end + 1);
+  return printable(output.substr(output.find_last_of('\n') + 1), longest_shown);
+}
+
+std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
+                                        int threads) {
+  const char* path = std::getenv("PYTHONPATH");
+  const std::string count = std::to_string(threads);
+  std::vector<std::string> all{
+      "MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count, "OMP_NUM_THREADS=" + count,
+      "PYTHONPATH=" + (data_folder() / "python").string() + (path && *path ? std::string(":") + path : "")};
+  all.insert(all.end(), program.environment.begin(), program.environment.end());
+  return all;
+}
+
+/// The first of the processors that mssim may use; none where the program may use all of them.
+std::vector<int> first_cpus(int threads) {
+  std::vector<int> cpus = process_cpus();
+  if (cpus.size() <= static_cast<std::size_t>(threads)) return {};
+  cpus.resize(static_cast<std::size_t>(threads));
+  return cpus;
+}
+
+/// Throws Unsupported for what the program is known not to have.
+void require_support(const BackendProgram& program, const System& system, const Integrator& integrator) {
+  refuse_garment(system);
+  const bool cloth = std::holds_alternative<GridPatch>(system.topology);
+  if (!(cloth ? program.steps_cloths : program.steps_bodies))
+    throw Unsupported(std::string("it does not step ") + (cloth ? "cloths" : "bodies"));
+  if (!program.integrators.empty() &&
+      std::ranges::find(program.integrators, integrator.name) == program.integrators.end())
+    throw Unsupported("it has no " + std::string(integrator.name));
+}
+
+/// What a program says of itself before it is ready.
+struct Introduction {
+  std::string device = "cpu";
+  int threads = 0;
+  std::string note;
+};
+
+class ProcessBackend final : public Backend {
+ public:
+  ProcessBackend(const BackendProgram& program, const System& system, const Integrator& integrator,
+                 double dt_s, const ExecutionOptions& options)
+      : program_(program), conversation_(folder_.path()), state_file_(system.nodes(), folder_.path()) {
+    const std::filesystem::path system_file = folder_.path() / "system.h5";
+    write_system(system_file, system);
+    process_.emplace(
+        SupervisedProgram{program.program,
+                          {program.command.begin() + 1, program.command.end()},
+                          environment_of(program, conversation_.socket().string(), options.threads),
+                          program.folder,
+                          first_cpus(options.threads)});
+    std::ostringstream lines;
+    lines << std::setprecision(std::numeric_limits<double>::max_digits10) << "mssim-backend 1\nscene "
+          << escaped(options.scene) << "\ndt " << dt_s << "\nthreads " << options.threads << '\n'
+          << method_text(integrator) << "system " << system_file.string() << "\nstate "
+          << state_file_.path().string() << "\nprepare\n";
+    introduction_.threads = options.threads;
+    conversing([&] {
+      conversation_.begin(std::chrono::duration<double>(program.time_limit_s), process_->end_descriptor());
+      conversation_.ask(lines.str(), "prepare");
+      listen();
+    });
+    std::error_code ignored;  // it goes with its folder in any case
+    std::filesystem::remove(system_file, ignored);
+  }
+
+  ~ProcessBackend() override {
+    // Where a wait was cut short there is no time for manners.
+    if (std::uncaught_exceptions() == 0) end_politely();
+  }
+  ProcessBackend(const ProcessBackend&) = delete;
+  ProcessBackend& operator=(const ProcessBackend&) = delete;
+
+  void set_state(const State& state) override {
+    state_file_.write(state);
+    request("set");
+  }
+
+  void step(int count) override { request("step " + std::to_string(count), true); }
+
+  State state() const override {
+    state_file_.clear();
+    request("get");
+    try {
+      return state_file_.read();
+    } catch (const StateFileFailure& failure) {
+      fail(std::string(failure.what()) + " when it was asked \"get\"");
+    }
+  }
+
+  std::string device() const override { return introduction_.device; }
+  int threads() const override { return introduction_.threads; }
+  bool runs_on_host() const override { return introduction_.device == "cpu"; }
+  std::string note() const override { return introduction_.note; }
+  std::string reason_for_excess() const override { return "the program takes them"; }
+
+  void rest() override {
+    if (!std::exchange(paused_, true)) process_->pause();
+  }
+  std::string end() override { return end_politely(); }
+  double processor_seconds() const override { return process_->processor_seconds(); }
+
+ private:
+  /// Calls `converse`, and turns what goes wrong with the program into BackendFailure.
+  template <class Converse>
+  std::invoke_result_t<Converse> conversing(const Converse& converse) const {
+    using Cause = ConversationFailure::Cause;
+    try {
+      return converse();
+    } catch (const ConversationFailure& failure) {
+      if (failure.cause != Cause::closed) fail(failure.what(), failure.cause == Cause::silence);
+      pollfd ended{process_->end_descriptor(), POLLIN, 0};
+      if (::poll(&ended, 1, static_cast<int>(patience.count())) > 0)
+        fail(describe(process_->end(patience)) + ' ' + failure.what(), true);
+      fail(std::string("closed its connection ") + failure.what(), true);
+    }
+  }
+
+  /// Ends the program and throws BackendFailure: its name, this predicate and, where it is wanted, the last
+  /// thing that it wrote.
+  [[noreturn]] void fail(const std::string& predicate, bool with_last_line = false) const {
+    const std::string output = process_->end(0ms).output;
+    std::string sentence = program_.name + ' ' + predicate;
+    if (const std::string line = last_line(output); with_last_line && !line.empty())
+      sentence += "; its last line: " + line;
+    throw BackendFailure(sentence, output);
+  }
+
+  [[noreturn]] void fail_at(std::string_view line, const std::string& asked, const char* expected) const {
+    fail("answered \"" + printable(line) + "\" to \"" + asked + "\", where " + expected + " is expected");
+  }
+
+  /// Takes the answers to `prepare`. Throws Unsupported and Unavailable.
+  void listen() {
+    for (int lines = 0; lines < most_lines; ++lines)
+      if (takes(conversation_.answer())) return;
+    fail("answered \"prepare\" with more than " + std::to_string(most_lines) + " lines");
+  }
+
+  /// Takes one of them; true where it is the last.
+  bool takes(const std::string& line) {
+    const auto [word, text] = split(line);
+    const std::string shown = printable(text, longest_shown);
+    if (word == "unsupported") throw Unsupported(shown);
+    if (word == "unavailable") throw Unavailable(shown);
+    if (word == "failed") fail("failed at \"prepare\": " + shown);
+    if (line == "ready 1") return true;
+    if (word == "device" && !text.empty())
+      introduction_.device = shown;
+    else if (word == "threads")
+      introduction_.threads = thread_count(line, text);
+    else if (word == "precision" && !text.empty())
+      add_to_note(introduction_.note, shown + " precision");
+    else if (word == "note" && !text.empty())
+      add_to_note(introduction_.note, shown);
+    else
+      fail_at(line, "prepare",
+              "device, threads, precision, note, ready 1, unsupported, unavailable or failed");
+    return false;
+  }
+
+  int thread_count(const std::string& line, std::string_view text) const {
+    const std::optional<int> count = number_in<int>(text);
+    if (!count || *count < 1 || *count > most_threads)
+      fail_at(line, "prepare", "a number of threads from 1 to 4096");
+    return *count;
+  }
+
+  /// Asks for something and waits until it is done. `timed`: the program may say how long it took.
+  void request(const std::string& request, bool timed = false) const {
+    if (std::exchange(paused_, false)) process_->resume();
+    const std::string line = conversing([&] {
+      conversation_.ask(request + '\n', request);
+      return conversation_.answer();
+    });
+    if (line == "done") return;
+    const auto [word, text] = split(line);
+    if (word == "failed") fail("failed at \"" + request + "\": " + printable(text, longest_shown));
+    const std::optional<double> seconds = number_in<double>(text);
+    if (!(timed && word == "done" && seconds && *seconds >= 0 && std::isfinite(*seconds)))
+      fail_at(line, request, "done or failed");
+  }
+
+  std::string end_politely() {
+    if (!process_) return "";
+    if (std::exchange(paused_, false)) process_->resume();
+    conversation_.say_last("end\n");
+    return process_->end(patience).output;
+  }
+
+  const BackendProgram& program_;
+  TemporaryFolder folder_;
+  // Asking is part of what does not change the simulation.
+  mutable Conversation conversation_;
+  mutable bool paused_ = false;
+  StateFile state_file_;
+  Introduction introduction_;
+  mutable std::optional<SupervisedProcess> process_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
+                                              const Integrator& integrator, double dt_s,
+                                              const ExecutionOptions& options) {
+  if (!program.missing.empty()) throw Unavailable(program.missing);
+  require_support(program, system, integrator);
+  return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options);
+}
+
+}  // namespace mssim

@@ -1,0 +1,142 @@
+#include "backends/process/system_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hdf5/hdf5_write.h"
+#include "platform/write_error.h"
+
+namespace mssim {
+namespace {
+
+hid_t file_type(double /*number*/) { return H5T_IEEE_F64LE; }
+hid_t file_type(std::uint32_t /*number*/) { return H5T_STD_U32LE; }
+hid_t memory_type(double /*number*/) { return H5T_NATIVE_DOUBLE; }
+hid_t memory_type(std::uint32_t /*number*/) { return H5T_NATIVE_UINT32; }
+
+/// A dataset in one piece; no extents: of one number.
+template <class Number>
+Hdf5Dataset create(hid_t file, const std::string& path, const std::string& unit,
+                   const std::vector<hsize_t>& extents) {
+  const std::string action = "creating " + path;
+  const Hdf5Space space(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), action);
+  Hdf5Dataset dataset(
+      H5Dcreate2(file, path.c_str(), file_type(Number()), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      action);
+  if (!unit.empty()) write_attribute(dataset.get(), "unit", std::string_view(unit));
+  return dataset;
+}
+
+template <class Number>
+void write_number(hid_t file, const std::string& path, const std::string& unit, Number number) {
+  Hdf5Dataset dataset = create<Number>(file, path, unit, {});
+  checked(H5Dwrite(dataset.get(), memory_type(number), H5S_ALL, H5S_ALL, H5P_DEFAULT, &number),
+          "writing " + path);
+  dataset.close("writing " + path);
+}
+
+/// A list of `rows` of `width` numbers each; `row_of(i)` is an array of those of row i. Some rows at a time,
+/// because all springs of a large scene take as much memory again as the scene.
+template <class Number, std::size_t width, class RowOf>
+void write_list(hid_t file, const std::string& path, const std::string& unit, std::size_t rows,
+                const RowOf& row_of) {
+  constexpr std::size_t rows_at_once = 65536;
+  const std::string action = "writing " + path;
+  Hdf5Dataset dataset = create<Number>(
+      file, path, unit, width == 1 ? std::vector<hsize_t>{rows} : std::vector<hsize_t>{rows, width});
+  std::vector<std::array<Number, width>> block;
+  const Hdf5Space space(H5Dget_space(dataset.get()), action);
+  for (std::size_t first = 0; first < rows; first += block.size()) {
+    block.resize(std::min(rows_at_once, rows - first));
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = row_of(first + i);
+    const std::array<hsize_t, 2> start{first, 0}, count{block.size(), width};
+    checked(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
+            action);
+    const hsize_t numbers = block.size() * width;
+    const Hdf5Space memory(H5Screate_simple(1, &numbers, nullptr), action);
+    checked(
+        H5Dwrite(dataset.get(), memory_type(Number()), memory.get(), space.get(), H5P_DEFAULT, block.data()),
+        action);
+  }
+  dataset.close(action);
+}
+
+void write_vectors(hid_t file, const std::string& path, const std::string& unit,
+                   const std::vector<Vec3d>& vectors) {
+  write_list<double, 3>(file, path, unit, vectors.size(), [&](std::size_t i) {
+    return std::array{vectors[i].x, vectors[i].y, vectors[i].z};
+  });
+}
+
+void write_nodes(hid_t file, const System& system) {
+  write_vectors(file, "/position", "m", system.start.position);
+  write_vectors(file, "/velocity", "m/s", system.start.velocity);
+  write_list<double, 1>(file, "/mass", "kg", system.nodes(),
+                        [&](std::size_t i) { return std::array{system.node_mass[i]}; });
+  write_list<std::uint32_t, 1>(file, "/pins", "", system.pins.size(),
+                               [&](std::size_t i) { return std::array{system.pins[i]}; });
+}
+
+void write_springs(hid_t file, const System& system) {
+  const std::vector<Spring>& springs = system.springs;
+  const auto of_material = [&](const std::string& path, const std::string& unit,
+                               double SpringMaterial::*number) {
+    write_list<double, 1>(file, path, unit, springs.size(), [&](std::size_t i) {
+      return std::array{system.materials[springs[i].kind].*number};
+    });
+  };
+  write_list<std::uint32_t, 2>(file, "/springs", "", springs.size(), [&](std::size_t i) {
+    return std::array{springs[i].first, springs[i].second};
+  });
+  write_list<double, 1>(file, "/rest_length", "m", springs.size(),
+                        [&](std::size_t i) { return std::array<double, 1>{springs[i].rest_length}; });
+  of_material("/stiffness", "N/m", &SpringMaterial::stiffness);
+  of_material("/damping", "N s/m", &SpringMaterial::damping);
+  write_list<std::uint32_t, 1>(file, "/kind", "", springs.size(),
+                               [&](std::size_t i) { return std::array{springs[i].kind}; });
+}
+
+void write_surroundings(hid_t file, const System& system) {
+  const std::vector<double> gravity{0, -system.gravity, 0};
+  write_list<double, 1>(file, "/gravity", "m/s^2", gravity.size(),
+                        [&](std::size_t i) { return std::array{gravity[i]}; });
+  write_number(file, "/viscous_damping", "1/s", system.viscous_damping);
+  create_group(file, "/floor");
+  write_number(file, "/floor/height", "m", system.floor.height);
+  write_number(file, "/floor/restitution", "", system.floor.restitution);
+  write_number(file, "/floor/friction", "", system.floor.friction);
+}
+
+void write_topology(hid_t file, const Topology& topology) {
+  if (const auto* grid = std::get_if<GridPatch>(&topology)) {
+    create_group(file, "/grid");
+    write_number(file, "/grid/rows", "", grid->rows);
+    write_number(file, "/grid/columns", "", grid->columns);
+    write_number(file, "/grid/spacing", "m", grid->spacing);
+  }
+  if (const auto* mesh = std::get_if<TetrahedralMesh>(&topology))
+    write_list<std::uint32_t, 4>(file, "/tetrahedra", "", mesh->tetrahedra.size(),
+                                 [&](std::size_t i) { return mesh->tetrahedra[i]; });
+}
+
+}  // namespace
+
+void write_system(const std::filesystem::path& file, const System& system) {
+  prepare_hdf5();
+  try {
+    Hdf5File open(H5Fcreate(file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), "creating it");
+    write_nodes(open.get(), system);
+    write_springs(open.get(), system);
+    write_surroundings(open.get(), system);
+    write_topology(open.get(), system.topology);
+    open.close("closing it");
+  } catch (const Hdf5Error& error) {
+    throw WriteError(write_failure(file, error.action, error.error_number, error.what()));
+  }
+}
+
+}  // namespace mssim

@@ -1,0 +1,179 @@
+#include "commands/shared/backend_choice.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+#include "backends/described/backend_description.h"
+#include "commands/shared/exit_code.h"
+#include "platform/missing_program.h"
+#include "scene/scene_file.h"
+#include "text/nearest_name.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view description_extension = ".json";
+
+/// The folder of the user's own descriptions; none where the user has no home.
+std::optional<fs::path> user_folder() {
+  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
+    return fs::path(folder) / "mssim" / "backends";
+  if (const char* home = std::getenv("HOME"); home && *home)
+    return fs::path(home) / ".config" / "mssim" / "backends";
+  return std::nullopt;
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+std::string shown(const fs::path& path) { return escaped(path.string()); }
+
+/// The program at a path that the command line names.
+BackendProgram program_at(const std::string& path) {
+  if (!is_file(path))
+    throw MissingProgram("there is no program " + escaped(path) +
+                         ": give the path of a program, or a name (see mssim list backends)");
+  if (::access(path.c_str(), X_OK) != 0)
+    throw MissingProgram(escaped(path) + " may not be executed; chmod +x it, or describe how it is run");
+  BackendProgram program;
+  program.program = fs::absolute(path);
+  program.name = program.program.filename().string();
+  program.description = "the program " + escaped(path);
+  program.command = {path};
+  program.folder = fs::current_path();
+  return program;
+}
+
+}  // namespace
+
+Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
+  return arguments
+      .add_list("--backend-folder", options.folders,
+                "Folders with descriptions of backends, NAME.json (see docs/own-backends.md)")
+      .value_name("DIR,...");
+}
+
+Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
+  return arguments
+      .add_number("--backend-limit", options.limit_s,
+                  "Longest time in which a program that is a backend must answer (default: 120)",
+                  number_between(0.001, longest_time_limit_s))
+      .value_name("SECONDS");
+}
+
+std::vector<const BackendInfo*> table_backends() {
+  std::vector<const BackendInfo*> rows;
+  for (const BackendInfo& backend : backends()) rows.push_back(&backend);
+  return rows;
+}
+
+BackendChoice::Row::Row(BackendProgram its_program)
+    : program(std::move(its_program)), info(own_backend(program)) {}
+
+BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBackendOptions& options,
+                             const std::vector<std::string>& scenes)
+    : known_(std::move(known)), limit_s_(options.limit_s) {
+  for (const std::string& folder : options.folders) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+      throw UsageError("--backend-folder " + escaped(folder) + " is no folder");
+    folders_.emplace_back(folder);
+  }
+  if (const auto folder = user_folder()) folders_.push_back(*folder);
+  for (const std::string& scene : scenes) {
+    const fs::path folder = fs::path(scene).parent_path();
+    if (is_path_of_scene(scene)) scene_folders_.push_back(folder.empty() ? fs::path(".") : folder);
+  }
+}
+
+const BackendInfo& BackendChoice::require(const std::string& name) {
+  if (name.find('/') != std::string::npos)
+    return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
+  const std::optional<fs::path> file = description_of(name);
+  const auto row = std::ranges::find(known_, name, &BackendInfo::name);
+  if (row != known_.end()) return **row;
+  if (file) return add_file(*file);
+  std::vector<std::string_view> names;
+  for (const BackendInfo* info : known_) names.push_back(info->name);
+  for (const BackendInfo* info : described()) names.push_back(info->name);
+  throw UsageError(unknown_name("backend", name, names));
+}
+
+std::vector<const BackendInfo*> BackendChoice::described() {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : folders_) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == description_extension && is_file(entry.path()))
+        files.push_back(entry.path());
+  }
+  std::ranges::sort(files, {}, [](const fs::path& file) { return file.filename(); });
+  std::vector<const BackendInfo*> infos;
+  for (const fs::path& file : files) infos.push_back(&require(file.stem().string()));
+  return infos;
+}
+
+std::vector<const BackendInfo*> BackendChoice::own() const {
+  std::vector<const BackendInfo*> infos;
+  for (const std::unique_ptr<Row>& row : rows_) infos.push_back(&row->info);
+  return infos;
+}
+
+std::optional<fs::path> BackendChoice::description_of(const std::string& name) const {
+  const bool in_table = std::ranges::find(known_, name, &BackendInfo::name) != known_.end();
+  std::vector<fs::path> found;
+  const auto look = [&](const fs::path& folder) {
+    const fs::path file = folder / (name + std::string(description_extension));
+    std::error_code error;
+    const bool known =
+        std::ranges::any_of(found, [&](const fs::path& other) { return fs::equivalent(other, file, error); });
+    if (is_file(file) && !known) found.push_back(file);
+  };
+  std::ranges::for_each(folders_, look);
+  if (in_table && !found.empty())
+    throw UsageError(shown(found.front()) + " is called like the backend " + name + " of mssim; rename it");
+  // A scene may be called as anything.
+  if (!in_table) std::ranges::for_each(scene_folders_, look);
+  if (found.size() > 1)
+    throw UsageError("there are two backends called " + escaped(name) + ", " + shown(found[0]) + " and " +
+                     shown(found[1]) + "; rename one of them");
+  return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
+const BackendInfo& BackendChoice::add_file(const fs::path& file) { return add(read_description(file)); }
+
+const BackendInfo& BackendChoice::add(BackendProgram program) {
+  if (escaped(program.name) != program.name)
+    throw UsageError("a backend cannot be called " + escaped(program.name) +
+                     ": its name has characters that cannot be shown; rename it");
+  if (std::ranges::find(known_, program.name, &BackendInfo::name) != known_.end())
+    throw UsageError(shown(program.program) + " is called like the backend " + program.name +
+                     " of mssim; rename it");
+  for (const std::unique_ptr<Row>& row : rows_) {
+    if (row->program.name != program.name) continue;
+    if (row->program.program == program.program && row->program.command == program.command &&
+        row->program.folder == program.folder)
+      return row->info;
+    throw UsageError("there are two backends called " + program.name + ", " + shown(row->program.program) +
+                     " and " + shown(program.program) + "; rename one of them");
+  }
+  if (limit_s_) program.time_limit_s = *limit_s_;
+  return rows_.emplace_back(std::make_unique<Row>(std::move(program)))->info;
+}
+
+void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows) {
+  for (const BackendInfo* info : rows)
+    if (const BackendProgram* program = info->program)
+      add_program(provenance, program->name, program->command, program->program, program->folder);
+}
+
+}  // namespace mssim

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/backends.h"
+#include "bench/machine/provenance.h"
+#include "commands/arguments/arguments.h"
+
+namespace mssim {
+
+/// What a command line says of programs that are backends.
+struct OwnBackendOptions {
+  std::vector<std::string> folders;  ///< where descriptions are looked for first
+  std::optional<double> limit_s;     ///< of every answer; none: as described, or 120 s
+};
+
+/// Declares --backend-folder. `options` must outlive the parsing.
+Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options);
+
+/// Declares --backend-limit. `options` must outlive the parsing.
+Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options);
+
+/// The rows of the TABLE of backends, in its order.
+std::vector<const BackendInfo*> table_backends();
+
+/// The backends that a command may use: the rows of a table, and programs of the user's, which are looked up
+/// when they are asked for. Rows stay where they are while this object lives, also where it is moved.
+class BackendChoice {
+ public:
+  BackendChoice() = default;
+  /// `known`: the rows of the table. `scenes`: as they were asked for; the folders of those that are files
+  /// may hold descriptions.
+  BackendChoice(std::vector<const BackendInfo*> known, const OwnBackendOptions& options,
+                const std::vector<std::string>& scenes = {});
+
+  /// The row of that name: of the table, the file of that path (which has a slash), or the one described as
+  /// NAME.json. Throws UsageError naming the nearest or listing the known, and where a name stands for two;
+  /// MissingProgram for a path at which nothing can be run; SceneError for a description that is wrong.
+  const BackendInfo& require(const std::string& name);
+
+  /// All that are described in --backend-folder and the user's own folder. Throws like require().
+  std::vector<const BackendInfo*> described();
+
+  /// Those that have been asked for and are no rows of the table.
+  std::vector<const BackendInfo*> own() const;
+
+ private:
+  struct Row {
+    explicit Row(BackendProgram its_program);
+    BackendProgram program;
+    BackendInfo info;
+  };
+
+  const BackendInfo& add(BackendProgram program);
+  const BackendInfo& add_file(const std::filesystem::path& file);
+  std::optional<std::filesystem::path> description_of(const std::string& name) const;
+
+  std::vector<const BackendInfo*> known_;
+  std::optional<double> limit_s_;
+  std::vector<std::filesystem::path> folders_;        ///< of descriptions alone
+  std::vector<std::filesystem::path> scene_folders_;  ///< which may hold some
+  std::vector<std::unique_ptr<Row>> rows_;
+};
+
+/// Adds the programs of those rows that have one.
+void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows);
+
+}  // namespace mssim

@@ -1,0 +1,103 @@
+#include "backends/described/backend_description.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "scene/fields/scene_error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace mssim {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+namespace fs = std::filesystem;
+
+class BackendDescriptionTest : public TemporaryFolderTest {
+ protected:
+  BackendProgram parse(const std::string& text) const {
+    return parse_description(folder() / "mine.json", text);
+  }
+  std::string refusal(const std::string& text) const {
+    try {
+      parse(text);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "none";
+  }
+};
+
+TEST_F(BackendDescriptionTest, NeedsACommandAlone) {
+  const BackendProgram program = parse(R"({"command": ["sh", "-c", "exit"]})");
+  EXPECT_EQ(program.name, "mine");
+  EXPECT_EQ(program.program.filename(), "sh");
+  EXPECT_TRUE(program.program.is_absolute());
+  EXPECT_THAT(program.command, ElementsAre("sh", "-c", "exit"));
+  EXPECT_EQ(program.folder, folder());
+  EXPECT_EQ(program.missing, "");
+  EXPECT_TRUE(program.steps_cloths && program.steps_bodies);
+  EXPECT_THAT(program.integrators, IsEmpty());
+  EXPECT_EQ(program.time_limit_s, 120);
+}
+
+TEST_F(BackendDescriptionTest, TakesEveryField) {
+  const BackendProgram program = parse(R"({"command": ["sh"], "description": "a shell", "scenes": ["bodies"],
+      "integrators": ["rk4", "semi-euler"], "environment": {"A": "1", "B": ""}, "time_limit_s": 2.5})");
+  EXPECT_EQ(program.description, "a shell");
+  EXPECT_FALSE(program.steps_cloths);
+  EXPECT_TRUE(program.steps_bodies);
+  EXPECT_THAT(program.integrators, ElementsAre("rk4", "semi-euler"));
+  EXPECT_THAT(program.environment, ElementsAre("A=1", "B="));
+  EXPECT_EQ(program.time_limit_s, 2.5);
+}
+
+TEST_F(BackendDescriptionTest, FindsAPathFromItsOwnFolder) {
+  const fs::path file = put("bin/step", "#!/bin/sh\n");
+  EXPECT_THAT(parse(R"({"command": ["./bin/step"]})").missing, HasSubstr("may not be executed; chmod +x it"));
+  fs::permissions(file, fs::perms::owner_all);
+  const BackendProgram program = parse(R"({"command": ["./bin/step"]})");
+  EXPECT_EQ(program.missing, "");
+  EXPECT_TRUE(fs::equivalent(program.program, file));
+}
+
+TEST_F(BackendDescriptionTest, SaysWhatIsMissing) {
+  EXPECT_EQ(parse(R"({"command": ["no-such-program"]})").missing,
+            "there is no program no-such-program in PATH");
+  EXPECT_THAT(parse(R"({"command": ["./no-such-file"]})").missing,
+              HasSubstr("there is no file ./no-such-file beside "));
+}
+
+TEST_F(BackendDescriptionTest, RefusesWhatItDoesNotKnow) {
+  EXPECT_THAT(refusal(R"({"comand": ["sh"]})"), HasSubstr("mine.json: /comand is not a known key"));
+  EXPECT_THAT(refusal(R"({"description": "x"})"), HasSubstr("/command is missing: add it as a list"));
+  EXPECT_THAT(refusal(R"({"command": []})"), HasSubstr("/command has 0 elements: give a list"));
+  EXPECT_THAT(refusal(R"({"command": ""})"), HasSubstr("/command is the text \"\": give a list"));
+  EXPECT_THAT(refusal(R"({"command": [""]})"), HasSubstr("/command/0 is empty"));
+  EXPECT_THAT(refusal(R"({"command": ["sh", 3]})"), HasSubstr("/command/1 is 3: give one line of text"));
+  EXPECT_THAT(refusal(R"({"command": ["sh"], "scenes": ["jeans"]})"),
+              HasSubstr("/scenes/0 is the text \"jeans\": give cloth or bodies"));
+  EXPECT_THAT(refusal(R"({"command": ["sh"], "integrators": ["euler"]})"),
+              HasSubstr("/integrators/0 is the text \"euler\": give semi-euler"));
+  EXPECT_THAT(refusal(R"({"command": ["sh"], "time_limit_s": 0})"), HasSubstr("/time_limit_s is 0: give"));
+  EXPECT_THAT(refusal(R"({"command": ["sh"], "environment": {"A=B": "1"}})"),
+              HasSubstr("/environment has the name \"A=B\""));
+  EXPECT_THAT(refusal(R"({"command": ["sh"], "environment": {"A": 1}})"), HasSubstr("/environment/A is 1"));
+  EXPECT_THAT(refusal("{\n  \"command\": [\"sh\",]\n}"), HasSubstr("line 2, column"));
+  EXPECT_THAT(refusal(""), HasSubstr("is empty: give the description of a backend"));
+}
+
+TEST_F(BackendDescriptionTest, ReadsFiles) {
+  EXPECT_EQ(read_description(put("shell.json", R"({"command": ["sh"]})")).name, "shell");
+  EXPECT_THROW(read_description(folder() / "none.json"), SceneError);
+  EXPECT_THROW(read_description(put("large.json", std::string(largest_description_bytes + 1, ' '))),
+               SceneError);
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,220 @@
+#include "backends/process/conversation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "platform/ending_signals.h"
+#include "platform/interruption.h"
+#include "tests/support/temporary_folder.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+using Cause = ConversationFailure::Cause;
+
+/// The program's end of the socket.
+class Caller {
+ public:
+  explicit Caller(const std::filesystem::path& socket)
+      : connection_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::ranges::copy(socket.native(), std::begin(address.sun_path));
+    connected_ =
+        ::connect(connection_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+  bool is_connected() const { return connected_; }
+  void send(std::string_view text) const {
+    EXPECT_EQ(::send(connection_.get(), text.data(), text.size(), MSG_NOSIGNAL), std::ssize(text));
+  }
+  std::string line() const {
+    std::string text;
+    for (char c = 0; ::read(connection_.get(), &c, 1) == 1 && c != '\n';) text += c;
+    return text;
+  }
+
+ private:
+  Descriptor connection_;
+  bool connected_ = false;
+};
+
+class ConversationTest : public TemporaryFolderTest {
+ protected:
+  /// Has a thread connect and do something, then talks with it.
+  void talk(const std::function<void(const Caller&)>& program, const std::function<void()>& ours,
+            double time_limit_s = 20) {
+    std::jthread other([&] {
+      const Caller caller(conversation_.socket());
+      ASSERT_TRUE(caller.is_connected());
+      program(caller);
+    });
+    conversation_.begin(std::chrono::duration<double>(time_limit_s), -1);
+    ours();
+  }
+
+  /// Why asking a program for a step fails.
+  ConversationFailure failure_of_step(const std::function<void(const Caller&)>& program,
+                                      double time_limit_s = 20) {
+    ConversationFailure found(Cause::silence, "it did not fail");
+    talk(
+        program,
+        [&] {
+          try {
+            conversation_.ask("step 10\n", "step 10");
+            conversation_.answer();
+          } catch (const ConversationFailure& failure) {
+            found = failure;
+            conversation_.say_last("end\n");  // lets the thread end
+          }
+        },
+        time_limit_s);
+    return found;
+  }
+
+  Conversation conversation_{folder()};
+};
+
+TEST_F(ConversationTest, CarriesLinesBothWays) {
+  talk(
+      [](const Caller& program) {
+        EXPECT_EQ(program.line(), "hello");
+        EXPECT_EQ(program.line(), "prepare");
+        program.send("note one");
+        program.send(" and two\nready 1\n");
+        EXPECT_EQ(program.line(), "end");
+      },
+      [&] {
+        conversation_.ask("hello\nprepare\n", "prepare");
+        EXPECT_EQ(conversation_.answer(), "note one and two");
+        EXPECT_EQ(conversation_.answer(), "ready 1");
+        conversation_.say_last("end\n");
+      });
+}
+
+TEST_F(ConversationTest, TellsOfSilence) {
+  const ConversationFailure failure = failure_of_step(
+      [](const Caller& program) {
+        program.line();
+        program.line();
+      },
+      0.2);
+  EXPECT_EQ(failure.cause, Cause::silence);
+  EXPECT_STREQ(failure.what(), "did not answer \"step 10\" within 0.2 s");
+}
+
+TEST_F(ConversationTest, TellsOfAProgramThatNeverConnects) {
+  try {
+    conversation_.begin(std::chrono::duration<double>(0.2), -1);
+    FAIL() << "it connected";
+  } catch (const ConversationFailure& failure) {
+    EXPECT_EQ(failure.cause, Cause::silence);
+    EXPECT_STREQ(failure.what(), "did not connect to MSSIM_SOCKET within 0.2 s");
+  }
+}
+
+TEST_F(ConversationTest, TellsOfAClosedConnection) {
+  const ConversationFailure failure = failure_of_step([](const Caller& program) { program.line(); });
+  EXPECT_EQ(failure.cause, Cause::closed);
+  EXPECT_STREQ(failure.what(), "before it answered \"step 10\"");
+}
+
+TEST_F(ConversationTest, RefusesLinesWithoutEnd) {
+  const ConversationFailure failure = failure_of_step([](const Caller& program) {
+    program.line();
+    program.send(std::string(4096, 'x'));
+    program.line();
+  });
+  EXPECT_EQ(failure.cause, Cause::answer);
+  EXPECT_THAT(failure.what(), HasSubstr("answered \"step 10\" with a line of more than 4096 bytes"));
+}
+
+TEST_F(ConversationTest, TakesTheLongestLine) {
+  talk(
+      [](const Caller& program) {
+        program.line();
+        program.send(std::string(4095, 'x') + '\n');
+      },
+      [&] {
+        conversation_.ask("step 1\n", "step 1");
+        EXPECT_EQ(conversation_.answer(), std::string(4095, 'x'));
+      });
+}
+
+TEST_F(ConversationTest, RefusesWhatWasNotAskedFor) {
+  talk(
+      [](const Caller& program) {
+        program.line();
+        program.send("done\ndone\n");
+        program.line();
+      },
+      [&] {
+        conversation_.ask("set\n", "set");
+        EXPECT_EQ(conversation_.answer(), "done");
+        try {
+          conversation_.ask("step 10\n", "step 10");
+          ADD_FAILURE() << "the second answer was not noticed";
+        } catch (const ConversationFailure& failure) {
+          EXPECT_EQ(failure.cause, Cause::answer);
+          EXPECT_STREQ(failure.what(), "sent \"done\" after its answer to \"set\", where nothing was asked");
+        }
+        conversation_.say_last("end\n");
+      });
+}
+
+TEST_F(ConversationTest, RefusesASecondConnection) {
+  const ConversationFailure failure = failure_of_step([&](const Caller& program) {
+    const Caller second(conversation_.socket());
+    program.line();
+    program.line();
+  });
+  EXPECT_EQ(failure.cause, Cause::answer);
+  EXPECT_STREQ(failure.what(), "connected a second time before it answered \"step 10\"");
+}
+
+TEST_F(ConversationTest, EndsAWaitWhenTheUserEndsMssim) {
+  const auto before = std::chrono::steady_clock::now();
+  talk(
+      [](const Caller& program) {
+        program.line();
+        note_ending_signal(SIGTERM);
+        program.line();
+      },
+      [&] {
+        conversation_.ask("step 1\n", "step 1");
+        try {
+          conversation_.answer();
+          ADD_FAILURE() << "there was an answer";
+        } catch (const Interrupted& interrupted) {
+          EXPECT_EQ(interrupted.signal, SIGTERM);
+        }
+        conversation_.say_last("end\n");
+      });
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(10));
+  EXPECT_EQ(noted_ending_signal(), 0);
+}
+
+TEST_F(ConversationTest, NeedsAShortName) {
+  const std::filesystem::path deep = folder() / std::string(100, 'x');
+  std::filesystem::create_directory(deep);
+  try {
+    const Conversation conversation(deep);
+    FAIL() << "it listens";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("its name is too long); set TMPDIR"));
+  }
+}
+
+}  // namespace
+}  // namespace mssim
