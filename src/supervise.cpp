@@ -1,7 +1,7 @@
 // Runs one program for mssim (platform/supervised_process.h), in a small process of its own: takes what the
 // program writes, stops and continues it, and ends all that it started, when the program ends and when mssim
 // does, be it by SIGKILL. As a subreaper it becomes the parent of every orphan of the program, so that none
-// gets away. Needs nothing but the C library: it starts in less than a millisecond.
+// gets away. It needs nothing but the C library, and so starts quickly.
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -20,7 +20,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <initializer_list>
 
 #include "platform/supervisor_words.h"
 
@@ -32,40 +31,27 @@ using mssim::SupervisorWord;
 
 constexpr int channel = 3;
 
-/// The last bytes that the program wrote.
+/// What the program writes, of which the last bytes are kept.
 class Output {
  public:
   explicit Output(int descriptor) : descriptor_(descriptor) {}
   int descriptor() const { return descriptor_; }
-
-  /// Takes what there is, 64 KiB at most; false where there is nothing now.
+  /// Takes some of what there is; false where there is nothing now.
   bool take() {
-    const ssize_t bytes = ::read(descriptor_, kept_ + next_, sizeof kept_ - next_);
-    if (bytes == 0 || (bytes < 0 && errno != EINTR && errno != EAGAIN)) {
-      ::close(descriptor_);
-      descriptor_ = -1;  // which poll() skips
-    }
-    if (bytes <= 0) return false;
-    next_ += static_cast<std::size_t>(bytes);
-    if (next_ == sizeof kept_) {
-      full_ = true;
-      next_ = 0;
-    }
-    return true;
+    if (end_ == sizeof text_) std::memcpy(text_, text_ + (end_ -= most), most);
+    const ssize_t bytes = ::read(descriptor_, text_ + end_, sizeof text_ - end_);
+    if (bytes == 0) descriptor_ = -1;  // nobody writes any more; poll() skips it
+    if (bytes > 0) end_ += static_cast<std::size_t>(bytes);
+    return bytes > 0;
   }
-  std::size_t bytes() const { return full_ ? sizeof kept_ : next_; }
-  /// Both parts of the ring, the older one first.
-  template <class Use>
-  void give(Use use) const {
-    if (full_) use(kept_ + next_, sizeof kept_ - next_);
-    use(kept_, next_);
-  }
+  std::size_t size() const { return end_ < most ? end_ : most; }
+  const char* last() const { return text_ + end_ - size(); }
 
  private:
+  static constexpr std::size_t most = mssim::kept_output_bytes;
   int descriptor_;
-  char kept_[mssim::kept_output_bytes];
-  std::size_t next_ = 0;
-  bool full_ = false;
+  char text_[2 * most];
+  std::size_t end_ = 0;
 };
 
 /// Where mssim is gone, nobody hears it, and nothing happens.
@@ -79,47 +65,16 @@ void say(const void* bytes, std::size_t count) {
   }
 }
 
-void say(SupervisorWord word, int value, double processor_seconds = 0, std::size_t output_bytes = 0) {
-  const SupervisorAnswer answer{word, value, processor_seconds, output_bytes};
-  say(&answer, sizeof answer);
-}
+void say(const SupervisorAnswer& answer) { say(&answer, sizeof answer); }
 
-/// Processes, in an array that grows.
-class Processes {
- public:
-  ~Processes() { std::free(all_); }
-  void add(pid_t process) {
-    if (count_ == capacity_) {
-      const std::size_t capacity = 2 * capacity_ + 64;
-      auto* larger = static_cast<pid_t*>(std::realloc(all_, capacity * sizeof(pid_t)));
-      if (larger == nullptr) return;
-      all_ = larger;
-      capacity_ = capacity;
-    }
-    all_[count_++] = process;
-  }
-  void clear() { count_ = 0; }
-  std::size_t count() const { return count_; }
-  pid_t operator[](std::size_t place) const { return all_[place]; }
-
- private:
-  pid_t* all_ = nullptr;
-  std::size_t count_ = 0, capacity_ = 0;
-};
-
-/// Reads a small file of /proc; empty where it cannot be read.
-std::size_t read_text(const char* path, char* text, std::size_t most) {
-  const int file = ::open(path, O_RDONLY | O_CLOEXEC);
+/// Numbers of processes. More than fit here are looked at in parts.
+struct Processes {
   std::size_t count = 0;
-  while (file >= 0 && count + 1 < most) {
-    const ssize_t bytes = ::read(file, text + count, most - 1 - count);
-    if (bytes <= 0) break;
-    count += static_cast<std::size_t>(bytes);
+  pid_t all[32 * 1024];
+  void add(pid_t process) {
+    if (count < sizeof all / sizeof *all) all[count++] = process;
   }
-  if (file >= 0) ::close(file);
-  text[count] = 0;
-  return count;
-}
+};
 
 /// Calls `use` with each entry of a folder of /proc that is a number.
 template <class Use>
@@ -131,7 +86,7 @@ void for_each_number(const char* folder, Use use) {
   ::closedir(entries);
 }
 
-/// Of /proc/PROCESS/stat.
+/// What /proc/PROCESS/stat says.
 struct Stat {
   int parent = 0;
   unsigned long waited_user = 0, waited_system = 0;  // of children that it has waited for, in ticks
@@ -139,79 +94,73 @@ struct Stat {
   explicit Stat(pid_t process) {
     char path[64], text[1024];
     std::snprintf(path, sizeof path, "/proc/%d/stat", process);
-    read_text(path, text, sizeof text);
-    // The name, in parentheses, may have any characters.
-    const char* rest = std::strrchr(text, ')');
-    if (rest == nullptr) return;
-    std::sscanf(rest + 1, " %*c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %lu %lu", &parent,
-                &waited_user, &waited_system);
+    std::FILE* file = std::fopen(path, "re");
+    if (file == nullptr) return;
+    text[std::fread(text, 1, sizeof text - 1, file)] = 0;
+    std::fclose(file);
+    // The name, in parentheses, may have any characters. The parent is two words behind it, the times 14.
+    if (const char* rest = std::strrchr(text, ')'))
+      std::sscanf(rest, ") %*c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %lu %lu", &parent, &waited_user,
+                  &waited_system);
   }
 };
 
-/// Adds the children of a process: as its threads list them, or, where the kernel was built without those
-/// lists, by a look at all processes.
+/// Adds the children of a process: as its threads list them, or by a look at all processes where the kernel
+/// was built without those lists.
 void add_children(pid_t process, Processes& all) {
-  static char text[64 * 1024];
-  static const bool lists = [] {
-    char path[64];
-    std::snprintf(path, sizeof path, "/proc/self/task/%d/children", ::getpid());
-    return ::access(path, R_OK) == 0;
-  }();
-  if (!lists) {
-    for_each_number("/proc", [&](pid_t one) {
-      if (Stat(one).parent == process) all.add(one);
-    });
-    return;
-  }
-  char folder[64];
-  std::snprintf(folder, sizeof folder, "/proc/%d/task", process);
-  for_each_number(folder, [&](int thread) {
-    char path[128];
-    std::snprintf(path, sizeof path, "%s/%d/children", folder, thread);
-    read_text(path, text, sizeof text);
-    char* rest = text;
-    while (const long child = std::strtol(rest, &rest, 10)) all.add(static_cast<pid_t>(child));
+  bool listed = false;
+  char path[64];
+  std::snprintf(path, sizeof path, "/proc/%d/task", process);
+  for_each_number(path, [&](int thread) {
+    std::snprintf(path, sizeof path, "/proc/%d/task/%d/children", process, thread);
+    std::FILE* file = std::fopen(path, "re");
+    if (file == nullptr) return;
+    listed = true;
+    for (pid_t child = 0; std::fscanf(file, "%d", &child) == 1;) all.add(child);
+    std::fclose(file);
+  });
+  if (listed || ::kill(process, 0) != 0) return;
+  for_each_number("/proc", [&](pid_t one) {
+    if (Stat(one).parent == process) all.add(one);
   });
 }
 
-void find_descendants(Processes& all) {
-  all.clear();
-  add_children(::getpid(), all);
-  for (std::size_t i = 0; i < all.count(); ++i) add_children(all[i], all);
+/// All that the program started, parents before their children.
+const Processes& descendants() {
+  static Processes found;
+  found.count = 0;
+  add_children(::getpid(), found);
+  for (std::size_t i = 0; i < found.count; ++i) add_children(found.all[i], found);
+  return found;
 }
 
-/// Sends SIGSTOP or SIGCONT to all that the program started. Its group gets a signal at once, whatever it
-/// forks; those that left the group are looked for until no more appear.
+/// Sends SIGSTOP or SIGCONT to all that the program started. Its group gets it at once, whatever it forks.
+/// Those that left the group are looked for until no more appear.
 void signal_all(pid_t program, int signal) {
   ::kill(-program, signal);
-  Processes all;
   std::size_t before = 0;
   for (int look = 0; look < 20; ++look) {
-    find_descendants(all);
-    for (std::size_t i = 0; i < all.count(); ++i) ::kill(all[i], signal);
-    if (signal == SIGCONT || all.count() == before) break;
-    before = all.count();
+    const Processes& found = descendants();
+    for (std::size_t i = 0; i < found.count; ++i) ::kill(found.all[i], signal);
+    if (signal == SIGCONT || found.count == before) break;
+    before = found.count;
   }
-}
-
-double seconds(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
 /// Of all that the program started: of those that live by their clocks, and of those that were waited for.
 double processor_seconds() {
   rusage waited{};
   ::getrusage(RUSAGE_CHILDREN, &waited);
-  double sum = seconds(waited.ru_utime) + seconds(waited.ru_stime);
+  double sum = static_cast<double>(waited.ru_utime.tv_sec + waited.ru_stime.tv_sec) +
+               1e-6 * static_cast<double>(waited.ru_utime.tv_usec + waited.ru_stime.tv_usec);
   const double ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
-  Processes all;
-  find_descendants(all);
-  for (std::size_t i = 0; i < all.count(); ++i) {
+  const Processes& living = descendants();
+  for (std::size_t i = 0; i < living.count; ++i) {
     clockid_t clock = 0;
     timespec time{};
-    if (::clock_getcpuclockid(all[i], &clock) == 0 && ::clock_gettime(clock, &time) == 0)
+    if (::clock_getcpuclockid(living.all[i], &clock) == 0 && ::clock_gettime(clock, &time) == 0)
       sum += static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-    const Stat stat(all[i]);
+    const Stat stat(living.all[i]);
     sum += static_cast<double>(stat.waited_user + stat.waited_system) / ticks;
   }
   return sum;
@@ -232,13 +181,13 @@ bool has_ended(pid_t program) {
 /// dies, its children become ours, and another look finds them: there is one after each death, and one a
 /// second where a look missed any.
 int end_all(pid_t program, int deaths) {
+  static Processes children;
   int ending = 0;
   ::kill(-program, SIGKILL);
-  Processes children;
   while (true) {
-    children.clear();
+    children.count = 0;
     add_children(::getpid(), children);
-    for (std::size_t i = 0; i < children.count(); ++i) ::kill(children[i], SIGKILL);
+    for (std::size_t i = 0; i < children.count; ++i) ::kill(children.all[i], SIGKILL);
     int status = 0;
     const pid_t ended = ::waitpid(-1, &status, WNOHANG);
     if (ended < 0 && errno == ECHILD) return ending;
@@ -251,14 +200,9 @@ int end_all(pid_t program, int deaths) {
   }
 }
 
-/// What could not be done before the program, and why.
-struct Failure {
-  SupervisorWord word;
-  int error;
-};
-
 /// In the child: becomes the program, or returns why not.
-Failure become(char** arguments, int output, const char* folder, const char* cpus, pid_t supervisor) {
+SupervisorAnswer become(char** arguments, int output, const char* folder, const char* cpus,
+                        pid_t supervisor) {
   if (::setpgid(0, 0) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
     return {SupervisorWord::no_process, errno};
   if (::getppid() != supervisor) ::_exit(127);
@@ -281,12 +225,52 @@ Failure become(char** arguments, int output, const char* folder, const char* cpu
   return {SupervisorWord::no_program, errno};
 }
 
+/// Starts the program and tells mssim. Returns its process; a negative number where it cannot be started.
+pid_t start(char** arguments, int output, const char* folder, const char* cpus) {
+  int trouble[2] = {-1, -1};  // nothing comes through it when the program starts: exec closes it
+  const pid_t self = ::getpid();
+  const pid_t program = ::pipe2(trouble, O_CLOEXEC) == 0 ? ::fork() : -1;
+  SupervisorAnswer answer{SupervisorWord::no_process, errno};
+  if (program == 0) {
+    answer = become(arguments, output, folder, cpus, self);
+    [[maybe_unused]] const ssize_t written = ::write(trouble[1], &answer, sizeof answer);
+    ::_exit(127);
+  }
+  ::close(trouble[1]);
+  if (program > 0 && ::read(trouble[0], &answer, sizeof answer) == 0)
+    answer = {SupervisorWord::started, program};
+  ::close(trouble[0]);
+  const bool started = answer.word == SupervisorWord::started;
+  if (!started) ::waitpid(program, nullptr, 0);
+  say(answer);
+  return started ? program : -1;
+}
+
+/// Until the program has ended, mssim wants it to, or somebody wants the supervisor to.
+void attend(pid_t program, Output& output, int signals) {
+  while (true) {
+    pollfd events[] = {{channel, POLLIN, 0}, {signals, POLLIN, 0}, {output.descriptor(), POLLIN, 0}};
+    if (::poll(events, 3, -1) < 0) continue;
+    if (events[2].revents != 0) output.take();
+    if (events[1].revents != 0) {
+      signalfd_siginfo signal{};
+      if (::read(signals, &signal, sizeof signal) != sizeof signal) continue;
+      if (signal.ssi_signo != SIGCHLD || has_ended(program)) return;
+    }
+    if (events[0].revents == 0) continue;
+    SupervisorRequest request{};
+    if (::recv(channel, &request, sizeof request, 0) != sizeof request) return;
+    if (request == SupervisorRequest::pause) signal_all(program, SIGSTOP);
+    if (request == SupervisorRequest::resume) signal_all(program, SIGCONT);
+    const bool timed = request == SupervisorRequest::processor_time;
+    say({SupervisorWord::done, 0, timed ? processor_seconds() : 0});
+  }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   if (count < 5) return 2;
-  const char* const folder = arguments[1];
-  const char* const cpus = arguments[2];
   const int variables = std::atoi(arguments[3]);
   for (int i = 0; i < variables; ++i) ::putenv(arguments[4 + i]);
   ::closefrom(channel + 1);
@@ -294,61 +278,26 @@ int main(int count, char** arguments) {
 
   sigset_t heard;
   ::sigemptyset(&heard);
-  for (const int signal : {SIGCHLD, SIGTERM, SIGINT, SIGHUP, SIGQUIT}) ::sigaddset(&heard, signal);
+  constexpr int signals_heard[] = {SIGCHLD, SIGTERM, SIGINT, SIGHUP};
+  for (const int signal : signals_heard) ::sigaddset(&heard, signal);
   ::sigprocmask(SIG_BLOCK, &heard, nullptr);
   const int signals = ::signalfd(-1, &heard, SFD_CLOEXEC | SFD_NONBLOCK);
-  int pipe[2] = {-1, -1}, trouble[2] = {-1, -1};
-  const pid_t self = ::getpid();
-  pid_t program = -1;
-  if (signals >= 0 && ::prctl(PR_SET_CHILD_SUBREAPER, 1) == 0 && ::pipe2(pipe, O_CLOEXEC) == 0 &&
-      ::pipe2(trouble, O_CLOEXEC) == 0)
-    program = ::fork();
-  if (program < 0) {
-    say(SupervisorWord::no_process, errno);
+  int pipe[2] = {-1, -1};
+  if (signals < 0 || ::prctl(PR_SET_CHILD_SUBREAPER, 1) != 0 || ::pipe2(pipe, O_CLOEXEC) != 0) {
+    say({SupervisorWord::no_process, errno});
     return 1;
   }
-  if (program == 0) {
-    const Failure failure = become(arguments + 4 + variables, pipe[1], folder, cpus, self);
-    [[maybe_unused]] const ssize_t written = ::write(trouble[1], &failure, sizeof failure);
-    ::_exit(127);
-  }
+  const pid_t program = start(arguments + 4 + variables, pipe[1], arguments[1], arguments[2]);
   ::close(pipe[1]);
-  ::close(trouble[1]);
-  Failure failure{};
-  ssize_t bytes = 0;
-  while ((bytes = ::read(trouble[0], &failure, sizeof failure)) < 0 && errno == EINTR) {
-  }
-  ::close(trouble[0]);
-  if (bytes == sizeof failure) {
-    say(failure.word, failure.error);
-    return 1;
-  }
-  say(SupervisorWord::started, program);
+  if (program < 0) return 1;
 
+  ::fcntl(pipe[0], F_SETFL, O_NONBLOCK);
   static Output output(pipe[0]);
-  ::fcntl(output.descriptor(), F_SETFL, O_NONBLOCK);
-  bool goes_on = true;
-  while (goes_on) {
-    pollfd events[] = {{channel, POLLIN, 0}, {signals, POLLIN, 0}, {output.descriptor(), POLLIN, 0}};
-    if (::poll(events, 3, -1) < 0) continue;
-    if (events[2].revents != 0) output.take();
-    if (events[1].revents != 0) {
-      signalfd_siginfo signal{};
-      if (::read(signals, &signal, sizeof signal) == sizeof signal)
-        goes_on = signal.ssi_signo == SIGCHLD && !has_ended(program);
-    }
-    if (events[0].revents == 0 || !goes_on) continue;
-    SupervisorRequest request{};
-    if (::recv(channel, &request, sizeof request, 0) != sizeof request) break;
-    if (request == SupervisorRequest::pause) signal_all(program, SIGSTOP);
-    if (request == SupervisorRequest::resume) signal_all(program, SIGCONT);
-    const bool timed = request == SupervisorRequest::processor_time;
-    say(SupervisorWord::done, 0, timed ? processor_seconds() : 0);
-  }
+  attend(program, output, signals);
   const int ending = end_all(program, signals);
   while (output.take()) {
   }
-  say(SupervisorWord::ended, ending, processor_seconds(), output.bytes());
-  output.give([](const char* part, std::size_t size) { say(part, size); });
+  say({SupervisorWord::ended, ending, processor_seconds(), output.size()});
+  say(output.last(), output.size());
   return 0;
 }

@@ -149,10 +149,7 @@ SupervisedProcess::SupervisedProcess(const SupervisedProgram& program) {
   supervisor_ = start_supervisor(program, other.get());
   other.close();
   SupervisorAnswer answer;
-  if (!hear(answer)) {
-    end(std::chrono::milliseconds{0});
-    fail(program, "mssim's own program supervise ended before it");
-  }
+  if (!hear(answer)) fail(program, "mssim's own program supervise did not start it");
   if (answer.word != SupervisorWord::started) {
     ::waitpid(supervisor_, nullptr, 0);
     fail(program, why_not_started(program, answer));
@@ -179,7 +176,7 @@ const ProgramEnd& SupervisedProcess::end(std::chrono::milliseconds patience) {
   if (paused_ && patience.count() > 0) resume();
   if (!ended_ && !readable(channel_.get(), patience)) ::shutdown(channel_.get(), SHUT_WR);
   SupervisorAnswer answer;
-  if (!ended_) hear(answer);
+  while (!ended_) hear(answer);
   return end_;
 }
 
@@ -195,7 +192,9 @@ bool SupervisedProcess::ask(SupervisorRequest request) const {
 /// Takes an answer. False where it is that the program has ended, or where there is none.
 bool SupervisedProcess::hear(SupervisorAnswer& answer) const {
   if (!readable(channel_.get(), supervisor_patience)) {
-    lose("could not be ended: some process of it does not end by SIGKILL");
+    lose(
+        "was given up, because mssim's program supervise did not answer (a process that SIGKILL does not "
+        "end?)");
     return false;
   }
   if (!receive(channel_.get(), &answer, sizeof answer)) {
