@@ -58,7 +58,6 @@ class Output {
 void say(const void* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t sent = ::send(channel, bytes, count, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
     if (sent <= 0) return;
     bytes = static_cast<const char*>(bytes) + sent;
     count -= static_cast<std::size_t>(sent);
@@ -203,11 +202,10 @@ int end_all(pid_t program, int deaths) {
 /// In the child: becomes the program, or returns why not.
 SupervisorAnswer become(char** arguments, int output, const char* folder, const char* cpus,
                         pid_t supervisor) {
-  if (::setpgid(0, 0) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
+  if (::setpgid(0, 0) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::dup2(output, STDOUT_FILENO) < 0 ||
+      ::dup2(output, STDERR_FILENO) < 0)
     return {SupervisorWord::no_process, errno};
-  if (::getppid() != supervisor) ::_exit(127);
-  if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0)
-    return {SupervisorWord::no_process, errno};
+  if (::getppid() != supervisor) ::_exit(127);  // it ended before it would have been noticed
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   if (*cpus != 0) {
@@ -290,7 +288,6 @@ int main(int count, char** arguments) {
   const pid_t program = start(arguments + 4 + variables, pipe[1], arguments[1], arguments[2]);
   ::close(pipe[1]);
   if (program < 0) return 1;
-
   ::fcntl(pipe[0], F_SETFL, O_NONBLOCK);
   static Output output(pipe[0]);
   attend(program, output, signals);
