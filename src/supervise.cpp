@@ -1,7 +1,7 @@
 // Runs one program for mssim (platform/supervised_process.h), in a small process of its own: takes what the
 // program writes, stops and continues it, and ends all that it started, when the program ends and when mssim
-// does, be it by SIGKILL. As a subreaper it becomes the parent of every orphan of the program, so that none
-// gets away. It needs nothing but the C library, and so starts quickly.
+// does, be it by SIGKILL. As a subreaper it becomes the parent of all orphans of the program: none gets away.
+// It needs nothing but the C library, and so starts quickly.
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -273,7 +273,6 @@ int main(int count, char** arguments) {
   for (int i = 0; i < variables; ++i) ::putenv(arguments[4 + i]);
   ::closefrom(channel + 1);
   ::fcntl(channel, F_SETFD, FD_CLOEXEC);
-
   sigset_t heard;
   ::sigemptyset(&heard);
   constexpr int signals_heard[] = {SIGCHLD, SIGTERM, SIGINT, SIGHUP};
@@ -281,7 +280,8 @@ int main(int count, char** arguments) {
   ::sigprocmask(SIG_BLOCK, &heard, nullptr);
   const int signals = ::signalfd(-1, &heard, SFD_CLOEXEC | SFD_NONBLOCK);
   int pipe[2] = {-1, -1};
-  if (signals < 0 || ::prctl(PR_SET_CHILD_SUBREAPER, 1) != 0 || ::pipe2(pipe, O_CLOEXEC) != 0) {
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // qemu-user 7 does not know it: there, orphans get away
+  if (signals < 0 || ::pipe2(pipe, O_CLOEXEC) != 0) {
     say({SupervisorWord::no_process, errno});
     return 1;
   }
