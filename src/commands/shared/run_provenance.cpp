@@ -7,6 +7,7 @@
 #include "mesh/tetgen_program.h"
 #include "output/folders/provenance_file.h"
 #include "text/fnv1a.h"
+#include "text/shell_word.h"
 
 namespace mssim {
 namespace {
@@ -14,23 +15,6 @@ namespace {
 std::vector<std::string>& arguments() {
   static std::vector<std::string> remembered;
   return remembered;
-}
-
-/// As a shell reads it back: in single quotes unless all its characters are plain.
-std::string quoted(const std::string& argument) {
-  const bool plain = !argument.empty() && argument.find_first_not_of(
-                                              "abcdefghijklmnopqrstuvwxyz"
-                                              "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                              "0123456789_-+=:,./~%@") == std::string::npos;
-  if (plain) return argument;
-  std::string text = "'";
-  for (const char c : argument) {
-    if (c == '\'')
-      text += "'\\'";  // closes the quotes, a quoted quote, and the next character opens them again
-    text += c;
-  }
-  text += '\'';
-  return text;
 }
 
 }  // namespace
@@ -54,7 +38,7 @@ Provenance run_provenance(int threads, bool uses_device) {
 std::string command_line(const Provenance& provenance) {
   std::string text;
   for (const std::string& argument : provenance.command_line)
-    text.append(text.empty() ? "" : " ").append(quoted(argument));
+    text.append(text.empty() ? "" : " ").append(shell_word(argument));
   return text;
 }
 
