@@ -18,6 +18,7 @@
 #include "commands/help/help_command.h"
 #include "commands/list/list_command.h"
 #include "commands/measure/measure_command.h"
+#include "commands/new_backend/new_backend_command.h"
 #include "commands/render/render_command.h"
 #include "commands/report/report_command.h"
 #include "commands/run/run_command.h"
@@ -38,7 +39,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 10> table{{
+constexpr std::array<Command, 11> table{{
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
     {"run", "Simulate one scene; write a trace or an energy curve if asked to",
@@ -55,6 +56,8 @@ constexpr std::array<Command, 10> table{{
      "mssim report results/table1 results/table3 --out report.html", declare_report},
     {"measure", "Measure a person's surface, and write a scene of jeans for it",
      "mssim measure scan.obj --scene my.json", declare_measure},
+    {"new-backend", "Write a backend of your own to start from, in Python or C++",
+     "mssim new-backend mine --language python", declare_new_backend},
     {"list", "List scenes, suites, backends, methods, integrators, devices or a schema",
      "mssim list scenes --format csv", declare_list},
     {"help", "Show this page, or the page of a command", "mssim help bench", declare_help},

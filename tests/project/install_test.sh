@@ -18,4 +18,8 @@ diff "$place/scenes" <("$1" list scenes --format csv)
 # It finds the program by which it asks for devices; the kernel cannot run that where it needs an emulator.
 [[ ${#run[@]} -gt 0 ]] || diff <("$place/second/bin/mssim" list devices) <("$1" list devices)
 [[ $(wc -l <"$place/scenes") -gt 6 ]]
+# What backends of one's own start from, and are compiled and run with.
+"${run[@]}" "$place/second/bin/mssim" new-backend mine --language c++ --out "$place" >"$place/commands" 2>&1
+cmp "$place/mssim_backend.h" "$place/second/include/mssim_backend.h"
+cmp "$place/second/share/mssim/python/mssim_backend.py" "$2/src/starters/python/mssim_backend.py"
 [[ -z $(find "$place/second" -xtype l) ]]
