@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# mssim new-backend: what it writes and refuses. The C++ example is compiled as is said.
+# mssim new-backend: what it writes and refuses. The C++ example is compiled as is said, and is verified with every integrator.
 # $1: mssim, $2: the source folder
 set -euo pipefail
 mssim=$1
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
+# shellcheck source=tests/support/own_backends.sh
+. "$2/tests/support/own_backends.sh"
 cd "$work"
 
 # said FILE LINE...: the file holds these lines
@@ -33,6 +35,7 @@ eval "$(head -n 1 out) -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-con
 status=0
 'a folder/mine' 2>err || status=$?
 [ "$status" -eq 2 ] && grep -q 'mssim bench --scene' err || fail "run by hand, it exits with $status and says $(cat err)"
+verified_everywhere 'a folder/mine' mine
 
 # A second one beside it takes the header that is there.
 succeed new-backend other --language c++ --out 'a folder'

@@ -337,4 +337,4 @@ def _described(error):
     text = "".join(traceback.format_exception_only(type(error), error))
     program = getattr(sys.modules.get("__main__"), "__file__", None)
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == program]
-    return f"{os.path.basename(program)}, line {lines[-1]}: {text}" if lines else text
+    return f"line {lines[-1]}: {text}" if lines else text

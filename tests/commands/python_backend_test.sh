@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Backends in Python: the example of mssim new-backend is verified with every integrator, and the module does what it says
+# (python_backend.py). The modules that they need may be missing: see readers_test.sh.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+# shellcheck source=tests/support/own_backends.sh
+. "$2/tests/support/own_backends.sh"
+cd "$work"
+# The examples ask the environment for python3.
+export PATH=$2/build/readers/bin:$PATH PYTHONDONTWRITEBYTECODE=1
+python3 -c 'import numpy, h5py' 2>err || { echo "skipped: $(tail -n 1 err)" && exit 77; }
+
+succeed new-backend mine --language python
+verified_everywhere ./mine.py mine.py
+
+# The steps and the floor of the module against formulas written out, with what mssim sends; see there.
+cp "$2/tests/commands/python_backend.py" checked.py
+verified_everywhere ./checked.py checked.py
+column_of results/timings.csv note | grep -q 'checked rk4$' || fail "what prepare says is not in the row: $(cat results/timings.csv)"
+
+# fails_with PATTERN TEXT: a program of this text has a row that is not verified, which says PATTERN
+fails_with() {
+  local pattern=$1 status=0
+  printf '#!/usr/bin/env python3\nimport mssim_backend\n%s\nmssim_backend.serve(prepare)\n' "$2" >faulty.py
+  chmod +x faulty.py
+  "$mssim" bench --scene cloth2500 --backend ./faulty.py --integrator semi-euler --rounds 1 --format csv >out 2>err || status=$?
+  echo "$status: $(tail -n 1 out)"
+  grep -q -- "$pattern" out || fail "the row does not say \"$pattern\": $(cat out err)"
+}
+fails_with '"": line 4: ZeroDivisionError: division by zero' 'def prepare(system, method):
+    return 1 / 0'
+fails_with '"": line 4: ValueError: no good' 'def prepare(system, method):
+    def step(x, v, count): raise ValueError("no\n good")
+    return step'
+fails_with 'returned something else than the new x and v' 'def prepare(system, method): return lambda x, v, count: x'
+fails_with 'the state is an array \[2\] instead of \[2500, 3\]' 'def prepare(system, method): return lambda x, v, count: ([1, 2], [3, 4])'
+fails_with 'prepare returned neither a function' 'def prepare(system, method): return 3'
+fails_with 'unsupported.*not semi-euler' 'def prepare(system, method): raise mssim_backend.Unsupported("not " + method.name)'
+fails_with 'unavailable.*no such device' 'def prepare(system, method): raise mssim_backend.Unavailable("no such device")'
+# Run by hand it says what it is.
+status=0
+PYTHONPATH=$2/src/starters/python ./mine.py >out 2>err || status=$?
+[ "$status" -eq 1 ] && [ "$(cat err)" = 'mine.py is a backend of mssim: mssim bench --scene cloth2500 --backend serial,openmp,./mine.py' ] ||
+  fail "run by hand, it exits with $status and says $(cat err)"
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
