@@ -23,6 +23,7 @@
 #include "backends/process/state_file.h"
 #include "backends/process/system_file.h"
 #include "platform/data_folder.h"
+#include "platform/ending_signals.h"
 #include "platform/process_cpus.h"
 #include "platform/supervised_process.h"
 #include "platform/temporary_folder.h"
@@ -262,6 +263,8 @@ std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, con
                                               const ExecutionOptions& options) {
   if (!program.missing.empty()) throw Unavailable(program.missing);
   require_support(program, system, integrator);
+  // Whether or not somebody waits for these signals already: folders of this backend must not stay behind.
+  const EndingSignals during_preparation(note_ending_signal, 0);
   return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options);
 }
 

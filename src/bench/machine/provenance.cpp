@@ -99,7 +99,11 @@ void add_program(Provenance& provenance, std::string_view name, const std::vecto
       continue;  // an argument that is no file
     }
   }
+  const auto same_name = [](const FileHash& a, const FileHash& b) { return a.name == b.name; };
+  std::ranges::sort(record.files, {}, &FileHash::name);
+  record.files.erase(std::ranges::unique(record.files, same_name).begin(), record.files.end());
   provenance.backend_programs.push_back(std::move(record));
+  std::ranges::sort(provenance.backend_programs, {}, &BackendProgramRecord::name);
 }
 
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text) {

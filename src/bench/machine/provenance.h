@@ -31,7 +31,7 @@ struct FileHash {
 struct BackendProgramRecord {
   std::string name;
   std::vector<std::string> command;  ///< as its user wrote it
-  std::vector<FileHash> files;       ///< the program, and those of its arguments that are files
+  std::vector<FileHash> files;       ///< the program, and those of its arguments that are files, by name
 
   friend bool operator==(const BackendProgramRecord& a, const BackendProgramRecord& b) = default;
 };
@@ -51,7 +51,7 @@ struct Provenance {
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
   std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/machine/noise.h)
   std::vector<SceneHash> scenes;
-  std::vector<BackendProgramRecord> backend_programs;
+  std::vector<BackendProgramRecord> backend_programs;  ///< by name
   std::vector<std::string>
       command_line;  ///< the program without its folder; the home folder reads ~; escaped()
   std::vector<std::string> earlier_starts_utc;  ///< of runs that this one goes on with, as below

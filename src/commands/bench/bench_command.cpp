@@ -69,6 +69,14 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
   std::cerr << '\n';
 }
 
+/// The rows of those that were asked for, a path among them, by name.
+std::vector<std::string> asked_backends(const BenchOptions& options, const BenchPlan& plan) {
+  std::vector<std::string> names;
+  if (!options.backends.empty())
+    for (const BackendInfo* backend : plan.settings.backends) names.emplace_back(backend->name);
+  return names;
+}
+
 int run(const BenchOptions& options) {
   BenchPlan plan = plan_of(options);
   TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
@@ -91,7 +99,8 @@ int run(const BenchOptions& options) {
     if (!plan.described.empty() && format == SummaryFormat::table) std::cout << '\n';
     std::cout << summary(results.rows(), format, plan.settings.execution.threads, terminal_of(STDOUT_FILENO));
     if (format == SummaryFormat::github) results.keep_for_github();
-    const BenchVerdict verdict = verdict_of(results.rows(), options.backends, options.integrators);
+    const BenchVerdict verdict =
+        verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
     tell_first(verdict.reasons);
     code = verdict.exit_code;
   }

@@ -15,29 +15,43 @@ namespace {
 /// Frames after the first.
 constexpr int frames = 10;
 
+void write_trace(const std::filesystem::path& file, const SceneJob& job, const PreparedScene& scene,
+                 const ResultRow& row, const Provenance& provenance) {
+  const double duration_s = verification_steps * scene.dt_s;
+  const Integrator& integrator = *find_integrator(row.integrator);
+  const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
+  const auto backend = make_backend(info, scene.system, integrator, scene.dt_s, job.execution);
+  H5mdTrace trace(file, scene.system, trace_header(scene, *backend, row.backend, integrator, provenance));
+  simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s},
+           {[&](const Frame& frame) {
+             trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+           }});
+  trace.close();
+}
+
 }  // namespace
 
-void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
+bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::vector<ResultRow>& rows,
                         const Provenance& provenance, const std::filesystem::path& folder, bool keep_existing,
                         const BenchWatch& watch) {
   make_folder(folder);
-  const double duration_s = verification_steps * scene.dt_s;
-  for (const ResultRow& row : rows) {
+  bool failed = false;
+  for (ResultRow& row : rows) {
     const std::filesystem::path file =
         folder / (row.scene + "-" + row.backend + "-" + row.integrator + ".h5");
     if (row.status != "ok" || (keep_existing && std::filesystem::exists(file))) continue;
-    if (watch.stop()) return;
+    if (watch.stop()) break;
     watch.progress("trace " + row.backend + " " + row.integrator, 1);
-    const Integrator& integrator = *find_integrator(row.integrator);
-    const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
-    const auto backend = make_backend(info, scene.system, integrator, scene.dt_s, job.execution);
-    H5mdTrace trace(file, scene.system, trace_header(scene, *backend, row.backend, integrator, provenance));
-    simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s},
-             {[&](const Frame& frame) {
-               trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
-             }});
-    trace.close();
+    try {
+      write_trace(file, job, scene, row, provenance);
+    } catch (const BackendFailure& failure) {
+      row.status = std::string("failed: ") + failure.what();
+      row.verified = false;
+      row.program_output = failure.output;
+      failed = true;
+    }
   }
+  return failed;
 }
 
 }  // namespace mssim

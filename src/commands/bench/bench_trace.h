@@ -13,8 +13,9 @@ namespace mssim {
 /// Traces every combination whose row is ok, from the start over as many steps as it was verified with, into
 /// FOLDER/SCENE-BACKEND-INTEGRATOR.h5: what `mssim bench --trace` does after the timing. Files that are there
 /// already stay when `keep_existing`. `provenance`: the bench's. Ends between two traces when it is asked to.
-/// Throws WriteError.
-void write_bench_traces(const SceneJob& job, const PreparedScene& scene, const std::vector<ResultRow>& rows,
+/// A row has failed where the program behind its backend fails now; returns whether one has. Throws
+/// WriteError.
+bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::vector<ResultRow>& rows,
                         const Provenance& provenance, const std::filesystem::path& folder, bool keep_existing,
                         const BenchWatch& watch);
 

@@ -24,6 +24,8 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
   if (revision(earlier.build) != revision(now.build))
     all.push_back("the program was built from commit " + revision(earlier.build) + " and is now from " +
                   revision(now.build));
+  if (earlier.backend_programs != now.backend_programs)
+    all.emplace_back("a program that is a backend is not the same");
   std::vector<std::string> left_out;
   for (const SceneHash& scene : earlier.scenes)
     if (std::ranges::find(now.scenes, scene.name, &SceneHash::name) == now.scenes.end())

@@ -10,6 +10,8 @@
 #include "commands/shared/fit_body.h"
 #include "commands/shared/prepared_scene.h"
 #include "commands/shared/progress_line.h"
+#include "platform/ending_signals.h"
+#include "platform/interruption.h"
 
 namespace mssim {
 namespace {
@@ -57,13 +59,18 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
               results.keep(job.name, measured);
             },
         .stop = [&] { return stop.requested(); }};
-    if (!finished) {
-      std::vector<ResultRow> measured = bench_scene(job, watch);
+    try {
+      std::vector<ResultRow> measured = finished ? std::vector<ResultRow>() : bench_scene(job, watch);
       if (!measured.empty()) results.keep(job.name, std::move(measured));
+      std::vector<ResultRow> rows = results.of_scene(job.name);
+      if (plan.output.trace && !stop.requested() &&
+          write_bench_traces(job, scene, rows, plan.provenance,
+                             std::filesystem::path(plan.output.folder) / "traces", plan.output.resume, watch))
+        results.keep(job.name, std::move(rows));
+    } catch (const Interrupted& interrupted) {
+      // A wait for a program was cut short; the rounds before it are kept.
+      note_ending_signal(interrupted.signal);
     }
-    if (plan.output.trace && !stop.requested())
-      write_bench_traces(job, scene, results.of_scene(job.name), plan.provenance,
-                         std::filesystem::path(plan.output.folder) / "traces", plan.output.resume, watch);
     if (stop.requested()) return;
   }
 }

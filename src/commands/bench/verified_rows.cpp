@@ -20,6 +20,9 @@ std::vector<std::string> doubts(const Provenance& then, const Provenance& now) {
   // None are named by a bench whose backends need none.
   if (!now.opencl_devices.empty() && then.opencl_devices != now.opencl_devices)
     all.emplace_back("the OpenCL devices are not the same");
+  for (const BackendProgramRecord& program : now.backend_programs)
+    if (std::ranges::find(then.backend_programs, program) == then.backend_programs.end())
+      all.push_back("the program " + program.name + " is not the same");
   if (then.tetgen != now.tetgen) all.emplace_back("TetGen is not the same");
   for (const SceneHash& scene : now.scenes)
     if (std::ranges::find(then.scenes, scene.name, &SceneHash::name) == then.scenes.end())

@@ -10,6 +10,7 @@
 #include "backends/interface/backend.h"
 #include "commands/shared/exit_code.h"
 #include "platform/missing_program.h"
+#include "text/decimal.h"
 #include "text/joined.h"
 
 namespace mssim {
@@ -75,6 +76,10 @@ ChildProcess AbProgram::bench_process(const std::vector<std::string>& backends,
                      std::to_string(rounds),
                      "--out",
                      out.string()};
+  const OwnBackendOptions& own = options_.own_backends;
+  if (!own.folders.empty())
+    child.arguments.insert(child.arguments.end(), {"--backend-folder", joined(own.folders, ",")});
+  if (own.limit_s) child.arguments.insert(child.arguments.end(), {"--backend-limit", decimal(*own.limit_s)});
   if (options_.threads > 0)
     child.arguments.insert(child.arguments.end(), {"--threads", std::to_string(options_.threads)});
   return child;

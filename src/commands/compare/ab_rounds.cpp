@@ -95,6 +95,7 @@ bool both_fit(const AbOptions& options) {
   BenchOptions bench;
   bench.scenes = options.scenes;
   bench.backends = options.backends;
+  bench.own_backends = options.own_backends;
   bench.integrators = options.integrators;
   bench.execution.threads = options.threads;
   bench.dry_run = true;

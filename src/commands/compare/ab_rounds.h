@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/results/comparison.h"
+#include "commands/shared/backend_choice.h"
 
 namespace mssim {
 
@@ -12,6 +13,7 @@ struct AbOptions {
   std::string base, next;  ///< programs with the command line of mssim bench
   std::vector<std::string> scenes;
   std::vector<std::string> backends{"openmp"};
+  OwnBackendOptions own_backends;
   std::vector<std::string> integrators{"semi-euler"};
   int threads = 0;  ///< 0: what each program takes by itself
   double threshold = 0.05;

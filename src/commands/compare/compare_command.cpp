@@ -128,9 +128,13 @@ std::function<int()> declare_compare(Arguments& arguments) {
                 "Compare runs of different machines, builds, threads or scenes anyway")
       .excludes(ab);
   add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
-  arguments.add_list("--backend", options->ab.backends, "With --ab: backends (default: openmp)")
+  arguments
+      .add_list("--backend", options->ab.backends,
+                "With --ab: backends, which may be programs of your own (default: openmp)")
       .needs(ab)
-      .value_name("NAME,...");
+      .value_name("NAME|FILE,...");
+  declare_backend_folders(arguments, options->ab.own_backends).needs(ab);
+  declare_backend_limit(arguments, options->ab.own_backends).needs(ab);
   arguments.add_list("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
       .needs(ab)
       .value_name("NAME,...");

@@ -60,6 +60,9 @@ void ResultFolder::clear() const {
     fs::remove(folder_ / name, error);
     if (error) throw WriteError(write_failure(folder_ / name, "removing it", error.value()));
   }
+  std::error_code error;
+  fs::remove_all(folder_ / programs_name, error);
+  if (error) throw WriteError(write_failure(folder_ / programs_name, "removing it", error.value()));
 }
 
 void ResultFolder::go_on_with(const Provenance& earlier) {
@@ -80,6 +83,12 @@ void ResultFolder::write(std::span<const ResultRow> rows) const {
     if (std::ranges::find(table_names, table.name) == table_names.end())
       throw std::invalid_argument("the table " + table.name + " is not in table_names");
     std::ranges::move(files_of(table), std::back_inserter(files));
+  }
+  for (const ResultRow& row : rows) {
+    if (row.program_output.empty()) continue;
+    make_folder(folder_ / programs_name);
+    const std::string name = row.scene + '-' + row.backend + '-' + row.integrator + ".txt";
+    files.push_back({(fs::path(programs_name) / name).string(), row.program_output});
   }
   files.push_back({timings_name, timings_csv(rows)});
   write_files(files);

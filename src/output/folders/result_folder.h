@@ -16,10 +16,12 @@ namespace mssim {
 /// Files of a result folder: times, samples, and dressings of garments.
 inline constexpr const char *timings_name = "timings.csv", *samples_name = "samples.csv",
                             *garment_name = "garment.csv";
+/// Its folder of what programs that are backends wrote, SCENE-BACKEND-INTEGRATOR.txt.
+inline constexpr const char* programs_name = "programs";
 
 /// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, of garments garment.csv,
-/// benchmark.json, provenance.json and the tables that are made of the rows, as NAME.csv and NAME.md. One at
-/// a time writes into it.
+/// benchmark.json, provenance.json, what programs that are backends wrote, and the tables that are made of
+/// the rows, as NAME.csv and NAME.md. One at a time writes into it.
 class ResultFolder {
  public:
   /// Creates the folder and those above it. Throws WriteError, also where another ResultFolder, in any

@@ -1,0 +1,212 @@
+#include "backends/process/process_backend.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/spring_list/serial.h"
+#include "integrators/integrators.h"
+#include "platform/data_folder.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/largest_distance.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double dt_s = 1e-4;
+
+/// tests/support/own_backend.cpp, with what it does wrong.
+BackendProgram program_that(const std::string& mistake) {
+  BackendProgram program;
+  program.name = mistake.empty() ? "right" : mistake;
+  program.program = data_folder().parent_path().parent_path() / "bin" / "own_backend";
+  program.command = {program.program.string()};
+  if (!mistake.empty()) program.command.push_back(mistake);
+  program.folder = std::filesystem::current_path();
+  program.time_limit_s = 60;
+  return program;
+}
+
+std::unique_ptr<Backend> make(const BackendProgram& program, const System& system,
+                              const Integrator& integrator = integrators.front(), int threads = 2) {
+  return make_process_backend(program, system, integrator, dt_s, {.threads = threads, .scene = "made up"});
+}
+
+/// What the program's failure says, where some steps of a small cloth fail.
+BackendFailure failure_of(const std::string& mistake) {
+  const System system = cloth_system(4, 5);
+  const BackendProgram program = program_that(mistake);
+  try {
+    const auto backend = make(program, system);
+    backend->set_state(system.start);
+    for (int steps = 0; steps < 5; ++steps) backend->step(10);
+    backend->state();
+  } catch (const BackendFailure& failure) {
+    return failure;
+  }
+  return {"none", ""};
+}
+
+/// Every row of the table, which the program is told as stages and assignments.
+class OwnProgram : public testing::TestWithParam<Integrator> {};
+INSTANTIATE_TEST_SUITE_P(Each, OwnProgram, testing::ValuesIn(integrators), [](const auto& tested) {
+  std::string name(tested.param.name);
+  std::erase(name, '-');
+  return name;
+});
+
+TEST_P(OwnProgram, AgreesWithTheReference) {
+  const BackendProgram program = program_that("");
+  for (const System& system : {cloth_system(6, 9), solid_block(3, 3, 3, 0.01)}) {
+    const auto backend = make(program, system, GetParam());
+    const auto reference = make_reference(system, GetParam(), dt_s);
+    for (Backend* one : {backend.get(), reference.get()}) {
+      one->set_state(system.start);
+      one->step(3);
+      one->step(200);
+    }
+    EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-9);
+    EXPECT_LT(largest_distance(backend->state().velocity, reference->state().velocity), 1e-6);
+  }
+}
+
+TEST(ProcessBackend, SaysWhatTheProgramSaysOfItself) {
+  const System system = cloth_system(4, 5);
+  const BackendProgram program = program_that("");
+  const auto backend = make(program, system);
+  EXPECT_EQ(backend->device(), "cpu");
+  EXPECT_TRUE(backend->runs_on_host());
+  EXPECT_EQ(backend->threads(), 1);
+  EXPECT_EQ(backend->note(), "double precision; a list of springs");
+}
+
+TEST(ProcessBackend, GoesOnAfterARest) {
+  const System system = cloth_system(4, 5);
+  const BackendProgram program = program_that("");
+  const auto backend = make(program, system);
+  backend->set_state(system.start);
+  backend->step(4);
+  backend->rest();
+  backend->rest();
+  backend->step(6);
+  const State paused = backend->state();
+  backend->set_state(system.start);
+  backend->step(10);
+  EXPECT_EQ(largest_distance(paused.position, backend->state().position), 0);
+}
+
+TEST(ProcessBackend, CountsTheProcessorTimeOfTheProgram) {
+  const System system = cloth_system(30, 30);
+  const BackendProgram program = program_that("");
+  const auto backend = make(program, system);
+  const double before = backend->processor_seconds();
+  backend->step(1000);
+  EXPECT_GT(backend->processor_seconds() - before, 0.005);
+  backend->rest();
+  const double after = backend->processor_seconds();
+  EXPECT_EQ(backend->processor_seconds(), after);
+}
+
+TEST(ProcessBackend, ReturnsTheLastOutput) {
+  const System system = cloth_system(4, 5);
+  const BackendProgram program = program_that("floods");
+  const auto backend = make(program, system);
+  EXPECT_THAT(backend->end(), testing::EndsWith("flood number 99999\n"));
+}
+
+TEST(ProcessBackend, TellsHowAProgramFails) {
+  EXPECT_STREQ(failure_of("nonsense").what(),
+               "nonsense answered \"hello\" to \"step 10\", where done or failed is expected");
+  EXPECT_STREQ(failure_of("fails").what(), "fails failed at \"step 10\": a spring has snapped");
+  const BackendFailure ended = failure_of("exits");
+  EXPECT_STREQ(ended.what(),
+               "exits ended with exit code 3 before it answered \"step 10\"; its last line: out of cake");
+  EXPECT_EQ(ended.output, "out of cake\n");
+  EXPECT_THAT(
+      failure_of("crashes").what(),
+      HasSubstr("crashes was ended by signal 11 (Segmentation fault) before it answered \"prepare\""));
+  EXPECT_STREQ(failure_of("closes").what(), "closes closed its connection before it answered \"step 10\"");
+  EXPECT_STREQ(
+      failure_of("too-few").what(),
+      "too-few wrote 39 of the 40 positions and velocities of the state file when it was asked \"get\"");
+  EXPECT_STREQ(failure_of("cuts-state").what(),
+               "cuts-state left a state file of 936 bytes instead of 960 when it was asked \"get\"");
+}
+
+TEST(ProcessBackend, IsNotStartedForWhatItDoesNotHave) {
+  BackendProgram program = program_that("ends-early");
+  program.steps_cloths = false;
+  const System system = cloth_system(4, 5);
+  EXPECT_THROW(make(program, system), Unsupported);
+  program.steps_cloths = true;
+  program.integrators = {"rk4"};
+  EXPECT_THROW(make(program, system), Unsupported);
+  program.missing = "there is no such program";
+  EXPECT_THROW(make(program, system, *find_integrator("rk4")), Unavailable);
+}
+
+TEST(ProcessBackend, SaysWhyAProgramCannotRun) {
+  const System system = cloth_system(4, 5);
+  for (const std::string mistake : {"unsupported", "unavailable"}) {
+    const BackendProgram program = program_that(mistake);
+    try {
+      make(program, system);
+      ADD_FAILURE() << mistake;
+    } catch (const Unsupported& reason) {
+      EXPECT_STREQ(reason.what(), "it has only red springs");
+    } catch (const Unavailable& reason) {
+      EXPECT_STREQ(reason.what(), "there is no such chip here");
+    }
+  }
+}
+
+TEST(ProcessBackend, LeavesNoFileBehind) {
+  const auto folders = [] {
+    std::vector<std::filesystem::path> all;
+    for (const char* parent : {"/dev/shm", "/tmp"})
+      for (const auto& entry : std::filesystem::directory_iterator(parent))
+        if (std::filesystem::exists(entry.path() / "socket") ||
+            std::filesystem::exists(entry.path() / "state"))
+          all.push_back(entry.path());
+    return all.size();
+  };
+  const System system = cloth_system(4, 5);
+  const BackendProgram program = program_that("");
+  const auto before = folders();
+  {
+    const auto backend = make(program, system);
+    EXPECT_GT(folders(), before);
+  }
+  EXPECT_EQ(failure_of("nonsense").output, "");
+  EXPECT_EQ(folders(), before);
+}
+
+// What a step costs beside the steps of the program: the least of many, which other programs do not disturb.
+TEST(ProcessBackend, AsksForAStepQuickly) {
+  const System system = cloth_system(4, 5);
+  const BackendProgram program = program_that("idle");
+  const auto backend = make(program, system);
+  std::chrono::duration<double> least(std::numeric_limits<double>::max());
+  for (int i = 0; i < 2000; ++i) {
+    const auto before = std::chrono::steady_clock::now();
+    backend->step(1);
+    least = std::min<std::chrono::duration<double>>(least, std::chrono::steady_clock::now() - before);
+  }
+  RecordProperty("least_microseconds", std::to_string(1e6 * least.count()));
+#ifdef NDEBUG
+  EXPECT_LE(least.count(), 50e-6);
+#endif
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,157 @@
+#!/usr/bin/env bash
+# Programs of the user's are backends, and whatever they do wrong is one sentence in their row.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+export XDG_CONFIG_HOME=$work/config TMPDIR=$work/tmp
+mkdir -p tmp backends config/mssim/backends
+program=${mssim%/*}/../bin/own_backend  # tests/support/own_backend.cpp
+ln -s "$(realpath "$program")" spring_list
+
+# describe NAME [FIELDS]: a description of the program that makes the mistake of that name
+describe() {
+  printf '{"command": ["%s", "%s"]%s}\n' "$work/spring_list" "$1" "${2:+, $2}" >"backends/$1.json"
+}
+
+# nothing_left WHAT: no process of the program, and no folder of mssim's for one
+nothing_left() {
+  local i
+  for ((i = 0; i < 20; ++i)); do
+    pgrep -f "^$work/spring_list" >/dev/null || break
+    sleep 0.1
+  done
+  ! pgrep -af "^$work/spring_list" || fail "$1 leaves a process"
+  [ -z "$(ls tmp)" ] || fail "$1 leaves $(ls tmp)"
+}
+
+bench=(bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1)
+
+# A right program, by its path, has every integrator, and its rows hold what it said of itself.
+succeed bench --scene cloth2500 --backend serial,./spring_list --integrator all --rounds 2 --threads 1 --out right
+[ "$(column_of right/timings.csv verified | sort | uniq -c | xargs)" = '10 true' ] || fail "not every row is verified: $(cat right/timings.csv)"
+[ "$(column_of right/timings.csv backend | grep -c '^spring_list$')" -eq 5 ] || fail "the rows are not called spring_list"
+[ "$(column_of right/timings.csv note | grep -c '^double precision; a list of springs$')" -eq 5 ] || fail "the notes are lost"
+column_of right/timings.csv processors_used | awk '!($1 > 0 && $1 < 1.5) { bad = 1 } END { exit bad }' ||
+  fail "processors_used is $(column_of right/timings.csv processors_used | xargs)"
+grep -A 3 '"spring_list"' right/provenance.json | grep -q '"./spring_list"' || fail "the provenance does not name the program"
+[ ! -e right/programs ] || fail "a program that writes nothing has a file of it"
+nothing_left "a right program"
+
+# What programs do wrong: each has its sentence, and the rows beside it are measured.
+mistakes=(unsupported unavailable fails-early old-protocol many-notes long-line crashes hangs-early never-connects ends-early exits
+  hangs ignores-signals leaves-children nonsense binary negative-time fails closes connects-twice done-twice nan writes-nothing
+  too-few cuts-state floods tells-time idle)
+for mistake in "${mistakes[@]}"; do describe "$mistake"; done
+status=0
+"$mssim" "${bench[@]}" --backend "serial$(printf ',%s' "${mistakes[@]}")" --backend-folder backends --backend-limit 2 \
+  --out wrong >out 2>err || status=$?
+[ "$status" -eq 1 ] || fail "programs that are wrong give exit status $status"
+nothing_left "programs that are wrong"
+
+# row NAME TEXT: the program's row says that, as a part of its line
+row() {
+  grep "^cloth2500,[0-9,]*,$1," wrong/timings.csv | grep -qF -- "$2" ||
+    fail "$1: $(grep "^cloth2500,[0-9,]*,$1," wrong/timings.csv)"
+}
+row serial ,true,ok,
+row unsupported ',unsupported: it has only red springs,'
+row unavailable ',unavailable: there is no such chip here,'
+row fails-early 'failed: fails-early failed at ""prepare"": the licence has run out'
+row old-protocol 'failed: old-protocol answered ""ready 0"" to ""prepare"", where device, threads,'
+row many-notes 'failed: many-notes answered ""prepare"" with more than 100 lines'
+row long-line 'failed: long-line answered ""prepare"" with a line of more than 4096 bytes'
+row crashes 'failed: crashes was ended by signal 11 (Segmentation fault) before it answered ""prepare""'
+row hangs-early 'failed: hangs-early did not answer ""prepare"" within 2 s'
+row never-connects 'failed: never-connects did not connect to MSSIM_SOCKET within 2 s'
+row ends-early 'failed: ends-early ended with exit code 0 before it connected to MSSIM_SOCKET'
+row exits 'failed: exits ended with exit code 3 before it answered ""step 1""; its last line: out of cake'
+for mistake in hangs ignores-signals leaves-children; do
+  row "$mistake" "failed: $mistake did not answer \"\"step 1\"\" within 2 s"
+done
+row nonsense 'failed: nonsense answered ""hello"" to ""step 1"", where done or failed is expected'
+row binary 'to ""step 1"", where done or failed is expected'
+row negative-time 'failed: negative-time answered ""done -1"" to ""step 1"", where done or failed is expected'
+row fails 'failed: fails failed at ""step 1"": a spring has snapped'
+row closes 'failed: closes closed its connection before it answered ""step 1""'
+row connects-twice 'failed: connects-twice connected a second time before it answered ""step 1""'
+row done-twice 'failed: done-twice sent ""done"" after its answer to ""step 1"", where nothing was asked'
+row nan 'failed: blew up at step 1 (t = 5e-05 s): node 7 is not finite'
+row writes-nothing 'failed: writes-nothing wrote 0 of the 5000 positions and velocities of the state file'
+row too-few 'failed: too-few wrote 4999 of the 5000 positions and velocities of the state file'
+row cuts-state 'failed: cuts-state left a state file of 119976 bytes instead of 120000'
+row floods ,true,ok,
+row tells-time ,true,ok,
+row idle 'failed: position error '
+
+# What they wrote last stays.
+[ "$(cat wrong/programs/cloth2500-exits-semi-euler.txt)" = 'out of cake' ] || fail "the output of exits is lost"
+[ "$(tail -n 1 wrong/programs/cloth2500-floods-semi-euler.txt)" = 'flood number 99999' ] || fail "the output of floods is lost"
+[ "$(wc -c <wrong/programs/cloth2500-floods-semi-euler.txt)" -le 65536 ] || fail "the output of floods is too long"
+[ "$(find wrong/programs -type f | wc -l)" -eq 2 ] || fail "wrong/programs holds $(ls wrong/programs)"
+
+# A finished folder is left as it is; another program under the same name is another result.
+succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again
+cp again/timings.csv before
+succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+cmp -s before again/timings.csv || fail "--resume changes a finished folder"
+describe floods '"environment": {"A": "1"}'
+succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+printf '{"command": ["%s"]}' "$work/spring_list" >backends/floods.json
+expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --overwrite
+[ ! -e again/programs ] || fail "--overwrite leaves the output of programs"
+
+# Ctrl-C ends a wait, without --backend-limit of two minutes, and leaves nothing.
+describe hangs
+env --default-signal=INT "$mssim" "${bench[@]}" --backend serial,hangs --backend-folder backends --out stopped >out 2>err </dev/null &
+process=$!
+for ((i = 0; i < 100; ++i)); do
+  pgrep -f "^$work/spring_list hangs" >/dev/null && break
+  sleep 0.1
+done
+sleep 0.5
+kill -INT "$process"
+for ((i = 0; i < 50; ++i)); do
+  kill -0 "$process" 2>/dev/null || break
+  sleep 0.1
+done
+! kill -9 "$process" 2>/dev/null || fail "Ctrl-C does not end a wait"
+status=0
+wait "$process" || status=$?
+[ "$status" -eq 130 ] || fail "Ctrl-C gives exit status $status: $(cat err)"
+nothing_left "Ctrl-C"
+
+mkdir twin
+printf '{"command": ["true"]}' >twin/serial.json
+printf '{"command": ["true"]}' >twin/here.json
+printf '{"comand": ["true"]}' >wrong.json
+echo text >wrong.txt
+
+# Descriptions: found in the folder, in the user's own, and beside a scene's file.
+describe here '"description": "a list of springs", "scenes": ["bodies"], "integrators": ["rk4"]'
+cp backends/here.json config/mssim/backends/mine.json
+succeed list backends --backend-folder backends --format csv
+grep -q '^here,,true,,a list of springs$' "$work/out" && grep -q '^mine,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
+status=0
+"$mssim" "${bench[@]}" --backend mine >out 2>err || status=$?
+[ "$status" -eq 3 ] && grep -q 'mine, semi-euler: unsupported: it does not step cloths$' err || fail "mine gives $status: $(cat err)"
+cp "$2/scenes/cloth2500.json" small.json
+printf '{"command": ["./spring_list"]}' >beside.json
+succeed bench --scene ./small.json --backend beside --integrator semi-euler --rounds 2
+expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder backends
+expect 2 'there are two backends called here' "${bench[@]}" --backend here --backend-folder backends,twin
+expect 2 'is called like the backend serial of mssim' "${bench[@]}" --backend serial --backend-folder twin
+expect 2 '/comand is not a known key' "${bench[@]}" --backend ./wrong.json
+expect 3 'there is no program ./nothing' "${bench[@]}" --backend ./nothing
+expect 3 'wrong.txt may not be executed; chmod +x it' "${bench[@]}" --backend ./wrong.txt
+
+# run has them too.
+succeed run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fall.h5
+grep -q ' spring_list ' "$work/out" || fail "run says: $(cat "$work/out")"
+expect 1 'exits ended with exit code 3 before it answered' run --scene cloth2500 --backend exits --backend-folder backends
+nothing_left "run"
+
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
