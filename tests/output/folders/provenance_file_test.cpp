@@ -35,6 +35,9 @@ Provenance full_provenance() {
   provenance.tetgen = "1.5";
   provenance.program_fnv1a_64 = 0x123456789abcdef0;
   provenance.device_memory = "copy";
+  provenance.backend_programs = {
+      {"mine.py", {"./mine.py"}, {{"./mine.py", 2}}},
+      {"numba", {"python3", "numba.py", "-v"}, {{"numba.py", 0xfedcba9876543210}, {"python3", 3}}}};
   provenance.scenes = {{"cloth2500", 0xfedcba9876543210}, {"mine", 1}};
   return provenance;
 }
@@ -116,6 +119,10 @@ TEST_F(ProvenanceFile, IsRefusedWithThePlaceAndTheValue) {
   EXPECT_THAT(refusal_with("/cpu/caches/0/bytes", 1e300), HasSubstr("/cpu/caches/0/bytes is 1e+300"));
   for (const char* hash : {"fedcba987654321", "fedcba987654321g", "0xfedcba98765432", "fedcba98765432100"})
     EXPECT_THAT(refusal_with("/scenes_fnv1a_64/mine", hash), HasSubstr("instead of 16 hexadecimal digits"));
+  EXPECT_THAT(refusal_with("/backend_programs/numba/command/1", 7),
+              HasSubstr("/backend_programs/numba/command/1 is 7 instead of a text"));
+  EXPECT_THAT(refusal_with("/backend_programs/numba/files_fnv1a_64/python3", "x"),
+              HasSubstr("instead of 16 hexadecimal digits"));
   EXPECT_THAT(refusal_of("[]"), HasSubstr("the document is [] instead of an object"));
 }
 
@@ -127,7 +134,8 @@ TEST_F(ProvenanceFile, WithoutOneOfItsValuesIsRefused) {
   for (const auto& [pointer, value] : flat.items()) {
     const json::json_pointer place(pointer);
     if (document[place.parent_pointer()].is_array() || pointer.starts_with("/scenes_fnv1a_64/") ||
-        pointer.starts_with("/threads/environment/") || pointer == "/cpu/turbo" ||
+        pointer.starts_with("/threads/environment/") ||
+        pointer.find("/files_fnv1a_64/") != std::string::npos || pointer == "/cpu/turbo" ||
         pointer == "/cpu/generation" || pointer == "/program_fnv1a_64" || pointer == "/device_memory")
       continue;
     EXPECT_EQ(refusal_with(pointer, gone), pointer + " is missing: give a provenance.json that mssim wrote");
@@ -144,12 +152,14 @@ TEST_F(ProvenanceFile, OfAnOlderMssimIsReadToo) {
   document.erase("earlier_starts_utc");
   document.erase("program_fnv1a_64");
   document.erase("device_memory");
+  document.erase("backend_programs");
   const Provenance old = read_provenance(put("old.json", document.dump()));
   EXPECT_EQ(old.machine.turbo, std::nullopt);
   EXPECT_EQ(old.machine.cpu_generation, "");
   EXPECT_EQ(old.program_fnv1a_64, std::nullopt);
   EXPECT_TRUE(old.noise.empty());
   EXPECT_TRUE(old.earlier_starts_utc.empty());
+  EXPECT_TRUE(old.backend_programs.empty());
   EXPECT_EQ(old.started_utc, full_provenance().started_utc);
 }
 
