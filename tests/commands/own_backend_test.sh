@@ -148,6 +148,10 @@ expect 2 '/comand is not a known key' "${bench[@]}" --backend ./wrong.json
 expect 3 'there is no program ./nothing' "${bench[@]}" --backend ./nothing
 expect 3 'wrong.txt may not be executed; chmod +x it' "${bench[@]}" --backend ./wrong.txt
 
+# Two programs of mssim are compared by how they time one.
+succeed compare --ab "$mssim" "$mssim" --scene cloth2500 --backend ./spring_list --time-budget 10
+grep -q 'spring_list' "$work/out" || fail "compare --ab says: $(cat "$work/out")"
+
 # run has them too.
 succeed run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fall.h5
 grep -q ' spring_list ' "$work/out" || fail "run says: $(cat "$work/out")"

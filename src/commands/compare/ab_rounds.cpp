@@ -89,6 +89,15 @@ std::vector<std::string> still_wanted(std::string PairedTimes::*member, const st
   return names;
 }
 
+/// Those of the backends that were asked for whose rows are still wanted.
+std::vector<std::string> backends_wanted(const AbOptions& options, const std::vector<Series>& series) {
+  const std::vector<std::string> rows = still_wanted(&PairedTimes::backend, series);
+  std::vector<std::string> asked;
+  for (const std::string& backend : options.backends)
+    if (std::ranges::find(rows, row_name(backend)) != rows.end()) asked.push_back(backend);
+  return asked;
+}
+
 /// Whether the memory does for a bench of either at the same time, with as much again to spare, as far as
 /// this program can tell: one that is compared may have scenes or backends that this one does not know.
 bool both_fit(const AbOptions& options) {
@@ -153,7 +162,7 @@ RunComparison compare_programs(const AbOptions& options) {
       const std::size_t first = random() & 1U;
       for (const std::size_t which : {first, 1 - first})
         times[which] =
-            programs[which].bench(all ? options.backends : still_wanted(&PairedTimes::backend, series),
+            programs[which].bench(all ? options.backends : backends_wanted(options, series),
                                   all ? options.integrators : still_wanted(&PairedTimes::integrator, series));
       if (all) series = combinations_of(times[0], times[1], options);
       for (Series& one : series)

@@ -35,6 +35,8 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
+bool is_path(const std::string& name) { return name.find('/') != std::string::npos; }
+
 std::string shown(const fs::path& path) { return escaped(path.string()); }
 
 /// The program at a path that the command line names.
@@ -46,7 +48,7 @@ BackendProgram program_at(const std::string& path) {
     throw MissingProgram(escaped(path) + " may not be executed; chmod +x it, or describe how it is run");
   BackendProgram program;
   program.program = fs::absolute(path);
-  program.name = program.program.filename().string();
+  program.name = row_name(path);
   program.description = "the program " + escaped(path);
   program.command = {path};
   program.folder = fs::current_path();
@@ -68,6 +70,12 @@ Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options)
                   "Longest time in which a program that is a backend must answer (default: 120)",
                   number_between(0.001, longest_time_limit_s))
       .value_name("SECONDS");
+}
+
+std::string row_name(const std::string& asked) {
+  if (!is_path(asked)) return asked;
+  const fs::path path = asked;
+  return (path.extension() == description_extension ? path.stem() : path.filename()).string();
 }
 
 std::vector<const BackendInfo*> table_backends() {
@@ -96,8 +104,7 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
 }
 
 const BackendInfo& BackendChoice::require(const std::string& name) {
-  if (name.find('/') != std::string::npos)
-    return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
+  if (is_path(name)) return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
   const std::optional<fs::path> file = description_of(name);
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;

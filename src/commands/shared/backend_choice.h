@@ -24,6 +24,9 @@ Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& option
 /// Declares --backend-limit. `options` must outlive the parsing.
 Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options);
 
+/// What the row is called of a backend that was asked for by this name or path.
+std::string row_name(const std::string& asked);
+
 /// The rows of the TABLE of backends, in its order.
 std::vector<const BackendInfo*> table_backends();
 
