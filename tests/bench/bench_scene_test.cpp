@@ -74,6 +74,52 @@ std::unique_ptr<Backend> on_two_processors(const System& system, const Integrato
 }
 constexpr BackendInfo undividable{"undividable", "", "takes two", false, on_two_processors, {}, {}};
 
+/// A right one behind which a program stands that fails at one of its calls, counted from 1. It takes note of
+/// whether it rests.
+class FailsAt final : public Backend {
+ public:
+  explicit FailsAt(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {
+    calls = 0;
+    call();
+  }
+  void set_state(const State& state) override {
+    call();
+    serial_->set_state(state);
+  }
+  void step(int count) override {
+    call();
+    serial_->step(count);
+  }
+  State state() const override {
+    call();
+    return serial_->state();
+  }
+  std::string device() const override { return "made up"; }
+  int threads() const override { return 1; }
+  std::string note() const override { return "settings"; }
+  void rest() override { rests = true; }
+  std::string end() override { return "all went well"; }
+  double processor_seconds() const override { return processor_s += 0.5; }
+
+  inline static int calls, fails_at;
+  inline static bool rests;
+  inline static double processor_s;
+
+ private:
+  static void call() {
+    rests = false;
+    if (++calls == fails_at) throw BackendFailure("it stumbled", "oh dear");
+  }
+
+  std::unique_ptr<Backend> serial_;
+};
+
+std::unique_ptr<Backend> fails_at(const System& system, const Integrator& integrator, double dt_s,
+                                  const ExecutionOptions& options) {
+  return std::make_unique<FailsAt>(find_backend("serial")->make(system, integrator, dt_s, options));
+}
+constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, fails_at, {}, {}};
+
 class BenchScene : public testing::Test {
  protected:
   BenchScene() {
@@ -253,6 +299,52 @@ TEST_F(BenchScene, SaysWhatFailedInTheMidstOfTheRounds) {
   EXPECT_THAT(rows[1].status, HasSubstr("failed: "));
   EXPECT_FALSE(rows[1].verified);
   EXPECT_EQ(rows[1].ms_per_step, std::nullopt);
+}
+
+TEST_F(BenchScene, TellsOfAProgramThatFailsAtAnyCall) {
+  job_.backends = {find_backend("serial"), &stumbling};
+  job_.integrators = {find_integrator("semi-euler")};
+  FailsAt::fails_at = 0;
+  const ResultRow right = run()[1];
+  EXPECT_EQ(right.status, "ok");
+  EXPECT_EQ(right.note, "settings");
+  EXPECT_EQ(right.program_output, "all went well");
+  EXPECT_TRUE(FailsAt::rests);
+  const int calls = FailsAt::calls;
+  ASSERT_GT(calls, 10);
+  // While it is made, verified, calibrated and sampled.
+  for (int call = 1; call <= calls / 2; ++call) {
+    FailsAt::fails_at = call;
+    const std::vector<ResultRow> rows = run();
+    EXPECT_EQ(rows[0].status, "ok") << call;
+    EXPECT_EQ(rows[0].rounds, 3) << call;
+    EXPECT_EQ(rows[1].status, "failed: it stumbled") << call;
+    EXPECT_FALSE(rows[1].verified) << call;
+    EXPECT_EQ(rows[1].ms_per_step, std::nullopt) << call;
+    EXPECT_EQ(rows[1].program_output, "oh dear") << call;
+  }
+}
+
+TEST_F(BenchScene, TellsOfAProgramThatFailsInTheRounds) {
+  job_.backends = {find_backend("serial"), &stumbling};
+  job_.integrators = {find_integrator("semi-euler")};
+  job_.rounds = 200;
+  FailsAt::fails_at = 500;  // trials before the rounds are far fewer
+  const std::vector<ResultRow> rows = run();
+  EXPECT_EQ(rows[0].rounds, 200);
+  EXPECT_EQ(rows[1].status, "failed: it stumbled");
+  EXPECT_GT(rows[1].rounds, 0);
+  EXPECT_LT(rows[1].rounds, 200);
+}
+
+TEST_F(BenchScene, SaysHowManyProcessorsTheSamplesTook) {
+  job_.backends = {find_backend("serial"), &stumbling};
+  job_.integrators = {find_integrator("semi-euler")};
+  FailsAt::fails_at = 0;
+  const std::vector<ResultRow> rows = run();
+  EXPECT_GT(rows[0].processors_used, 0);
+  EXPECT_LT(rows[0].processors_used, 1.5);
+  EXPECT_GT(rows[1].processors_used, 10) << "half a second for each sample of a tenth of a millisecond";
 }
 
 }  // namespace
