@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"
 #include "tests/support/solid_system.h"
+#include "tests/support/temporary_folder.h"
 
 namespace mssim {
 namespace {
@@ -177,25 +180,33 @@ TEST(ProcessBackend, SaysWhyAProgramCannotRun) {
   }
 }
 
-TEST(ProcessBackend, LeavesNoFileBehind) {
-  const auto folders = [] {
-    std::vector<std::filesystem::path> all;
-    for (const char* parent : {"/dev/shm", "/tmp"})
-      for (const auto& entry : std::filesystem::directory_iterator(parent))
-        if (std::filesystem::exists(entry.path() / "socket") ||
-            std::filesystem::exists(entry.path() / "state"))
-          all.push_back(entry.path());
-    return all.size();
-  };
+/// A test whose temporary files lie in a folder of its own. StateFileTest looks at those in shared memory.
+class ProcessBackendFiles : public TemporaryFolderTest {
+ protected:
+  ProcessBackendFiles() { ::setenv("TMPDIR", folder().c_str(), 1); }
+  ~ProcessBackendFiles() override {
+    if (before_)
+      ::setenv("TMPDIR", before_->c_str(), 1);
+    else
+      ::unsetenv("TMPDIR");
+  }
+  bool is_empty() const { return std::filesystem::is_empty(folder()); }
+
+ private:
+  std::optional<std::string> before_ =
+      std::getenv("TMPDIR") ? std::optional<std::string>(std::getenv("TMPDIR")) : std::nullopt;
+};
+
+TEST_F(ProcessBackendFiles, GoAwayWithTheBackend) {
   const System system = cloth_system(4, 5);
   const BackendProgram program = program_that("");
-  const auto before = folders();
   {
     const auto backend = make(program, system);
-    EXPECT_GT(folders(), before);
+    EXPECT_FALSE(is_empty());
   }
-  EXPECT_EQ(failure_of("nonsense").output, "");
-  EXPECT_EQ(folders(), before);
+  EXPECT_TRUE(is_empty());
+  EXPECT_NE(std::string(failure_of("nonsense").what()), "none");
+  EXPECT_TRUE(is_empty());
 }
 
 // What a step costs beside the steps of the program: the least of many, which other programs do not disturb.
