@@ -32,12 +32,15 @@ std::vector<std::string> timed_names(const BenchOptions& options) {
 }
 
 /// All of the table, or those asked for in the table's order, and the user's own behind them.
-std::vector<const BackendInfo*> backends_of(const BenchOptions& options,
-                                            const std::vector<const BackendInfo*>& known,
+std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const Comparison& comparison,
                                             BackendChoice& choice) {
   std::vector<const BackendInfo*> asked, all;
   for (const std::string& name : options.backends) asked.push_back(&choice.require(name));
-  for (const BackendInfo* backend : known)
+  if (comparison.described_too && asked.empty() && choice.described().empty())
+    throw UsageError("--suite " + options.suite +
+                     " compares backends that are described in files, and there are none: run scripts/peers, "
+                     "which makes some, or give their --backend-folder");
+  for (const BackendInfo* backend : comparison.backends())
     if (asked.empty() || std::ranges::find(asked, backend) != asked.end()) all.push_back(backend);
   std::ranges::copy(choice.own(), std::back_inserter(all));
   return all;
@@ -58,7 +61,7 @@ std::vector<const Integrator*> integrators_of(const BenchOptions& options,
 
 BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison, BackendChoice& choice) {
   BenchSettings settings;
-  settings.backends = backends_of(options, comparison.backends(), choice);
+  settings.backends = backends_of(options, comparison, choice);
   settings.integrators = integrators_of(options, comparison.integrators);
   settings.execution = complete(options.execution);
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);

@@ -10,6 +10,7 @@
 #include "garment/output/garment_table.h"
 #include "integrators/integrators.h"
 #include "output/tables/paper_table.h"
+#include "output/tables/peer_table.h"
 #include "output/tables/race_table.h"
 #include "output/tables/scaling_table.h"
 
@@ -28,6 +29,8 @@ constexpr std::array<std::string_view, 6> body_scenes{"bodies3858",  "bodies4737
 constexpr std::array<std::string_view, 2> race_scenes{"cloth40k", "bodies20587"};
 constexpr std::array<std::string_view, 6> ever_larger_cloths{"cloth40k", "cloth200k", "cloth350k",
                                                              "cloth1m",  "cloth4m",   "cloth16m"};
+constexpr std::array<std::string_view, 4> scenes_of_peers{"cloth2500", "cloth40k", "cloth350k",
+                                                          "bodies38233"};
 constexpr std::array<std::string_view, 6> jeans{"jeans1k", "jeans2k",  "jeans4k",
                                                 "jeans8k", "jeans16k", "jeans64k"};
 
@@ -39,6 +42,11 @@ std::vector<const BackendInfo*> all_methods() {
   std::vector<const BackendInfo*> rows;
   for (const AccumulationMethod& method : accumulation_methods()) rows.push_back(&method.backend);
   return rows;
+}
+
+/// What the peers are held against: the plain list and the fastest of the host's.
+std::vector<const BackendInfo*> baseline_and_best() {
+  return {find_backend("serial"), find_backend("openmp")};
 }
 
 TableMaker tables_of_hong() { return paper_tables(paper_legend(), published_tables()); }
@@ -66,7 +74,7 @@ TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cl
 
 constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
 
-constexpr std::array<Suite, 6> table{{
+constexpr std::array<Suite, 7> table{{
     {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
     {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
@@ -82,6 +90,12 @@ constexpr std::array<Suite, 6> table{{
      true,
      ever_larger_cloths,
      {table_backends, cheapest_method, table_of_scaling}},
+    {"peers",
+     "the same scenes in other languages and libraries, side by side (scripts/peers)",
+     false,
+     true,
+     scenes_of_peers,
+     {baseline_and_best, cheapest_method, peer_tables, true}},
     {"garment",
      "jeans on a body, draped and dressed: Figure 6 of Vassilev",
      false,

@@ -16,6 +16,7 @@ struct Comparison {
   std::vector<const BackendInfo*> (*backends)();  ///< the rows of a table, in its order
   std::span<const std::string_view> integrators;  ///< by default
   TableMaker (*tables)();                         ///< reads what it needs at once, so before any measurement
+  bool described_too = false;                     ///< by default, all backends that are described, too
 };
 
 /// A row of the TABLE of suites: scenes, and what is compared on them.

@@ -22,8 +22,8 @@ struct ResultTable {
 };
 
 /// Every name of such a table, and table2, which is made of what the scenes are.
-inline constexpr std::array<std::string_view, 6> table_names{"table1", "table2",  "table3",
-                                                             "races",  "scaling", "figure6"};
+inline constexpr std::array<std::string_view, 7> table_names{"table1",  "table2", "table3", "races",
+                                                             "scaling", "peers",  "figure6"};
 
 /// Makes tables of the rows that a run has so far; none where no row belongs into one.
 using TableMaker =

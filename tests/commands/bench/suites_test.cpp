@@ -53,6 +53,14 @@ TEST(Suites, OfRacesAndScalingMeasureOneMethodOfTheirOwn) {
     EXPECT_THAT(comparison_of_suite(suite).integrators, testing::ElementsAre("semi-euler"));
 }
 
+TEST(Suites, OfPeersMeasuresClothsAndBodiesWithWhatIsDescribed) {
+  EXPECT_THAT(scenes_of_suite("peers", true),
+              testing::ElementsAre("cloth2500", "cloth40k", "cloth350k", "bodies38233"));
+  EXPECT_THAT(backends_of("peers"), testing::ElementsAre("serial", "openmp"));
+  EXPECT_THAT(comparison_of_suite("peers").integrators, testing::ElementsAre("semi-euler"));
+  for (const Suite& suite : suites()) EXPECT_EQ(suite.comparison.described_too, suite.name == "peers");
+}
+
 TEST(Suites, OfGarmentsAreTheJeansOfTheFigureWithTheOneMethodThatDresses) {
   EXPECT_THAT(scenes_of_suite("garment", true),
               testing::ElementsAre("jeans1k", "jeans2k", "jeans4k", "jeans8k", "jeans16k", "jeans64k"));

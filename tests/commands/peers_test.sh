@@ -1,0 +1,34 @@
+#!/bin/bash
+# The suite of peers, with the one of them that needs no Python: plain C++, compiled here. Arguments: mssim, the source folder, and
+# perhaps an emulator.
+set -euo pipefail
+mssim=$1
+source=$2
+. "$source/tests/support/command_line.sh"
+peers=$source/scripts/lib/peers
+export XDG_CONFIG_HOME=$work/config  # no descriptions of the user's
+
+# Without descriptions there is nothing to hold mssim against; the message says where some are.
+expect 2 '^mssim: --suite peers compares backends that are described.*scripts/peers' bench --suite peers --dry-run
+
+# mssim reads all descriptions, and all of them are in the suite.
+succeed bench --suite peers --backend-folder "$peers" --dry-run
+described=$(find "$peers" -name '*.json' | wc -l)
+[ "$described" -eq 7 ] || fail "there are $described descriptions"
+[ "$(grep -c "^bodies38233 .* $((described + 2)) " "$work/out")" -eq 1 ] || fail "not all are in the suite: $(cat "$work/out")"
+
+[ $# -lt 3 ] || exit 77 # the peer would be of the machine that emulates
+pkg-config --exists hdf5 && command -v c++ >/dev/null || exit 77
+root=$source
+. "$source/scripts/lib/peers.sh"
+compile_cpp_peer "$work/cpp-list"
+printf '{"command": ["./cpp-list"]}' >"$work/cpp-list.json"
+
+succeed bench --suite peers --backend openmp,cpp-list --backend-folder "$work" --rounds 1 --threads 2 --out "$work/peers"
+[ "$(grep -c ',openmp,' "$work/peers/peers.csv")" -eq 4 ] || fail "peers.csv: $(cat "$work/peers/peers.csv")"
+[ "$(grep -c ',cpp-list,1,.*,true,ok,.*spring list; [0-9]* lines' "$work/peers/peers.csv")" -eq 4 ] ||
+  fail "the peer is not verified: $(cat "$work/peers/peers.csv")"
+column_of "$work/peers/peers.csv" times_openmp | awk '$1 <= 0 { exit 1 }' || fail "no ratios: $(cat "$work/peers/peers.csv")"
+grep -q '^| .cpp-list. | 1 |' "$work/peers/peers.md" || fail "peers.md: $(cat "$work/peers/peers.md")"
+
+[ "$failures" -eq 0 ]
