@@ -28,9 +28,9 @@ std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& 
 std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::string& id);
 
 /// Cloths, bodies, garments, and others: scenes of a kind lie on one line of a chart.
-enum class SceneKind : std::uint8_t { cloth, bodies, garment, other };
-SceneKind kind_of(const ResultRow& row);
-std::string_view name_of(SceneKind kind);
+enum class ContentKind : std::uint8_t { cloth, bodies, garment, other };
+ContentKind kind_of(const ResultRow& row);
+std::string_view name_of(ContentKind kind);
 
 /// The time of a step of the first integrator against nodes, for each kind of scene with at least two sizes,
 /// with the slope of every line.

@@ -8,11 +8,11 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<SceneKind, 4> scene_kinds{SceneKind::cloth, SceneKind::bodies, SceneKind::garment,
-                                               SceneKind::other};
+constexpr std::array<ContentKind, 4> scene_kinds{ContentKind::cloth, ContentKind::bodies,
+                                                 ContentKind::garment, ContentKind::other};
 
 /// The rows of one kind, backend and integrator that count, by size.
-std::vector<const ResultRow*> rows_by_size(std::span<const ResultRow> rows, SceneKind kind,
+std::vector<const ResultRow*> rows_by_size(std::span<const ResultRow> rows, ContentKind kind,
                                            std::string_view backend, std::string_view integrator) {
   std::vector<const ResultRow*> list;
   for (const ResultRow& row : rows)
@@ -72,13 +72,13 @@ std::string paper_name_of(const PaperLegend& legend, const std::string& integrat
 
 }  // namespace
 
-SceneKind kind_of(const ResultRow& row) {
-  if (row.springs_published == 2 * row.springs_unique) return SceneKind::cloth;
-  if (row.springs_published == 3 * row.springs_unique) return SceneKind::bodies;
-  return row.dressing ? SceneKind::garment : SceneKind::other;
+ContentKind kind_of(const ResultRow& row) {
+  if (row.springs_published == 2 * row.springs_unique) return ContentKind::cloth;
+  if (row.springs_published == 3 * row.springs_unique) return ContentKind::bodies;
+  return row.dressing ? ContentKind::garment : ContentKind::other;
 }
 
-std::string_view name_of(SceneKind kind) {
+std::string_view name_of(ContentKind kind) {
   constexpr std::array<std::string_view, 4> names{"cloths", "bodies", "garments", "other scenes"};
   return names[static_cast<std::size_t>(kind)];
 }
@@ -88,7 +88,7 @@ std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLe
   std::vector<Chart> charts;
   if (rows.empty()) return charts;
   const std::string integrator = rows.front().integrator;
-  for (const SceneKind kind : scene_kinds) {
+  for (const ContentKind kind : scene_kinds) {
     Chart chart;
     chart.id = id + "-scaling-" + std::to_string(static_cast<int>(kind));
     chart.title = "Time of a " + integrator + " step of " + std::string(name_of(kind));
@@ -119,7 +119,7 @@ std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLe
 Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
                   std::span<const PublishedTable> published) {
   Table table;
-  for (const SceneKind kind : scene_kinds)
+  for (const ContentKind kind : scene_kinds)
     for (const std::string& integrator : distinct(rows, &ResultRow::integrator))
       for (const std::string& backend : distinct(rows, &ResultRow::backend)) {
         const auto list = rows_by_size(rows, kind, backend, integrator);

@@ -57,7 +57,7 @@ Table times_of(const std::vector<const ResultRow*>& rows, std::span<const Result
 
 /// Those of the largest scene of each kind.
 std::vector<const ResultRow*> headline_rows(std::span<const ResultRow> rows) {
-  std::map<SceneKind, const ResultRow*> largest;
+  std::map<ContentKind, const ResultRow*> largest;
   for (const ResultRow& row : rows) {
     if (!counts(row)) continue;
     const ResultRow*& known = largest[kind_of(row)];

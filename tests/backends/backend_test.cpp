@@ -261,13 +261,6 @@ System low_cloth(std::uint32_t rows, std::uint32_t columns) {
   return build_system(spec);
 }
 
-/// Whether a node lies on the floor or rises from it.
-bool has_met_floor(const System& system, const State& state) {
-  for (std::size_t node = 0; node < system.nodes(); ++node)
-    if (state.velocity[node].y > 0 || state.position[node].y == system.floor.height) return true;
-  return false;
-}
-
 /// Expects the same bits after a bounce with any number of threads.
 void expect_same_bits(const System& system, const Integrator& integrator) {
   const auto alone = make_openmp(system, integrator, backend_dt_s, {1, ""});

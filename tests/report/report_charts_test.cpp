@@ -117,13 +117,13 @@ TEST(EnergyChart, TakesTheReferenceOfTheLongestName) {
 
 TEST(KindOf, FollowsFromHowSpringsAreCounted) {
   ResultRow row = measured_row("serial", 1, 1.0);
-  EXPECT_EQ(kind_of(row), SceneKind::cloth);
+  EXPECT_EQ(kind_of(row), ContentKind::cloth);
   row.springs_published = 3 * row.springs_unique;
-  EXPECT_EQ(kind_of(row), SceneKind::bodies);
+  EXPECT_EQ(kind_of(row), ContentKind::bodies);
   row.springs_published.reset();
-  EXPECT_EQ(kind_of(row), SceneKind::other);
+  EXPECT_EQ(kind_of(row), ContentKind::other);
   row.dressing.emplace();
-  EXPECT_EQ(kind_of(row), SceneKind::garment);
+  EXPECT_EQ(kind_of(row), ContentKind::garment);
 }
 
 }  // namespace

@@ -52,4 +52,11 @@ inline System lone_cloth(std::uint32_t rows, std::uint32_t columns) {
   return build_system(spec);
 }
 
+/// Whether a node lies on the floor or rises from it.
+inline bool has_met_floor(const System& system, const State& state) {
+  for (std::size_t node = 0; node < system.nodes(); ++node)
+    if (state.velocity[node].y > 0 || state.position[node].y == system.floor.height) return true;
+  return false;
+}
+
 }  // namespace mssim

@@ -27,17 +27,10 @@ const std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{
     {7, 1},   {2, 1},   {6, 48}, {6, 49}, {6, 47}, {6, 46}, {5, 130}};
 
 /// A cloth whose nodes lie below the level of its pins in a few steps, so that it bounces.
-System low_cloth(std::uint32_t rows, std::uint32_t columns) {
+System bouncing_cloth(std::uint32_t rows, std::uint32_t columns) {
   System system = cloth_system(rows, columns);
   system.floor.height = system.start.position[0].y - 0.001;
   return system;
-}
-
-/// Whether a node lies on the floor or rises from it.
-bool has_met_floor(const System& system, const State& state) {
-  for (std::size_t node = 0; node < system.nodes(); ++node)
-    if (state.velocity[node].y > 0 || state.position[node].y == system.floor.height) return true;
-  return false;
 }
 
 class EachRowKernelAndIntegrator : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
@@ -78,7 +71,7 @@ TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsThe
   });
   constexpr int steps = 101;  // an odd number leaves the state where `next` was
   for (const auto& [rows, columns] : sizes) {
-    const System system = low_cloth(rows, columns);
+    const System system = bouncing_cloth(rows, columns);
     const auto alone = make_gather_vectors(system, integrator(), backend_dt_s, {1, ""}, best);
     alone->step(steps);
     const State expected = alone->state();
