@@ -36,8 +36,8 @@ double seconds_of(const ResultRow& row) {
 
 /// The largest of each kind that is `wanted` and can be simulated soon.
 template <class Wanted>
-std::map<SceneKind, Sitter> sitters_of(std::span<const ReportFolder> folders, Wanted wanted) {
-  std::map<SceneKind, Sitter> sitters;
+std::map<ContentKind, Sitter> sitters_of(std::span<const ReportFolder> folders, Wanted wanted) {
+  std::map<ContentKind, Sitter> sitters;
   for (const ReportFolder& folder : folders)
     for (const ResultRow& row : folder.rows) {
       if (row.backend != "openmp" || row.integrator != integrator || !counts(row) || !(row.dt_s > 0) ||
@@ -101,7 +101,7 @@ const FoundCurve* reference_of(const std::string& scene, std::span<const FoundCu
 
 /// Calls `simulate` with the rows of those sitters whose scenes are known.
 template <class Simulate>
-void for_each_sitter(const std::map<SceneKind, Sitter>& sitters, std::vector<std::string>& problems,
+void for_each_sitter(const std::map<ContentKind, Sitter>& sitters, std::vector<std::string>& problems,
                      Simulate simulate) {
   for (const auto& [kind, sitter] : sitters) {
     const std::string& name = sitter.row->scene;
