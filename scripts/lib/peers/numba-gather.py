@@ -41,22 +41,41 @@ def move(x, v, a, free, world, x_next, v_next):
         v_next[0], v_next[1], v_next[2] = vx, vy, vz
 
 
+@njit(inline="always", **fast)
+def pulled(a, x, v, i, j, row, column, k, k_rest, c):
+    """The acceleration a of a node and that of its spring to another one."""
+    dx, dy, dz = x[i, j, 0] - x[row, column, 0], x[i, j, 1] - x[row, column, 1], x[i, j, 2] - x[row, column, 2]
+    ux, uy, uz = v[i, j, 0] - v[row, column, 0], v[i, j, 1] - v[row, column, 1], v[i, j, 2] - v[row, column, 2]
+    p = pull((dx, dy, dz), (ux, uy, uz), k, k_rest, c)
+    return a[0] + p * dx, a[1] + p * dy, a[2] + p * dz
+
+
 @njit(parallel=True, **fast)
 def step_cloth(x, v, x_next, v_next, free, springs, world):
     rows, columns, _ = x.shape
     k, k_rest, c = springs
     for row in prange(rows):
         for column in range(columns):
-            ax = ay = az = np.float32(0)
-            for n in range(12):
-                i, j = row + ROWS[n], column + COLUMNS[n]
-                if 0 <= i < rows and 0 <= j < columns:
-                    d = minus(x[i, j], x[row, column])
-                    kind = KINDS[n]
-                    p = pull(d, minus(v[i, j], v[row, column]), k[kind], k_rest[kind], c[kind])
-                    ax, ay, az = ax + p * d[0], ay + p * d[1], az + p * d[2]
-            move(x[row, column], v[row, column], (ax, ay, az), free[row, column], world,
-                 x_next[row, column], v_next[row, column])
+            a = (np.float32(0), np.float32(0), np.float32(0))
+            if 2 <= row < rows - 2 and 2 <= column < columns - 2:
+                a = pulled(a, x, v, row, column + 1, row, column, k[0], k_rest[0], c[0])
+                a = pulled(a, x, v, row + 1, column, row, column, k[0], k_rest[0], c[0])
+                a = pulled(a, x, v, row + 1, column + 1, row, column, k[1], k_rest[1], c[1])
+                a = pulled(a, x, v, row + 1, column - 1, row, column, k[1], k_rest[1], c[1])
+                a = pulled(a, x, v, row, column + 2, row, column, k[2], k_rest[2], c[2])
+                a = pulled(a, x, v, row + 2, column, row, column, k[2], k_rest[2], c[2])
+                a = pulled(a, x, v, row, column - 1, row, column, k[0], k_rest[0], c[0])
+                a = pulled(a, x, v, row - 1, column, row, column, k[0], k_rest[0], c[0])
+                a = pulled(a, x, v, row - 1, column - 1, row, column, k[1], k_rest[1], c[1])
+                a = pulled(a, x, v, row - 1, column + 1, row, column, k[1], k_rest[1], c[1])
+                a = pulled(a, x, v, row, column - 2, row, column, k[2], k_rest[2], c[2])
+                a = pulled(a, x, v, row - 2, column, row, column, k[2], k_rest[2], c[2])
+            else:
+                for n in range(12):
+                    i, j, kind = row + ROWS[n], column + COLUMNS[n], KINDS[n]
+                    if 0 <= i < rows and 0 <= j < columns:
+                        a = pulled(a, x, v, i, j, row, column, k[kind], k_rest[kind], c[kind])
+            move(x[row, column], v[row, column], a, free[row, column], world, x_next[row, column], v_next[row, column])
 
 
 @njit(parallel=True, **fast)
