@@ -134,4 +134,4 @@ def prepare(system, method):
 
 
 mssim_backend.serve(prepare, precision="single", note=common.note(
-    __file__, f"Numba {numba.__version__}", "prange over nodes, gather, fastmath"))
+    __file__, f"Numba {numba.__version__}", "prange over nodes, gather, fastmath, threads by OpenMP"))

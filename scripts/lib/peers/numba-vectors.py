@@ -134,4 +134,4 @@ class Cloth:
 
 
 mssim_backend.serve(Cloth, precision="single", note=common.note(
-    __file__, f"Numba {numba.__version__}", "gather from padded rows by component, vectorised, fastmath"))
+    __file__, f"Numba {numba.__version__}", "gather from padded rows by component, vectorised, fastmath, threads by OpenMP"))

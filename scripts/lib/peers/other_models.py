@@ -214,7 +214,7 @@ def row_of(name, side):
     except importlib.metadata.PackageNotFoundError:
         row["status"] = f"unavailable: {package} is not installed"
     except subprocess.TimeoutExpired:
-        row["status"] = f"failed: not measured within {LIMIT_S} s"
+        row["status"] = f"too slow: not measured within {LIMIT_S} s"
     return row
 
 
@@ -286,14 +286,14 @@ def main():
             print(f"peers: {name}, {side * side} nodes", file=sys.stderr)
             rows.append(row_of(name, side))
             # A larger one would take longer still.
-            if rows[-1]["status"].startswith(("failed: not measured", "unavailable")):
+            if rows[-1]["status"].startswith(("too slow", "unavailable")):
                 break
     try:
         write(given.out, rows)
     except OSError as error:
         print(f"peers: {error}", file=sys.stderr)
         return 4
-    return 0 if all(row["status"] == "ok" for row in rows) else 1
+    return 0 if all(row["status"].startswith(("ok", "too slow")) for row in rows) else 1
 
 
 if __name__ == "__main__":
