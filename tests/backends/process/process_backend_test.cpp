@@ -209,8 +209,9 @@ TEST_F(ProcessBackendFiles, GoAwayWithTheBackend) {
   EXPECT_TRUE(is_empty());
 }
 
-// What a step costs beside the steps of the program: the least of many, which other programs do not disturb.
-TEST(ProcessBackend, AsksForAStepQuickly) {
+// What a step costs beside the steps of the program: the least of many, which other programs do not disturb. A time
+// is no test of a change: --gtest_also_run_disabled_tests --gtest_filter=*AsksForAStep* measures it in a release.
+TEST(ProcessBackend, DISABLED_AsksForAStepQuickly) {
   const System system = cloth_system(4, 5);
   const BackendProgram program = program_that("idle");
   const auto backend = make(program, system);
@@ -221,9 +222,7 @@ TEST(ProcessBackend, AsksForAStepQuickly) {
     least = std::min<std::chrono::duration<double>>(least, std::chrono::steady_clock::now() - before);
   }
   RecordProperty("least_microseconds", std::to_string(1e6 * least.count()));
-#ifdef NDEBUG
   EXPECT_LE(least.count(), 50e-6);
-#endif
 }
 
 }  // namespace
