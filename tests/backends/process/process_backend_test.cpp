@@ -209,8 +209,9 @@ TEST_F(ProcessBackendFiles, GoAwayWithTheBackend) {
   EXPECT_TRUE(is_empty());
 }
 
-// What a step costs beside the steps of the program: the least of many, which other programs do not disturb. A time
-// is no test of a change: --gtest_also_run_disabled_tests --gtest_filter=*AsksForAStep* measures it in a release.
+// What a step costs beside the steps of the program: the least of many, which other programs do not disturb.
+// A time is no test of a change: --gtest_also_run_disabled_tests --gtest_filter=*AsksForAStep* measures it in
+// a release.
 TEST(ProcessBackend, DISABLED_AsksForAStepQuickly) {
   const System system = cloth_system(4, 5);
   const BackendProgram program = program_that("idle");
