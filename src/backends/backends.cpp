@@ -5,6 +5,8 @@
 #include "backends/devices/offer.h"
 #include "backends/devices/sub_device.h"
 #include "backends/hybrid/hybrid.h"
+#include "backends/implicit/implicit.h"
+#include "backends/interface/ahead.h"
 #include "backends/opencl/opencl.h"
 #include "backends/openmp/openmp.h"
 #include "backends/process/process_backend.h"
@@ -48,12 +50,12 @@ std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Int
 
 constexpr std::array<BackendInfo, 5> table{{
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
-     false, make_serial, spring_list_memory, spring_list_memory, dress_serially},
+     false, make_serial, spring_list_memory, spring_list_memory, dress_serially, make_serial_implicit},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, make_threads_mutex,
      spring_list_memory, spring_list_memory},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     make_openmp, bands, slices, dress_by_openmp},
+     make_openmp, bands, slices, dress_by_openmp, make_openmp_implicit},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, make_opencl, planes, device_slices,
      dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
@@ -87,8 +89,14 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
                                       const ExecutionOptions& options) {
   if (is_garment(system)) return make_dressing_backend(backend, system, integrator, dt_s, options);
   if (backend.program != nullptr)
-    return make_process_backend(*backend.program, system, integrator, dt_s, options);
-  return backend.make(system, integrator, dt_s, options);
+    return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
+                      integrator, dt_s);
+  if (is_implicit(integrator)) {
+    if (backend.make_implicit == nullptr)
+      throw Unsupported("implicit integrators are stepped by serial and openmp");
+    return backend.make_implicit(system, integrator, dt_s, options);
+  }
+  return step_ahead(backend.make(system, integrator, dt_s, options), system, integrator, dt_s);
 }
 
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,

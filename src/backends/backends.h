@@ -18,8 +18,8 @@ struct BackendInfo {
       paper_configuration;       ///< column of Hong et al.'s tables (`configuration` in the published CSV)
   std::string_view description;  ///< one line for `mssim list backends`
   bool uses_device;              ///< needs an OpenCL device
-  /// Makes a backend for a cloth or bodies, at the system's start state. `system` must outlive it. Throws
-  /// Unavailable or Unsupported.
+  /// Makes a backend for a cloth or bodies and an explicit integrator, at the system's start state. `system`
+  /// must outlive it. Throws Unavailable or Unsupported.
   std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth
@@ -27,6 +27,9 @@ struct BackendInfo {
   /// Makes one that dresses a garment; null where it has not Algorithm 1.
   std::unique_ptr<DressingBackend> (*make_dressing)(const System& system, const Integrator& integrator,
                                                     double dt_s, const ExecutionOptions& options) = nullptr;
+  /// Makes one for an implicit integrator, of a cloth or bodies; null where it has none.
+  std::unique_ptr<Backend> (*make_implicit)(const System& system, const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& options) = nullptr;
   /// The program that takes its steps; `make` is null then. It outlives the row.
   const BackendProgram* program = nullptr;
 };

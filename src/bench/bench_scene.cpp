@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/bench_memory.h"
+#include "bench/expected_time.h"
 #include "bench/job/combination.h"
 #include "bench/roofline/machine_peak.h"
 #include "bench/roofline/step_cost.h"
@@ -32,7 +33,8 @@ using Clock = std::chrono::steady_clock;
 using Peaks = std::map<std::pair<const Integrator*, int>, MachinePeak>;
 
 /// Measures the peaks that the combinations are held against, now. None for a garment: what a step of it has
-/// to do depends on what touches and what is sewn; and none where only samples are wanted.
+/// to do depends on what touches and what is sewn; none for implicit integrators, whose solvers go on for as
+/// long as it takes; and none where only samples are wanted.
 Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
@@ -40,6 +42,7 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
   for (const Combination& combination : combinations) {
     const int threads = combination.row.threads;
     const auto key = std::pair(combination.integrator, threads);
+    if (is_implicit(*combination.integrator)) continue;
     if (!combination.backend || !combination.on_host || peaks.contains(key)) continue;
     watch.progress("machine peak with " + counted(static_cast<std::uint64_t>(threads), "thread"),
                    job.preparation);
@@ -51,7 +54,7 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
 
 void compare_with_peaks(const Combination& combination, const StepSize& size, const Peaks& peaks,
                         ResultRow& row) {
-  if (!row.ms_per_step || row.dressing) return;
+  if (!row.ms_per_step || row.dressing || is_implicit(*combination.integrator)) return;
   const StepCost cost = step_cost(*combination.integrator, size, combination.steps_per_pass);
   const double seconds = *row.ms_per_step / 1000;
   row.gigabytes_per_second = cost.bytes / seconds / 1e9;
@@ -100,11 +103,11 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   std::vector<AfterReference> results(job.integrators.size());
   const auto serial =
       std::ranges::find_if(job.backends, [](const BackendInfo* info) { return info->name == "serial"; });
-  // Those of more stages take longer, and begin first.
+  // Those that take longer begin first.
   std::vector<std::size_t> order(results.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(),
-                           [&](std::size_t i) { return job.integrators[i]->stage_count; });
+                           [&](std::size_t i) { return expected_evaluations(*job.integrators[i]); });
   const auto run = [&](const Integrator& integrator, AfterReference& result) {
     result.verifier = make_verifier(job, integrator, draped);
     if (serial != job.backends.end())

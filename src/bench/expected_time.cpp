@@ -24,7 +24,7 @@ double dressing_steps(double nodes) { return 40 * std::sqrt(nodes); }
 
 /// Seconds of a step of the plain list.
 double list_step_time(const Integrator& integrator, const SceneSize& size) {
-  return spring_s * static_cast<double>(size.springs) * static_cast<double>(integrator.stage_count) *
+  return spring_s * static_cast<double>(size.springs) * expected_evaluations(integrator) *
          (size.garment ? garment_step : 1);
 }
 
@@ -33,6 +33,22 @@ double step_time(const BackendInfo& backend, double list_step) {
 }
 
 }  // namespace
+
+double expected_evaluations(const Integrator& integrator) {
+  switch (integrator.solver) {
+    case Solver::none:
+      return static_cast<double>(integrator.stage_count);
+    case Solver::newton_step:
+      return 25;
+    case Solver::newton:
+      return 100;
+    case Solver::local_global:
+      return 40;
+    case Solver::constraints:
+      return 20;
+  }
+  return 0;
+}
 
 ExpectedTime total(std::span<const ExpectedTime> scenes) {
   ExpectedTime sum;

@@ -13,6 +13,10 @@ struct ExpectedTime {
   double round = 0;        ///< one sample of every combination
 };
 
+/// Force evaluations that a step takes as long as: of an implicit integrator about, at a dt near its limits
+/// of use, because its solver goes on for as long as it takes.
+double expected_evaluations(const Integrator& integrator);
+
 /// Of several scenes together.
 ExpectedTime total(std::span<const ExpectedTime> scenes);
 

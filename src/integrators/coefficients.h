@@ -27,13 +27,13 @@ Coefficients<Real> coefficients_of(const Integrator& integrator, double dt_s) {
   return result;
 }
 
-/// Calls `visit(std::integral_constant<std::size_t, I>)` with the table row of `integrator`, so that loops
-/// can be instantiated from the row. `integrator` must be an element of the table.
+/// Calls `visit(std::integral_constant<std::size_t, I>)` with the row of the table of stages that
+/// `integrator` takes, so that loops can be instantiated from the row. It must be explicit.
 template <class Visit>
 void with_integrator(const Integrator& integrator, Visit&& visit) {
+  const Integrator* const taken = integrator.row != nullptr ? integrator.row : &integrator;
   [&]<std::size_t... row>(std::index_sequence<row...>) {
-    (void)((&integrators[row] == &integrator ? (visit(std::integral_constant<std::size_t, row>{}), true)
-                                             : false) ||
+    (void)((&integrators[row] == taken ? (visit(std::integral_constant<std::size_t, row>{}), true) : false) ||
            ...);
   }
   (std::make_index_sequence<integrators.size()>{});

@@ -8,9 +8,10 @@
 
 namespace mssim {
 
-/// Integrators are data: a list of stages, each of which evaluates the acceleration at one pair of slots and
-/// then writes pointwise linear combinations. The host backends unroll the table at compile time, the OpenCL
-/// backends generate their program text from it; the mathematics stands here and nowhere else.
+/// Explicit integrators are data: a list of stages, each of which evaluates the acceleration at one pair of
+/// slots and then writes pointwise linear combinations. The host backends unroll the table at compile time,
+/// the OpenCL backends generate their program text from it; the mathematics stands here and nowhere else.
+/// Implicit integrators have no stages: a Solver finds their new state.
 
 /// A pair holds one position-like and one velocity-like vector for every node.
 enum class Pair : std::uint8_t { state, next, trial_a, trial_b };
@@ -45,15 +46,34 @@ struct Stage {
 };
 inline constexpr std::size_t max_stages = 4;
 
-/// A step: the stages in order; then `next` is the new state and the floor has acted on it.
+/// What finds the new state of an implicit step (src/backends/implicit/).
+enum class Solver : std::uint8_t {
+  none,          ///< the step is explicit: stages
+  newton_step,   ///< one step of Newton's method from the state, by conjugate gradients
+  newton,        ///< Newton's method until the step's equation holds
+  local_global,  ///< projections of single springs and solutions of one constant system, by turns
+  constraints    ///< one spring after the other in small steps
+};
+
+/// A step: the stages in order, or what the solver finds; then `next` is the new state and the floor has
+/// acted on it.
 struct Integrator {
   std::string_view name;
   int order = 0;                   ///< of convergence on smooth problems, measured by the tests
-  std::size_t stage_count = 0;     ///< also the number of force evaluations
+  std::size_t stage_count = 0;     ///< also the number of force evaluations; 0 for implicit ones
   std::string_view description{};  ///< one line for `mssim list integrators`
   std::string_view paper_name{};   ///< the integrator of Hong et al. that it stands for
   std::array<Stage, max_stages> stages{};
+  Solver solver = Solver::none;
+  int damped_order = order;  ///< of convergence where forces depend on velocities
+  /// The row of the table of stages that these stages are; null: this one is a row of that table.
+  const Integrator* row = nullptr;
+  /// Part of a step by which the positions that the stages see stand ahead of the state's
+  /// (backends/interface/ahead.h).
+  double ahead = 0;
 };
+
+constexpr bool is_implicit(const Integrator& integrator) { return integrator.solver != Solver::none; }
 
 constexpr std::size_t index(Slot slot) { return static_cast<std::size_t>(slot); }
 constexpr std::size_t index(Pair pair) { return static_cast<std::size_t>(pair); }

@@ -8,12 +8,13 @@
 
 namespace mssim {
 
-/// The TABLE of integrators. A new explicit method is one row here, and every backend has it.
+/// The TABLE of integrators that are stages. A new explicit method is one row here, and every backend has it.
+/// all_integrators.h has the others, too.
 ///
 /// Numbering of the equations: Hong et al. 2016. Their published times fit one force evaluation a step for
 /// all three methods (midpoint costs 1.04 and RK4 1.22 Euler steps), so beside the real methods stand
 /// `-frozen` ones, which hold the acceleration over the step and take the trial steps with it.
-inline constexpr std::array<Integrator, 5> integrators{{
+inline constexpr std::array<Integrator, 6> integrators{{
     // Eq. (2): v+ = v + dt a(x, v), x+ = x + dt v+.
     {"semi-euler",
      1,
@@ -88,6 +89,17 @@ inline constexpr std::array<Integrator, 5> integrators{{
              {2. / 3, 1, Slot::temporary_1},
              {1. / 6, 1, Slot::temporary_2}}}},
           {Slot::v_next, {{{1, 0, Slot::v}, {1, 1, Slot::a}}}}}}}}}},
+
+    // Euler's method: x+ = x + dt v, v+ = v + dt a(x, v). It feeds energy into every undamped oscillation, at
+    // every dt: Hong et al. name it as what Eq. (2) improves on.
+    {"explicit-euler",
+     1,
+     1,
+     "explicit Euler: unstable at every dt without damping",
+     {},
+     {{{Pair::state,
+        {{{Slot::x_next, {{{1, 0, Slot::x}, {1, 1, Slot::v}}}},
+          {Slot::v_next, {{{1, 0, Slot::v}, {1, 1, Slot::a}}}}}}}}}},
 }};
 
 constexpr bool all_gather_safely() {
@@ -97,12 +109,5 @@ constexpr bool all_gather_safely() {
 }
 static_assert(all_gather_safely(),
               "a stage writes the pair that it gathers from: OpenCL and graphs would race");
-
-/// The integrator of that name, or nullptr.
-constexpr const Integrator* find_integrator(std::string_view name) {
-  for (const Integrator& integrator : integrators)
-    if (integrator.name == name) return &integrator;
-  return nullptr;
-}
 
 }  // namespace mssim

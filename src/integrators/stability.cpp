@@ -49,10 +49,8 @@ bool is_stable(const Integrator& integrator, double dt_s, const ModeBound& bound
   return true;
 }
 
-/// Does the row stand for a published method's cost under another name than the method's own?
-bool repeats_cost_only(const Integrator& integrator) {
-  return !integrator.paper_name.empty() && integrator.paper_name != integrator.name;
-}
+/// Is the row a method that Hong et al. compare, and not only one of their costs?
+bool is_papers_method(const Integrator& integrator) { return integrator.paper_name == integrator.name; }
 
 }  // namespace
 
@@ -77,11 +75,13 @@ double amplification(const Integrator& integrator, double dt_s, double stiffness
 
 double largest_stable_dt(const Integrator& integrator, const ModeBound& bound) {
   const double fastest_rate = std::max(std::sqrt(bound.stiffness), bound.damping);
-  if (!(fastest_rate > 0)) return std::numeric_limits<double>::infinity();
+  if (is_implicit(integrator) || !(fastest_rate > 0)) return std::numeric_limits<double>::infinity();
   // The first unstable dt on the way up, so that an island of stability beyond it is not taken for the limit.
-  // Every consistent method is stable where the walk starts, and no explicit one is where it would end.
+  // A consistent method that damping keeps stable is so where the walk starts, and no explicit one is where
+  // it would end.
   constexpr double step = 1.02;
   double unstable = 1e-5 / fastest_rate;
+  if (!is_stable(integrator, unstable, bound)) return 0;
   while (is_stable(integrator, unstable, bound)) unstable *= step;
   double stable = unstable / step;
   while (unstable - stable > 1e-12 * unstable) {
@@ -95,7 +95,7 @@ double auto_dt(const ModeBound& bound) {
   constexpr double safety = 0.5;
   double limit = std::numeric_limits<double>::infinity();
   for (const Integrator& integrator : integrators)
-    if (!repeats_cost_only(integrator)) limit = std::min(limit, largest_stable_dt(integrator, bound));
+    if (is_papers_method(integrator)) limit = std::min(limit, largest_stable_dt(integrator, bound));
   if (std::isinf(limit))
     throw std::invalid_argument(
         "dt_s \"auto\" needs a system with springs or damping, which bound it: give a number");

@@ -19,21 +19,21 @@ struct ModeBound {
 inline constexpr double tolerated_growth = 1e-6;
 
 /// Largest factor by which a step of dt_s multiplies a mode of the given stiffness (1/s^2) and damping (1/s):
-/// the spectral radius of the matrix that the integrator's table makes of the oscillator. `integrator` must
-/// be a row of the table.
+/// the spectral radius of the matrix that the integrator's stages make of the oscillator. `integrator` must
+/// be explicit.
 double amplification(const Integrator& integrator, double dt_s, double stiffness, double damping);
 
 /// The dt in s below which the integrator keeps every mode of the bound from growing by more than
-/// tolerated_growth a step; infinite where neither stiffness nor damping bounds it. `integrator` must be a
-/// row of the table.
+/// tolerated_growth a step; infinite where neither stiffness nor damping bounds it and for implicit
+/// integrators, 0 where it keeps none at any dt.
 double largest_stable_dt(const Integrator& integrator, const ModeBound& bound);
 
-/// The dt in s of scenes that say "auto": half of the smallest limit over the table's integrators, so that
-/// all can be compared at one dt. The rows that only repeat another row's published cost with the
-/// acceleration held (`-frozen`) are not asked: with little damping no useful dt keeps them from growing.
-/// Half, because the limit is that of small motions about the rest shape. A strained spring also resists
-/// sideways, where nothing damps it; half a dt leaves room for four times the stiffness, and the floor's
-/// impulses are no modes at all. Throws std::invalid_argument when nothing bounds dt.
+/// The dt in s of scenes that say "auto": half of the smallest limit over the methods of Hong et al., so that
+/// all can be compared at one dt. The rows that only repeat a method's published cost with the acceleration
+/// held (`-frozen`) and explicit Euler are not asked: with little damping no useful dt keeps them from
+/// growing. Half, because the limit is that of small motions about the rest shape. A strained spring also
+/// resists sideways, where nothing damps it; half a dt leaves room for four times the stiffness, and the
+/// floor's impulses are no modes at all. Throws std::invalid_argument when nothing bounds dt.
 double auto_dt(const ModeBound& bound);
 
 }  // namespace mssim

@@ -9,6 +9,7 @@
 #include "garment/garment.h"
 #include "geometry/vec3.h"
 #include "model/grid_patch.h"
+#include "model/solver_settings.h"
 #include "model/spring.h"
 #include "model/tetrahedral_mesh.h"
 
@@ -45,6 +46,7 @@ struct System {
   double gravity = 0;                     ///< m/s^2, downwards
   double viscous_damping = 0;             ///< 1/s
   Floor floor;                            ///< its height in single precision, like the start
+  SolverSettings solver;                  ///< of implicit integrators
   /// Pinned nodes are at rest. The numbers are single precision, for the reason given at Spring::rest_length.
   State start;
 

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "bench/roofline/step_cost.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "report/report_charts.h"
 
 namespace mssim {
@@ -20,7 +20,8 @@ struct RoofDot {
 
 std::optional<RoofDot> dot_of(const ResultRow& row) {
   const Integrator* integrator = find_integrator(row.integrator);
-  if (!integrator || !counts(row) || !row.gigabytes_per_second || !(*row.gigabytes_per_second > 0))
+  if (!integrator || is_implicit(*integrator) || !counts(row) || !row.gigabytes_per_second ||
+      !(*row.gigabytes_per_second > 0))
     return std::nullopt;
   // Operations do not depend on how springs lie in memory or how often a backend passes over the state.
   const double flops = step_cost(*integrator, {row.nodes, row.springs_unique, 0}).flops;

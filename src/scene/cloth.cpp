@@ -173,6 +173,7 @@ System build_cloth(const SceneSpec& spec) {
   system.gravity = spec.gravity_m_per_s2;
   system.viscous_damping = spec.viscous_damping_per_s;
   system.floor = spec.floor;
+  system.solver = spec.solver;
 
   const Ripple ripple(cloth);
   const double height = cloth.ripple.height_m, speed = cloth.ripple.speed_m_per_s;

@@ -40,6 +40,17 @@ std::vector<std::string> names_in_folder() {
   return names;
 }
 
+void visit_solver(FieldVisitor& fields, SolverSettings& solver) {
+  fields.number(
+      {"tolerance",
+       "Of implicit-euler's conjugate gradients and of newton-euler: they end where the norm of what "
+       "is left is this part of what it was."},
+      solver.tolerance, above(0, 0.1));
+  fields.integer({"fast_springs_iterations", "Local and global steps of fast-springs in each step."},
+                 solver.iterations, 1, 10000);
+  fields.integer({"xpbd_substeps", "Small steps of xpbd in each step."}, solver.substeps, 1, 1000);
+}
+
 /// Names the fields of a whole scene file, with their targets in `spec`.
 void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
   std::string schema;  // for editors; says nothing about the scene
@@ -67,6 +78,10 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
        "free node below it, y becomes the height, a falling v_y becomes -restitution * v_y, and the "
        "horizontal speed loses friction * (1 + restitution) * |v_y|, at most all of it."},
       Presence::required, [&](FieldVisitor& floor) { visit_floor(floor, spec.floor); });
+  fields.object({"implicit",
+                 "How far the solvers of implicit integrators go (default: tolerance 1e-5, 10 iterations, 10 "
+                 "substeps)."},
+                Presence::optional, [&](FieldVisitor& solver) { visit_solver(solver, spec.solver); });
 }
 
 std::string_view remedy_of(ReadError::Cause cause) {

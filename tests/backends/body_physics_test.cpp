@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/spring_list/serial.h"
-#include "integrators/integrators.h"
+#include "backends/reference.h"
+#include "integrators/all_integrators.h"
 #include "model/energy.h"
 #include "tests/support/solid_system.h"
 

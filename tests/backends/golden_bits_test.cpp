@@ -15,7 +15,7 @@
 #include "backends/spring_list/serial.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "model/state_hash.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"

@@ -10,7 +10,7 @@
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 
 namespace mssim {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "backends/spring_list/serial.h"
-#include "integrators/integrators.h"
+#include "backends/reference.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"
 

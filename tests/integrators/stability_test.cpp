@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 
 namespace mssim {
 namespace {

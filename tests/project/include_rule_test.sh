@@ -39,20 +39,25 @@ backends/threads
 backends/layouts      integrators model backends/interface backends/vectors backends/threads
 backends/devices      text platform integrators backends/interface
 backends/spring_list  platform integrators model backends/interface
+backends/implicit/nodes        geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts
+backends/implicit/newton       geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
+backends/implicit/local_global geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
+backends/implicit/constraints  geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
+backends/implicit     integrators backends/interface backends/implicit/newton backends/implicit/local_global backends/implicit/constraints
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/opencl       kernels integrators model backends/interface backends/layouts backends/devices
 backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices
 backends/process      text platform hdf5 integrators model backends/interface
 backends/described    text platform integrators scene/fields backends/process
 garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
-backends              backends/interface backends/devices backends/spring_list backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
+backends              integrators backends/interface backends/devices backends/spring_list backends/implicit backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
 backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 
 bench/machine         mssim text platform
 bench/results         text statistics bench/machine
 bench/roofline        integrators model
-bench/verification    text integrators model backends/interface backends/spring_list
+bench/verification    text integrators model backends/interface backends
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
 bench                 text platform statistics garment/stepping bench/roofline bench/verification bench/job garment/bench
@@ -67,7 +72,7 @@ report                text platform statistics integrators charts bench/machine 
 
 commands/arguments    text
 commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends/process backends/described backends bench/machine bench/verification output/tables output/traces output/pictures output/folders commands/arguments
-commands/run          platform model scene garment/stepping garment/fitting backends/interface backends/spring_list backends bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
+commands/run          platform model scene garment/stepping garment/fitting backends/interface backends bench bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/export       text platform output/exports output/traces commands/arguments commands/shared
 commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared

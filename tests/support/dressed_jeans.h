@@ -9,7 +9,7 @@
 #include "commands/shared/fit_body.h"
 #include "garment/fitting/fit_bounds.h"
 #include "garment/stepping/dressing_backend.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/scene_files.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 
 namespace mssim {
 

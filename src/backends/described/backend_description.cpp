@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "platform/find_program.h"
 #include "platform/whole_file.h"
 #include "scene/fields/json_reader.h"
@@ -42,8 +42,8 @@ void visit(FieldVisitor& fields, Description& description) {
   fields.text({"description", "One line for mssim list backends."}, Presence::optional, description.text);
   fields.texts({"scenes", "What it steps: cloth, bodies (default: both)."}, Presence::optional, 1, 2,
                description.scenes);
-  fields.texts({"integrators", "Those that it has (default: all)."}, Presence::optional, 1,
-               integrators.size(), description.integrators);
+  fields.texts({"integrators", "Those that it has (default: all explicit ones)."}, Presence::optional, 1,
+               all_integrators.size(), description.integrators);
   fields.named_texts({"environment", "Variables that it is given beside mssim's."}, most_words,
                      description.environment);
   fields.optional_number({"time_limit_s", "Longest time of an answer, s (default: 120)."},
@@ -85,7 +85,7 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   if (description.command.front().empty())
     refuse(file, "/command/0", "is empty: give the name of a program, or a path with a slash");
   std::vector<std::string_view> known_integrators;
-  for (const Integrator& integrator : integrators) known_integrators.push_back(integrator.name);
+  for (const Integrator* integrator : all_integrators) known_integrators.push_back(integrator->name);
   require_known(file, "/scenes", description.scenes, {cloth, bodies});
   require_known(file, "/integrators", description.integrators, known_integrators);
   BackendProgram program;

@@ -17,7 +17,7 @@ struct BackendProgram {
   std::string missing;                   ///< why it cannot be run; empty where it can be
   bool steps_cloths = true;
   bool steps_bodies = true;
-  std::vector<std::string> integrators;  ///< those that it has; empty: all
+  std::vector<std::string> integrators;  ///< those that it has; empty: all explicit ones
   double time_limit_s = 120;             ///< of every answer
 };
 

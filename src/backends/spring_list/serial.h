@@ -11,7 +11,8 @@ namespace mssim {
 std::unique_ptr<Backend> make_serial(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 
-/// The same code in double precision: the reference that every timed row is verified against.
-std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s);
+/// The same code in double precision.
+std::unique_ptr<Backend> make_serial_in_double(const System& system, const Integrator& integrator,
+                                               double dt_s);
 
 }  // namespace mssim

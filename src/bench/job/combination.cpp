@@ -9,7 +9,7 @@
 
 #include "bench/job/sample_length.h"
 #include "bench/verification/blow_up.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "statistics/outliers.h"
 #include "statistics/statistics.h"
 #include "text/counted.h"
@@ -197,8 +197,10 @@ void summarise(ResultRow& row, const ResultRow* serial) {
   row.ms_per_step_low = time.low;
   row.ms_per_step_high = time.high;
   row.ms_per_step_min = *std::min_element(row.samples_ms.begin(), row.samples_ms.end());
-  row.springs_per_second = 1000 / time.median * static_cast<double>(row.springs_unique) *
-                           static_cast<double>(find_integrator(row.integrator)->stage_count);
+  const Integrator& integrator = *find_integrator(row.integrator);
+  if (!is_implicit(integrator))
+    row.springs_per_second = 1000 / time.median * static_cast<double>(row.springs_unique) *
+                             static_cast<double>(integrator.stage_count);
   if (serial != nullptr && serial->samples_ms.size() == row.samples_ms.size())
     row.speedup_vs_serial = median_ratio(serial->samples_ms, row.samples_ms).median;
   const std::vector<Outlier> labels = outliers(row.samples_ms);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "backends/spring_list/serial.h"
+#include "backends/reference.h"
 #include "integrators/host_stages.h"
 
 namespace mssim {

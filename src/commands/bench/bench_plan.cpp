@@ -15,7 +15,7 @@
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/run_provenance.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "output/traces/trace_name.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -54,8 +54,8 @@ std::vector<const Integrator*> integrators_of(const BenchOptions& options,
     for (const std::string_view name : by_default) asked.push_back(&require_integrator(std::string(name)));
   else if (!every)
     for (const std::string& name : options.integrators) asked.push_back(&require_integrator(name));
-  for (const Integrator& integrator : integrators)
-    if (every || std::ranges::find(asked, &integrator) != asked.end()) all.push_back(&integrator);
+  for (const Integrator* integrator : all_integrators)
+    if (every || std::ranges::find(asked, integrator) != asked.end()) all.push_back(integrator);
   return all;
 }
 

@@ -5,7 +5,7 @@
 
 #include "bench/results/comparability.h"
 #include "commands/bench/earlier_rows.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 
 namespace mssim {
 namespace {

@@ -5,7 +5,7 @@
 #include "bench/verification/verification.h"
 #include "commands/shared/run_provenance.h"
 #include "commands/shared/simulation.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "output/traces/h5md_trace.h"
 #include "platform/folder_lock.h"
 

@@ -8,7 +8,7 @@
 #include "backends/backends.h"
 #include "commands/shared/backend_choice.h"
 #include "garment/output/garment_table.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "output/tables/paper_table.h"
 #include "output/tables/peer_table.h"
 #include "output/tables/race_table.h"
@@ -114,9 +114,9 @@ PaperLegend paper_legend() {
   PaperLegend legend;
   for (const BackendInfo& backend : backends())
     legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
-  for (const Integrator& integrator : integrators)
-    legend.integrators.push_back({std::string(integrator.name), std::string(integrator.paper_name),
-                                  static_cast<int>(integrator.stage_count)});
+  for (const Integrator* integrator : all_integrators)
+    legend.integrators.push_back({std::string(integrator->name), std::string(integrator->paper_name),
+                                  static_cast<int>(integrator->stage_count)});
   return legend;
 }
 

@@ -15,7 +15,7 @@
 #include "commands/shared/choices.h"
 #include "garment/fitting/dress.h"
 #include "garment/stepping/dressing_backend.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "integrators/stability.h"
 #include "platform/available_memory.h"
 #include "scene/scene_kinds.h"
@@ -53,7 +53,8 @@ Table scene_table(const PreparedScene& scene) {
 }
 
 bool can_step(const SceneSize& size, const Integrator& integrator, const BackendInfo& backend) {
-  return !size.garment || (dresses(integrator) && dresses(backend));
+  if (size.garment) return dresses(integrator) && dresses(backend);
+  return !is_implicit(integrator) || backend.make_implicit != nullptr;
 }
 
 void add_combination(Table& table, const PreparedScene& scene, const SceneSize& size,
@@ -112,11 +113,11 @@ SceneReport report_on(const PreparedScene& scene) {
   const ModeBound modes = mode_bound(scene.system);
   SceneReport report;
   report.scene = scene_table(scene);
-  for (const Integrator& integrator : integrators) {
-    const double largest_dt_s = largest_stable_dt(integrator, modes);
+  for (const Integrator* integrator : all_integrators) {
+    const double largest_dt_s = largest_stable_dt(*integrator, modes);
     for (const BackendInfo& backend : backends())
-      if (can_step(size, integrator, backend))
-        add_combination(report.combinations, scene, size, integrator, backend, largest_dt_s);
+      if (can_step(size, *integrator, backend))
+        add_combination(report.combinations, scene, size, *integrator, backend, largest_dt_s);
   }
   if (!scene.note.empty()) report.warnings.push_back(scene.note);
   for (auto&& warning : {warning_of_dt(scene, modes), warning_of_memory(size)})

@@ -18,7 +18,7 @@
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "output/tables/listing.h"
 #include "platform/missing_program.h"
 #include "scene/fields/scene_error.h"
@@ -125,11 +125,12 @@ Table list_suites(const ListOptions& /*options*/) {
 
 Table list_integrators(const ListOptions& /*options*/) {
   Table table;
-  for (const Integrator& integrator : integrators)
-    table.add({{"integrator", integrator.name},
-               {"order", integrator.order},
-               {"force_evaluations", integrator.stage_count},
-               {"description", integrator.description}});
+  for (const Integrator* integrator : all_integrators)
+    table.add({{"integrator", integrator->name},
+               {"order", integrator->order},
+               {"damped_order", integrator->damped_order},
+               {"force_evaluations", is_implicit(*integrator) ? Cell() : Cell(integrator->stage_count)},
+               {"description", integrator->description}});
   return table;
 }
 

@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/spring_list/serial.h"
+#include "backends/reference.h"
+#include "bench/expected_time.h"
 #include "commands/run/dressing_run.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
@@ -48,7 +49,7 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
       std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
     return backend;
   }
-  if (info.make != make_serial)
+  if (info.name != "serial")
     throw UsageError(
         "--precision double needs --backend serial, not \"" + options.backend +
         "\": the other backends of mssim compute in single precision only, and a program in its own");
@@ -68,8 +69,7 @@ void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, c
   constexpr double springs_per_second = 1e8;  // of the double-precision reference, roughly
   constexpr double patience_s = 10;
   const double seconds = static_cast<double>(count_steps(plan)) * static_cast<double>(system.springs.size()) *
-                         (passes_for_energies + static_cast<double>(integrator.stage_count)) /
-                         springs_per_second;
+                         (passes_for_energies + expected_evaluations(integrator)) / springs_per_second;
   if (seconds > patience_s)
     std::cerr << "mssim: --losses takes a double-precision step for every step, about " << std::round(seconds)
               << " s in all\n";

@@ -10,7 +10,7 @@
 
 #include "commands/shared/exit_code.h"
 #include "commands/shared/scene_list.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "text/nearest_name.h"
 
 namespace mssim {
@@ -24,7 +24,7 @@ const std::map<std::string, DeviceMemory> device_memories{{"copy", DeviceMemory:
 const Integrator& require_integrator(const std::string& name) {
   if (const Integrator* integrator = find_integrator(name)) return *integrator;
   std::vector<std::string_view> names;
-  for (const Integrator& integrator : integrators) names.push_back(integrator.name);
+  for (const Integrator* integrator : all_integrators) names.push_back(integrator->name);
   throw UsageError(unknown_name("integrator", name, names));
 }
 

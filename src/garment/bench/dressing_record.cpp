@@ -9,7 +9,7 @@
 
 #include "bench/verification/blow_up.h"
 #include "garment/stepping/openmp_dressing.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "text/joined.h"
 
 namespace mssim {

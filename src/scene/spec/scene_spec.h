@@ -50,6 +50,7 @@ struct SceneSpec {
   double gravity_m_per_s2 = 0;
   double viscous_damping_per_s = 0;
   Floor floor;
+  SolverSettings solver;
   std::variant<ClothSpec, BodiesSpec, GarmentSpec>
       content;                 ///< one alternative a scene kind, in the order of their table (scene_kinds.h)
   std::string source;          ///< the file's text, for traces and hashes

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "model/grid_patch.h"
 
 namespace mssim {

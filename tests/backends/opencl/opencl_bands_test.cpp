@@ -10,7 +10,7 @@
 #include "backends/devices/offer.h"
 #include "backends/opencl/bands.h"
 #include "backends/opencl/opencl.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"

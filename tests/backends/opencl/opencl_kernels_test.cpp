@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "backends/opencl/bands.h"
-#include "backends/spring_list/serial.h"
+#include "backends/reference.h"
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/opencl_dressing.h"
 #include "garment/stepping/serial_dressing.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "mesh/sphere_shape.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"

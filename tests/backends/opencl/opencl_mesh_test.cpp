@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "backends/layouts/packed_springs.h"
-#include "backends/spring_list/serial.h"
+#include "backends/reference.h"
 #include "bench/verification/verification.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/opencl_variants.h"
 #include "tests/support/solid_system.h"

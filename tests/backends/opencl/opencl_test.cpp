@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "model/grid_patch.h"
 #include "model/system.h"
 #include "tests/support/largest_distance.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 
 namespace mssim {
 namespace {

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/spring_list/serial.h"
-#include "integrators/integrators.h"
+#include "backends/reference.h"
+#include "integrators/all_integrators.h"
 #include "platform/data_folder.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 

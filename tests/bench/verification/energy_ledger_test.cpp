@@ -10,8 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "backends/reference.h"
 #include "backends/spring_list/serial.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 

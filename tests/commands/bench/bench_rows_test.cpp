@@ -7,7 +7,7 @@
 
 #include "backends/backends.h"
 #include "commands/shared/exit_code.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 
 namespace mssim {
 namespace {

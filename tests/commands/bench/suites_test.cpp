@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 
 namespace mssim {

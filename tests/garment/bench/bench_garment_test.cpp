@@ -11,7 +11,7 @@
 #include "backends/backends.h"
 #include "bench/bench_scene.h"
 #include "garment/stepping/serial_dressing.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/garment_system.h"
 
 namespace mssim {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "garment/stepping/serial_dressing.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "model/state_hash.h"
 #include "tests/support/dressing_step.h"
 #include "tests/support/dressing_systems.h"

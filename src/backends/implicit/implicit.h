@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+/// Steps of the TABLE of implicit integrators (integrators/all_integrators.h), for cloths and bodies. After
+/// each step the floor acts as it does behind the stages of explicit ones. Each throws Unsupported for a
+/// garment, and for an integrator that it has not; `system` must outlive what it returns.
+
+/// On one thread, by plain loops over the spring list in single precision: the baseline.
+std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
+                                              const ExecutionOptions& options);
+
+/// The same code in double precision, whose solvers go on until they gain nothing more.
+std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
+                                                 double dt_s);
+
+/// With vectors and options.threads threads: the same bits at every number of threads.
+std::unique_ptr<Backend> make_openmp_implicit(const System& system, const Integrator& integrator, double dt_s,
+                                              const ExecutionOptions& options);
+
+}  // namespace mssim

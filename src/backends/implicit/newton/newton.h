@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+/// implicit-euler and newton-euler (integrators/all_integrators.h). `system` is no garment and outlives the
+/// backend.
+
+/// By plain loops over the spring list on one thread.
+std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s);
+
+/// The same in double precision, until nothing more is gained.
+std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
+                                               double dt_s);
+
+/// With vectors, on as many threads: the same bits at every number of them.
+std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& options);
+
+}  // namespace mssim

@@ -1,0 +1,56 @@
+#include "backends/interface/ahead.h"
+
+#include <algorithm>
+
+namespace mssim {
+namespace {
+
+class AheadBackend final : public Backend {
+ public:
+  AheadBackend(std::unique_ptr<Backend> backend, const System& system, double seconds)
+      : backend_(std::move(backend)), system_(system), seconds_(seconds) {
+    set_state(system.start);
+  }
+
+  void set_state(const State& state) override {
+    State moved = state;
+    for (std::size_t i = 0; i < moved.position.size(); ++i) moved.position[i] += seconds_ * moved.velocity[i];
+    backend_->set_state(moved);
+  }
+  State state() const override {
+    State state = backend_->state();
+    const double floor = system_.floor.height;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+      Vec3d& x = state.position[i];
+      const bool was_above = x.y >= floor;
+      x -= seconds_ * state.velocity[i];
+      if (was_above) x.y = std::max(x.y, floor);
+    }
+    return state;
+  }
+  void step(int count) override { backend_->step(count); }
+  std::string device() const override { return backend_->device(); }
+  int threads() const override { return backend_->threads(); }
+  int steps_per_pass() const override { return backend_->steps_per_pass(); }
+  bool runs_on_host() const override { return backend_->runs_on_host(); }
+  std::string note() const override { return backend_->note(); }
+  std::string reason_for_excess() const override { return backend_->reason_for_excess(); }
+  void rest() override { backend_->rest(); }
+  std::string end() override { return backend_->end(); }
+  double processor_seconds() const override { return backend_->processor_seconds(); }
+
+ private:
+  std::unique_ptr<Backend> backend_;
+  const System& system_;
+  const double seconds_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> step_ahead(std::unique_ptr<Backend> backend, const System& system,
+                                    const Integrator& integrator, double dt_s) {
+  if (integrator.ahead == 0) return backend;
+  return std::make_unique<AheadBackend>(std::move(backend), system, integrator.ahead * dt_s);
+}
+
+}  // namespace mssim

@@ -1,0 +1,14 @@
+#include "backends/reference.h"
+
+#include "backends/implicit/implicit.h"
+#include "backends/interface/ahead.h"
+#include "backends/spring_list/serial.h"
+
+namespace mssim {
+
+std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s) {
+  if (is_implicit(integrator)) return make_implicit_reference(system, integrator, dt_s);
+  return step_ahead(make_serial_in_double(system, integrator, dt_s), system, integrator, dt_s);
+}
+
+}  // namespace mssim

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+/// The integrator in double precision on one thread, at the system's start: the reference that every timed
+/// row is verified against. Solvers of implicit integrators go on until they gain nothing more. `system` must
+/// outlive it. Throws Unsupported for a garment.
+std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s);
+
+}  // namespace mssim
