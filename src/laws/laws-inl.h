@@ -24,6 +24,9 @@
 #include "kernels/body_contact.h"
 #include "kernels/elongation_law.h"
 #include "kernels/joint_law.h"
+#include "kernels/symmetric_block.h"
+// After that.
+#include "kernels/spring_jacobian.h"
 
 #undef MSSIM_LAW
 #undef MSSIM_STRUCT

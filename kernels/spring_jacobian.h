@@ -1,0 +1,50 @@
+/* How the force of spring_law.h changes with the ends' positions and velocities, written once in the common
+ * subset of C++ and OpenCL C. With n = d/|d|, on the first end, for changes of d and of u:
+ *
+ *     df/dd = k n n^T + k (1 - L/|d|) (I - n n^T),     df/du = c n n^T.
+ *
+ * The part of df/dd that comes from damping is left out: it is not symmetric (Baraff and Witkin 1998,
+ * section 4). All that remains has the form
+ *
+ *     along n n^T + across (I - n n^T),
+ *
+ * which is positive definite where along and across are positive. An implicit step's matrix has
+ * along = dt c + dt^2 k and across = dt^2 spring_across_definite(...).
+ *
+ * Text for many number types like symmetric_block.h, after which it stands.
+ */
+
+/* k (1 - L/|d|), N/m: what a spring does against a force across it. Below zero where it is compressed.
+ * inverse_length = 1/|d| (1/m), stiffness = k (N/m), stiffness_rest = k L (N). */
+MSSIM_LAW spring_across(Real inverse_length, Real stiffness, Real stiffness_rest) {
+  return mul_add(-stiffness_rest, inverse_length, stiffness);
+}
+
+/* The same, but 0 for a compressed spring: no sum of springs is then indefinite. */
+MSSIM_LAW spring_across_definite(Real inverse_length, Real stiffness, Real stiffness_rest) {
+  Real none = stiffness - stiffness;
+  Real across = spring_across(inverse_length, stiffness, stiffness_rest);
+  return where_less(across, none, none, across);
+}
+
+/* [along n n^T + across (I - n n^T)] p; n: a unit vector. */
+MSSIM_VECTOR_LAW spring_jacobian_times(Vector n, Real along, Real across, Vector p) {
+  Real part = (along - across) * dot_product(n, p);
+  Vector product = {mul_add(part, n.x, across * p.x), mul_add(part, n.y, across * p.y),
+                    mul_add(part, n.z, across * p.z)};
+  return product;
+}
+
+/* The matrix itself. */
+MSSIM_GIVES(SymmetricBlock) spring_jacobian(Real nx, Real ny, Real nz, Real along, Real across) {
+  MSSIM_OF(SymmetricBlock) block;
+  Real difference = along - across;
+  Real x = difference * nx, y = difference * ny, z = difference * nz;
+  block.xx = mul_add(x, nx, across);
+  block.xy = x * ny;
+  block.xz = x * nz;
+  block.yy = mul_add(y, ny, across);
+  block.yz = y * nz;
+  block.zz = mul_add(z, nz, across);
+  return block;
+}
