@@ -1,15 +1,45 @@
 #include "backends/implicit/newton/newton.h"
+#include "backends/implicit/newton/newton_method.h"
+#include "backends/implicit/newton/spring_equation.h"
 
 namespace mssim {
+namespace {
 
-std::unique_ptr<Backend> make_serial_newton(const System& /*system*/, const Integrator& /*integrator*/,
-                                            double /*dt_s*/) {
-  throw Unsupported("it is not written yet");
+template <class Real>
+class NewtonSerial final : public Backend {
+ public:
+  NewtonSerial(const System& system, const Integrator& integrator, double dt_s, double tolerance)
+      : equation_(system, dt_s), integrator_(integrator), tolerance_(tolerance) {}
+
+  void set_state(const State& state) override { equation_.set_state(state); }
+  State state() const override { return equation_.state(); }
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return 1; }
+  std::string note() const override { return note_of(work_); }
+
+  void step(int count) override {
+    for (int step = 0; step < count; ++step) take_step(equation_, integrator_, tolerance_, work_);
+  }
+
+ private:
+  SpringEquation<Real> equation_;
+  const Integrator& integrator_;
+  const double tolerance_;
+  SolverWork work_;
+};
+
+/// Of the norms in which the reference's solvers end, beside which a step's own error is large.
+constexpr double reference_tolerance = 1e-12;
+
+}  // namespace
+
+std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s) {
+  return std::make_unique<NewtonSerial<float>>(system, integrator, dt_s, system.solver.tolerance);
 }
 
-std::unique_ptr<Backend> make_newton_reference(const System& /*system*/, const Integrator& /*integrator*/,
-                                               double /*dt_s*/) {
-  throw Unsupported("it is not written yet");
+std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
+                                               double dt_s) {
+  return std::make_unique<NewtonSerial<double>>(system, integrator, dt_s, reference_tolerance);
 }
 
 }  // namespace mssim

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+
+#include "integrators/integrator.h"
+#include "text/counted.h"
+
+namespace mssim {
+
+/// The equation of one step of backward Euler, as the methods below see it. Its unknown is w, the velocities
+/// at the step's end:
+///
+///     r(w) = M (w - v) - dt F(x + dt w, w) = 0.
+///
+/// A is the Jacobian of r, made symmetric and positive definite (kernels/spring_jacobian.h); P, its
+/// preconditioner, is the inverse of its blocks of 3 x 3 on the diagonal. In what follows s is the change of
+/// w that A s = e gives, p a direction of conjugate gradients and q = A p. P is zero for pinned nodes, and so
+/// are their s and p; they take no part in products of vectors. Those are sums in double precision. Where
+/// several threads run a method together, each must get the same.
+template <class Equation>
+concept BackwardEulerEquation = requires(Equation& equation, double factor) {
+  /// w = v.
+  equation.begin();
+  /// e = dt (F(x, v) + dt dF/dx v), and A, both at the state: Baraff and Witkin 1998, Eq. 6.
+  equation.linearise_at_state();
+  /// e = -r(w), and A at (x + dt w, w). Returns e . M^-1 e.
+  { equation.linearise() } -> std::same_as<double>;
+  /// s = 0, p = 0, z = P e. Returns e . z.
+  { equation.start_solving() } -> std::same_as<double>;
+  /// p = z + factor p, q = A p. Returns p . q.
+  { equation.turn(factor) } -> std::same_as<double>;
+  /// s += factor p, e -= factor q, z = P e. Returns e . z.
+  { equation.advance(factor) } -> std::same_as<double>;
+  /// w += factor s.
+  equation.add(factor);
+  /// v = w, x += dt w, and the floor acts.
+  equation.end();
+};
+
+/// What the steps of a solver have taken so far.
+struct SolverWork {
+  std::uint64_t steps = 0;
+  std::uint64_t newton_iterations = 0;  ///< linear systems
+  std::uint64_t products = 0;           ///< A p: iterations of conjugate gradients
+  std::uint64_t unfinished_steps = 0;   ///< that have met the limit of iterations
+};
+
+inline constexpr int most_gradient_iterations = 1000;
+inline constexpr int most_newton_iterations = 100;
+
+/// Solves A s = e by preconditioned conjugate gradients from s = 0, until sqrt(e . P e) is at most
+/// `tolerance` of what it was. False if that takes more than most_gradient_iterations.
+template <BackwardEulerEquation Equation>
+bool conjugate_gradients(Equation& equation, double tolerance, SolverWork& work) {
+  double left = equation.start_solving();
+  const double goal = tolerance * tolerance * left;
+  double factor = 0;
+  for (int i = 0; left > goal; ++i) {
+    if (i == most_gradient_iterations) return false;
+    ++work.products;
+    const double next = equation.advance(left / equation.turn(factor));
+    factor = next / left;
+    left = next;
+  }
+  return true;
+}
+
+/// A step by one Newton step from the state, whose linear system is solved to `tolerance`.
+template <BackwardEulerEquation Equation>
+void newton_step(Equation& equation, double tolerance, SolverWork& work) {
+  equation.begin();
+  equation.linearise_at_state();
+  ++work.newton_iterations;
+  if (!conjugate_gradients(equation, tolerance, work)) ++work.unfinished_steps;
+  equation.add(1);
+  equation.end();
+  ++work.steps;
+}
+
+/// A step by Newton's method from w = v, until the norm of r is at most `tolerance` of what it was, or no
+/// step along s makes it less, which is where the precision ends. Linear systems are solved to a part of what
+/// r is then (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982).
+template <BackwardEulerEquation Equation>
+void newtons_method(Equation& equation, double tolerance, SolverWork& work) {
+  constexpr double forcing = 0.01, shortest = 1. / 64;
+  equation.begin();
+  double norm = equation.linearise();
+  const double goal = tolerance * tolerance * norm;
+  for (int i = 0; norm > goal; ++i) {
+    if (i == most_newton_iterations) {
+      ++work.unfinished_steps;
+      break;
+    }
+    ++work.newton_iterations;
+    conjugate_gradients(equation, forcing, work);
+    double part = 1;
+    equation.add(part);
+    double next = equation.linearise();
+    while (!(next < norm) && part > shortest) {
+      part /= 2;
+      equation.add(-part);
+      next = equation.linearise();
+    }
+    if (!(next < norm)) {
+      equation.add(-part);
+      break;
+    }
+    norm = next;
+  }
+  equation.end();
+  ++work.steps;
+}
+
+/// A step of implicit-euler or newton-euler.
+template <BackwardEulerEquation Equation>
+void take_step(Equation& equation, const Integrator& integrator, double tolerance, SolverWork& work) {
+  if (integrator.solver == Solver::newton_step)
+    newton_step(equation, tolerance, work);
+  else
+    newtons_method(equation, tolerance, work);
+}
+
+/// What a reader of its times must know of a solver that has met its limit; else nothing.
+inline std::string note_of(const SolverWork& work) {
+  if (work.unfinished_steps == 0) return {};
+  return "the solver met its limit of iterations in " + std::to_string(work.unfinished_steps) + " of " +
+         counted(work.steps, "step");
+}
+
+}  // namespace mssim
