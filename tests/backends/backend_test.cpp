@@ -37,7 +37,7 @@ class EachBackendAndIntegrator
   const BackendInfo& backend() const { return *find_backend(std::get<0>(GetParam())); }
   const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
   std::unique_ptr<Backend> make(const System& system, int threads = 2) const {
-    return backend().make(system, integrator(), backend_dt_s, {threads, ""});
+    return backend().make(system, integrator(), backend_dt_of(integrator()), {threads, ""});
   }
 };
 
@@ -59,11 +59,11 @@ TEST_P(EachBackendAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
   for (const auto& [rows, columns] :
        {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {2U, 2U}, {1U, 7U}, {7U, 1U}}) {
     const System system = cloth_system(rows, columns);
-    const Reference reference = run_reference(system, integrator(), backend_dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
     const auto simulation = make(system);
-    const Verification verification = verify(*simulation, system, reference, backend_dt_s);
+    const Verification verification = verify(*simulation, system, reference, backend_dt_of(integrator()));
     EXPECT_FALSE(verification.failure)
         << rows << " x " << columns << ": " << verification.failure.value_or("");
   }
@@ -87,11 +87,11 @@ INSTANTIATE_TEST_SUITE_P(Tables, EachOtherBackendAndIntegrator,
 TEST_P(EachOtherBackendAndIntegrator, StaysAsNearToTheReferenceAsTheSpringList) {
   // Twice what the plain list in single precision is away: no formula or order of sums gives accuracy up.
   for (const System& system : {cloth_system(50, 50), cloth_system(100, 140), solid_block(9, 9, 9)}) {
-    const Reference reference = run_reference(system, integrator(), backend_dt_s);
-    const auto serial = make_serial(system, integrator(), backend_dt_s, {1, ""});
-    const double usual = verify(*serial, system, reference, backend_dt_s).position_error;
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
+    const auto serial = make_serial(system, integrator(), backend_dt_of(integrator()), {1, ""});
+    const double usual = verify(*serial, system, reference, backend_dt_of(integrator())).position_error;
     EXPECT_GT(usual, 0);
-    EXPECT_LE(verify(*make(system), system, reference, backend_dt_s).position_error, 2 * usual)
+    EXPECT_LE(verify(*make(system), system, reference, backend_dt_of(integrator())).position_error, 2 * usual)
         << system.nodes();
   }
 }
@@ -114,10 +114,11 @@ TEST_P(EachBackendAndIntegrator, TreatsTheFloorLikeTheReference) {
   // A sheet that hits the floor flat, sliding: its nodes land in the same step in any precision.
   System system = build_system(sheet_spec(20, 17, 0.00101));
   for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
-  const auto reference = make_reference(system, integrator(), backend_dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_of(integrator()));
   const auto simulation = make(system);
-  reference->step(15);
-  simulation->step(15);
+  const int steps = steps_in(integrator(), 0.0015);
+  reference->step(steps);
+  simulation->step(steps);
   const State expected = reference->state(), state = simulation->state();
   for (std::size_t i = 0; i < system.nodes(); ++i) {
     EXPECT_GT(expected.velocity[i].y, 0.2) << "it has bounced";
@@ -171,11 +172,11 @@ std::vector<System> bodies_of_any_shape() {
 
 TEST_P(EachBackendAndIntegratorOnBodies, AgreesWithTheReference) {
   for (const System& system : bodies_of_any_shape()) {
-    const Reference reference = run_reference(system, integrator(), backend_dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
     const auto simulation = make(system);
-    const Verification verification = verify(*simulation, system, reference, backend_dt_s);
+    const Verification verification = verify(*simulation, system, reference, backend_dt_of(integrator()));
     EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
   }
 }
@@ -211,10 +212,11 @@ TEST_P(EachBackendAndIntegratorOnBodies, TreatsTheFloorLikeTheReference) {
     const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
     spring.rest_length = static_cast<float>(std::sqrt(dot(d, d)));
   }
-  const auto reference = make_reference(system, integrator(), backend_dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_of(integrator()));
   const auto simulation = make(system);
-  reference->step(15);
-  simulation->step(15);
+  const int steps = steps_in(integrator(), 0.0015);
+  reference->step(steps);
+  simulation->step(steps);
   const State expected = reference->state(), state = simulation->state();
   for (std::size_t i = 0; i < system.nodes(); ++i) {
     if (on_bottom(i)) {
@@ -253,7 +255,7 @@ INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorOnOpenMp, testing::ValuesIn(names_
                          [](const auto& test) { return plain(test.param); });
 
 /// Steps in which what starts a few millimetres above the floor bounces off it.
-constexpr int steps_with_a_bounce = 300;
+int steps_with_a_bounce(const Integrator& integrator) { return steps_in(integrator, 0.03); }
 
 /// A cloth that meets the floor in that time.
 System low_cloth(std::uint32_t rows, std::uint32_t columns) {
@@ -264,13 +266,14 @@ System low_cloth(std::uint32_t rows, std::uint32_t columns) {
 
 /// Expects the same bits after a bounce with any number of threads.
 void expect_same_bits(const System& system, const Integrator& integrator) {
-  const auto alone = make_openmp(system, integrator, backend_dt_s, {1, ""});
-  alone->step(steps_with_a_bounce);
+  const double dt_s = backend_dt_of(integrator);
+  const auto alone = make_openmp(system, integrator, dt_s, {1, ""});
+  alone->step(steps_with_a_bounce(integrator));
   const State expected = alone->state();
   EXPECT_TRUE(has_met_floor(system, expected));
   for (const int threads : {2, 3, 4, 7}) {
-    const auto simulation = make_openmp(system, integrator, backend_dt_s, {threads, ""});
-    simulation->step(steps_with_a_bounce);
+    const auto simulation = make_openmp(system, integrator, dt_s, {threads, ""});
+    simulation->step(steps_with_a_bounce(integrator));
     const State state = simulation->state();
     EXPECT_EQ(state.position, expected.position) << threads << " threads";
     EXPECT_EQ(state.velocity, expected.velocity) << threads << " threads";
@@ -290,9 +293,10 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverManyStepsAPassTakes) {
     const System system = low_cloth(rows, columns);
     const auto& grid = std::get<GridPatch>(system.topology);
     const auto state_after = [&](std::size_t threads, std::size_t steps_per_pass) {
-      BandGrid bands(system, grid, integrator(), backend_dt_s, kernel.lanes, threads, steps_per_pass);
+      BandGrid bands(system, grid, integrator(), backend_dt_of(integrator()), kernel.lanes, threads,
+                     steps_per_pass);
       bands.set_state(system.start);
-      kernel.step(bands, steps_with_a_bounce + 1);  // the last pass is a short one
+      kernel.step(bands, steps_with_a_bounce(integrator()) + 1);  // the last pass is a short one
       return bands.state();
     };
     const State expected = state_after(1, 1);
@@ -328,11 +332,11 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreadsOnBodies) 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsOnBodiesWhenThreadsComeLate) {
   System system = solid_block(9, 9, 9);
   system.floor.height = 0.49;
-  const auto alone = make_openmp(system, integrator(), backend_dt_s, {1, ""});
+  const auto alone = make_openmp(system, integrator(), backend_dt_of(integrator()), {1, ""});
   // More threads than cores, with chunks for each, and other work on all cores.
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const auto crowd =
-      make_openmp(system, integrator(), backend_dt_s, {static_cast<int>(std::min(3 * cores, 16U)), ""});
+  const auto crowd = make_openmp(system, integrator(), backend_dt_of(integrator()),
+                                 {static_cast<int>(std::min(3 * cores, 16U)), ""});
   std::vector<std::jthread> neighbours;
   for (unsigned i = 0; i < cores; ++i)
     neighbours.emplace_back([](const std::stop_token& stop) {

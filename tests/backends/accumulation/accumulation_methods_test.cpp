@@ -33,7 +33,7 @@ class EachWayAndIntegrator : public testing::TestWithParam<std::tuple<std::size_
   const AccumulationMethod& method() const { return accumulation_methods()[std::get<0>(GetParam())]; }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
-    return method().backend.make(system, integrator(), backend_dt_s, {threads, ""});
+    return method().backend.make(system, integrator(), backend_dt_of(integrator()), {threads, ""});
   }
   State after(const System& system, int threads, int steps) const {
     const auto simulation = make(system, threads);
@@ -61,10 +61,11 @@ INSTANTIATE_TEST_SUITE_P(Tables, EachWayAndIntegrator,
 
 TEST_P(EachWayAndIntegrator, AgreesWithTheReferenceWithAnyNumberOfThreads) {
   for (const System& system : steppable({cloth_system(37, 23)}, {solid_block(4, 5, 6), two_solid_blocks()})) {
-    const Reference reference = run_reference(system, integrator(), backend_dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
     ASSERT_FALSE(reference.failure) << *reference.failure;
     for (const int threads : thread_counts) {
-      const Verification verification = verify(*make(system, threads), system, reference, backend_dt_s);
+      const Verification verification =
+          verify(*make(system, threads), system, reference, backend_dt_of(integrator()));
       EXPECT_FALSE(verification.failure)
           << system.nodes() << " nodes, " << threads << " threads: " << verification.failure.value_or("");
     }
@@ -73,8 +74,8 @@ TEST_P(EachWayAndIntegrator, AgreesWithTheReferenceWithAnyNumberOfThreads) {
 
 TEST_P(EachWayAndIntegrator, TakesMoreThreadsThanThereAreNodesOrSprings) {
   const System system = cloth_system(1, 3);
-  const Reference reference = run_reference(system, integrator(), backend_dt_s);
-  const Verification verification = verify(*make(system, 9), system, reference, backend_dt_s);
+  const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
+  const Verification verification = verify(*make(system, 9), system, reference, backend_dt_of(integrator()));
   EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
 }
 

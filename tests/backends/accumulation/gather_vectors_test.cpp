@@ -39,7 +39,7 @@ class EachRowKernelAndIntegrator : public testing::TestWithParam<std::tuple<std:
   RowKernel kernel() const { return row_kernels(integrator())[std::get<0>(GetParam())]; }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
-    return make_gather_vectors(system, integrator(), backend_dt_s, {threads, ""}, kernel());
+    return make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {threads, ""}, kernel());
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachRowKernelAndIntegrator,
@@ -56,9 +56,10 @@ INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachRowKernelAndIntegrator,
 TEST_P(EachRowKernelAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
   for (const auto& [rows, columns] : sizes) {
     const System system = cloth_system(rows, columns);
-    const Reference reference = run_reference(system, integrator(), backend_dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
     ASSERT_EQ(reference.steps, verification_steps);
-    const Verification verification = verify(*make(system, 2), system, reference, backend_dt_s);
+    const Verification verification =
+        verify(*make(system, 2), system, reference, backend_dt_of(integrator()));
     EXPECT_FALSE(verification.failure)
         << rows << " x " << columns << ": " << verification.failure.value_or("");
   }
@@ -73,7 +74,7 @@ TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsThe
   constexpr int steps = 101;  // an odd number leaves the state where `next` was
   for (const auto& [rows, columns] : sizes) {
     const System system = bouncing_cloth(rows, columns);
-    const auto alone = make_gather_vectors(system, integrator(), backend_dt_s, {1, ""}, best);
+    const auto alone = make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {1, ""}, best);
     alone->step(steps);
     const State expected = alone->state();
     EXPECT_TRUE(rows < 9 || columns < 9 || has_met_floor(system, expected)) << rows << " x " << columns;
@@ -92,10 +93,11 @@ TEST_P(EachRowKernelAndIntegrator, TreatsTheFloorLikeTheReference) {
   // leave lanes without a node, which the floor must not touch.
   System system = build_system(sheet_spec(20, 37, 0.00101));
   for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
-  const auto reference = make_reference(system, integrator(), backend_dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_of(integrator()));
   const auto simulation = make(system, 2);
-  reference->step(15);
-  simulation->step(15);
+  const int steps = steps_in(integrator(), 0.0015);
+  reference->step(steps);
+  simulation->step(steps);
   const State expected = reference->state(), state = simulation->state();
   for (std::size_t i = 0; i < system.nodes(); ++i) {
     EXPECT_GT(expected.velocity[i].y, 0.2) << "it has bounced";
@@ -125,8 +127,8 @@ TEST_P(EachRowKernelAndIntegrator, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFl
 TEST_P(EachRowKernelAndIntegrator, LeavesWhatLiesOutsideOfTheClothZero) {
   System system = cloth_system(9, 11);
   system.floor.height = 0.5;  // above the zeros
-  PaddedRows cloth(system, std::get<GridPatch>(system.topology), integrator(), backend_dt_s, kernel().lanes,
-                   2);
+  PaddedRows cloth(system, std::get<GridPatch>(system.topology), integrator(), backend_dt_of(integrator()),
+                   kernel().lanes, 2);
   cloth.set_state(system.start);
   kernel().step(cloth, 21);
   for (AlignedArray& array : cloth.pairs) {
@@ -144,13 +146,14 @@ TEST_P(EachRowKernelAndIntegrator, LeavesWhatLiesOutsideOfTheClothZero) {
 TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {
   for (const Integrator& integrator : integrators) {
     const System system = cloth_system(100, 140);
-    const Reference reference = run_reference(system, integrator, backend_dt_s);
+    const double dt_s = backend_dt_of(integrator);
+    const Reference reference = run_reference(system, integrator, dt_s);
     const auto distance = [&](Backend& backend) {
-      return verify(backend, system, reference, backend_dt_s).position_error;
+      return verify(backend, system, reference, dt_s).position_error;
     };
-    const double usual = distance(*make_serial(system, integrator, backend_dt_s, {1, ""}));
+    const double usual = distance(*make_serial(system, integrator, dt_s, {1, ""}));
     EXPECT_GT(usual, 0);
-    EXPECT_LE(distance(*make_gather_vectors(system, integrator, backend_dt_s, {2, ""})), 2 * usual)
+    EXPECT_LE(distance(*make_gather_vectors(system, integrator, dt_s, {2, ""})), 2 * usual)
         << integrator.name;
   }
 }

@@ -16,6 +16,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"
+#include "tests/support/free_fall.h"
 #include "tests/support/opencl_variants.h"
 #include "tests/support/solid_system.h"
 
@@ -29,7 +30,7 @@ class EachWidthAndIntegrator : public testing::TestWithParam<std::tuple<bool, in
   const Integrator& integrator() const { return *find_integrator(std::get<2>(GetParam()).name); }
   std::unique_ptr<Backend> make(const System& system) const {
     return OpenclVariant{std::get<0>(GetParam()), std::get<1>(GetParam())}.make(system, integrator(),
-                                                                                backend_dt_s);
+                                                                                backend_dt_of(integrator()));
   }
 };
 
@@ -48,11 +49,11 @@ TEST_P(EachWidthAndIntegrator, AgreesWithTheReferenceOnBodiesOfAnySize) {
   // One tetrahedral cube, fewer nodes than lanes, sizes that no number of lanes divides, two bodies in one.
   for (const System& system : {solid_block(2, 2, 2), solid_block(2, 3, 2), solid_block(3, 4, 5),
                                solid_block(7, 5, 6), two_solid_blocks()}) {
-    const Reference reference = run_reference(system, integrator(), backend_dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
     const auto simulation = make(system);
-    const Verification verification = verify(*simulation, system, reference, backend_dt_s);
+    const Verification verification = verify(*simulation, system, reference, backend_dt_of(integrator()));
     EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
   }
 }
@@ -62,10 +63,10 @@ TEST_P(EachWidthAndIntegrator, HoldsPinsExactlyAndMovesTheirNeighboursLikeTheRef
   const auto last = static_cast<std::uint32_t>(system.nodes() - 1);
   system.pins = {0, 1, 17, 50, last};
   for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
-  const Reference reference = run_reference(system, integrator(), backend_dt_s);
+  const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
   ASSERT_FALSE(reference.failure) << *reference.failure;
   const auto simulation = make(system);
-  const Verification verification = verify(*simulation, system, reference, backend_dt_s);
+  const Verification verification = verify(*simulation, system, reference, backend_dt_of(integrator()));
   EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
   const State state = simulation->state();
   for (const std::uint32_t pin : system.pins) {
@@ -80,7 +81,7 @@ TEST_P(EachWidthAndIntegrator, BouncesOffTheFloorLikeTheReference) {
   for (Vec3d& x : system.start.position) x.y = std::max(x.y, 0.0) + (x.y < 0.012 ? -1e-3 : 0);
   for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
   round_to_single(system.start);
-  const auto reference = make_reference(system, integrator(), backend_dt_s);
+  const auto reference = make_reference(system, integrator(), backend_dt_of(integrator()));
   const auto simulation = make(system);
   reference->step(1);
   simulation->step(1);
@@ -114,11 +115,6 @@ TEST_P(EachWidthAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
   EXPECT_EQ(simulation->state().velocity, once.velocity);
 }
 
-/// x = travel after `steps` of free fall from rest in units of g dt^2.
-double fall(const Integrator& integrator, double steps) {
-  return integrator.name == "semi-euler" ? steps * (steps + 1) / 2 : steps * steps / 2;
-}
-
 TEST_P(EachWidthAndIntegrator, LetsNodesWithoutSpringsFall) {
   System system = solid_block(2, 3, 3);
   for (int i = 0; i < 3; ++i) {
@@ -128,13 +124,13 @@ TEST_P(EachWidthAndIntegrator, LetsNodesWithoutSpringsFall) {
   }
   system.viscous_damping = 0;
   const auto simulation = make(system);
+  const double dt_s = backend_dt_of(integrator());
   simulation->step(100);
   const State state = simulation->state();
   for (std::size_t node = system.nodes() - 3; node < system.nodes(); ++node) {
     EXPECT_EQ(state.position[node].x, system.start.position[node].x);
-    EXPECT_NEAR(state.position[node].y, 0.25 - 9.81 * backend_dt_s * backend_dt_s * fall(integrator(), 100),
-                1e-6);
-    EXPECT_NEAR(state.velocity[node].y, -9.81 * backend_dt_s * 100, 1e-5);
+    EXPECT_NEAR(state.position[node].y, 0.25 - 9.81 * dt_s * dt_s * fall_of(integrator(), 100), 1e-6);
+    EXPECT_NEAR(state.velocity[node].y, -9.81 * dt_s * 100, 1e-5);
   }
 }
 
@@ -147,7 +143,8 @@ TEST_P(EachWidthAndIntegrator, StepsNodesThatHaveNoSpringsAtAll) {
   simulation->step(10);
   const State state = simulation->state();
   for (std::size_t node = 0; node < system.nodes(); ++node)
-    EXPECT_NEAR(state.velocity[node].y, system.start.velocity[node].y - 9.81 * backend_dt_s * 10, 1e-6);
+    EXPECT_NEAR(state.velocity[node].y,
+                system.start.velocity[node].y - 9.81 * backend_dt_of(integrator()) * 10, 1e-6);
 }
 
 TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
@@ -156,9 +153,10 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
   for (std::size_t i = 0; i < system.springs.size(); i += 3) system.springs[i].kind = 1;
   for (const Integrator& integrator : integrators)
     for (const int lanes : {1, most_opencl_lanes}) {
-      const Reference reference = run_reference(system, integrator, backend_dt_s);
-      const auto hybrid = OpenclVariant{true, lanes}.make(system, integrator, backend_dt_s);
-      const Verification verification = verify(*hybrid, system, reference, backend_dt_s);
+      const double dt_s = backend_dt_of(integrator);
+      const Reference reference = run_reference(system, integrator, dt_s);
+      const auto hybrid = OpenclVariant{true, lanes}.make(system, integrator, dt_s);
+      const Verification verification = verify(*hybrid, system, reference, dt_s);
       EXPECT_FALSE(verification.failure) << integrator.name << ": " << verification.failure.value_or("");
     }
 }
@@ -167,7 +165,7 @@ TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
   const System system = solid_block(7, 5, 6);
   for (const Integrator& integrator : integrators) {
     const auto run = [&](const OpenclVariant& way) {
-      const auto backend = way.make(system, integrator, backend_dt_s);
+      const auto backend = way.make(system, integrator, backend_dt_of(integrator));
       backend->step(30);
       return backend->state().position;
     };

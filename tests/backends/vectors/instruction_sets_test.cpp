@@ -18,6 +18,7 @@
 #include "backends/openmp/step_slices.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/fused_sets.h"
 #include "tests/support/solid_system.h"
@@ -26,8 +27,6 @@ namespace mssim {
 namespace {
 
 using testing::ElementsAreArray;
-
-constexpr double dt_s = 1e-4;
 
 /// Names and lanes of what this processor has, best first, asked of the compiler's library and not of
 /// Highway.
@@ -68,13 +67,14 @@ TEST(InstructionSets, AreTakenAsNamedTheBestWhereNoneIs) {
   for (const System& system : {cloth_system(9, 11), solid_block(3, 4, 5)}) {
     const auto sets = openmp_instruction_sets();
     for (const std::string_view set : sets)
-      EXPECT_EQ(make_openmp(system, integrators[0], dt_s, {1, ""}, set)->device(), "cpu " + std::string(set));
-    EXPECT_EQ(make_openmp(system, integrators[0], dt_s, {1, ""})->device(),
+      EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s, {1, ""}, set)->device(),
+                "cpu " + std::string(set));
+    EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s, {1, ""})->device(),
               "cpu " + std::string(sets.front()));
-    EXPECT_THROW(make_openmp(system, integrators[0], dt_s, {1, ""}, "MMX"), std::invalid_argument);
+    EXPECT_THROW(make_openmp(system, integrators[0], backend_dt_s, {1, ""}, "MMX"), std::invalid_argument);
     const auto exact = std::ranges::find_if(sets, has_exact_roots);
     ASSERT_NE(exact, sets.end());
-    EXPECT_EQ(make_openmp(system, integrators[0], dt_s, {1, "", {}, Roots::exact})->device(),
+    EXPECT_EQ(make_openmp(system, integrators[0], backend_dt_s, {1, "", {}, Roots::exact})->device(),
               "cpu " + std::string(*exact));
   }
 }
@@ -110,10 +110,11 @@ INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachInstructionSetAndIntegrator,
 
 TEST_P(EachInstructionSetAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShape) {
   for (const System& system : systems_of_any_shape()) {
-    const Reference reference = run_reference(system, integrator(), dt_s);
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
     ASSERT_EQ(reference.steps, verification_steps);
-    const auto simulation = make_openmp(system, integrator(), dt_s, {2, ""}, instruction_set());
-    const Verification verification = verify(*simulation, system, reference, dt_s);
+    const auto simulation =
+        make_openmp(system, integrator(), backend_dt_of(integrator()), {2, ""}, instruction_set());
+    const Verification verification = verify(*simulation, system, reference, backend_dt_of(integrator()));
     EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
   }
 }
@@ -126,8 +127,9 @@ TEST_P(EachInstructionSetAndIntegrator, GivesTheSameBitsAsTheBestThatRoundsAlike
   });
   for (System system : systems_of_any_shape()) {
     system.floor.height = system.start.position[0].y - 0.001;  // it is met on the way
-    const auto expected = make_openmp(system, integrator(), dt_s, {1, ""}, best);
-    const auto simulation = make_openmp(system, integrator(), dt_s, {2, ""}, instruction_set());
+    const auto expected = make_openmp(system, integrator(), backend_dt_of(integrator()), {1, ""}, best);
+    const auto simulation =
+        make_openmp(system, integrator(), backend_dt_of(integrator()), {2, ""}, instruction_set());
     expected->step(300);
     simulation->step(300);
     const State one = expected->state(), other = simulation->state();
