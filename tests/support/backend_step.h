@@ -10,7 +10,8 @@ namespace mssim {
 /// stable with it.
 inline constexpr double backend_dt_s = 1e-4;
 
-/// The same for any integrator: explicit Euler takes half of it, with which their damping keeps it from growing.
+/// The same for any integrator: explicit Euler takes half of it, with which their damping keeps it from
+/// growing.
 constexpr double backend_dt_of(const Integrator& integrator) {
   return integrator.name == "explicit-euler" ? backend_dt_s / 2 : backend_dt_s;
 }
