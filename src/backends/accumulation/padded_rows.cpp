@@ -1,27 +1,6 @@
 #include "backends/accumulation/padded_rows.h"
 
 namespace mssim {
-namespace {
-
-std::size_t round_up(std::size_t value, std::size_t multiple) {
-  return (value + multiple - 1) / multiple * multiple;
-}
-
-/// An odd number of vectors: where it is a power of two, the rows and components that a vector's springs load
-/// from share a few sets of the first-level cache.
-std::size_t pitch_of(std::size_t floats, std::size_t lanes) {
-  const std::size_t vectors = (floats + lanes - 1) / lanes;
-  return (vectors % 2 == 0 ? vectors + 1 : vectors) * lanes;
-}
-
-}  // namespace
-
-RowLayout::RowLayout(const GridPatch& grid, std::size_t lane_count)
-    : lanes(lane_count),
-      rows(grid.rows),
-      columns(grid.columns),
-      margin(round_up(ring, lanes)),
-      pitch(pitch_of(margin + columns, lanes)) {}
 
 PaddedRows::PaddedRows(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
                        std::size_t lanes, std::size_t thread_count)

@@ -89,7 +89,7 @@ HWY_INLINE Lanes3 spring_acceleration(const ClothConstants& constants, const Pla
     constexpr GridSpring to = spring_of_node(i);
     const SpringLanes& spring = constants.spring[to.kind];
     const NodeLanes other = load_vector(
-        here + to.rows * static_cast<std::ptrdiff_t>(RowLayout::components) * pitch + to.columns, pitch);
+        here + to.rows * static_cast<std::ptrdiff_t>(PairRows::components) * pitch + to.columns, pitch);
     const Lanes3 to_other = other.x - node.x;
     const Lanes pull =
         spring_pull_at(inverse_length(dot(to_other, to_other)), dot(other.v - node.v, to_other),
@@ -142,7 +142,7 @@ HWY_INLINE void step_vector(const ClothConstants& constants, const Place& place,
 
 /// The vectors of columns [begin, end) of a row, some of whose springs or lanes are not there.
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void step_edge(const ClothConstants& constants, const Arrays& arrays, const RowLayout& layout,
+HWY_NOINLINE void step_edge(const ClothConstants& constants, const Arrays& arrays, const PairRows& layout,
                             std::size_t row, std::size_t begin, std::size_t end) {
   for (std::size_t column = begin; column < end; column += lane_count())
     step_vector<method, stage>(
@@ -155,7 +155,7 @@ HWY_NOINLINE void step_edge(const ClothConstants& constants, const Arrays& array
 /// Asks for the row that the next row's nodes are the first to gather from. Measured on two Zen 4 cores at
 /// 500 x 700, whose state lies in the last-level cache: 1.1 to 1.2 times as fast.
 HWY_INLINE void prefetch_row_below(const float* here, std::ptrdiff_t pitch) {
-  constexpr std::ptrdiff_t components = RowLayout::components, rows = RowLayout::ring + 1;
+  constexpr std::ptrdiff_t components = PairRows::components, rows = PairRows::ring + 1;
   for (std::ptrdiff_t component = 0; component < components; ++component)
     hwy::Prefetch(here + (rows * components + component) * pitch);  // no address is wrong
 }
@@ -189,8 +189,8 @@ HWY_INLINE void put_back_pins(const PaddedRows& cloth, std::size_t row, float* a
 template <std::size_t method, std::size_t stage>
 HWY_INLINE void step_row(const PaddedRows& cloth, const ClothConstants& constants, const Arrays& arrays,
                          std::size_t row) {
-  const RowLayout& layout = cloth.layout;
-  constexpr std::size_t ring = RowLayout::ring;
+  const PairRows& layout = cloth.layout;
+  constexpr std::size_t ring = PairRows::ring;
   std::size_t begin = 0, end = 0;  // of the vectors inside
   if (row >= ring && row + ring < layout.rows && layout.columns >= layout.margin + ring) {
     begin = layout.margin;

@@ -10,7 +10,7 @@ namespace mssim {
 
 /// The vector code for one instruction set.
 struct RowKernel {
-  std::size_t lanes;                           ///< floats in a vector: RowLayout::lanes must equal it
+  std::size_t lanes;                           ///< floats in a vector: PairRows::lanes must equal it
   const char* instruction_set;                 ///< Highway's name for it
   bool exact_roots;                            ///< finds roots as Roots::exact asks
   void (*step)(PaddedRows& cloth, int count);  ///< takes `count` steps

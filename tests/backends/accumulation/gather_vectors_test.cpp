@@ -134,7 +134,7 @@ TEST_P(EachRowKernelAndIntegrator, LeavesWhatLiesOutsideOfTheClothZero) {
   for (AlignedArray& array : cloth.pairs) {
     if (array.size() == 0) continue;
     for (std::size_t row = 0; row < 9; ++row)
-      for (std::size_t component = 0; component < RowLayout::components; ++component) {
+      for (std::size_t component = 0; component < PairRows::components; ++component) {
         float* const first = array.data() + cloth.layout.offset(row, 0) + component * cloth.layout.pitch;
         std::fill(first, first + 11, 0.0F);
       }
@@ -173,10 +173,10 @@ TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
 TEST(GatherVectors, BeginsEachComponentOfARowWithAVector) {
   for (const RowKernel& kernel : row_kernels(integrators[0]))
     for (const auto& [rows, columns] : sizes) {
-      const RowLayout layout(GridPatch{rows, columns, 0.01}, kernel.lanes);
+      const PairRows layout(GridPatch{rows, columns, 0.01}, kernel.lanes);
       EXPECT_EQ(layout.offset(0, 0) % kernel.lanes, 0U);
       EXPECT_EQ(layout.pitch / kernel.lanes % 2, 1U) << "vectors of a row's component";
-      EXPECT_GE(layout.margin, RowLayout::ring);
+      EXPECT_GE(layout.margin, PairRows::ring);
       EXPECT_GE(layout.pitch, layout.margin + columns);
     }
 }
