@@ -15,6 +15,7 @@ namespace mssim::HWY_NAMESPACE {
 /// Spring constants in registers.
 struct SpringLanes {
   Lanes stiffness, stiffness_rest, damping;
+  HWY_INLINE SpringLanes(Lanes k, Lanes k_rest, Lanes c) : stiffness(k), stiffness_rest(k_rest), damping(c) {}
   HWY_INLINE explicit SpringLanes(const SpringConstants& s)
       : stiffness(s.stiffness), stiffness_rest(s.stiffness_rest), damping(s.damping) {}
 };
