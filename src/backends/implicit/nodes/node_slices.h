@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "backends/implicit/nodes/node_chunk.h"
+#include "backends/interface/surroundings.h"
+#include "backends/layouts/aligned_array.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// Bodies as implicit integrators with vectors see them, in the slices of SlicedGraph; what NodeRows is for
+/// cloths. A field is an array of records x y z 0: a vector of neighbours is gathered by loading whole
+/// records and transposing them in registers.
+struct NodeSlices {
+  static constexpr std::size_t record_floats = 4;
+  /// What entries count in: a processor's address can have such a factor.
+  static constexpr std::size_t offset_floats = 2;
+  /// Numbers of each node in `constants`.
+  enum Constant : std::size_t { stiffness, damping, free, mass, constant_count };
+
+  std::size_t lanes = 0;
+  Surroundings surroundings{};
+  std::size_t nodes = 0;
+  std::vector<std::uint32_t> record;       ///< [nodes] the number of a node's record
+  std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
+  /// [entries][2][lanes] in one stream: where the neighbours' records start, in units of offset_floats and as
+  /// std::uint32_t, then SlicedGraph::stiffness_rest.
+  AlignedArray entries;
+  /// [slices][constant_count][lanes] SlicedGraph's stiffness and damping, 1 where a node moves or else 0, and
+  /// mass in kg, 0 where no node is.
+  AlignedArray constants;
+  std::vector<NodeChunk> chunks;  ///< of slices
+
+  /// Throws Unsupported like SlicedGraph, and for more nodes than offsets can name.
+  NodeSlices(const System& system, std::size_t lanes);
+
+  std::size_t slices() const { return first_entry.size() - 1; }
+  /// Floats of a field. They must be zero where no node is, as they are in a new AlignedArray.
+  std::size_t field_floats() const { return slices() * lanes * record_floats; }
+  /// Where the x of a node, by its number in the scene, stands in a field.
+  std::size_t offset(std::size_t node) const { return record[node] * record_floats; }
+  /// Floats from a component of a node to its next one.
+  static constexpr std::size_t component_step() { return 1; }
+};
+
+}  // namespace mssim
