@@ -23,7 +23,7 @@ check 0 cloth2500 --format csv
 [ ! -s "$work/err" ] || fail "a good scene has messages"
 cp "$work/out" "$work/cloth.csv"
 column() { column_of "$work/cloth.csv" "$1"; }
-[ "$(wc -l <"$work/cloth.csv")" -eq 26 ] || fail "not five integrators on five backends"
+[ "$(wc -l <"$work/cloth.csv")" -eq 44 ] || fail "not seven integrators on five backends and four on two"
 [ "$(column scene | sort -u)/$(column kind | sort -u)/$(column nodes | sort -u)/$(column springs_unique | sort -u)/$(column dt_s | sort -u)" = \
   cloth2500/cloth/2500/14502/5e-05 ] || fail "what the scene is"
 [ "$(column tetrahedra | sort -u)" = '' ] || fail "a cloth has tetrahedra"
@@ -31,9 +31,10 @@ awk -F, 'NR > 1 && !($11 > 1e5 && $11 < 1e8 && $12 > 0 && $13 > 0)' "$work/cloth
 for integrator in semi-euler midpoint rk4; do
   grep -q ",$integrator,.*,true,openmp," "$work/cloth.csv" || fail "$integrator is not stable"
 done
+[ "$(grep -c ',\(implicit-euler\|newton-euler\|fast-springs\|xpbd\),,true,' "$work/cloth.csv")" -eq 8 ] || fail "implicit integrators have a limit"
 # In the other formats the same.
 check 0 cloth2500 --format json
-[ "$(grep -c '"largest_stable_dt_s": ' "$work/out")" -eq 25 ] || fail "the JSON has not 25 rows"
+[ "$(grep -c '"largest_stable_dt_s": ' "$work/out")" -eq 43 ] || fail "the JSON has not 43 rows"
 check 0 cloth2500 torus-small
 grep -q '^cloth2500  *cloth  *2500  *14502  *-  *5e-05$' "$work/out" || fail "the table of a cloth"
 grep -q '^torus-small  *bodies  *620  *3690  *2800 ' "$work/out" || fail "the table of a body"

@@ -19,7 +19,7 @@ expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybri
 expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
 expect 2 'unknown backend "openpm" (did you mean openmp?)' bench --scene cloth2500 --backend openpm
 expect 2 'known are serial, threads-mutex, openmp, opencl and hybrid' bench --scene cloth2500 --backend cuda
-expect 2 'rk4-frozen' bench --scene cloth2500 --integrator verlet
+expect 2 'rk4-frozen' bench --scene cloth2500 --integrator euler
 expect 2 'cloth2500' bench --scene cloth2501
 expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json
 expect 2 'table1.*races.*scaling' bench --suite table9
@@ -100,7 +100,7 @@ for arguments in '--help' 'bench --help' 'run --help' 'check --help' 'compare --
   [ ! -s "$work/err" ] || fail "$arguments writes to stderr"
 done
 "$mssim" list scenes --format csv | grep '^cloth350k,cloth,350000,2094002,4188004,' >/dev/null || fail "list scenes"
-[ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 5 ] || fail "list integrators"
+[ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 11 ] || fail "list integrators"
 "$mssim" list backends | grep '^hybrid ' >/dev/null || fail "list backends"
 "$mssim" list methods --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list methods"
 "$mssim" list suites --format csv | grep '^scaling,true,false,"cloth40k, .* and cloth16m",' >/dev/null || fail "list suites"

@@ -43,8 +43,14 @@ double position_tolerance(const System& system, const Integrator& integrator, in
 
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s) {
   constexpr int stride = 10;
-  const auto backend = make_reference(system, integrator, dt_s);
   Reference reference;
+  std::unique_ptr<Backend> backend;
+  try {
+    backend = make_reference(system, integrator, dt_s);
+  } catch (const Unsupported& reason) {
+    reference.failure = std::string("there is no double-precision reference: ") + reason.what();
+    return reference;
+  }
   reference.state = system.start;
   State before = system.start;
   bool in_the_air = true;

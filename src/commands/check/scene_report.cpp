@@ -1,6 +1,7 @@
 #include "commands/check/scene_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string_view>
 #include <variant>
@@ -62,7 +63,7 @@ void add_combination(Table& table, const PreparedScene& scene, const SceneSize& 
   const BenchSettings settings = usual_settings({&backend}, {&integrator});
   const double steps = (size.garment ? SettlingRule{}.longest_s : default_duration_s) / scene.dt_s;
   table.add({{"integrator", integrator.name},
-             {"largest_stable_dt_s", largest_dt_s},
+             {"largest_stable_dt_s", std::isinf(largest_dt_s) ? Cell() : Cell(largest_dt_s)},
              {"stable", scene.dt_s <= largest_dt_s},
              {"backend", backend.name},
              {"memory_bytes", bench_memory_needed(settings, size)},
