@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <string>
 
+#include "backends/implicit/newton/solver_goal.h"
 #include "integrators/integrator.h"
 #include "text/counted.h"
 
@@ -79,16 +81,16 @@ void newton_step(Equation& equation, double tolerance, SolverWork& work) {
   ++work.steps;
 }
 
-/// A step by Newton's method from w = v, until the norm of r is at most `tolerance` of what it was, or no
-/// step along s makes it less, which is where the precision ends. Linear systems are solved to a part of what
-/// r is then (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982).
+/// A step by Newton's method from w = v, until the norm of r, sqrt(r . M^-1 r), has come to the goal, or no
+/// part of s makes it less. Linear systems are solved to a part of what r is then (an inexact Newton method:
+/// Dembo, Eisenstat and Steihaug 1982).
 template <BackwardEulerEquation Equation>
-void newtons_method(Equation& equation, double tolerance, SolverWork& work) {
+void newtons_method(Equation& equation, const SolverGoal& goal, SolverWork& work) {
   constexpr double forcing = 0.01, shortest = 1. / 64;
   equation.begin();
   double norm = equation.linearise();
-  const double goal = tolerance * tolerance * norm;
-  for (int i = 0; norm > goal; ++i) {
+  const double small = std::max(goal.tolerance * goal.tolerance * norm, goal.rounding * goal.rounding);
+  for (int i = 0; norm > small; ++i) {
     if (i == most_newton_iterations) {
       ++work.unfinished_steps;
       break;
@@ -115,11 +117,11 @@ void newtons_method(Equation& equation, double tolerance, SolverWork& work) {
 
 /// A step of implicit-euler or newton-euler.
 template <BackwardEulerEquation Equation>
-void take_step(Equation& equation, const Integrator& integrator, double tolerance, SolverWork& work) {
+void take_step(Equation& equation, const Integrator& integrator, const SolverGoal& goal, SolverWork& work) {
   if (integrator.solver == Solver::newton_step)
-    newton_step(equation, tolerance, work);
+    newton_step(equation, goal.tolerance, work);
   else
-    newtons_method(equation, tolerance, work);
+    newtons_method(equation, goal, work);
 }
 
 /// What a reader of its times must know of a solver that has met its limit; else nothing.

@@ -9,7 +9,7 @@ template <class Real>
 class NewtonSerial final : public Backend {
  public:
   NewtonSerial(const System& system, const Integrator& integrator, double dt_s, double tolerance)
-      : equation_(system, dt_s), integrator_(integrator), tolerance_(tolerance) {}
+      : equation_(system, dt_s), integrator_(integrator), goal_(solver_goal<Real>(system, dt_s, tolerance)) {}
 
   void set_state(const State& state) override { equation_.set_state(state); }
   State state() const override { return equation_.state(); }
@@ -18,13 +18,13 @@ class NewtonSerial final : public Backend {
   std::string note() const override { return note_of(work_); }
 
   void step(int count) override {
-    for (int step = 0; step < count; ++step) take_step(equation_, integrator_, tolerance_, work_);
+    for (int step = 0; step < count; ++step) take_step(equation_, integrator_, goal_, work_);
   }
 
  private:
   SpringEquation<Real> equation_;
   const Integrator& integrator_;
-  const double tolerance_;
+  const SolverGoal goal_;
   SolverWork work_;
 };
 

@@ -1,6 +1,9 @@
 #include "backends/implicit/newton/spring_equation.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "laws/host_laws.h"
 
 namespace mssim {
 
