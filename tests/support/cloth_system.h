@@ -52,6 +52,13 @@ inline System lone_cloth(std::uint32_t rows, std::uint32_t columns) {
   return build_system(spec);
 }
 
+/// The same without any damping.
+inline System undamped(System system) {
+  for (SpringMaterial& material : system.materials) material.damping = 0;
+  system.viscous_damping = 0;
+  return system;
+}
+
 /// Whether a node lies on the floor or rises from it.
 inline bool has_met_floor(const System& system, const State& state) {
   for (std::size_t node = 0; node < system.nodes(); ++node)

@@ -46,14 +46,15 @@ struct SolverWork {
   std::uint64_t steps = 0;
   std::uint64_t newton_iterations = 0;  ///< linear systems
   std::uint64_t products = 0;           ///< A p: iterations of conjugate gradients
-  std::uint64_t unfinished_steps = 0;   ///< that have met the limit of iterations
+  std::uint64_t unfinished_steps = 0;   ///< whose solver met the limit of iterations, or of its precision
 };
 
 inline constexpr int most_gradient_iterations = 1000;
 inline constexpr int most_newton_iterations = 100;
 
 /// Solves A s = e by preconditioned conjugate gradients from s = 0, until sqrt(e . P e) is at most
-/// `tolerance` of what it was. False if that takes more than most_gradient_iterations.
+/// `tolerance` of what it was. False if that takes more than most_gradient_iterations, or A is not positive
+/// definite in the precision that it is computed in.
 template <BackwardEulerEquation Equation>
 bool conjugate_gradients(Equation& equation, double tolerance, SolverWork& work) {
   double left = equation.start_solving();
@@ -62,7 +63,9 @@ bool conjugate_gradients(Equation& equation, double tolerance, SolverWork& work)
   for (int i = 0; left > goal; ++i) {
     if (i == most_gradient_iterations) return false;
     ++work.products;
-    const double next = equation.advance(left / equation.turn(factor));
+    const double curvature = equation.turn(factor);
+    if (!(curvature > 0)) return false;
+    const double next = equation.advance(left / curvature);
     factor = next / left;
     left = next;
   }
@@ -124,10 +127,10 @@ void take_step(Equation& equation, const Integrator& integrator, const SolverGoa
     newtons_method(equation, goal, work);
 }
 
-/// What a reader of its times must know of a solver that has met its limit; else nothing.
+/// What a reader of its times must know of a solver that has met a limit; else nothing.
 inline std::string note_of(const SolverWork& work) {
   if (work.unfinished_steps == 0) return {};
-  return "the solver met its limit of iterations in " + std::to_string(work.unfinished_steps) + " of " +
+  return "the solver ended before its tolerance in " + std::to_string(work.unfinished_steps) + " of " +
          counted(work.steps, "step");
 }
 

@@ -1,0 +1,249 @@
+// implicit-euler and newton-euler against their equations, written out with dense matrices.
+#include "backends/implicit/newton/newton.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "backends/implicit/newton/newton_method.h"
+#include "backends/implicit/newton/spring_equation.h"
+#include "integrators/all_integrators.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/dense_solve.h"
+#include "tests/support/largest_distance.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+const Integrator& implicit_euler = *find_integrator("implicit-euler");
+const Integrator& newton_euler = *find_integrator("newton-euler");
+
+std::array<double, 3> components(const Vec3d& a) { return {a.x, a.y, a.z}; }
+
+/// Forces on all nodes, N, from the formulas of model/system.h; zero on pinned ones.
+std::vector<Vec3d> forces(const System& system, const State& state) {
+  std::vector<Vec3d> force(system.nodes());
+  for (const Spring& spring : system.springs) {
+    const auto [stiffness, damping] = system.materials[spring.kind];
+    const Vec3d d = state.position[spring.second] - state.position[spring.first];
+    const Vec3d u = state.velocity[spring.second] - state.velocity[spring.first];
+    const Vec3d n = 1 / length(d) * d;
+    const Vec3d f =
+        (stiffness * (length(d) - static_cast<double>(spring.rest_length)) + damping * dot(u, n)) * n;
+    force[spring.first] += f;
+    force[spring.second] -= f;
+  }
+  for (std::size_t i = 0; i < system.nodes(); ++i)
+    force[i] +=
+        system.node_mass[i] * (Vec3d{0, -system.gravity, 0} - system.viscous_damping * state.velocity[i]);
+  for (const std::uint32_t pin : system.pins) force[pin] = {};
+  return force;
+}
+
+/// -dF/dx and -dF/dv as dense matrices, without what compression and damping add to the first.
+struct DenseJacobian {
+  std::vector<std::vector<double>> position, velocity;
+};
+DenseJacobian jacobian(const System& system, const State& state) {
+  const std::size_t n = 3 * system.nodes();
+  DenseJacobian dense{std::vector(n, std::vector<double>(n)), std::vector(n, std::vector<double>(n))};
+  for (const Spring& spring : system.springs) {
+    const auto [stiffness, damping] = system.materials[spring.kind];
+    const Vec3d d = state.position[spring.second] - state.position[spring.first];
+    const auto unit = components(1 / length(d) * d);
+    const double across =
+        std::max(0.0, stiffness * (1 - static_cast<double>(spring.rest_length) / length(d)));
+    for (const auto& [row_node, column_node, sign] : {std::tuple{spring.first, spring.first, 1.0},
+                                                      {spring.first, spring.second, -1.0},
+                                                      {spring.second, spring.first, -1.0},
+                                                      {spring.second, spring.second, 1.0}})
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+          const double along = unit[i] * unit[j];
+          dense.position[3 * row_node + i][3 * column_node + j] +=
+              sign * (stiffness * along + across * ((i == j ? 1 : 0) - along));
+          dense.velocity[3 * row_node + i][3 * column_node + j] += sign * damping * along;
+        }
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    dense.velocity[i][i] += system.viscous_damping * system.node_mass[i / 3];
+  return dense;
+}
+
+/// The velocities after a step of Baraff and Witkin 1998, Eq. 6, with pinned rows and columns struck out.
+std::vector<Vec3d> velocities_by_dense_solve(const System& system, double dt_s) {
+  const State& state = system.start;
+  const std::size_t n = 3 * system.nodes();
+  const DenseJacobian dense = jacobian(system, state);
+  const std::vector<Vec3d> force = forces(system, state);
+  std::vector<std::vector<double>> matrix(n, std::vector<double>(n));
+  std::vector<double> right(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    right[i] = dt_s * components(force[i / 3])[i % 3];
+    for (std::size_t j = 0; j < n; ++j) {
+      matrix[i][j] = dt_s * dense.velocity[i][j] + dt_s * dt_s * dense.position[i][j];
+      right[i] -= dt_s * dt_s * dense.position[i][j] * components(state.velocity[j / 3])[j % 3];
+    }
+    matrix[i][i] += system.node_mass[i / 3];
+  }
+  for (const std::uint32_t pin : system.pins)
+    for (std::size_t i = 3 * pin; i < 3 * pin + 3; ++i) {
+      for (std::size_t j = 0; j < n; ++j) matrix[i][j] = matrix[j][i] = i == j ? 1 : 0;
+      right[i] = 0;
+    }
+  const std::vector<double> change = dense_solve(std::move(matrix), std::move(right));
+  std::vector<Vec3d> velocity = state.velocity;
+  for (std::size_t i = 0; i < system.nodes(); ++i)
+    velocity[i] += Vec3d{change[3 * i], change[3 * i + 1], change[3 * i + 2]};
+  return velocity;
+}
+
+/// Small systems with compressed springs among the others; some have pins.
+std::vector<System> small_systems() {
+  System pinned_block = solid_block(3, 2, 3);
+  pinned_block.pins = {0, 7};
+  for (const std::uint32_t pin : pinned_block.pins) pinned_block.start.velocity[pin] = {};
+  return {cloth_system(5, 6), lone_cloth(1, 2), solid_block(2, 3, 2), pinned_block};
+}
+constexpr std::array<double, 3> steps_s{5e-5, 1e-3, 2e-2};
+
+double largest(const std::vector<Vec3d>& vectors) {
+  return largest_distance(vectors, std::vector<Vec3d>(vectors.size()));
+}
+
+TEST(ImplicitEuler, IsTheDenseSolutionOfItsLinearSystem) {
+  for (const System& system : small_systems())
+    for (const double dt_s : steps_s) {
+      const std::vector<Vec3d> expected = velocities_by_dense_solve(system, dt_s);
+      const double size = largest(expected);
+      const auto reference = make_newton_reference(system, implicit_euler, dt_s);
+      reference->step(1);
+      const State after = reference->state();
+      EXPECT_LT(largest_distance(after.velocity, expected), 1e-10 * size) << system.nodes() << " " << dt_s;
+      for (std::size_t i = 0; i < system.nodes(); ++i)
+        EXPECT_LT(length(after.position[i] - system.start.position[i] - dt_s * expected[i]),
+                  1e-10 * size * dt_s + 1e-15);
+      const auto serial = make_serial_newton(system, implicit_euler, dt_s);
+      serial->step(1);
+      EXPECT_LT(largest_distance(serial->state().velocity, expected), 2e-4 * size)
+          << system.nodes() << " " << dt_s;
+    }
+}
+
+/// |M (w - v) - dt F(x + dt w, w)| in the norm of M^-1, where `after` is what w leads to.
+double residual_of(const System& system, const State& before, const State& after, double dt_s) {
+  const std::vector<Vec3d> force = forces(system, after);
+  double sum = 0;
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    const Vec3d r = system.node_mass[i] * (after.velocity[i] - before.velocity[i]) - dt_s * force[i];
+    sum += dot(r, r) / system.node_mass[i];
+  }
+  return std::sqrt(sum);
+}
+
+TEST(NewtonEuler, LeavesNothingOfTheStepsEquation) {
+  for (const System& system : small_systems())
+    for (const double dt_s : steps_s) {
+      const auto reference = make_newton_reference(system, newton_euler, dt_s);
+      for (int step = 0; step < 5; ++step) {
+        const State before = reference->state();
+        State drifted = before;
+        for (std::size_t i = 0; i < system.nodes(); ++i) drifted.position[i] += dt_s * before.velocity[i];
+        reference->step(1);
+        // What rounding of x + dt w leaves of the stiffest spring's force is 1e-16 of 1 m times 200 N/m.
+        EXPECT_LT(residual_of(system, before, reference->state(), dt_s),
+                  1e-10 * residual_of(system, before, drifted, dt_s))
+            << system.nodes() << " nodes, dt " << dt_s << ", step " << step;
+      }
+      EXPECT_EQ(reference->note(), "");
+    }
+}
+
+TEST(NewtonEuler, DiffersFromOneNewtonStepByTheSquareOfTheStep) {
+  const System system = cloth_system(6, 5);
+  const auto difference = [&](double dt_s) {
+    const auto one = make_newton_reference(system, implicit_euler, dt_s);
+    const auto all = make_newton_reference(system, newton_euler, dt_s);
+    one->step(1);
+    all->step(1);
+    return largest_distance(one->state().velocity, all->state().velocity);
+  };
+  // What is dropped in a step is of the second order.
+  EXPECT_NEAR(std::log2(difference(2e-5) / difference(1e-5)), 2, 0.1);
+}
+
+class NewtonOnThePlainList : public testing::TestWithParam<const Integrator*> {};
+INSTANTIATE_TEST_SUITE_P(Integrators, NewtonOnThePlainList, testing::Values(&implicit_euler, &newton_euler),
+                         [](const auto& test) {
+                           return test.param == &implicit_euler ? "implicit_euler" : "newton_euler";
+                         });
+
+TEST_P(NewtonOnThePlainList, FollowsTheReferenceInSinglePrecision) {
+  for (const System& system : small_systems())
+    for (const double dt_s : {1e-4, 2e-3}) {
+      const auto serial = make_serial_newton(system, *GetParam(), dt_s);
+      const auto reference = make_newton_reference(system, *GetParam(), dt_s);
+      serial->step(20);
+      reference->step(20);
+      EXPECT_LT(largest_distance(serial->state().position, reference->state().position), 2e-5)
+          << system.nodes() << " nodes, dt " << dt_s;
+      EXPECT_EQ(serial->note(), "");
+    }
+}
+
+TEST_P(NewtonOnThePlainList, HoldsPinsExactly) {
+  for (const System& system : small_systems()) {
+    const auto serial = make_serial_newton(system, *GetParam(), 2e-3);
+    serial->step(30);
+    const State state = serial->state();
+    for (const std::uint32_t pin : system.pins) {
+      EXPECT_EQ(state.position[pin], system.start.position[pin]);
+      EXPECT_EQ(state.velocity[pin], Vec3d{});
+    }
+    EXPECT_GT(largest_distance(state.position, system.start.position), 1e-4) << "the others move";
+  }
+}
+
+TEST_P(NewtonOnThePlainList, PutsWhatFallsOntoTheFloor) {
+  const System system = build_system(sheet_spec(5, 6, 0.001));
+  const auto serial = make_serial_newton(system, *GetParam(), 2e-3);
+  bool met = false;
+  for (int step = 0; step < 30; ++step) {
+    serial->step(1);
+    const State state = serial->state();
+    for (const Vec3d& x : state.position) ASSERT_GE(x.y, system.floor.height);
+    met = met || has_met_floor(system, state);
+  }
+  EXPECT_TRUE(met);
+}
+
+TEST_P(NewtonOnThePlainList, StartsAgainFromAStateThatItIsGiven) {
+  const System system = cloth_system(9, 7);
+  const auto serial = make_serial_newton(system, *GetParam(), 1e-3);
+  serial->step(7);
+  const State once = serial->state();
+  serial->set_state(system.start);
+  serial->step(7);
+  EXPECT_EQ(serial->state().position, once.position);
+  EXPECT_EQ(serial->state().velocity, once.velocity);
+}
+
+TEST(ConjugateGradients, SayWhereTheyEndBeforeTheirTolerance) {
+  System system = cloth_system(30, 40);
+  system.solver.tolerance = 0;  // which no sum comes to
+  const auto serial = make_serial_newton(system, implicit_euler, 0.05);
+  EXPECT_EQ(serial->note(), "");
+  serial->step(2);
+  EXPECT_EQ(serial->note(), "the solver ended before its tolerance in 2 of 2 steps");
+}
+
+}  // namespace
+}  // namespace mssim
