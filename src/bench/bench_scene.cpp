@@ -263,8 +263,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     }
     watch.after_round(rows_of(all, size, peaks));
   }
-  for (Combination& combination : all)
-    if (combination.backend) combination.row.program_output = combination.backend->end();
+  std::ranges::for_each(all, end);
   return rows_of(all, size, peaks);
 }
 

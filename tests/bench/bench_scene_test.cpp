@@ -36,6 +36,7 @@ class RightForAWhile final : public Backend {
   }
   std::string device() const override { return "made up"; }
   int threads() const override { return 1; }
+  std::string note() const override { return sets_ > 2 ? "tired" : ""; }
 
  private:
   std::unique_ptr<Backend> serial_;
@@ -299,6 +300,8 @@ TEST_F(BenchScene, SaysWhatFailedInTheMidstOfTheRounds) {
   EXPECT_THAT(rows[1].status, HasSubstr("failed: "));
   EXPECT_FALSE(rows[1].verified);
   EXPECT_EQ(rows[1].ms_per_step, std::nullopt);
+  EXPECT_EQ(rows[0].note, "");
+  EXPECT_EQ(rows[1].note, "tired") << "what it has come to say since it was made";
 }
 
 TEST_F(BenchScene, TellsOfAProgramThatFailsAtAnyCall) {

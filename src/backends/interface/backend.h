@@ -99,7 +99,7 @@ class Backend {
   virtual int steps_per_pass() const { return 0; }
   /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
   virtual bool runs_on_host() const { return true; }
-  /// What a reader of its times must know of it, or nothing.
+  /// What a reader of its times must know of it by now, or nothing: the limits that its steps have met, say.
   virtual std::string note() const { return {}; }
   /// Why it takes more processors than it was asked to, where it does.
   virtual std::string reason_for_excess() const { return "the driver of " + device() + " cannot divide it"; }

@@ -53,10 +53,18 @@ std::string subject_of(const ResultRow& row) {
 
 }  // namespace
 
+void end(Combination& combination) {
+  if (!combination.backend) return;
+  ResultRow& row = combination.row;
+  const std::string note = combination.backend->note();
+  if (row.note.find(note) == std::string::npos) add_to_note(row.note, note);
+  row.program_output = combination.backend->end();
+}
+
 void fail(Combination& combination, const std::string& status) {
   combination.row.status = status;
   combination.row.verified = false;
-  if (combination.backend) combination.row.program_output = combination.backend->end();
+  end(combination);
   combination.backend.reset();
   combination.dressing = nullptr;
 }

@@ -35,6 +35,10 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
 /// Ends the combination with a reason, and keeps what a program behind it wrote.
 void fail(Combination& combination, const std::string& status);
 
+/// Ends the backend of a combination that is measured, and keeps what it has come to say on the way and what
+/// a program behind it wrote.
+void end(Combination& combination);
+
 /// Does something with the combination's backend; the row has failed where the program behind it fails.
 void attempt(Combination& combination, const std::function<void()>& work);
 
