@@ -47,6 +47,14 @@ struct SolverWork {
   std::uint64_t newton_iterations = 0;  ///< linear systems
   std::uint64_t products = 0;           ///< A p: iterations of conjugate gradients
   std::uint64_t unfinished_steps = 0;   ///< whose solver met the limit of iterations, or of its precision
+
+  SolverWork& operator+=(const SolverWork& more) {
+    steps += more.steps;
+    newton_iterations += more.newton_iterations;
+    products += more.products;
+    unfinished_steps += more.unfinished_steps;
+    return *this;
+  }
 };
 
 inline constexpr int most_gradient_iterations = 1000;

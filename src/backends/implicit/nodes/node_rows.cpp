@@ -6,6 +6,7 @@ namespace mssim {
 
 NodeRows::NodeRows(const System& system, const GridPatch& grid, std::size_t lanes)
     : layout(grid, lanes),
+      slope_layout(grid, lanes),
       plane(grid, lanes),
       springs(spring_constants_of(system, grid)),
       surroundings(surroundings_of(system)),

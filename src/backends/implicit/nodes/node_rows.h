@@ -20,7 +20,12 @@ struct NodeRows {
   using Layout = RowLayout<3>;  ///< of a field: x y z
   using Plane = RowLayout<1>;   ///< of one number a node
 
+  static constexpr std::size_t spring_slopes = 4;  ///< numbers of a spring in a field of slopes
+  /// Of a field of slopes: those of the springs of grid_stencil, at the nodes that own them.
+  using SlopeLayout = RowLayout<grid_stencil.size() * spring_slopes>;
+
   Layout layout;
+  SlopeLayout slope_layout;
   Plane plane;
   std::vector<SpringConstants> springs;  ///< [kinds] divided by the mass of a node
   Surroundings surroundings{};
@@ -35,6 +40,15 @@ struct NodeRows {
 
   /// Floats of a field. They must be zero where no node is, as they are in a new AlignedArray.
   std::size_t field_floats() const { return layout.floats(); }
+  /// Floats of a field of slopes.
+  std::size_t slope_floats() const { return slope_layout.floats(); }
+  std::size_t row_vectors() const { return (layout.columns + layout.lanes - 1) / layout.lanes; }
+  std::size_t vectors() const { return layout.rows * row_vectors(); }
+  /// The floats of a field that belong to a chunk's nodes, whole vectors; and zeros beside them.
+  NodeChunk floats_of(NodeChunk chunk) const {
+    return {(chunk.begin + Layout::ring) * layout.row_floats(),
+            (chunk.end + Layout::ring) * layout.row_floats()};
+  }
   /// Where the x of a node, by its number in the scene, stands in a field.
   std::size_t offset(std::size_t node) const {
     return layout.offset(node / layout.columns, node % layout.columns);

@@ -40,6 +40,14 @@ struct NodeSlices {
   std::size_t slices() const { return first_entry.size() - 1; }
   /// Floats of a field. They must be zero where no node is, as they are in a new AlignedArray.
   std::size_t field_floats() const { return slices() * lanes * record_floats; }
+  /// Floats of a field of slopes: four of every entry.
+  std::size_t slope_floats() const { return first_entry.back() * 4 * lanes; }
+  std::size_t vectors() const { return slices(); }
+  /// The floats of a field that belong to a chunk's nodes, whole vectors; and zeros beside them.
+  NodeChunk floats_of(NodeChunk chunk) const {
+    const std::size_t slice_floats = lanes * record_floats;
+    return {chunk.begin * slice_floats, chunk.end * slice_floats};
+  }
   /// Where the x of a node, by its number in the scene, stands in a field.
   std::size_t offset(std::size_t node) const { return record[node] * record_floats; }
   /// Floats from a component of a node to its next one.

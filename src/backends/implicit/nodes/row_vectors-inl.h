@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "backends/implicit/nodes/node_rows.h"
+#include "backends/implicit/nodes/slope_lanes-inl.h"
 #include "backends/layouts/row_lanes-inl.h"
 #include "backends/layouts/spring_lanes-inl.h"
 
@@ -28,15 +29,32 @@ struct RowConstants {
         pitch(static_cast<std::ptrdiff_t>(nodes.layout.pitch)) {}
 };
 
-/// The springs of a vector of nodes that lead to the neighbours of one place in the stencil.
-template <class Exists>
+/// The springs of a vector of nodes that lead to the neighbours of one place in the stencil, the i-th of
+/// spring_of_node().
+template <std::size_t i, class Exists>
 struct RowSprings {
   const SpringLanes& constants;  ///< divided by the mass of a node
   Exists exists;                 ///< a Mask or EveryLane: where there is such a spring
-  std::ptrdiff_t offset, pitch;
+  std::ptrdiff_t pitch;
+  std::ptrdiff_t there;  ///< offset of the neighbours in a field
+  std::ptrdiff_t slope;  ///< offset of what these springs have in a field of slopes
 
   /// A field at the neighbours.
-  HWY_INLINE Lanes3 load(const float* field) const { return load_components(field + offset, pitch); }
+  HWY_INLINE Lanes3 load(const float* field) const { return load_components(field + there, pitch); }
+
+  /// A spring stands in a field of slopes once, at the node that owns it in grid_stencil.
+  HWY_INLINE void store_slope(float* field, const SlopeLanes& spring) const {
+    if constexpr (i % 2 == 0) {
+      const FloatTag d;
+      hn::Store(spring.n.x.v, d, field + slope);
+      hn::Store(spring.n.y.v, d, field + slope + pitch);
+      hn::Store(spring.n.z.v, d, field + slope + 2 * pitch);
+      hn::Store(spring.across.v, d, field + slope + 3 * pitch);
+    }
+  }
+  HWY_INLINE SlopeLanes load_slope(const float* field) const {
+    return {load_components(field + slope, pitch), Lanes(hn::LoadU(FloatTag(), field + slope + 3 * pitch))};
+  }
 };
 
 /// A vector of nodes in a row. Edge: some of its springs or nodes do not exist, or some nodes are pinned.
@@ -46,12 +64,8 @@ struct RowVector {
   std::conditional_t<edge, EdgeVector, InnerVector> place;
   std::conditional_t<edge, Mask, EveryLane> free;  ///< nodes that move
   std::ptrdiff_t offset;                           ///< of the first node's x in a field
+  std::ptrdiff_t slopes;                           ///< of what belongs to it in a field of slopes
   std::size_t number;                              ///< from 0, in the order of the walk over the whole cloth
-
-  /// Springs of each vector, existing or not.
-  static constexpr std::size_t springs = node_springs;
-  /// The number of its first spring, from 0, in the order of the walk over the whole cloth.
-  HWY_INLINE std::size_t first_spring() const { return number * springs; }
 
   HWY_INLINE Lanes3 load(const float* field) const {
     const FloatTag d;
@@ -75,11 +89,16 @@ struct RowVector {
   HWY_INLINE void for_each_spring(Act&& act) const {
     const auto visit = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
       constexpr GridSpring to = spring_of_node(i);
+      constexpr std::ptrdiff_t node_numbers = NodeRows::Layout::components,
+                               slope_numbers = NodeRows::SlopeLayout::components,
+                               first_slope = i / 2 * NodeRows::spring_slopes;
       const auto exists = place.has(to.rows, to.columns);
-      constexpr auto row_components = static_cast<std::ptrdiff_t>(NodeRows::Layout::components);
-      act(RowSprings<std::remove_const_t<decltype(exists)>>{
-          constants.spring[to.kind], exists, offset + to.rows * row_components * constants.pitch + to.columns,
-          constants.pitch});
+      const std::ptrdiff_t pitch = constants.pitch;
+      // Each spring's slope stands at the end that owns it.
+      const std::ptrdiff_t to_owner = i % 2 == 0 ? 0 : to.rows * slope_numbers * pitch + to.columns;
+      act(RowSprings<i, std::remove_const_t<decltype(exists)>>{
+          constants.spring[to.kind], exists, pitch, offset + to.rows * node_numbers * pitch + to.columns,
+          slopes + first_slope * pitch + to_owner});
     };
     [&]<std::size_t... i>(std::index_sequence<i...>) MSSIM_INLINE_LAMBDA {
       (visit(std::integral_constant<std::size_t, i>{}), ...);
@@ -88,46 +107,72 @@ struct RowVector {
   }
 };
 
+/// The vectors of a cloth, by row and column.
+struct RowWalk {
+  RowConstants constants;
+  std::ptrdiff_t node_row, slope_row, margin;  ///< floats
+  std::size_t rows, columns, row_vectors;
+
+  HWY_INLINE explicit RowWalk(const NodeRows& nodes)
+      : constants(nodes),
+        node_row(static_cast<std::ptrdiff_t>(nodes.layout.row_floats())),
+        slope_row(static_cast<std::ptrdiff_t>(nodes.slope_layout.row_floats())),
+        margin(static_cast<std::ptrdiff_t>(nodes.layout.margin)),
+        rows(nodes.layout.rows),
+        columns(nodes.layout.columns),
+        row_vectors(nodes.row_vectors()) {}
+
+  template <bool edge, class Place, class Free>
+  HWY_INLINE RowVector<edge> vector(std::size_t row, std::size_t column, Place place, Free free) const {
+    const auto r = static_cast<std::ptrdiff_t>(row + NodeRows::Layout::ring);
+    const std::ptrdiff_t c = margin + static_cast<std::ptrdiff_t>(column);
+    return {constants,
+            place,
+            free,
+            r * node_row + c,
+            r * slope_row + c,
+            row * row_vectors + column / lane_count()};
+  }
+  HWY_INLINE RowVector<false> inner_vector(std::size_t row, std::size_t column) const {
+    return vector<false>(row, column, InnerVector{}, EveryLane{});
+  }
+  HWY_INLINE RowVector<true> edge_vector(std::size_t row, std::size_t column, const float* free) const {
+    const auto iota = [](std::size_t first)
+                          HWY_ATTR { return hn::Iota(IndexTag(), static_cast<std::uint32_t>(first)); };
+    return vector<true>(row, column,
+                        EdgeVector{static_cast<std::uint32_t>(row), iota(column),
+                                   static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(columns)},
+                        hn::Ne(hn::Load(FloatTag(), free), hn::Zero(FloatTag())));
+  }
+};
+
 /// Calls act(vector) for all vectors of nodes in a chunk of rows: a RowVector<true> or RowVector<false>.
 template <class Act>
 HWY_INLINE void for_each_vector(const NodeRows& nodes, NodeChunk chunk, Act&& act) {
-  const RowConstants constants(nodes);
+  const RowWalk walk(nodes);
   constexpr std::size_t ring = NodeRows::Layout::ring;
-  const std::size_t lanes = lane_count(), rows = nodes.layout.rows, columns = nodes.layout.columns;
-  const std::size_t row_vectors = (columns + lanes - 1) / lanes;
   for (std::size_t row = chunk.begin; row < chunk.end; ++row) {
-    const auto at_edge = [&](std::size_t begin, std::size_t end) HWY_ATTR {
-      for (std::size_t column = begin; column < end; column += lanes) {
-        const Lanes free = hn::Load(FloatTag(), nodes.free.data() + nodes.plane.offset(row, column));
-        act(RowVector<true>{
-            constants,
-            {static_cast<std::uint32_t>(row), hn::Iota(IndexTag(), static_cast<std::uint32_t>(column)),
-             static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(columns)},
-            hn::Ne(free.v, hn::Zero(FloatTag())),
-            static_cast<std::ptrdiff_t>(nodes.layout.offset(row, column)),
-            row * row_vectors + column / lanes});
-      }
-    };
     std::size_t begin = 0, end = 0;  // of the columns of vectors inside
-    if (row >= ring && row + ring < rows && columns >= nodes.layout.margin + ring && nodes.row_is_free[row]) {
+    if (row >= ring && row + ring < walk.rows && walk.columns >= nodes.layout.margin + ring &&
+        nodes.row_is_free[row]) {
       begin = nodes.layout.margin;
-      end = begin + (columns - ring - begin) / lanes * lanes;
+      end = begin + (walk.columns - ring - begin) / lane_count() * lane_count();
     }
-    at_edge(0, begin);
-    for (std::size_t column = begin; column < end; column += lanes)
-      act(RowVector<false>{constants,
-                           {},
-                           {},
-                           static_cast<std::ptrdiff_t>(nodes.layout.offset(row, column)),
-                           row * row_vectors + column / lanes});
-    at_edge(end, columns);
+    for (std::size_t column = 0; column < walk.columns; column += lane_count())
+      if (column >= begin && column < end)
+        act(walk.inner_vector(row, column));
+      else
+        act(walk.edge_vector(row, column, nodes.free.data() + nodes.plane.offset(row, column)));
   }
 }
 
-/// Springs of all vectors of the cloth.
-inline std::size_t vector_springs(const NodeRows& nodes) {
-  const std::size_t lanes = lane_count();
-  return nodes.layout.rows * ((nodes.layout.columns + lanes - 1) / lanes) * node_springs;
+/// The same as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
+template <class Act>
+HWY_INLINE void for_each_whole_vector(const NodeRows& nodes, NodeChunk chunk, Act&& act) {
+  const RowWalk walk(nodes);
+  for (std::size_t row = chunk.begin; row < chunk.end; ++row)
+    for (std::size_t column = 0; column < walk.columns; column += lane_count())
+      act(walk.inner_vector(row, column));
 }
 
 }  // namespace mssim::HWY_NAMESPACE

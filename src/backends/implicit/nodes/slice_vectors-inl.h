@@ -10,6 +10,7 @@
 #include <bit>
 
 #include "backends/implicit/nodes/node_slices.h"
+#include "backends/implicit/nodes/slope_lanes-inl.h"
 #include "backends/layouts/records-inl.h"
 #include "backends/layouts/spring_lanes-inl.h"
 
@@ -83,13 +84,22 @@ HWY_INLINE void store_slice(float* to, const Lanes3& value) {
 struct SliceSprings {
   SpringLanes constants;  ///< divided by the mass of a node
   Mask exists;            ///< where there is such a spring
-  const float* entry;
+  const float* entry;     ///< in NodeSlices::entries
+  std::ptrdiff_t slope;   ///< offset of what these springs have in a field of slopes
 
   /// A field at the neighbours.
   HWY_INLINE Lanes3 load(const float* field) const {
     return gather_records([&](std::size_t i) MSSIM_INLINE_LAMBDA {
       return field + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * NodeSlices::offset_floats;
     });
+  }
+
+  HWY_INLINE void store_slope(float* field, const SlopeLanes& spring) const {
+    store3(field + slope, spring.n);
+    hn::Store(spring.across.v, FloatTag(), field + slope + 3 * slice_lanes);
+  }
+  HWY_INLINE SlopeLanes load_slope(const float* field) const {
+    return {load3(field + slope), Lanes(hn::Load(FloatTag(), field + slope + 3 * slice_lanes))};
   }
 };
 
@@ -99,15 +109,12 @@ struct SliceVector {
   const float* constants;              ///< of NodeSlices, of this slice
   Mask free;                           ///< nodes that move
   std::ptrdiff_t offset;               ///< of the first record in a field
-  std::size_t entry;                   ///< number of the first one
-  std::size_t number;
+  std::ptrdiff_t slopes;               ///< of what belongs to it in a field of slopes
+  std::size_t number;                  ///< of the slice
 
   HWY_INLINE Lanes constant(NodeSlices::Constant which) const {
     return hn::Load(FloatTag(), constants + which * slice_lanes);
   }
-  /// The number of its first spring, from 0, in the order of the walk over all bodies.
-  HWY_INLINE std::size_t first_spring() const { return entry; }
-
   HWY_INLINE Lanes3 load(const float* field) const { return load_slice(field + offset); }
   HWY_INLINE void store(float* field, const Lanes3& value) const { store_slice(field + offset, value); }
   /// Stores zero where no node moves.
@@ -119,9 +126,11 @@ struct SliceVector {
   template <class Act>
   HWY_INLINE void for_each_spring(Act&& act) const {
     SpringLanes spring(constant(NodeSlices::stiffness), Lanes(0.0F), constant(NodeSlices::damping));
-    for (const float* e = entries; e < entries_end; e += 2 * slice_lanes) {
+    constexpr std::ptrdiff_t slope_floats = 4 * slice_lanes;
+    std::ptrdiff_t slope = slopes;
+    for (const float* e = entries; e < entries_end; e += 2 * slice_lanes, slope += slope_floats) {
       spring.stiffness_rest = hn::Load(FloatTag(), e + slice_lanes);
-      act(SliceSprings{spring, hn::Ge(spring.stiffness_rest.v, hn::Zero(FloatTag())), e});
+      act(SliceSprings{spring, hn::Ge(spring.stiffness_rest.v, hn::Zero(FloatTag())), e, slope});
     }
   }
 };
@@ -139,12 +148,15 @@ HWY_INLINE void for_each_vector(const NodeSlices& nodes, NodeChunk chunk, Act&& 
                     entries + first_entry[slice + 1] * entry_floats, constants,
                     hn::Ne(free.v, hn::Zero(FloatTag())),
                     static_cast<std::ptrdiff_t>(slice * slice_lanes * NodeSlices::record_floats),
-                    first_entry[slice], slice});
+                    static_cast<std::ptrdiff_t>(std::size_t{first_entry[slice]} * 4 * slice_lanes), slice});
   }
 }
 
-/// Springs of all vectors of the bodies.
-inline std::size_t vector_springs(const NodeSlices& nodes) { return nodes.first_entry.back(); }
+/// The same as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
+template <class Act>
+HWY_INLINE void for_each_whole_vector(const NodeSlices& nodes, NodeChunk chunk, Act&& act) {
+  for_each_vector(nodes, chunk, act);
+}
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

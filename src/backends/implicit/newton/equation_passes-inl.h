@@ -1,0 +1,195 @@
+// What each function of newton_method.h's equation does to a chunk of nodes. Compiled once per instruction
+// set, so the guard toggles.
+#if defined(MSSIM_EQUATION_PASSES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MSSIM_EQUATION_PASSES_INL_H_
+#undef MSSIM_EQUATION_PASSES_INL_H_
+#else
+#define MSSIM_EQUATION_PASSES_INL_H_
+#endif
+
+#include "backends/implicit/newton/double_sum-inl.h"
+#include "backends/implicit/newton/vector_equation.h"
+#include "backends/implicit/nodes/row_vectors-inl.h"
+#include "backends/implicit/nodes/slice_vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+/// What the springs of one place do at the end of a step of dt: `along` of kernels/spring_jacobian.h.
+HWY_INLINE Lanes along_spring(const SpringLanes& spring, Lanes dt) {
+  return dt * mul_add(dt, spring.stiffness, spring.damping);
+}
+
+/// The block of P of a vector of nodes, from where it stands in VectorEquation::inverse.
+HWY_INLINE SymmetricBlock<Lanes> load_block(const float* from) {
+  const std::size_t n = lane_count();
+  const auto load = [&](std::size_t i)
+                        MSSIM_INLINE_LAMBDA { return Lanes(hn::Load(FloatTag(), from + i * n)); };
+  return {load(0), load(1), load(2), load(3), load(4), load(5)};
+}
+template <class Free>
+HWY_INLINE void store_block(float* to, Free free, const SymmetricBlock<Lanes>& block) {
+  for (const Lanes& number : {block.xx, block.xy, block.xz, block.yy, block.yz, block.zz}) {
+    hn::Store(keep(free, number).v, FloatTag(), to);
+    to += lane_count();
+  }
+}
+
+/// Calls act(float) with a vector of floats' offset in a field, for all of a chunk's.
+template <class Nodes, class Act>
+HWY_INLINE void for_each_float(const Nodes& nodes, NodeChunk chunk, Act&& act) {
+  const NodeChunk floats = nodes.floats_of(chunk);
+  for (std::size_t i = floats.begin; i < floats.end; i += lane_count()) act(i);
+}
+
+/// e, A and P. Returns e . M^-1 e, undivided. at_state: at x and w = v, and e that of the first Newton step.
+template <bool at_state, class Nodes>
+HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Lanes dt(equation.dt), viscous_damping(equation.nodes.surroundings.viscous_damping),
+      gravity(equation.nodes.surroundings.gravity);
+  const Lanes inertia = mul_add(dt, viscous_damping, Lanes(1.0F));
+  const float *const x = equation.x.data(), *const v = equation.v.data(),
+                     *const w = at_state ? v : equation.w.data();
+  float *const e = equation.e.data(), *const slopes = equation.slopes.data(),
+               *const inverse = equation.inverse.data();
+  DoubleSum norm;
+  for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const NodeLanes node{vector.load(x), vector.load(w)};
+    Lanes3 pull = zero3();
+    SymmetricBlock<Lanes> block{inertia, Lanes(0.0F), Lanes(0.0F), inertia, Lanes(0.0F), inertia};
+    vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
+      const SpringLanes& spring = springs.constants;
+      const Lanes3 u = springs.load(w) - node.v;
+      Lanes3 d = springs.load(x) - node.x;
+      // Not the difference of x + dt w: rounding these would cost most digits of a small stretch.
+      if constexpr (!at_state) d = mul_add(dt, u, d);
+      const Lanes inverse_root = inverse_length(dot(d, d));
+      SlopeLanes slope{inverse_root * d,
+                       spring_across_definite(inverse_root, spring.stiffness, spring.stiffness_rest)};
+      Lanes3 force =
+          spring_pull_at(inverse_root, dot(u, d), spring.stiffness, spring.stiffness_rest, spring.damping) *
+          d;
+      if constexpr (at_state)
+        force = mul_add(dt, spring_jacobian_times(slope.n, spring.stiffness, slope.across, u), force);
+      pull = pull + keep(springs.exists, force);
+      slope.across = dt * (dt * slope.across);
+      slope = keep(springs.exists, slope);
+      springs.store_slope(slopes, slope);
+      const Lanes along = keep(springs.exists, along_spring(spring, dt));
+      block = block_sum(block, spring_jacobian(slope.n.x, slope.n.y, slope.n.z, along, slope.across));
+    });
+    Lanes3 missing = dt * node_acceleration(pull, node.v, viscous_damping, gravity);
+    if constexpr (!at_state) missing = missing - (node.v - vector.load(v));
+    missing = keep(vector.free, missing);
+    vector.store(e, missing);
+    norm.add(vector.weighted(dot(missing, missing)));
+    store_block(inverse + vector.number * 6 * lane_count(), vector.free, block_inverse(block));
+  });
+  return norm.total();
+}
+
+/// s = 0, p = 0, z = P e. Returns e . z.
+template <class Nodes>
+HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  float *const s = equation.s.data(), *const p = equation.p.data(), *const z = equation.z.data();
+  const float *const e = equation.e.data(), *const inverse = equation.inverse.data();
+  DoubleSum sum;
+  for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    hn::Store(hn::Zero(FloatTag()), FloatTag(), s + i);
+    hn::Store(hn::Zero(FloatTag()), FloatTag(), p + i);
+  });
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 here = vector.load(e),
+                 solved = block_times(load_block(inverse + vector.number * 6 * lane_count()), here);
+    vector.store(z, solved);
+    sum.add(vector.weighted(dot(here, solved)));
+  });
+  return sum.total();
+}
+
+/// p = z + factor p.
+template <class Nodes>
+HWY_NOINLINE void turn_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk, float factor) {
+  const FloatTag d;
+  float* const p = equation.p.data();
+  const float* const z = equation.z.data();
+  const auto f = hn::Set(d, factor);
+  for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    hn::Store(hn::MulAdd(f, hn::Load(d, p + i), hn::Load(d, z + i)), d, p + i);
+  });
+}
+
+/// q = A p. Returns p . q. What it writes for nodes that do not move, or do not exist, is of no use.
+template <class Nodes>
+HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Lanes dt(equation.dt);
+  const Lanes inertia = mul_add(dt, Lanes(equation.nodes.surroundings.viscous_damping), Lanes(1.0F));
+  float* const q = equation.q.data();
+  const float *const p = equation.p.data(), *const slopes = equation.slopes.data();
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 here = vector.load(p);
+    Lanes3 product = inertia * here;
+    vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
+      const SlopeLanes slope = springs.load_slope(slopes);
+      product = product - spring_jacobian_times(slope.n, along_spring(springs.constants, dt), slope.across,
+                                                springs.load(p) - here);
+    });
+    vector.store(q, product);
+    sum.add(vector.weighted(dot(here, product)));
+  });
+  return sum.total();
+}
+
+/// s += factor p, e -= factor q, z = P e. Returns e . z.
+template <class Nodes>
+HWY_NOINLINE double advance_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk, float factor) {
+  float *const s = equation.s.data(), *const e = equation.e.data(), *const z = equation.z.data();
+  const float *const p = equation.p.data(), *const q = equation.q.data(),
+                     *const inverse = equation.inverse.data();
+  const Lanes forward(factor), back(-factor);
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    vector.store(s, mul_add(forward, vector.load(p), vector.load(s)));
+    const Lanes3 left = mul_add(back, vector.load(q), vector.load(e)),
+                 solved = block_times(load_block(inverse + vector.number * 6 * lane_count()), left);
+    vector.store(e, left);
+    vector.store(z, solved);
+    sum.add(vector.weighted(dot(left, solved)));
+  });
+  return sum.total();
+}
+
+/// to = from + factor step, which may be null: then to = from.
+template <class Nodes>
+HWY_NOINLINE void add_chunk(const Nodes& nodes, NodeChunk chunk, float* to, const float* from, float factor,
+                            const float* step) {
+  const FloatTag d;
+  const auto f = hn::Set(d, factor);
+  for_each_float(nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    const auto value = hn::Load(d, from + i);
+    hn::Store(step == nullptr ? value : hn::MulAdd(f, hn::Load(d, step + i), value), d, to + i);
+  });
+}
+
+/// v = w, x += dt w, and the floor acts.
+template <class Nodes>
+HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Surroundings surroundings = equation.nodes.surroundings;
+  const Lanes dt(equation.dt), height(surroundings.floor_height), restitution(surroundings.restitution),
+      friction(surroundings.friction);
+  float *const x = equation.x.data(), *const v = equation.v.data();
+  const float* const w = equation.w.data();
+  for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    Lanes3 velocity = vector.load(w), position = mul_add(dt, velocity, vector.load(x));
+    touch_floor(both(vector.free, hn::Lt(position.y.v, height.v)), height, restitution, friction, position,
+                velocity);
+    vector.store(x, position);
+    vector.store(v, velocity);
+  });
+}
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "backends/implicit/newton/newton.h"
+#include "backends/implicit/newton/step_newton.h"
+
+namespace mssim {
+
+/// make_openmp_newton() with the vector code of one instruction set.
+std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& options, const NewtonKernel& kernel);
+
+}  // namespace mssim
