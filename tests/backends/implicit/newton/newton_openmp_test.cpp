@@ -1,0 +1,231 @@
+// implicit-euler and newton-euler with vectors and threads, for every instruction set of this processor.
+#include "backends/implicit/newton/newton_openmp.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "backends/openmp/openmp.h"
+#include "backends/reference.h"
+#include "bench/verification/verification.h"
+#include "integrators/all_integrators.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "tests/support/backend_step.h"
+#include "tests/support/cloth_system.h"
+#include "tests/support/largest_distance.h"
+#include "tests/support/scene_files.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+/// Cloths and bodies where layouts go wrong: fewer columns than lanes, single rows and columns, several rows
+/// a chunk; less than a slice, bodies of unlike nodes and materials.
+std::vector<System> implicit_systems() {
+  std::vector<System> systems;
+  for (const auto& [rows, columns] :
+       {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {2U, 2U}, {1U, 7U}, {7U, 1U}})
+    systems.push_back(cloth_system(rows, columns));
+  for (System& system : std::vector<System>{solid_block(2, 2, 2), solid_block(3, 3, 7), solid_block(9, 9, 9),
+                                            two_solid_blocks()})
+    systems.push_back(std::move(system));
+  return systems;
+}
+
+class EachNewtonKernelAndIntegrator
+    : public testing::TestWithParam<std::tuple<std::size_t, std::string_view>> {
+ protected:
+  const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
+  std::unique_ptr<Backend> make(const System& system, int threads = 2, double dt_s = backend_dt_s) const {
+    return make_openmp_newton(system, integrator(), dt_s, {threads, ""},
+                              newton_kernels()[std::get<0>(GetParam())]);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNewtonKernelAndIntegrator,
+                         testing::Combine(testing::Range(std::size_t{0}, newton_kernels().size()),
+                                          testing::Values("implicit-euler", "newton-euler")),
+                         [](const auto& test) {
+                           std::string name =
+                               std::string(newton_kernels()[std::get<0>(test.param)].instruction_set) + "__" +
+                               std::string(std::get<1>(test.param));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST_P(EachNewtonKernelAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShape) {
+  for (const System& system : implicit_systems()) {
+    const Reference reference = run_reference(system, integrator(), backend_dt_s);
+    ASSERT_FALSE(reference.failure) << *reference.failure;
+    ASSERT_EQ(reference.steps, verification_steps);
+    const Verification verification = verify(*make(system), system, reference, backend_dt_s);
+    EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
+  }
+}
+
+TEST_P(EachNewtonKernelAndIntegrator, AgreesWithTheReferenceWithLongSteps) {
+  // Springs, not the inertia of nodes, rule such a step's matrix: conjugate gradients need many iterations.
+  constexpr double long_dt_s = 50 * backend_dt_s;
+  for (System system : {cloth_system(37, 23), solid_block(5, 4, 7)}) {
+    system.solver.tolerance = 1e-6;
+    const auto reference = make_reference(system, integrator(), long_dt_s);
+    const auto serial = make_serial_newton(system, integrator(), long_dt_s);
+    const auto simulation = make(system, 2, long_dt_s);
+    for (Backend* backend : {reference.get(), serial.get(), simulation.get()}) backend->step(2);
+    const std::vector<Vec3d> expected = reference->state().position;
+    EXPECT_GT(largest_distance(expected, system.start.position), 0.002) << "it has moved";
+    // Steps this long amplify roundings, which bend the cloth. A wrong matrix solves nothing to 1e-6.
+    const double usual = largest_distance(serial->state().position, expected);
+    EXPECT_GT(usual, 0);
+    EXPECT_LE(largest_distance(simulation->state().position, expected), 4 * usual + 1e-7) << system.nodes();
+    EXPECT_EQ(simulation->note(), "");
+  }
+}
+
+TEST_P(EachNewtonKernelAndIntegrator, GivesTheSameBitsAtEveryNumberOfThreads) {
+  for (System& system : implicit_systems()) {
+    system.floor.height = system.start.position[0].y - 0.001;  // it is met on the way
+    const auto steps_of = [&](int threads) {
+      const auto simulation = make(system, threads, 10 * backend_dt_s);
+      simulation->step(9);
+      simulation->step(4);
+      return simulation->state();
+    };
+    const State expected = steps_of(1);
+    for (const int threads : {2, 3, 7}) {
+      const State state = steps_of(threads);
+      EXPECT_EQ(state.position, expected.position) << threads << " threads, " << system.nodes() << " nodes";
+      EXPECT_EQ(state.velocity, expected.velocity) << threads << " threads, " << system.nodes() << " nodes";
+    }
+  }
+}
+
+TEST_P(EachNewtonKernelAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
+  for (const System& system : {cloth_system(12, 19), solid_block(3, 4, 5)}) {
+    const auto simulation = make(system);
+    simulation->step(5);
+    const State middle = simulation->state();
+    simulation->step(7);
+    const State once = simulation->state();
+    simulation->set_state(system.start);
+    EXPECT_EQ(simulation->state().position, system.start.position);
+    EXPECT_EQ(simulation->state().velocity, system.start.velocity);
+    simulation->step(3);
+    simulation->set_state(middle);
+    simulation->step(7);
+    EXPECT_EQ(simulation->state().position, once.position);
+    EXPECT_EQ(simulation->state().velocity, once.velocity);
+  }
+}
+
+TEST_P(EachNewtonKernelAndIntegrator, HoldsPinsExactlyEvenBelowTheFloor) {
+  System cloth = cloth_system(20, 23), block = solid_block(5, 4, 7);
+  cloth.pins = {0, 40, 247, 300, 459};
+  block.pins = {0, 7, 63, 64, 139};
+  for (System* system : {&cloth, &block}) {
+    for (const std::uint32_t pin : system->pins) system->start.velocity[pin] = {};
+    system->floor.height = system->start.position[system->pins.front()].y + 0.001;
+    const auto simulation = make(*system);
+    simulation->step(20);
+    const State state = simulation->state();
+    for (const std::uint32_t pin : system->pins) {
+      EXPECT_EQ(state.position[pin], system->start.position[pin]) << pin;
+      EXPECT_EQ(state.velocity[pin], Vec3d{}) << pin;
+    }
+    EXPECT_NE(state.position[1], system->start.position[1]) << "the others move";
+  }
+}
+
+TEST_P(EachNewtonKernelAndIntegrator, TreatsTheFloorLikeTheReference) {
+  // A sheet that hits the floor flat, sliding: its nodes land in the same step in any precision.
+  System system = build_system(sheet_spec(20, 17, 0.00101));
+  for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
+  const auto reference = make_reference(system, integrator(), backend_dt_s);
+  const auto simulation = make(system);
+  reference->step(15);
+  simulation->step(15);
+  const State expected = reference->state(), state = simulation->state();
+  EXPECT_GT(expected.velocity[0].y, 0.2) << "it has bounced";
+  EXPECT_LT(expected.velocity[0].x, 0.45) << "friction has slowed it";
+  EXPECT_LE(largest_distance(state.velocity, expected.velocity), 2e-3);
+  EXPECT_LE(largest_distance(state.position, expected.position), 1e-6);
+}
+
+TEST(NewtonOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
+  const std::vector<NewtonKernel> kernels = newton_kernels();
+  const System system = cloth_system(5, 6);
+  const auto device = [&](Roots roots) {
+    return make_openmp_newton(system, *find_integrator("implicit-euler"), backend_dt_s, {1, "", {}, roots})
+        ->device();
+  };
+  EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
+  EXPECT_EQ(device(Roots::exact),
+            std::string("cpu ") + std::ranges::find_if(kernels, &NewtonKernel::exact_roots)->instruction_set);
+}
+
+/// The fastest of seven samples of `steps` steps, s a step. prepare() comes before each.
+double fastest_step(const std::function<void()>& prepare, const std::function<void(int)>& step, int steps) {
+  double fastest = HUGE_VAL;
+  for (int sample = 0; sample < 7; ++sample) {
+    prepare();
+    const auto begin = std::chrono::steady_clock::now();
+    step(steps);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    fastest = std::min(fastest, time.count() / steps);
+  }
+  return fastest;
+}
+
+/// Prints what a step and one of its products A p cost beside a step of semi-implicit Euler.
+template <class Nodes>
+void print_costs(const System& system, double dt_s, int threads, const auto& nodes_of, auto step_of) {
+  const NewtonKernel kernel = newton_kernels().front();
+  const double plain_s = [&] {
+    const auto simulation = make_openmp(system, integrators[0], 5e-5, {threads, ""});
+    return fastest_step([&] { simulation->set_state(system.start); },
+                        [&](int steps) { simulation->step(steps); },
+                        static_cast<int>(2'000'000 / system.nodes()) + 2);
+  }();
+  for (const std::string_view name : {"implicit-euler", "newton-euler"}) {
+    VectorEquation<Nodes> equation(system, nodes_of(kernel.lanes), *find_integrator(name), dt_s, kernel.lanes,
+                                   static_cast<std::size_t>(threads));
+    const double step_s =
+        fastest_step([&] { equation.set_state(system.start); },
+                     [&](int steps) { (kernel.*step_of)(equation, steps); }, system.nodes() < 10000 ? 10 : 2);
+    const SolverWork& work = equation.work;
+    const auto steps = static_cast<double>(work.steps);
+    const double products = static_cast<double>(work.products) / steps;
+    std::cout << system.nodes() << " nodes, dt " << dt_s << " s, " << threads << " threads, " << name << ": "
+              << 1e3 * step_s << " ms, " << static_cast<double>(work.newton_iterations) / steps
+              << " systems, " << products << " products, " << 1e6 * step_s / products << " us a product, "
+              << step_s / products / plain_s << " of a semi-euler step of " << 1e6 * plain_s << " us "
+              << note_of(work) << "\n";
+  }
+}
+
+TEST(NewtonOpenMp, DISABLED_PrintsWhatItCosts) {
+  for (const std::string_view scene : {"cloth2500", "cloth40k", "cloth350k", "bodies38233"}) {
+    const System system = build_system(load_scene(source_file("scenes/" + std::string(scene) + ".json")));
+    for (const double dt_s : {5e-5, 50 * 5e-5})
+      for (const int threads : {1, 2})
+        if (const auto* grid = std::get_if<GridPatch>(&system.topology))
+          print_costs<NodeRows>(
+              system, dt_s, threads, [&](std::size_t lanes) { return NodeRows(system, *grid, lanes); },
+              &NewtonKernel::step_cloth);
+        else
+          print_costs<NodeSlices>(
+              system, dt_s, threads, [&](std::size_t lanes) { return NodeSlices(system, lanes); },
+              &NewtonKernel::step_bodies);
+  }
+}
+
+}  // namespace
+}  // namespace mssim
