@@ -79,7 +79,7 @@ class TeamEquation {
     barrier_.wait();
     double total = 0;
     for (const double sum : sums) total += sum;
-    return total;
+    return shared_.nodes.sum_factor() * total;
   }
 
   VectorEquation<Nodes>& shared_;
@@ -99,7 +99,7 @@ void take_steps(VectorEquation<Nodes>& shared, int count) {
     barrier.emplace(threads);
     TeamEquation<Nodes> equation(shared, thread, threads, *barrier);
     SolverWork work;  // the same for all
-    for (int step = 0; step < count; ++step) take_step(equation, *shared.integrator, shared.tolerance, work);
+    for (int step = 0; step < count; ++step) take_step(equation, *shared.integrator, shared.goal, work);
     if (thread == 0) shared.work += work;
   }
 }

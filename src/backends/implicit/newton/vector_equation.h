@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "backends/implicit/newton/newton_method.h"
+#include "backends/implicit/newton/solver_goal.h"
 #include "backends/implicit/nodes/node_fields.h"
 #include "backends/implicit/nodes/node_rows.h"
 #include "backends/implicit/nodes/node_slices.h"
@@ -22,7 +23,7 @@ struct VectorEquation {
   Nodes nodes;
   float dt;  ///< s
   const Integrator* integrator;
-  double tolerance;  ///< SolverSettings::tolerance
+  SolverGoal goal;
   std::size_t threads;
   SolverWork work;
   AlignedArray x;                 ///< field, m
@@ -39,7 +40,7 @@ struct VectorEquation {
       : nodes(std::move(laid_out)),
         dt(static_cast<float>(dt_s)),
         integrator(&method),
-        tolerance(system.solver.tolerance),
+        goal(solver_goal<float>(system, dt_s, system.solver.tolerance)),
         threads(std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, nodes.chunks.size()))),
         slopes(nodes.slope_floats()),
         inverse(nodes.vectors() * 6 * lanes) {

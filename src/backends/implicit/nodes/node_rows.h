@@ -40,6 +40,8 @@ struct NodeRows {
 
   /// Floats of a field. They must be zero where no node is, as they are in a new AlignedArray.
   std::size_t field_floats() const { return layout.floats(); }
+  /// What a sum over nodes of RowVector::weighted() is to be multiplied with, so that weights are masses.
+  double sum_factor() const { return mass; }
   /// Floats of a field of slopes.
   std::size_t slope_floats() const { return slope_layout.floats(); }
   std::size_t row_vectors() const { return (layout.columns + layout.lanes - 1) / layout.lanes; }

@@ -40,6 +40,8 @@ struct NodeSlices {
   std::size_t slices() const { return first_entry.size() - 1; }
   /// Floats of a field. They must be zero where no node is, as they are in a new AlignedArray.
   std::size_t field_floats() const { return slices() * lanes * record_floats; }
+  /// What a sum over nodes of SliceVector::weighted() is to be multiplied with, so that weights are masses.
+  static constexpr double sum_factor() { return 1; }
   /// Floats of a field of slopes: four of every entry.
   std::size_t slope_floats() const { return first_entry.back() * 4 * lanes; }
   std::size_t vectors() const { return slices(); }
