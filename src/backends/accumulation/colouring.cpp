@@ -1,6 +1,6 @@
 #include "backends/accumulation/list_method.h"
 #include "backends/accumulation/methods.h"
-#include "backends/accumulation/spring_colouring.h"
+#include "backends/layouts/spring_colouring.h"
 
 namespace mssim {
 namespace {

@@ -31,12 +31,6 @@ double position_tolerance(const System& system, const Integrator& integrator, in
   std::size_t roundings = 0;
   for (const Stage& stage : integrator.stages) roundings += std::size_t{writes(stage, Slot::x_next)};
   if (is_implicit(integrator)) roundings = 1;
-  if (integrator.solver == Solver::constraints) {
-    // A small step moves a node by its velocity and for each of its springs.
-    const double springs_a_node =
-        2 * static_cast<double>(system.springs.size()) / static_cast<double>(system.nodes());
-    roundings = system.solver.substeps * (1 + static_cast<std::size_t>(std::ceil(springs_a_node)));
-  }
   return 4 * std::sqrt(static_cast<double>(steps) * static_cast<double>(roundings)) * unit_roundoff *
          largest_coordinate(system.start) / mean_rest_length(system);
 }

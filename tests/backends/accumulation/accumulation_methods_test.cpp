@@ -8,12 +8,10 @@
 #include <array>
 #include <initializer_list>
 #include <memory>
-#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "backends/accumulation/spring_colouring.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
 #include "tests/support/backend_step.h"
@@ -130,48 +128,6 @@ TEST(RaceWays, BeginWithTheSerialBaseAndHaveNamesOfTheirOwn) {
   EXPECT_EQ(accumulation_methods().front().backend.name, "serial");
   EXPECT_EQ(accumulation_methods().back().backend.name, "openmp");
 }
-
-/// A spring as something that can be counted.
-auto key(const Spring& spring) {
-  return std::tuple(spring.first, spring.second, spring.kind, spring.rest_length);
-}
-
-/// Expects every spring once, and no node twice in a colour.
-void expect_coloured(const std::vector<Spring>& list, std::size_t nodes) {
-  const SpringColouring colouring = colour_springs(list, nodes);
-  std::multiset<decltype(key(Spring{}))> expected, found;
-  for (const Spring& spring : list) expected.insert(key(spring));
-  std::vector<std::uint32_t> degree(nodes, 0);
-  for (std::size_t colour = 0; colour < colouring.colours(); ++colour) {
-    EXPECT_FALSE(colouring.of_colour(colour).empty()) << "colour " << colour;
-    std::set<std::uint32_t> taken;
-    for (const Spring& spring : colouring.of_colour(colour)) {
-      EXPECT_TRUE(taken.insert(spring.first).second) << "node " << spring.first << ", colour " << colour;
-      EXPECT_TRUE(taken.insert(spring.second).second) << "node " << spring.second << ", colour " << colour;
-      ++degree[spring.first];
-      ++degree[spring.second];
-      found.insert(key(spring));
-    }
-  }
-  EXPECT_EQ(found, expected);
-  const std::size_t largest = *std::ranges::max_element(degree);
-  EXPECT_GE(colouring.colours(), largest);
-  EXPECT_LE(colouring.colours(), 2 * largest - 1);
-}
-
-TEST(SpringColouring, LetsNoTwoSpringsOfAColourShareANode) {
-  for (const System& system : {cloth_system(20, 13), cloth_system(2, 2), solid_block(5, 6, 7)})
-    expect_coloured(system.springs, system.nodes());
-}
-
-TEST(SpringColouring, HasColoursEnoughForANodeOfManySprings) {
-  std::vector<Spring> star;  // needs a colour for each spring, more than a machine word has bits
-  for (std::uint32_t node = 1; node <= 200; ++node) star.push_back({0, node, 1, 0});
-  expect_coloured(star, 201);
-  EXPECT_EQ(colour_springs(star, 201).colours(), 200U);
-}
-
-TEST(SpringColouring, OfNoSpringsHasNoColours) { EXPECT_EQ(colour_springs({}, 5).colours(), 0U); }
 
 }  // namespace
 }  // namespace mssim

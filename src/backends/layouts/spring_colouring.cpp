@@ -1,4 +1,4 @@
-#include "backends/accumulation/spring_colouring.h"
+#include "backends/layouts/spring_colouring.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,0 +1,39 @@
+#include "backends/implicit/constraints/spring_order.h"
+
+#include <algorithm>
+#include <array>
+#include <variant>
+
+namespace mssim {
+namespace {
+
+ClothColour colour_of(const GridPatch& grid, const Spring& spring) {
+  const auto [first, second] = std::minmax(spring.first, spring.second);
+  const std::uint32_t row = first / grid.columns, column = first % grid.columns;
+  const bool odd_row = row % 2 != 0;
+  if (second / grid.columns == row) {  // to the right
+    if (spring.kind == bending) return column % 4 < 2 ? bending_from_columns_01 : bending_from_columns_23;
+    return column % 2 == 0 ? structural_from_even_columns : structural_from_odd_columns;
+  }
+  if (spring.kind == bending) return row % 4 < 2 ? bending_below_rows_01 : bending_below_rows_23;
+  if (spring.kind == structural) return odd_row ? structural_below_odd_rows : structural_below_even_rows;
+  if (second % grid.columns > column) return odd_row ? falling_below_odd_rows : falling_below_even_rows;
+  return odd_row ? rising_below_odd_rows : rising_below_even_rows;
+}
+
+}  // namespace
+
+SpringColouring spring_order(const System& system) {
+  const auto* grid = std::get_if<GridPatch>(&system.topology);
+  if (grid == nullptr) return colour_springs(system.springs, system.nodes());
+  std::array<std::vector<Spring>, cloth_colours> springs;
+  for (const Spring& spring : system.springs) springs[colour_of(*grid, spring)].push_back(spring);
+  SpringColouring order{{}, {0}};
+  for (const std::vector<Spring>& colour : springs) {
+    order.springs.insert(order.springs.end(), colour.begin(), colour.end());
+    order.first.push_back(order.springs.size());
+  }
+  return order;
+}
+
+}  // namespace mssim
