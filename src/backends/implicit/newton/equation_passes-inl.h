@@ -20,6 +20,13 @@ HWY_INLINE Lanes along_spring(const SpringLanes& spring, Lanes dt) {
   return dt * mul_add(dt, spring.stiffness, spring.damping);
 }
 
+/// What springs whose ends are d apart (m) add to A at the end of a step of dt.
+HWY_INLINE SlopeLanes slope_of(const SpringLanes& spring, const Lanes3& d, Lanes dt) {
+  const Lanes inverse_root = inverse_length(dot(d, d));
+  return {inverse_root * d,
+          dt * (dt * spring_across_definite(inverse_root, spring.stiffness, spring.stiffness_rest))};
+}
+
 /// The block of P of a vector of nodes, from where it stands in VectorEquation::inverse.
 HWY_INLINE SymmetricBlock<Lanes> load_block(const float* from) {
   const std::size_t n = lane_count();
@@ -51,7 +58,7 @@ HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk c
   const float *const x = equation.x.data(), *const v = equation.v.data(),
                      *const w = at_state ? v : equation.w.data();
   float *const e = equation.e.data(), *const slopes = equation.slopes.data(),
-               *const inverse = equation.inverse.data();
+               *const inverse = equation.inverse.data(), *const y = equation.y.data();
   DoubleSum norm;
   for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
     const NodeLanes node{vector.load(x), vector.load(w)};
@@ -74,7 +81,7 @@ HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk c
       pull = pull + keep(springs.exists, force);
       slope.across = dt * (dt * slope.across);
       slope = keep(springs.exists, slope);
-      springs.store_slope(slopes, slope);
+      if (slopes != nullptr) springs.store_slope(slopes, slope);
       const Lanes along = keep(springs.exists, along_spring(spring, dt));
       block = block_sum(block, spring_jacobian(slope.n.x, slope.n.y, slope.n.z, along, slope.across));
     });
@@ -82,6 +89,7 @@ HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk c
     if constexpr (!at_state) missing = missing - (node.v - vector.load(v));
     missing = keep(vector.free, missing);
     vector.store(e, missing);
+    if (y != nullptr) vector.store(y, at_state ? node.x : mul_add(dt, node.v, node.x));
     norm.add(vector.weighted(dot(missing, missing)));
     store_block(inverse + vector.number * 6 * lane_count(), vector.free, block_inverse(block));
   });
@@ -135,6 +143,30 @@ HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, NodeChunk ch
       product = product - spring_jacobian_times(slope.n, along_spring(springs.constants, dt), slope.across,
                                                 springs.load(p) - here);
     });
+    vector.store(q, product);
+    sum.add(vector.weighted(dot(here, product)));
+  });
+  return sum.total();
+}
+
+/// The same where slopes are not kept: found again from the positions of the linearisation.
+template <class Nodes>
+HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Lanes dt(equation.dt);
+  const Lanes inertia = mul_add(dt, Lanes(equation.nodes.surroundings.viscous_damping), Lanes(1.0F));
+  float* const q = equation.q.data();
+  const float *const p = equation.p.data(), *const y = equation.y.data();
+  DoubleSum sum;
+  for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 here = vector.load(p), place = vector.load(y);
+    Lanes3 product = inertia * here;
+    vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
+      const SpringLanes& spring = springs.constants;
+      const SlopeLanes slope = slope_of(spring, springs.load(y) - place, dt);
+      product = product - keep(springs.exists, spring_jacobian_times(slope.n, along_spring(spring, dt),
+                                                                     slope.across, springs.load(p) - here));
+    });
+    product = keep(vector.free, product);
     vector.store(q, product);
     sum.add(vector.weighted(dot(here, product)));
   });

@@ -47,7 +47,9 @@ class TeamEquation {
   double turn(double factor) {
     for_own_chunks([&](NodeChunk chunk) HWY_ATTR { turn_chunk(shared_, chunk, static_cast<float>(factor)); });
     barrier_.wait();
-    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return multiply_chunk(shared_, chunk); });
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR {
+      return shared_.keeps_slopes() ? multiply_chunk(shared_, chunk) : multiply_chunk_anew(shared_, chunk);
+    });
   }
   double advance(double factor) {
     return sum_over_chunks(

@@ -45,9 +45,10 @@ class EachNewtonKernelAndIntegrator
     : public testing::TestWithParam<std::tuple<std::size_t, std::string_view>> {
  protected:
   const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
-  std::unique_ptr<Backend> make(const System& system, int threads = 2, double dt_s = backend_dt_s) const {
+  std::unique_ptr<Backend> make(const System& system, int threads = 2, double dt_s = backend_dt_s,
+                                std::size_t most_kept = most_slope_bytes) const {
     return make_openmp_newton(system, integrator(), dt_s, {threads, ""},
-                              newton_kernels()[std::get<0>(GetParam())]);
+                              newton_kernels()[std::get<0>(GetParam())], most_kept);
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNewtonKernelAndIntegrator,
@@ -66,8 +67,12 @@ TEST_P(EachNewtonKernelAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShape)
     const Reference reference = run_reference(system, integrator(), backend_dt_s);
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
-    const Verification verification = verify(*make(system), system, reference, backend_dt_s);
-    EXPECT_FALSE(verification.failure) << system.nodes() << " nodes: " << verification.failure.value_or("");
+    for (const std::size_t most_kept : {most_slope_bytes, std::size_t{0}}) {
+      const auto simulation = make(system, 2, backend_dt_s, most_kept);
+      const Verification verification = verify(*simulation, system, reference, backend_dt_s);
+      EXPECT_FALSE(verification.failure) << system.nodes() << " nodes, " << most_kept
+                                         << " bytes of slopes: " << verification.failure.value_or("");
+    }
   }
 }
 
@@ -93,17 +98,19 @@ TEST_P(EachNewtonKernelAndIntegrator, AgreesWithTheReferenceWithLongSteps) {
 TEST_P(EachNewtonKernelAndIntegrator, GivesTheSameBitsAtEveryNumberOfThreads) {
   for (System& system : implicit_systems()) {
     system.floor.height = system.start.position[0].y - 0.001;  // it is met on the way
-    const auto steps_of = [&](int threads) {
-      const auto simulation = make(system, threads, 10 * backend_dt_s);
+    const auto steps_of = [&](int threads, std::size_t most_kept) {
+      const auto simulation = make(system, threads, 10 * backend_dt_s, most_kept);
       simulation->step(9);
       simulation->step(4);
       return simulation->state();
     };
-    const State expected = steps_of(1);
-    for (const int threads : {2, 3, 7}) {
-      const State state = steps_of(threads);
-      EXPECT_EQ(state.position, expected.position) << threads << " threads, " << system.nodes() << " nodes";
-      EXPECT_EQ(state.velocity, expected.velocity) << threads << " threads, " << system.nodes() << " nodes";
+    for (const std::size_t most_kept : {most_slope_bytes, std::size_t{0}}) {
+      const State expected = steps_of(1, most_kept);
+      for (const int threads : {2, 3, 7}) {
+        const State state = steps_of(threads, most_kept);
+        EXPECT_EQ(state.position, expected.position) << threads << " threads, " << system.nodes() << " nodes";
+        EXPECT_EQ(state.velocity, expected.velocity) << threads << " threads, " << system.nodes() << " nodes";
+      }
     }
   }
 }
