@@ -8,6 +8,7 @@
 #include "backends/interface/surroundings.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/node_records.h"
+#include "backends/threads/team_gain.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -56,6 +57,7 @@ struct SpringBatches {
   float kept = 0;  ///< part of the velocity that the air leaves in a small step
   Surroundings surroundings{};
   std::size_t substeps = 1;  ///< in a step
+  TeamGain team_gain;        ///< of the threads that share parts
 
   SpringBatches(const System& system, double dt_s, std::size_t lane_count, std::size_t thread_count);
   void set_state(const State& state);

@@ -21,7 +21,9 @@ namespace mssim::HWY_NAMESPACE {
 
 constexpr std::size_t vector_springs = hn::MaxLanes(FloatTag());
 
-/// Writes the velocities of the nodes whose records lie at record(0), record(1) ..., one a lane.
+/// Writes the velocities of the nodes whose records lie at record(0), record(1) ..., one a lane, in stores of
+/// blocks of four floats. Scatter instructions, one for each component, made a step of 38,233 and of 3,858
+/// nodes take 1.8 to 2 times as long on Zen 4.
 #if HWY_TARGET == HWY_SCALAR
 template <class Record>
 HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
@@ -117,22 +119,55 @@ HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& betwee
   }
 }
 
-/// A thread's share of `count` small steps of a part. `meet` lets it wait for the others.
-template <class Meet>
-HWY_INLINE void step_part(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t count,
-                          std::size_t thread, std::size_t threads, Meet meet) {
-  const std::size_t vectors = part.end - part.begin;
-  const std::size_t begin = part.begin + vectors * thread / threads;
-  const std::size_t end = part.begin + vectors * (thread + 1) / threads;
-  for (std::size_t small = 0; small <= count; ++small) {
-    move_nodes(bodies, {small > 0, small > 0 && small % bodies.substeps == 0, small < count}, begin, end);
-    meet();
-    if (small == count) return;
-    for (std::size_t colour = part.first_colour; colour < part.end_colour; ++colour) {
-      project_colour(bodies, bodies.colours[colour], thread, threads);
-      meet();
-    }
+/// How a thread meets those that share a part with it: not at all.
+struct Alone {
+  HWY_INLINE void meet() const {}
+  template <class TakeRound>
+  HWY_INLINE std::size_t end_round(TakeRound&& /*take_round*/) const {
+    return 0;
   }
+};
+
+/// At a barrier. One of them may take small steps for all.
+struct Together {
+  SpinBarrier& barrier;
+  HWY_INLINE void meet() const { barrier.wait(); }
+  template <class TakeRound>
+  HWY_INLINE std::size_t end_round(TakeRound&& take_round) const {
+    return barrier.end_round(take_round);
+  }
+};
+
+/// A thread's share of a small step of a part, up to the last colour; what moves its nodes stands before it.
+template <class Team>
+HWY_INLINE void step_colours(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t small,
+                             std::size_t thread, std::size_t threads, const Team& team) {
+  const std::size_t vectors = part.end - part.begin;
+  move_nodes(bodies, {small > 0, small > 0 && small % bodies.substeps == 0, true},
+             part.begin + vectors * thread / threads, part.begin + vectors * (thread + 1) / threads);
+  for (std::size_t colour = part.first_colour; colour < part.end_colour; ++colour) {
+    team.meet();
+    project_colour(bodies, bodies.colours[colour], thread, threads);
+  }
+}
+
+/// A thread's share of `count` small steps of a part.
+template <class Team>
+HWY_INLINE void step_part(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t count,
+                          std::size_t thread, std::size_t threads, const Team& team) {
+  if (count == 0) return;
+  for (std::size_t small = 0; small < count; ++small) {
+    step_colours(bodies, part, small, thread, threads, team);
+    small += team.end_round([&](std::size_t taken) HWY_ATTR {
+      const std::size_t next = small + 1 + taken;
+      if (next >= count) return false;
+      step_colours(bodies, part, next, 0, 1, Alone());
+      return true;
+    });
+  }
+  const std::size_t vectors = part.end - part.begin;
+  move_nodes(bodies, {true, true, false}, part.begin + vectors * thread / threads,
+             part.begin + vectors * (thread + 1) / threads);
 }
 
 /// Takes `count` steps.
@@ -141,17 +176,17 @@ void step_bodies(SpringBatches& bodies, int count) {
   // for any number of threads.
   const std::size_t small_steps = static_cast<std::size_t>(count) * bodies.substeps;
   std::optional<SpinBarrier> barrier;
-#pragma omp parallel num_threads(static_cast <int>(bodies.own_parts.size()))
+#pragma omp parallel num_threads(static_cast <int>(bodies.threads))
   {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
 #pragma omp single
-    barrier.emplace(threads);
+    barrier.emplace(threads, bodies.team_gain);
     for (const std::size_t part : bodies.shared_parts)
-      step_part(bodies, bodies.parts[part], small_steps, thread, threads, [&] { barrier->wait(); });
+      step_part(bodies, bodies.parts[part], small_steps, thread, threads, Together{*barrier});
     for (std::size_t owner = thread; owner < bodies.own_parts.size(); owner += threads)
       for (const std::size_t part : bodies.own_parts[owner])
-        step_part(bodies, bodies.parts[part], small_steps, 0, 1, [] {});
+        step_part(bodies, bodies.parts[part], small_steps, 0, 1, Alone());
   }
 }
 

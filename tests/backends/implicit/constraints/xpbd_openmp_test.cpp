@@ -2,7 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "backends/implicit/constraints/constraints.h"
 #include "backends/implicit/constraints/constraints_openmp.h"
@@ -99,6 +104,62 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfSmallStepsInAPass) {
   // 29 blocks of rows are enough for three threads and two small steps.
   for (const std::size_t threads : {2U, 3U}) EXPECT_EQ(after(2, threads).position, expected.position);
   EXPECT_EQ(after(3, 2).position, expected.position);
+}
+
+/// Three equal blocks beside each other, each large enough to be a part.
+System three_blocks() {
+  const System block = solid_block(7, 7, 7, 0.001);
+  System system = block;
+  const auto nodes = static_cast<std::uint32_t>(block.nodes());
+  for (std::uint32_t copy = 1; copy < 3; ++copy) {
+    for (const Vec3d& x : block.start.position) system.start.position.push_back(x + Vec3d{0.5 * copy, 0, 0});
+    for (const Vec3d& v : block.start.velocity) system.start.velocity.push_back(v);
+    for (Spring spring : block.springs) {
+      spring.first += copy * nodes;
+      spring.second += copy * nodes;
+      system.springs.push_back(spring);
+    }
+    system.node_mass.insert(system.node_mass.end(), block.node_mass.begin(), block.node_mass.end());
+  }
+  round_to_single(system.start);
+  return system;
+}
+
+TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
+  const System system = three_blocks();
+  const BodyConstraintKernel kernel = body_constraint_kernels()[GetParam()];
+  const auto after = [&](std::size_t threads, std::size_t shared) {
+    SpringBatches bodies(system, backend_dt_s, kernel.lanes, threads);
+    EXPECT_EQ(bodies.parts.size(), 3U);
+    bodies.shared_parts.clear();
+    bodies.own_parts.assign(threads, {});
+    for (std::size_t part = 0; part < 3; ++part)
+      if (part < shared)
+        bodies.shared_parts.push_back(part);
+      else
+        bodies.own_parts[part % threads].push_back(part);
+    kernel.step(bodies, 21);
+    return bodies.state();
+  };
+  const State expected = after(1, 0);
+  EXPECT_TRUE(has_met_floor(system, expected));
+  for (const std::size_t threads : {1U, 2U, 3U, 7U})
+    for (const std::size_t shared : {0U, 1U, 3U}) {
+      const State state = after(threads, shared);
+      EXPECT_EQ(state.position, expected.position) << threads << ", " << shared;
+      EXPECT_EQ(state.velocity, expected.velocity) << threads << ", " << shared;
+    }
+}
+
+TEST_P(EachXpbdKernel, DoesEachBodyOnce) {
+  for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
+    const SpringBatches bodies(three_blocks(), backend_dt_s, body_constraint_kernels()[GetParam()].lanes,
+                               threads);
+    std::vector<std::size_t> done(bodies.shared_parts);
+    for (const auto& parts : bodies.own_parts) done.insert(done.end(), parts.begin(), parts.end());
+    std::ranges::sort(done);
+    EXPECT_EQ(done, (std::vector<std::size_t>{0, 1, 2})) << threads;
+  }
 }
 
 TEST_P(EachXpbdKernel, TreatsTheFloorLikeTheReference) {
