@@ -9,7 +9,7 @@ namespace mssim {
 
 /// The colours of a cloth, in their order: springs along rows, then those between the rows of a pair, then
 /// bending springs across rows. In that order a walk down the rows can do all colours of a row that those of
-/// other rows do not wait for (cloth_walk-inl.h), and no colour needs a pass over the cloth of its own.
+/// other rows do not wait for (row_blocks.h), and no colour needs a pass over the cloth of its own.
 enum ClothColour : std::uint8_t {
   structural_from_even_columns,
   structural_from_odd_columns,
