@@ -41,7 +41,7 @@ backends/devices      text platform integrators backends/interface
 backends/spring_list  platform integrators model backends/interface
 backends/implicit/nodes        geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/implicit/newton       text geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
-backends/implicit/local_global geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
+backends/implicit/local_global platform geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
 backends/implicit/constraints  geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
 backends/implicit     integrators backends/interface backends/implicit/newton backends/implicit/local_global backends/implicit/constraints
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts

@@ -1,0 +1,235 @@
+// Steps of fast-springs with vectors: forces of whole vectors of nodes, products of dense blocks with three
+// vectors at once. Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "backends/implicit/local_global/step_fronts.cpp"
+#include "backends/implicit/local_global/step_fronts.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <omp.h>
+
+#include <algorithm>
+
+#include "backends/implicit/nodes/force_lanes-inl.h"
+#include "backends/implicit/nodes/row_vectors-inl.h"
+#include "backends/implicit/nodes/slice_vectors-inl.h"
+#include "backends/threads/spin_barrier.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+/// Columns of a panel that are passed at once: as many as leave AVX2 registers for the rest.
+constexpr std::size_t columns_at_once = 4;
+
+/// front += panel * right, by whole vectors: `columns` columns of `rows` floats; right: [columns][3].
+template <std::size_t columns>
+HWY_INLINE void add_columns(const float* HWY_RESTRICT panel, std::size_t rows,
+                            const float* HWY_RESTRICT right, float* HWY_RESTRICT front) {
+  const FloatTag d;
+  hn::Vec<FloatTag> factor[columns][3];
+  for (std::size_t j = 0; j < columns; ++j)
+    for (std::size_t c = 0; c < 3; ++c) factor[j][c] = hn::Set(d, right[3 * j + c]);
+  for (std::size_t i = 0; i < rows; i += lane_count()) {
+    auto x = hn::Load(d, front + i), y = hn::Load(d, front + rows + i), z = hn::Load(d, front + 2 * rows + i);
+    for (std::size_t j = 0; j < columns; ++j) {
+      const auto entry = hn::Load(d, panel + j * rows + i);
+      x = hn::MulAdd(entry, factor[j][0], x);
+      y = hn::MulAdd(entry, factor[j][1], y);
+      z = hn::MulAdd(entry, factor[j][2], z);
+    }
+    hn::Store(x, d, front + i);
+    hn::Store(y, d, front + rows + i);
+    hn::Store(z, d, front + 2 * rows + i);
+  }
+}
+
+/// sums[j][c] = column j of the panel times coordinate c of the solution, whose first `length` floats, whole
+/// vectors, are taken.
+template <std::size_t columns>
+HWY_INLINE void multiply_columns(const float* HWY_RESTRICT panel, std::size_t rows,
+                                 const float* HWY_RESTRICT solution, std::size_t length,
+                                 float* HWY_RESTRICT sums) {
+  const FloatTag d;
+  hn::Vec<FloatTag> sum[columns][3];
+  for (std::size_t j = 0; j < columns; ++j)
+    for (std::size_t c = 0; c < 3; ++c) sum[j][c] = hn::Zero(d);
+  for (std::size_t i = 0; i < length; i += lane_count()) {
+    const auto x = hn::Load(d, solution + i), y = hn::Load(d, solution + rows + i),
+               z = hn::Load(d, solution + 2 * rows + i);
+    for (std::size_t j = 0; j < columns; ++j) {
+      const auto entry = hn::Load(d, panel + j * rows + i);
+      sum[j][0] = hn::MulAdd(entry, x, sum[j][0]);
+      sum[j][1] = hn::MulAdd(entry, y, sum[j][1]);
+      sum[j][2] = hn::MulAdd(entry, z, sum[j][2]);
+    }
+  }
+  for (std::size_t j = 0; j < columns; ++j)
+    for (std::size_t c = 0; c < 3; ++c) sums[3 * j + c] = hn::GetLane(hn::SumOfLanes(d, sum[j][c]));
+}
+
+/// Calls act(column, integral constant of how many from it on are taken) for all columns.
+template <class Act>
+HWY_INLINE void for_each_columns(std::size_t columns, Act&& act) {
+  std::size_t j = 0;
+  for (; j + columns_at_once <= columns; j += columns_at_once)
+    act(j, std::integral_constant<std::size_t, columns_at_once>{});
+  for (; j < columns; ++j) act(j, std::integral_constant<std::size_t, 1>{});
+}
+
+/// A part on the way upwards: gathers what the part's nodes and its children have for it, and leaves what it
+/// has for its parent. scratch: floats for three coordinates of all pivots.
+template <class Nodes>
+HWY_NOINLINE void pass_upwards(LocalGlobalNodes<Nodes>& system, std::size_t part, float* scratch) {
+  const Fronts& fronts = system.factor.fronts;
+  const BlockFactor::Block& block = system.factor.blocks[part];
+  const std::size_t rows = block.rows, border = fronts.border_size(part), pivots = fronts.pivots(part);
+  const std::size_t step = system.nodes.component_step();
+  float* const front = system.fronts.data() + block.front;
+  std::fill_n(front, 3 * rows, 0.0F);
+  for (std::size_t i = 0; i < pivots; ++i) {
+    const auto& place = system.places[fronts.parts[part].begin + i];
+    for (std::size_t c = 0; c < 3; ++c)
+      front[c * rows + border + i] = place.mass * system.e.data()[place.offset + c * step];
+  }
+  for (const std::uint32_t child : fronts.children_of(part)) {
+    const std::uint32_t* const at = fronts.at_parent.data() + fronts.first_border[child];
+    const std::size_t size = fronts.border_size(child), child_rows = system.factor.blocks[child].rows;
+    const float* const left = system.fronts.data() + system.factor.blocks[child].front;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < size; ++i) front[c * rows + at[i]] += left[c * child_rows + i];
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < pivots; ++i) {
+      float& value = front[c * rows + border + i];
+      scratch[3 * i + c] = value;
+      value = 0;
+    }
+  const float* const panel = system.factor.panels.data() + block.panel;
+  for_each_columns(pivots, [&](std::size_t j, auto columns) HWY_ATTR {
+    add_columns<columns()>(panel + j * rows, rows, scratch + 3 * j, front);
+  });
+}
+
+/// A part on the way downwards: takes the solution at its border from its parent, finds its own, and moves
+/// its nodes. scratch: floats for three coordinates of all rows.
+template <class Nodes>
+HWY_NOINLINE void pass_downwards(LocalGlobalNodes<Nodes>& system, std::size_t part, float* scratch) {
+  const Fronts& fronts = system.factor.fronts;
+  const BlockFactor::Block& block = system.factor.blocks[part];
+  const std::size_t rows = block.rows, border = fronts.border_size(part), pivots = fronts.pivots(part);
+  const std::size_t step = system.nodes.component_step(), lanes = lane_count();
+  const std::size_t length = (border + lanes - 1) / lanes * lanes;
+  float* const front = system.fronts.data() + block.front;
+  if (border > 0) {
+    const std::uint32_t* const at = fronts.at_parent.data() + fronts.first_border[part];
+    const BlockFactor::Block& above = system.factor.blocks[fronts.parts[part].parent];
+    const float* const solved = system.fronts.data() + above.front;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < border; ++i)
+        scratch[c * rows + i] = front[c * rows + i] = solved[c * above.rows + at[i]];
+      std::fill(scratch + c * rows + border, scratch + c * rows + length, 0.0F);
+    }
+    const float* const panel = system.factor.panels.data() + block.panel;
+    for_each_columns(pivots, [&](std::size_t j, auto columns) HWY_ATTR {
+      float sums[columns_at_once * 3];
+      multiply_columns<columns()>(panel + j * rows, rows, scratch, length, sums);
+      for (std::size_t k = 0; k < columns(); ++k)
+        for (std::size_t c = 0; c < 3; ++c) front[c * rows + border + j + k] += sums[3 * k + c];
+    });
+  }
+  for (std::size_t i = 0; i < pivots; ++i) {
+    const std::size_t offset = system.places[fronts.parts[part].begin + i].offset;
+    for (std::size_t c = 0; c < 3; ++c) {
+      float& w = system.w.data()[offset + c * step];
+      w += front[c * rows + border + i];
+      system.y.data()[offset + c * step] = system.x.data()[offset + c * step] + system.dt * w;
+    }
+  }
+}
+
+/// The state becomes what the iterations start from.
+template <class Nodes>
+HWY_NOINLINE void begin_step(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
+  for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
+    const Lanes3 v = vector.load(system.v.data());
+    vector.store(system.w.data(), v);
+    vector.store(system.y.data(), mul_add(Lanes(system.dt), v, vector.load(system.x.data())));
+  });
+}
+
+/// The local step.
+template <class Nodes>
+HWY_NOINLINE void find_missing(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
+  const float *const y = system.y.data(), *const w = system.w.data(), *const v = system.v.data();
+  for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
+    const Lanes3 a = acceleration_at(vector, y, w, system.nodes.surroundings);
+    const Lanes3 change = vector.load(w) - vector.load(v);
+    vector.store_free(system.e.data(), Lanes(system.dt) * a - change);
+  });
+}
+
+/// What the iterations have found becomes the state, on which the floor acts.
+template <class Nodes>
+HWY_NOINLINE void end_step(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
+  const Surroundings& around = system.nodes.surroundings;
+  for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
+    Lanes3 x = vector.load(system.y.data()), v = vector.load(system.w.data());
+    const Mask under = both(vector.free, hn::Lt(x.y.v, Lanes(around.floor_height).v));
+    touch_floor(under, Lanes(around.floor_height), Lanes(around.restitution), Lanes(around.friction), x, v);
+    vector.store(system.x.data(), x);
+    vector.store(system.v.data(), v);
+  });
+}
+
+template <class Nodes>
+void take_steps(LocalGlobalNodes<Nodes>& system, int count) {
+  SpinBarrier barrier(system.threads);
+#pragma omp parallel num_threads(static_cast <int>(system.threads))
+  {
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    AlignedArray scratch(3 * system.factor.most_rows);
+    const auto for_chunks = [&](auto act) HWY_ATTR {
+      const std::size_t chunks = system.nodes.chunks.size();
+      for (std::size_t i = chunks * thread / system.threads; i < chunks * (thread + 1) / system.threads; ++i)
+        act(system, system.nodes.chunks[i]);
+      barrier.wait();
+    };
+    const auto& phases = system.schedule.phases;
+    for (int step = 0; step < count; ++step) {
+      for_chunks(begin_step<Nodes>);
+      for (std::uint32_t iteration = 0; iteration < system.iterations; ++iteration) {
+        for_chunks(find_missing<Nodes>);
+        for (const auto& phase : phases) {
+          for (const FrontSchedule::Item& item : phase[thread])
+            for (std::size_t part = item.begin; part < item.end; ++part)
+              pass_upwards(system, part, scratch.data());
+          barrier.wait();
+        }
+        for (auto phase = phases.rbegin(); phase != phases.rend(); ++phase) {
+          for (auto item = (*phase)[thread].rbegin(); item != (*phase)[thread].rend(); ++item)
+            for (std::size_t part = item->end; part-- > item->begin;)
+              pass_downwards(system, part, scratch.data());
+          barrier.wait();
+        }
+      }
+      for_chunks(end_step<Nodes>);
+    }
+  }
+}
+
+LocalGlobalKernel local_global_kernel() {
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &take_steps<NodeRows>,
+          &take_steps<NodeSlices>};
+}
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace mssim {
+HWY_EXPORT(local_global_kernel);
+std::vector<LocalGlobalKernel> local_global_kernels() {
+  return kernels_of_this_processor(HWY_DISPATCH_TABLE(local_global_kernel));
+}
+}  // namespace mssim
+#endif
