@@ -15,6 +15,7 @@
 #include "backends/implicit/newton/newton_method.h"
 #include "backends/implicit/newton/spring_equation.h"
 #include "integrators/all_integrators.h"
+#include "tests/support/backward_euler.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/dense_solve.h"
 #include "tests/support/largest_distance.h"
@@ -27,26 +28,6 @@ const Integrator& implicit_euler = *find_integrator("implicit-euler");
 const Integrator& newton_euler = *find_integrator("newton-euler");
 
 std::array<double, 3> components(const Vec3d& a) { return {a.x, a.y, a.z}; }
-
-/// Forces on all nodes, N, from the formulas of model/system.h; zero on pinned ones.
-std::vector<Vec3d> forces(const System& system, const State& state) {
-  std::vector<Vec3d> force(system.nodes());
-  for (const Spring& spring : system.springs) {
-    const auto [stiffness, damping] = system.materials[spring.kind];
-    const Vec3d d = state.position[spring.second] - state.position[spring.first];
-    const Vec3d u = state.velocity[spring.second] - state.velocity[spring.first];
-    const Vec3d n = 1 / length(d) * d;
-    const Vec3d f =
-        (stiffness * (length(d) - static_cast<double>(spring.rest_length)) + damping * dot(u, n)) * n;
-    force[spring.first] += f;
-    force[spring.second] -= f;
-  }
-  for (std::size_t i = 0; i < system.nodes(); ++i)
-    force[i] +=
-        system.node_mass[i] * (Vec3d{0, -system.gravity, 0} - system.viscous_damping * state.velocity[i]);
-  for (const std::uint32_t pin : system.pins) force[pin] = {};
-  return force;
-}
 
 /// -dF/dx and -dF/dv as dense matrices, without what compression and damping add to the first.
 struct DenseJacobian {
@@ -136,17 +117,6 @@ TEST(ImplicitEuler, IsTheDenseSolutionOfItsLinearSystem) {
       EXPECT_LT(largest_distance(serial->state().velocity, expected), 2e-4 * size)
           << system.nodes() << " " << dt_s;
     }
-}
-
-/// |M (w - v) - dt F(x + dt w, w)| in the norm of M^-1, where `after` is what w leads to.
-double residual_of(const System& system, const State& before, const State& after, double dt_s) {
-  const std::vector<Vec3d> force = forces(system, after);
-  double sum = 0;
-  for (std::size_t i = 0; i < system.nodes(); ++i) {
-    const Vec3d r = system.node_mass[i] * (after.velocity[i] - before.velocity[i]) - dt_s * force[i];
-    sum += dot(r, r) / system.node_mass[i];
-  }
-  return std::sqrt(sum);
 }
 
 TEST(NewtonEuler, LeavesNothingOfTheStepsEquation) {
