@@ -50,12 +50,13 @@ std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Int
 
 constexpr std::array<BackendInfo, 5> table{{
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
-     false, make_serial, spring_list_memory, spring_list_memory, dress_serially, make_serial_implicit},
+     false, make_serial, spring_list_memory, spring_list_memory, dress_serially, make_serial_implicit,
+     serial_implicit_memory},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, make_threads_mutex,
      spring_list_memory, spring_list_memory},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     make_openmp, bands, slices, dress_by_openmp, make_openmp_implicit},
+     make_openmp, bands, slices, dress_by_openmp, make_openmp_implicit, openmp_implicit_memory},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, make_opencl, planes, device_slices,
      dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
@@ -82,6 +83,12 @@ BackendInfo own_backend(const BackendProgram& program) {
           .grid_memory = own_program,
           .mesh_memory = own_program,
           .program = &program};
+}
+
+MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bool grid) {
+  if (is_implicit(integrator))
+    return backend.implicit_memory == nullptr ? MemoryUse{} : backend.implicit_memory(integrator, grid);
+  return grid ? backend.grid_memory : backend.mesh_memory;
 }
 
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,

@@ -30,6 +30,8 @@ struct BackendInfo {
   /// Makes one for an implicit integrator, of a cloth or bodies; null where it has none.
   std::unique_ptr<Backend> (*make_implicit)(const System& system, const Integrator& integrator, double dt_s,
                                             const ExecutionOptions& options) = nullptr;
+  /// What that takes, for a cloth or for bodies; null where `make_implicit` is.
+  MemoryUse (*implicit_memory)(const Integrator& integrator, bool grid) = nullptr;
   /// The program that takes its steps; `make` is null then. It outlives the row.
   const BackendProgram* program = nullptr;
 };
@@ -42,6 +44,9 @@ std::span<const BackendInfo> backends();
 
 /// The backend of that name, or nullptr.
 const BackendInfo* find_backend(std::string_view name);
+
+/// What the backend takes for a scene with this integrator: a cloth (`grid`) or bodies.
+MemoryUse memory_of(const BackendInfo& backend, const Integrator& integrator, bool grid);
 
 /// Empty when the backend can run here, else the reason why not.
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options);

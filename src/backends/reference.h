@@ -11,4 +11,7 @@ namespace mssim {
 /// outlive it. Throws Unsupported for a garment.
 std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s);
 
+/// What it takes for a cloth (`grid`) or bodies.
+MemoryUse reference_memory(const Integrator& integrator, bool grid);
+
 }  // namespace mssim

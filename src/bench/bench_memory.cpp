@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "backends/reference.h"
 #include "garment/bench/garment_verification.h"
 
 namespace mssim {
@@ -9,9 +10,6 @@ namespace {
 
 constexpr double state_node = 2 * sizeof(Vec3d);
 
-/// The double-precision reference: a spring list of twice the bytes, but for a byte that says what is pinned.
-constexpr MemoryUse reference{.node = 2 * spring_list_memory.node - 1,
-                              .pair_node = 2 * spring_list_memory.pair_node};
 /// The states that a run of the reference holds: ten steps ago, now, and the last before contact, which it
 /// leaves.
 constexpr double reference_states = 3;
@@ -30,12 +28,13 @@ std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize
       nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
   double running = 0, serial = 0, held = system;
   for (const Integrator* integrator : settings.integrators) {
+    const MemoryUse reference = reference_memory(*integrator, size.grid);
     running = std::max(running, reference.bytes(*integrator, size.nodes, size.springs, 1) +
                                     reference_states * state_node * nodes +
                                     (size.garment ? garment_reference_node * nodes : 0));
     held += (size.garment ? garment_reference_node : state_node) * nodes;
     for (const BackendInfo* backend : settings.backends) {
-      const double bytes = (size.grid ? backend->grid_memory : backend->mesh_memory)
+      const double bytes = memory_of(*backend, *integrator, size.grid)
                                .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
       held += bytes;
       if (backend->name == "serial") serial += bytes;  // verified while the references run

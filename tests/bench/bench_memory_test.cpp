@@ -6,10 +6,12 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
+#include "backends/reference.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
@@ -77,6 +79,34 @@ TEST(MemoryUse, IsWhatEveryBackendAndWayTakesForBodies) {
       expect_as_stated(backend, backend.mesh_memory, system);
 }
 
+/// Expects that making it with `make`, a step and reading its state back take about as much as stated.
+template <class Make>
+void expect_implicit_as_stated(const Make& make, const MemoryUse& use, const Integrator& integrator,
+                               const System& system) {
+  const double grown = growth_during([&] {
+    const auto simulation = make();
+    simulation->step(1);
+    EXPECT_EQ(simulation->state().position.size(), system.nodes());
+  });
+  const double stated = use.bytes(integrator, system.nodes(), system.springs.size(), two_threads.threads) +
+                        2 * sizeof(Vec3d) * static_cast<double>(system.nodes());
+  EXPECT_LT(grown, 1.25 * stated + small_change) << integrator.name;
+  EXPECT_GT(grown, 0.75 * stated - small_change) << integrator.name;
+}
+
+TEST(MemoryUse, IsWhatImplicitIntegratorsTakeOnThePlainList) {
+  for (const auto& [system, grid] :
+       {std::pair{cloth_system(1000, 700), true}, {solid_block(60, 60, 60), false}})
+    for (const char* name : {"implicit-euler", "newton-euler"}) {
+      const Integrator& integrator = *find_integrator(name);
+      const BackendInfo& serial = *find_backend("serial");
+      expect_implicit_as_stated([&] { return make_backend(serial, system, integrator, 1e-5, two_threads); },
+                                memory_of(serial, integrator, grid), integrator, system);
+      expect_implicit_as_stated([&] { return make_reference(system, integrator, 1e-5); },
+                                reference_memory(integrator, grid), integrator, system);
+    }
+}
+
 SceneJob job_of(const std::vector<std::string_view>& backend_names,
                 const std::vector<std::string_view>& integrator_names) {
   SceneJob job;
@@ -100,6 +130,18 @@ TEST(BenchMemory, HoldsAReferenceForEachThread) {
   const std::uint64_t rk4 = needed({"rk4"});
   EXPECT_EQ(needed({"rk4", "rk4"}) - rk4, rk4 - (1000U * 56 + 6000U * 16));
   EXPECT_EQ(needed({"rk4", "rk4", "semi-euler"}), needed({"rk4", "rk4"}));
+}
+
+TEST(BenchMemory, OfAnImplicitIntegratorIsThatOfItsSolver) {
+  // The reference of newton-euler: 249 bytes a node and 40 a spring; the System and three states as above.
+  EXPECT_EQ(bench_memory_needed(job_of({"openmp"}, {"newton-euler"}), {1000, 6000, true}),
+            1000U * (56 + 249 + 3 * 48) + 6000U * (16 + 40));
+  const auto of_size = [](std::uint64_t nodes) {
+    return static_cast<double>(
+        bench_memory_needed(job_of({"serial"}, {"fast-springs"}), {nodes, 6 * nodes, true}));
+  };
+  // Factors fill as they grow: serial's and the reference's by six numbers of 12 bytes a node and doubling.
+  EXPECT_NEAR(of_size(1U << 20) - 2 * of_size(1U << 19), 2 * 72 * double{1U << 20}, 10);
 }
 
 TEST(BenchMemory, HoldsAllCombinationsAtOnce) {

@@ -60,7 +60,7 @@ bench/roofline        integrators model
 bench/verification    text integrators model backends/interface backends
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
-bench                 text platform statistics garment/stepping bench/roofline bench/verification bench/job garment/bench
+bench                 text platform statistics backends garment/stepping bench/roofline bench/verification bench/job garment/bench
 
 output/tables         text statistics platform bench/machine bench/results
 garment/output        text garment bench/results hdf5 output/tables

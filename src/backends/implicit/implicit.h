@@ -22,4 +22,9 @@ std::unique_ptr<Backend> make_implicit_reference(const System& system, const Int
 std::unique_ptr<Backend> make_openmp_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options);
 
+/// What they take for a cloth or for bodies.
+MemoryUse serial_implicit_memory(const Integrator& integrator, bool grid);
+MemoryUse implicit_reference_memory(const Integrator& integrator, bool grid);
+MemoryUse openmp_implicit_memory(const Integrator& integrator, bool grid);
+
 }  // namespace mssim

@@ -2,6 +2,8 @@
 
 #include <time.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -117,17 +119,21 @@ class Backend {
 };
 
 /// Memory that a backend takes at its peak, which is mostly while it is made: bytes a node, a node and pair
-/// that the integrator needs, a node and thread, and a spring. What does not grow with the scene is left out.
+/// that the integrator needs, a node and thread, a node and doubling of the number of nodes, and a spring.
+/// What does not grow with the scene is left out.
 struct MemoryUse {
   double node = 0;
   double pair_node = 0;
   Storage storage = Storage::in_place;  ///< which pairs it needs
   double thread_node = 0;
+  double doubling_node = 0;  ///< of sparse factors, which fill as they grow
   double spring = 0;
 
   double bytes(const Integrator& integrator, std::uint64_t nodes, std::uint64_t springs, int threads) const {
     const auto pairs = static_cast<double>(stored_pairs(integrator, storage).size());
-    return (node + pair_node * pairs + thread_node * threads) * static_cast<double>(nodes) +
+    const double doublings = std::log2(std::max(1.0, static_cast<double>(nodes)));
+    return (node + pair_node * pairs + thread_node * threads + doubling_node * doublings) *
+               static_cast<double>(nodes) +
            spring * static_cast<double>(springs);
   }
 };
