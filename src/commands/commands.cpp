@@ -15,6 +15,7 @@
 #include "commands/check/check_command.h"
 #include "commands/compare/compare_command.h"
 #include "commands/export/export_command.h"
+#include "commands/guide/guide_command.h"
 #include "commands/help/help_command.h"
 #include "commands/list/list_command.h"
 #include "commands/measure/measure_command.h"
@@ -39,7 +40,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 11> table{{
+constexpr std::array<Command, 12> table{{
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
     {"run", "Simulate one scene; write a trace or an energy curve if asked to",
@@ -48,6 +49,8 @@ constexpr std::array<Command, 11> table{{
      "mssim render --scene jeans4k --out jeans.png", declare_render},
     {"export", "Write frames of a trace as OBJ, PLY or VTKHDF for other programs",
      "mssim export fall.h5 --format vtkhdf --frames all", declare_export},
+    {"guide", "Measure which integrator, backend and step a scene should be simulated with",
+     "mssim guide --scene cloth10k --fps 60 --error 1e-3", declare_guide},
     {"check", "Check scene files: size, memory, time and stability limit, without a run",
      "mssim check my-cloth.json", declare_check},
     {"compare", "Compare two results or programs: which is faster, and is that certain?",

@@ -19,10 +19,10 @@ status=0
 page --help
 cp "$work/page" "$work/help"
 cmp "$work/help" "$work/alone" || fail "mssim alone shows another page than --help"
-for command in bench run render export check compare report measure new-backend list help; do grep -q "^  $command  *[A-Z]" "$work/help" || fail "--help does not name $command"; done
+for command in bench run render export guide check compare report measure new-backend list help; do grep -q "^  $command  *[A-Z]" "$work/help" || fail "--help does not name $command"; done
 page help
 cmp "$work/page" "$work/help" || fail "mssim help shows another page than --help"
-for command in bench run render export check compare report measure new-backend list help; do
+for command in bench run render export guide check compare report measure new-backend list help; do
   page "$command" --help
   cp "$work/page" "$work/help"
   page help "$command"
@@ -34,7 +34,7 @@ grep -q '^mssim [0-9.]* (' "$work/page" || fail "-V: $(cat "$work/page")"
 cp "$work/page" "$work/version"
 page --version
 cmp "$work/page" "$work/version" || fail "-V and --version differ"
-expect 2 'unknown command "frobnicate": known are bench, run, render, export, check, compare, report, measure, new-backend, list and help; see mssim --help' frobnicate
+expect 2 'unknown command "frobnicate": known are bench, run, render, export, guide, check, compare, report, measure, new-backend, list and help; see mssim --help' frobnicate
 expect 2 'unknown command "bnech" (did you mean bench?): known are ' bnech --scene cloth2500
 expect 2 'unknown command "rnu" (did you mean run?): known are ' help rnu
 

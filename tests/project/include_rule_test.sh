@@ -61,8 +61,9 @@ bench/verification    text integrators model backends/interface backends
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
 bench                 text platform statistics backends garment/stepping bench/roofline bench/verification bench/job garment/bench
+guide                 text statistics platform laws integrators model backends/interface bench/verification backends
 
-output/tables         text statistics platform bench/machine bench/results
+output/tables         text statistics platform integrators backends bench/machine bench/results guide
 garment/output        text garment bench/results hdf5 output/tables
 output/traces         text platform geometry model hdf5 garment/output
 output/pictures       platform geometry render picture model scene/fields garment output/traces
@@ -75,7 +76,8 @@ commands/shared       text platform geometry integrators model mesh garment/body
 commands/run          platform model scene garment/stepping garment/fitting backends/interface backends bench bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/export       text platform output/exports output/traces commands/arguments commands/shared
-commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared
+commands/guide        text platform integrators scene/spec scene backends/interface backends bench/machine guide output/tables output/folders commands/arguments commands/shared
+commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared commands/guide
 commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/arguments commands/shared commands/bench
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench
 commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/arguments commands/shared commands/run commands/bench
@@ -83,7 +85,7 @@ commands/measure      text platform geometry mesh garment/body garment/pattern g
 commands/new_backend  text platform backends commands/arguments commands/shared
 commands/report       text platform picture render scene/spec scene bench/machine output/tables output/traces output/pictures report commands/arguments commands/shared commands/run commands/bench
 commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/bench commands/list commands/compare commands/check commands/measure commands/new_backend commands/report commands/help
+commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/guide commands/bench commands/list commands/compare commands/check commands/measure commands/new_backend commands/report commands/help
 main.cpp              commands/shared
 ask_opencl.cpp
 supervise.cpp         platform

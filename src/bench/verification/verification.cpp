@@ -6,6 +6,7 @@
 
 #include "backends/reference.h"
 #include "bench/verification/blow_up.h"
+#include "bench/verification/deviation.h"
 #include "model/state_hash.h"
 #include "text/counted.h"
 
@@ -90,14 +91,9 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
     return result;
   }
   result.state_hash = state_hash(state);
-  double largest = 0;
-  for (std::size_t i = 0; i < system.nodes(); ++i) {
-    const Vec3d d = state.position[i] - reference.state.position[i];
-    largest = std::max(largest, dot(d, d));
-  }
-  result.position_error = std::sqrt(largest) / mean_rest_length(system);
-  const double moving = reference.energy.kinetic + reference.energy.elastic;
-  result.energy_drift = (energy_of(system, state).total() - reference.energy.total()) / moving;
+  const Deviation deviation = deviation_from(system, reference.state, reference.energy, state);
+  result.position_error = deviation.position;
+  result.energy_drift = deviation.energy;
 
   std::ostringstream why;
   if (!(result.position_error <= reference.tolerance)) {

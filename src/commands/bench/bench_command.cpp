@@ -17,6 +17,7 @@
 #include "commands/bench/structure.h"
 #include "commands/bench/suites.h"
 #include "commands/bench/time_budget.h"
+#include "commands/guide/guide_run.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
@@ -77,7 +78,33 @@ std::vector<std::string> asked_backends(const BenchOptions& options, const Bench
   return names;
 }
 
+/// The suite whose scenes are measured by guides, which take no samples of a step.
+int run_guide_suite(const BenchOptions& options) {
+  const auto refuse = [&](bool given, const std::string& name) {
+    if (given) throw UsageError(name + " cannot be used with --suite " + options.suite + ": leave it out");
+  };
+  refuse(options.output.resume, "--resume");
+  refuse(options.output.trace, "--trace");
+  refuse(options.rounds.has_value(), "--rounds");
+  refuse(!options.verified.empty(), "--verified");
+  refuse(options.output.format != SummaryFormat::table, "--format");
+  refuse(!options.own_backends.folders.empty(), "--backend-folder");
+  refuse(options.own_backends.limit_s.has_value(), "--backend-limit");
+  GuideOptions guide;
+  guide.scenes = scenes_of_suite(options.suite, true);
+  guide.scenes.insert(guide.scenes.end(), options.scenes.begin(), options.scenes.end());
+  guide.backends = options.backends;
+  guide.integrators = options.integrators;
+  guide.execution = options.execution;
+  guide.time_budget_s = options.time_budget_s;
+  guide.folder = options.output.folder;
+  guide.overwrite = options.output.overwrite;
+  guide.dry_run = options.dry_run;
+  return run_guide(guide);
+}
+
 int run(const BenchOptions& options) {
+  if (options.suite == guide_suite) return run_guide_suite(options);
   BenchPlan plan = plan_of(options);
   TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
   if (options.dry_run) {

@@ -6,6 +6,7 @@
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
+#include "commands/guide/guide_run.h"
 #include "commands/shared/backend_choice.h"
 #include "garment/output/garment_table.h"
 #include "integrators/all_integrators.h"
@@ -34,9 +35,22 @@ constexpr std::array<std::string_view, 4> scenes_of_peers{"cloth2500", "cloth40k
 constexpr std::array<std::string_view, 6> jeans{"jeans1k", "jeans2k",  "jeans4k",
                                                 "jeans8k", "jeans16k", "jeans64k"};
 
+/// The families of both papers but garments: Hong et al.'s cloths, which Vassilev's panels are made like, and
+/// bodies.
+constexpr auto scenes_of_guide = [] {
+  std::array<std::string_view, cloths.size() + body_scenes.size()> all{};
+  std::ranges::copy(body_scenes, std::ranges::copy(cloths, all.begin()).out);
+  return all;
+}();
+
 /// The real methods, those that are a paper's integrator under its own name.
 constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
 constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
+constexpr auto every_integrator = [] {
+  std::array<std::string_view, all_integrators.size()> names{};
+  std::ranges::transform(all_integrators, names.begin(), &Integrator::name);
+  return names;
+}();
 
 std::vector<const BackendInfo*> all_methods() {
   std::vector<const BackendInfo*> rows;
@@ -47,6 +61,13 @@ std::vector<const BackendInfo*> all_methods() {
 /// What the peers are held against: the plain list and the fastest of the host's.
 std::vector<const BackendInfo*> baseline_and_best() {
   return {find_backend("serial"), find_backend("openmp")};
+}
+
+/// Of the suite that is run by guides, which make their tables themselves.
+TableMaker no_tables() {
+  return [](std::span<const ResultRow> /*rows*/, const Provenance& /*provenance*/) {
+    return std::vector<ResultTable>();
+  };
 }
 
 TableMaker tables_of_hong() { return paper_tables(paper_legend(), published_tables()); }
@@ -74,7 +95,7 @@ TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cl
 
 constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
 
-constexpr std::array<Suite, 7> table{{
+constexpr std::array<Suite, 8> table{{
     {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
     {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
@@ -102,6 +123,12 @@ constexpr std::array<Suite, 7> table{{
      true,
      jeans,
      {table_backends, cheapest_method, garment_tables}},
+    {guide_suite,
+     "which integrator, backend and step for cloths and bodies: mssim guide, scene by scene",
+     false,
+     true,
+     scenes_of_guide,
+     {guide_backends, every_integrator, no_tables}},
 }};
 
 bool belongs(const Suite& suite, std::string_view name) {

@@ -29,6 +29,9 @@ struct Suite {
   Comparison comparison;
 };
 
+/// The suite whose scenes `mssim guide` measures, in a table of its own kind.
+inline constexpr std::string_view guide_suite = "guide";
+
 std::span<const Suite> suites();
 
 /// What the tables of backends and integrators say about the papers.

@@ -30,7 +30,9 @@ std::string csv_of(std::string_view table) { return std::string(table) + ".csv";
 std::string markdown_of(std::string_view table) { return std::string(table) + ".md"; }
 
 std::vector<ResultFolder::File> files_of(const ResultTable& table) {
-  return {{csv_of(table.name), table_csv(table.data)}, {markdown_of(table.name), markdown(table.page)}};
+  std::vector<ResultFolder::File> files{{csv_of(table.name), table_csv(table.data)}};
+  if (!table.page.empty()) files.push_back({markdown_of(table.name), markdown(table.page)});
+  return files;
 }
 
 }  // namespace
@@ -96,6 +98,10 @@ void ResultFolder::write(std::span<const ResultRow> rows) const {
 
 void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
   write_file_atomically(folder_ / github_name, table_json_text(github_table(rows)));
+}
+
+void ResultFolder::write(std::span<const ResultTable> tables) const {
+  for (const ResultTable& table : tables) write_files(files_of(table));
 }
 
 void ResultFolder::write(std::span<const StructureRow> rows) const {

@@ -21,7 +21,8 @@ inline constexpr const char* programs_name = "programs";
 
 /// A folder with what one run of `mssim bench` measured: timings.csv, samples.csv, of garments garment.csv,
 /// benchmark.json, provenance.json, what programs that are backends wrote, and the tables that are made of
-/// the rows, as NAME.csv and NAME.md. One at a time writes into it.
+/// the rows, as NAME.csv and NAME.md. Of `mssim guide` it holds provenance.json and tables. One at a time
+/// writes into it.
 class ResultFolder {
  public:
   /// Creates the folder and those above it. Throws WriteError, also where another ResultFolder, in any
@@ -47,6 +48,9 @@ class ResultFolder {
 
   /// Writes github.json (github_table.h). Throws WriteError.
   void write_for_github(std::span<const ResultRow> rows) const;
+
+  /// Writes tables that are not made of rows, NAME.csv and, where it has a page, NAME.md. Throws WriteError.
+  void write(std::span<const ResultTable> tables) const;
 
   /// Writes table2.csv and table2.md. Throws WriteError.
   void write(std::span<const StructureRow> rows) const;

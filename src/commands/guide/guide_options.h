@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/interface/backend.h"
+#include "guide/recommendation.h"
+
+namespace mssim {
+
+/// What `mssim guide`, or a suite that it measures, was asked for.
+struct GuideOptions {
+  std::vector<std::string> scenes;
+  Wish wish;
+  std::vector<std::string> backends;     ///< none: guide_backends
+  std::vector<std::string> integrators;  ///< none, or "all": every one
+  ExecutionOptions execution;
+  double horizon_s = 0.1;               ///< errors are measured so long after the start, at most
+  std::optional<double> time_budget_s;  ///< for all scenes; none: usual_guide_s for each
+  std::string folder;                   ///< empty: results are only printed
+  bool overwrite = false;
+  bool dry_run = false;
+};
+
+/// Wall time of a scene's guide where nothing is said of it, s.
+inline constexpr double usual_guide_s = 90;
+
+}  // namespace mssim

@@ -1,0 +1,197 @@
+#include "commands/guide/guide_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "commands/guide/cloth_family.h"
+#include "commands/shared/backend_choice.h"
+#include "commands/shared/choices.h"
+#include "commands/shared/exit_code.h"
+#include "commands/shared/opencl_notes.h"
+#include "commands/shared/prepared_scene.h"
+#include "commands/shared/progress_line.h"
+#include "commands/shared/run_provenance.h"
+#include "commands/shared/stop_request.h"
+#include "guide/scene_guide.h"
+#include "integrators/all_integrators.h"
+#include "output/folders/result_folder.h"
+#include "output/tables/guide_page.h"
+#include "output/tables/guide_table.h"
+#include "output/tables/table_text.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "text/decimal.h"
+#include "text/printable.h"
+
+namespace mssim {
+namespace {
+
+std::vector<const BackendInfo*> asked_backends(const GuideOptions& options, BackendChoice& choice) {
+  if (options.backends.empty()) return guide_backends();
+  std::vector<const BackendInfo*> asked;
+  for (const std::string& name : options.backends) {
+    const BackendInfo* info = &choice.require(name);
+    if (std::ranges::find(asked, info) == asked.end()) asked.push_back(info);
+  }
+  return asked;
+}
+
+std::vector<const Integrator*> asked_integrators(const GuideOptions& options) {
+  const bool every = options.integrators.empty() || options.integrators == std::vector<std::string>{"all"};
+  std::vector<const Integrator*> asked, all;
+  if (!every)
+    for (const std::string& name : options.integrators) asked.push_back(&require_integrator(name));
+  for (const Integrator* integrator : all_integrators)
+    if (every || std::ranges::find(asked, integrator) != asked.end()) all.push_back(integrator);
+  return all;
+}
+
+std::vector<SceneSpec> asked_scenes(const GuideOptions& options) {
+  std::vector<SceneSpec> scenes;
+  for (const std::string& name : options.scenes) {
+    SceneSpec spec = find_scene(name);
+    if (std::holds_alternative<GarmentSpec>(spec.content))
+      throw UsageError(spec.name +
+                       " is a garment, which mssim guide does not measure: name a cloth or bodies");
+    if (std::ranges::find(scenes, spec.name, &SceneSpec::name) == scenes.end())
+      scenes.push_back(std::move(spec));
+  }
+  if (scenes.empty()) throw UsageError("there is nothing to measure: name a --scene");
+  return scenes;
+}
+
+/// The folder, empty; null where results are only printed.
+std::unique_ptr<ResultFolder> empty_folder(const GuideOptions& options, const Provenance& provenance) {
+  if (options.folder.empty()) {
+    if (options.overwrite) throw UsageError("--overwrite needs the folder of an earlier run: give --out too");
+    return nullptr;
+  }
+  auto folder = std::make_unique<ResultFolder>(options.folder, provenance, TableMaker());
+  if (folder->has_results()) {
+    if (!options.overwrite)
+      throw UsageError(options.folder +
+                       " already holds results: give another --out, or --overwrite to "
+                       "replace them");
+    folder->clear();
+  }
+  folder->begin();
+  return folder;
+}
+
+/// Those that were asked for by name and cannot run here.
+void require_available(const GuideOptions& options, const std::vector<const BackendInfo*>& backends,
+                       const ExecutionOptions& execution) {
+  if (options.backends.empty()) return;
+  for (const BackendInfo* info : backends)
+    if (const std::string reason = unavailable_reason(*info, execution); !reason.empty())
+      throw Unavailable(std::string(info->name) + ": " + reason);
+}
+
+void print(const SceneGuide& guide) {
+  std::cout << guide.scene << '\n';
+  if (!guide.trusted.failure.empty()) {
+    std::cout << "No errors were measured: " << guide.trusted.failure << ".\n";
+    return;
+  }
+  for (const std::string& sentence : guide.recommendation.sentences) std::cout << sentence << '\n';
+  std::cout << '\n' << table_text(guide_summary(guide)) << '\n';
+  for (const std::string& sentence : about_trusted_state(guide.trusted)) std::cout << sentence << '\n';
+}
+
+/// What can be known before anything is measured.
+struct GuidePlan {
+  std::vector<SceneSpec> scenes;
+  std::vector<const BackendInfo*> backends;
+  std::vector<const Integrator*> integrators;
+  ExecutionOptions execution;
+  double scene_seconds = 0;
+};
+
+SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::size_t number,
+                    ProgressLine& progress, const StopRequest& stop) {
+  const SceneSpec& spec = plan.scenes[number];
+  const PreparedScene scene = prepare_scene(spec);
+  warn_of_note(scene);
+  GuideRequest request{.scene = spec.name,
+                       .system = &scene.system,
+                       .backends = plan.backends,
+                       .integrators = plan.integrators,
+                       .execution = plan.execution,
+                       .wish = options.wish,
+                       .seconds = plan.scene_seconds,
+                       .longest_horizon_s = options.horizon_s,
+                       .make_cloth = {}};
+  request.execution.scene = spec.name;
+  // Once for every family.
+  const auto earlier = plan.scenes.begin() + static_cast<std::ptrdiff_t>(number);
+  if (std::none_of(plan.scenes.begin(), earlier, [&](const SceneSpec& s) { return same_family(s, spec); }))
+    request.make_cloth = cloth_family(spec);
+  return guide_scene(request, {.progress = [&](const std::string& activity,
+                                               double done) { progress.update(activity, done); },
+                               .stop = [&] { return stop.requested(); }});
+}
+
+void tell(const GuidePlan& plan) {
+  Table table;
+  for (const SceneSpec& spec : plan.scenes)
+    table.add({{"scene", spec.name},
+               {"integrators", plan.integrators.size()},
+               {"backends", plan.backends.size()},
+               {"expected_s", plan.scene_seconds}});
+  std::cout << table_text(table) << "about "
+            << three_digits(plan.scene_seconds * static_cast<double>(plan.scenes.size())) << " s in all\n";
+}
+
+}  // namespace
+
+std::vector<const BackendInfo*> guide_backends() {
+  return {find_backend("serial"), find_backend("openmp"), find_backend("opencl")};
+}
+
+int run_guide(const GuideOptions& options) {
+  GuidePlan plan;
+  BackendChoice choice(table_backends(), {}, options.scenes);
+  plan.backends = asked_backends(options, choice);
+  plan.integrators = asked_integrators(options);
+  plan.scenes = asked_scenes(options);
+  plan.execution = complete(options.execution);
+  plan.scene_seconds = options.time_budget_s
+                           ? *options.time_budget_s / static_cast<double>(plan.scenes.size())
+                           : usual_guide_s;
+  if (options.dry_run) {
+    tell(plan);
+    return exit_ok;
+  }
+  require_available(options, plan.backends, plan.execution);
+  const bool uses_device = std::ranges::any_of(plan.backends, &BackendInfo::uses_device);
+  Provenance provenance = run_provenance(plan.execution.threads, uses_device);
+  add_programs(provenance, choice.own());
+  for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
+  const std::unique_ptr<ResultFolder> folder = empty_folder(options, provenance);
+  for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  if (uses_device) tell_of_opencl();
+
+  std::vector<SceneGuide> guides;
+  StopRequest stop;
+  {
+    ProgressLine progress(std::vector<double>(plan.scenes.size(), 1));
+    for (std::size_t number = 0; number < plan.scenes.size() && !stop.requested(); ++number) {
+      progress.begin_scene(plan.scenes[number].name);
+      guides.push_back(measured(plan, options, number, progress, stop));
+      if (folder) folder->write(guide_tables(guides, provenance));
+    }
+  }
+  for (const SceneGuide& guide : guides) {
+    if (&guide != &guides.front()) std::cout << '\n';
+    print(guide);
+  }
+  if (folder) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
+  stop.throw_if_requested();
+  return exit_ok;
+}
+
+}  // namespace mssim

@@ -1,0 +1,98 @@
+#include "guide/cloth_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "guide/recommendation.h"
+#include "guide/step_timer.h"
+#include "text/counted.h"
+
+namespace mssim {
+namespace {
+
+/// Wall time of a frame over the time that there is for it.
+double share_of_frame(const SizeCurve& curve, const SizeCurve::Sample& sample, double frames_per_second) {
+  return steps_a_frame(curve.dt_s, frames_per_second) * sample.seconds_a_step * frames_per_second;
+}
+
+/// Does the sample of this number or a later one hold the slowest frame rate? One that does not may have met
+/// another program.
+bool holds_any(const SizeCurve& curve, std::size_t first) {
+  return std::any_of(curve.samples.begin() + static_cast<std::ptrdiff_t>(first), curve.samples.end(),
+                     [&](const SizeCurve::Sample& sample) {
+                       return share_of_frame(curve, sample, frame_rates.front()) <= 1;
+                     });
+}
+
+/// Where the line through (a, log y_a) and (b, log y_b) over the logarithm of x is at y = 1.
+double where_one(double x_a, double y_a, double x_b, double y_b) {
+  const double t = std::log(y_a) / (std::log(y_a) - std::log(y_b));
+  return x_a * std::pow(x_b / x_a, t);
+}
+
+/// A sample of this cloth; none where the backend does not run, and curve.status says why.
+std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const System& system,
+                                           const ExecutionOptions& execution) {
+  constexpr double enough_s = 0.02;
+  constexpr int most_steps = 200;
+  const auto backend =
+      try_to_make(*curve.backend, system, *curve.integrator, curve.dt_s, execution, curve.status);
+  if (!backend) return std::nullopt;
+  // As many steps as a frame has, so that solvers meet what they meet there.
+  const int steps = std::min(most_steps, steps_a_frame(curve.dt_s, frame_rates.front()));
+  return SizeCurve::Sample{system.nodes(), time_steps(*backend, system, steps, enough_s).seconds};
+}
+
+}  // namespace
+
+std::optional<SizeCurve::Largest> SizeCurve::largest(double frames_per_second) const {
+  if (samples.empty()) return std::nullopt;
+  const auto share = [&](std::size_t i) { return share_of_frame(*this, samples[i], frames_per_second); };
+  std::size_t holding = samples.size();
+  while (holding > 0 && share(holding - 1) > 1) --holding;
+  if (holding == 0) return Largest{0, false};
+  const auto nodes = [&](std::size_t i) { return static_cast<double>(samples[i].nodes); };
+  if (holding == samples.size()) return Largest{nodes(holding - 1), true};
+  return Largest{where_one(nodes(holding - 1), share(holding - 1), nodes(holding), share(holding)), false};
+}
+
+std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b) {
+  const std::size_t common = std::min(a.samples.size(), b.samples.size());
+  for (std::size_t i = 1; i < common; ++i) {
+    const double before = a.samples[i - 1].seconds_a_step / b.samples[i - 1].seconds_a_step;
+    const double here = a.samples[i].seconds_a_step / b.samples[i].seconds_a_step;
+    if ((before > 1) != (here > 1))
+      return where_one(static_cast<double>(a.samples[i - 1].nodes), before,
+                       static_cast<double>(a.samples[i].nodes), here);
+  }
+  return std::nullopt;
+}
+
+void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const ExecutionOptions& execution,
+                   const std::function<bool(const std::string& activity, double done)>& go_on) {
+  std::vector<SizeCurve*> active;
+  for (SizeCurve& curve : curves)
+    if (curve.status.empty()) active.push_back(&curve);
+  for (std::size_t size = 0; size < cloth_sides.size() && !active.empty(); ++size) {
+    const std::uint64_t nodes = std::uint64_t{cloth_sides[size]} * cloth_sides[size];
+    std::optional<System> system;
+    std::vector<SizeCurve*> still_active;
+    for (SizeCurve* curve : active) {
+      const std::string activity = counted(nodes, "node") + ": " + std::string(curve->integrator->name) +
+                                   ' ' + std::string(curve->backend->name);
+      if (!go_on(activity, static_cast<double>(size) / static_cast<double>(cloth_sides.size()))) {
+        curve->status = "no time was left for larger cloths";
+        continue;
+      }
+      if (!system) system = make(cloth_sides[size]);
+      const auto sample = sample_of(*curve, *system, execution);
+      if (!sample) continue;
+      curve->samples.push_back(*sample);
+      if (size == 0 || holds_any(*curve, size - 1)) still_active.push_back(curve);
+    }
+    active = std::move(still_active);
+  }
+}
+
+}  // namespace mssim

@@ -1,0 +1,165 @@
+#include "guide/scene_guide.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "guide/pareto_front.h"
+#include "guide/step_limits.h"
+#include "guide/step_theory.h"
+#include "guide/work_precision.h"
+#include "integrators/all_integrators.h"
+
+namespace mssim {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+/// Shares of the wall time up to the end of each part. A part that ends early leaves its time to the next.
+constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.45, until_points = 0.8,
+                 share_of_exact_steps = 0.1;
+
+/// How much of a guide's time is over.
+class GuideClock {
+ public:
+  explicit GuideClock(double seconds) : seconds_(seconds) {}
+  double spent() const { return std::chrono::duration<double>(WallClock::now() - start_).count(); }
+  double fraction() const { return std::min(1.0, spent() / seconds_); }
+  bool is_past(double share) const { return spent() > share * seconds_; }
+  double left_until(double share) const { return share * seconds_ - spent(); }
+
+ private:
+  double seconds_;
+  WallClock::time_point start_ = WallClock::now();
+};
+
+/// A third of the stability limit of rk4 by theory: well within its order.
+double first_trusted_step(const SceneGuide& guide, const GuideRequest& request) {
+  const double limit =
+      step_theory(*find_integrator("rk4"), *request.system, guide.at_start, guide.at_start).at_start_s;
+  return std::isfinite(limit) && limit > 0 ? limit / 3 : request.longest_horizon_s / 100;
+}
+
+void find_trusted_state(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch) {
+  guide.trusted = trusted_state(*request.system, {.longest_s = request.longest_horizon_s,
+                                                  .first_dt_s = first_trusted_step(guide, request),
+                                                  .seconds = share_of_trust * request.seconds,
+                                                  .stop = watch.stop});
+}
+
+void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
+                 const GuideClock& clock) {
+  LimitRequest limits{
+      .system = request.system,
+      .backends = request.backends,
+      .execution = request.execution,
+      .at_start = guide.at_start,
+      .on_the_way = guide.on_the_way,
+      .seconds = share_of_limits * request.seconds / static_cast<double>(request.integrators.size()),
+      .stop = {}};
+  limits.stop = [&] { return watch.stop() || clock.is_past(until_limits); };
+  for (const Integrator* integrator : request.integrators) {
+    watch.progress("largest stable step: " + std::string(integrator->name), clock.fraction());
+    if (watch.stop()) return;
+    guide.limits.push_back(find_step_limit(*integrator, limits));
+  }
+}
+
+/// One point of every curve by turns, so that all are about as fine when the time ends.
+void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
+                    const GuideClock& clock) {
+  ExactBackwardEuler exact(*request.system, guide.trusted, share_of_exact_steps * request.seconds);
+  std::vector<WorkCurve> curves;
+  guide.methods.reserve(request.integrators.size() * request.backends.size());
+  for (const StepLimit& limit : guide.limits)
+    for (const BackendInfo* backend : request.backends) {
+      GuidedMethod& method = guide.methods.emplace_back(GuidedMethod{limit.integrator, backend, {}});
+      curves.emplace_back(*request.system, guide.trusted, limit, method, request.execution, exact,
+                          request.wish.error);
+    }
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      if (!curves[i].has_next()) continue;
+      GuidedMethod& method = guide.methods[i];
+      if (watch.stop() || clock.left_until(until_points) < curves[i].next_seconds()) {
+        if (method.status.empty()) method.status = "no time was left for smaller steps";
+        continue;
+      }
+      watch.progress("work and precision: " + std::string(method.integrator->name) + ' ' +
+                         std::string(method.backend->name),
+                     clock.fraction());
+      if (const auto point = curves[i].next()) guide.points.push_back(*point);
+      any = true;
+    }
+  }
+  const auto place = [&](const WorkPoint& point) {
+    return std::ranges::find_if(guide.methods, [&](const GuidedMethod& method) {
+      return method.integrator == point.integrator && method.backend->name == point.backend;
+    });
+  };
+  std::ranges::stable_sort(guide.points, {}, [&](const WorkPoint& point) { return place(point); });
+}
+
+/// The method's cheapest point that is accurate enough, else its cheapest stable one; null without any.
+const WorkPoint* cheapest_point(const SceneGuide& guide, const GuidedMethod& method) {
+  const auto rank = [&](const WorkPoint& point) {
+    const bool accurate = point.counts() && *point.position_error <= guide.wish.error;
+    return std::pair(!accurate, point.seconds_a_second());
+  };
+  const WorkPoint* cheapest = nullptr;
+  for (const WorkPoint& point : guide.points)
+    if (point.integrator == method.integrator && point.backend == method.backend->name && !point.diverged &&
+        (cheapest == nullptr || rank(point) < rank(*cheapest)))
+      cheapest = &point;
+  return cheapest;
+}
+
+void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
+                    const GuideClock& clock) {
+  for (const GuidedMethod& method : guide.methods) {
+    SizeCurve curve{.integrator = method.integrator, .backend = method.backend, .samples = {}, .status = {}};
+    if (const WorkPoint* point = cheapest_point(guide, method)) {
+      curve.dt_s = point->dt_s;
+      curve.keeps_error = point->counts() && *point->position_error <= request.wish.error;
+    } else {
+      curve.status = method.status.empty() ? "no step that was measured is stable" : method.status;
+    }
+    guide.sizes.push_back(curve);
+  }
+  measure_sizes(guide.sizes, request.make_cloth, request.execution,
+                [&](const std::string& activity, double /*done*/) {
+                  watch.progress("cloths of " + activity, clock.fraction());
+                  return !watch.stop() && !clock.is_past(1);
+                });
+}
+
+}  // namespace
+
+SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
+  const GuideClock clock(request.seconds);
+  SceneGuide guide;
+  guide.scene = request.scene;
+  guide.nodes = request.system->nodes();
+  guide.springs = request.system->springs.size();
+  guide.wish = request.wish;
+  watch.progress("spectrum of the start", 0);
+  guide.at_start = guide.on_the_way = spectrum_at(*request.system, request.system->start);
+  watch.progress("trusted trajectory", clock.fraction());
+  find_trusted_state(guide, request, watch);
+  if (guide.trusted.failure.empty()) {
+    watch.progress("spectrum on the way", clock.fraction());
+    guide.on_the_way = spectrum_at(*request.system, guide.trusted.state);
+  }
+  find_limits(guide, request, watch, clock);
+  if (!guide.trusted.failure.empty()) return guide;
+  measure_points(guide, request, watch, clock);
+  mark_pareto_front(guide.points);
+  guide.recommendation = recommend(guide.points, request.wish, guide.trusted.horizon_s);
+  if (request.make_cloth) measure_cloths(guide, request, watch, clock);
+  return guide;
+}
+
+}  // namespace mssim

@@ -1,0 +1,71 @@
+#include "guide/step_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "guide/step_timer.h"
+#include "guide/work_precision.h"
+#include "integrators/integrators.h"
+
+namespace mssim {
+namespace {
+
+/// A step that the explicit methods are near to: the limit of semi-implicit Euler in the same theory.
+double usual_limit(const LimitRequest& request) {
+  const double limit =
+      step_theory(integrators[0], *request.system, request.at_start, request.on_the_way).shortest_s();
+  return std::isfinite(limit) && limit > 0 ? std::min(limit, longest_useful_step_s) : longest_useful_step_s;
+}
+
+StepSearch search_for(const Integrator& integrator, const StepTheory& theory, const LimitRequest& request) {
+  constexpr double depth = 64;  // how far below the usual limit an explicit step is tried
+  const double usual = usual_limit(request), limit = theory.shortest_s();
+  StepSearch search;
+  search.longest_s = longest_useful_step_s;
+  search.shortest_s = usual / depth;
+  search.first_s = is_implicit(integrator) ? search.longest_s
+                   : limit > 0             ? std::min(limit, search.longest_s)
+                                           : usual;
+  search.span_s = stability_span_s;
+  search.stop = request.stop;
+  return search;
+}
+
+/// Shortens runs to what there is time for: some eight of them find a limit.
+void fit(StepSearch& search, Backend& backend, const LimitRequest& request) {
+  constexpr int trial_steps = 5, runs = 8, fewest_steps = 10;
+  const StepTime time = time_steps(backend, *request.system, trial_steps, 0);
+  const double steps = request.seconds / runs / time.seconds;
+  search.least_steps = static_cast<int>(std::clamp<double>(steps, fewest_steps, search.least_steps));
+  search.span_s = std::min(search.span_s, std::max(steps, 10.0 * fewest_steps) * search.first_s);
+}
+
+}  // namespace
+
+StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& request) {
+  StepLimit limit;
+  limit.integrator = &integrator;
+  limit.theory = step_theory(integrator, *request.system, request.at_start, request.on_the_way);
+  StepSearch search = search_for(integrator, limit.theory, request);
+  std::vector<const BackendInfo*> order = request.backends;
+  std::ranges::stable_partition(order, [](const BackendInfo* info) { return info->name == "openmp"; });
+  for (const BackendInfo* info : order) {
+    std::string status;
+    const auto backend =
+        try_to_make(*info, *request.system, integrator, search.first_s, request.execution, status);
+    if (limit.status.empty()) limit.status = status;
+    if (!backend) continue;
+    limit.status.clear();
+    limit.backend = info->name;
+    fit(search, *backend, request);
+    const StepMaker make = [&](double dt_s) {
+      return make_backend(*info, *request.system, integrator, dt_s, request.execution);
+    };
+    limit.measured = largest_stable_step(*request.system, make, search);
+    limit.why = why_they_differ(integrator, limit.measured, limit.theory);
+    break;
+  }
+  return limit;
+}
+
+}  // namespace mssim

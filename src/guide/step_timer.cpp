@@ -1,0 +1,29 @@
+#include "guide/step_timer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <vector>
+
+namespace mssim {
+
+StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s) {
+  using WallClock = std::chrono::steady_clock;
+  constexpr std::size_t few = 5, many = 100;
+  const auto run = [&](int count) {
+    backend.set_state(system.start);
+    const auto start = WallClock::now();
+    backend.step(count);
+    return std::chrono::duration<double>(WallClock::now() - start).count();
+  };
+  run(std::min(steps, 10));  // the first touches memory and starts threads
+  std::vector<double> seconds;
+  double sum = 0;
+  do {
+    seconds.push_back(run(steps));
+    sum += seconds.back();
+  } while (seconds.size() < many && (sum < enough_s || (seconds.size() < few && sum < 10 * enough_s)));
+  return {std::ranges::min(seconds) / steps, static_cast<int>(seconds.size())};
+}
+
+}  // namespace mssim

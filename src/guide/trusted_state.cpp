@@ -1,0 +1,153 @@
+#include "guide/trusted_state.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <memory>
+#include <random>
+
+#include "backends/reference.h"
+#include "bench/verification/blow_up.h"
+#include "bench/verification/deviation.h"
+#include "guide/independent_solver.h"
+#include "integrators/all_integrators.h"
+#include "platform/process_cpus.h"
+#include "text/decimal.h"
+
+namespace mssim {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+double seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+/// The system's start with every free node moved by up to `distance`.
+State neighbour_of(const System& system, double distance_m) {
+  std::mt19937 random(19630301);  // any fixed seed: the same neighbour each time
+  std::uniform_real_distribution<double> component(-distance_m, distance_m);
+  State state = system.start;
+  for (Vec3d& x : state.position) x += Vec3d{component(random), component(random), component(random)};
+  for (const std::uint32_t node : system.pins) state.position[node] = system.start.position[node];
+  return state;
+}
+
+bool is_in_the_air(const System& system, const State& state) {
+  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > system.floor.height; });
+}
+
+/// Two trajectories side by side until one of the conditions of a horizon ends them.
+class HorizonWalk {
+ public:
+  HorizonWalk(const System& system, double dt_s)
+      : system_(system),
+        dt_s_(dt_s),
+        near_(make_reference(system, *find_integrator("rk4"), dt_s)),
+        beside_(make_reference(system, *find_integrator("rk4"), dt_s)) {
+    const State neighbour = neighbour_of(system, 1e-7 * mean_rest_length(system));
+    first_distance_ = position_deviation(system, system.start, neighbour);
+    beside_->set_state(neighbour);
+  }
+
+  /// Goes on by so many steps, unless the horizon ends before; false then.
+  bool go_on(int steps) {
+    near_->step(steps);
+    beside_->step(steps);
+    State state = near_->state();
+    if (first_bad_node(state)) return end_with("the trajectory cannot be followed any longer");
+    if (!is_in_the_air(system_, state)) return end_with("a node meets the floor next");
+    const double parting = position_deviation(system_, state, beside_->state()) / first_distance_;
+    if (!(parting <= allowed_parting)) return end_with("neighbouring trajectories part next");
+    steps_ += steps;
+    parting_ = parting;
+    state_ = std::move(state);
+    return true;
+  }
+
+  int steps() const { return steps_; }
+  double span_s() const { return steps_ * dt_s_; }
+  double parting() const { return parting_; }
+  const State& state() const { return state_; }
+  const std::string& why() const { return why_; }
+
+ private:
+  bool end_with(const std::string& why) {
+    why_ = why;
+    return false;
+  }
+
+  const System& system_;
+  double dt_s_;
+  std::unique_ptr<Backend> near_, beside_;
+  double first_distance_ = 0, parting_ = 0;
+  int steps_ = 0;
+  State state_;
+  std::string why_;
+};
+
+/// Wall seconds of a step of the double-precision rk4.
+double seconds_a_step(const System& system, double dt_s) {
+  constexpr int steps = 3;
+  const auto backend = make_reference(system, *find_integrator("rk4"), dt_s);
+  const auto start = WallClock::now();
+  backend->step(steps);
+  return seconds_since(start) / steps;
+}
+
+}  // namespace
+
+TrustedState trusted_state(const System& system, const TrustedRequest& request) {
+  constexpr int looks = 40;
+  // Two trajectories at once, then half the step, with the other solver beside it.
+  constexpr double runs = 5;
+  TrustedState trusted;
+  const auto start = WallClock::now();
+  const double step_seconds = seconds_a_step(system, request.first_dt_s);
+  const double affordable_s = request.seconds / runs / step_seconds * request.first_dt_s;
+  const double longest_s = std::min(request.longest_s, affordable_s);
+  const int steps_a_look = std::max(1, static_cast<int>(std::ceil(longest_s / looks / request.first_dt_s)));
+  double dt_s = longest_s / looks / steps_a_look;
+  HorizonWalk walk(system, dt_s);
+  int look = 0;
+  while (look < looks && !request.stop() && walk.go_on(steps_a_look)) ++look;
+  if (look == 0) {
+    trusted.failure = walk.why().empty()
+                          ? "it was stopped"
+                          : "there is no horizon to compare over: " + walk.why() + ", within " +
+                                three_digits(longest_s / looks) + " s of the start";
+    return trusted;
+  }
+  trusted.horizon_s = walk.span_s();
+  trusted.parting = walk.parting();
+  trusted.why_there = !walk.why().empty()             ? walk.why()
+                      : longest_s < request.longest_s ? "the time for a longer reference does not suffice"
+                                                      : "no longer horizon is asked for";
+
+  const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
+  const auto out_of_time = [&] { return request.stop() || seconds_since(start) > 2 * request.seconds; };
+  std::future<std::optional<State>> other = std::async(std::launch::async, [&] {
+    return independent_state(system, trusted.horizon_s, 1e-8 * mean_rest_length(system), out_of_time);
+  });
+  State coarse = walk.state();
+  int steps = walk.steps();
+  do {
+    steps *= 2;
+    dt_s /= 2;
+    const auto run_start = WallClock::now();
+    const auto backend = make_reference(system, *find_integrator("rk4"), dt_s);
+    backend->step(steps);
+    trusted.state = backend->state();
+    trusted.own_error = position_deviation(system, coarse, trusted.state) / 15;
+    coarse = trusted.state;
+    if (seconds_since(start) + 2 * seconds_since(run_start) > request.seconds) break;
+  } while (trusted.own_error > request.wanted_error && !request.stop());
+  trusted.dt_s = dt_s;
+  trusted.energy = energy_of(system, trusted.state);
+  if (const std::optional<State> found = other.get())
+    trusted.confirmed = position_deviation(system, *found, trusted.state);
+  return trusted;
+}
+
+}  // namespace mssim

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "model/energy.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// What a trusted state is asked for with.
+struct TrustedRequest {
+  double longest_s = 0;        ///< simulated time that it is to be after the start, at most
+  double first_dt_s = 0;       ///< of rk4, which starts with it; well below its stability limit
+  double seconds = 0;          ///< wall time that it may take, about
+  double wanted_error = 2e-7;  ///< its own, in mean rest lengths: the step is halved until it is reached
+  std::function<bool()> stop = [] { return false; };
+};
+
+/// Neighbouring trajectories may part by this factor within a horizon. Where they part by more, an error at
+/// its end says how chaotic the motion is and not how good a step was: what single precision rounds grows as
+/// much.
+inline constexpr double allowed_parting = 10;
+
+/// Errors that are shown are at least so many times as large as the trusted state's own.
+inline constexpr double trusted_margin = 50;
+
+/// Where the nodes really are a while after the start: what errors are measured against.
+struct TrustedState {
+  double horizon_s = 0;   ///< how long after the start
+  std::string why_there;  ///< what ended the horizon, in words without a full stop
+  double parting = 0;     ///< factor by which a neighbouring trajectory was farther away at its end
+  double dt_s = 0;        ///< of rk4, the last and smallest
+  State state;
+  Energy energy;
+  double own_error = 0;  ///< in mean rest lengths, from the last halving
+  std::optional<double>
+      confirmed;        ///< largest distance from what the independent solver found; none: no time
+  std::string failure;  ///< why there is none; then all else is empty
+
+  /// The larger of the two, which errors that are shown exceed trusted_margin times.
+  double error() const { return confirmed && *confirmed > own_error ? *confirmed : own_error; }
+};
+
+/// Classical Runge-Kutta in double precision (backends/reference.h), twice or more often, each time with half
+/// the step: two results of order 4 differ by 15 times the error of the better one (Hairer, Norsett and
+/// Wanner, Solving Ordinary Differential Equations I, section II.4, Richardson). Then another solver
+/// (independent_solver.h) must come to the same. The horizon ends before a node meets the floor, since after
+/// a bounce results differ by a step's worth of landing time; and before a trajectory that starts 1e-7 mean
+/// rest lengths beside it has parted by more than allowed_parting.
+TrustedState trusted_state(const System& system, const TrustedRequest& request);
+
+}  // namespace mssim

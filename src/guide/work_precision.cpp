@@ -1,0 +1,149 @@
+#include "guide/work_precision.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "backends/reference.h"
+#include "bench/verification/blow_up.h"
+#include "bench/verification/deviation.h"
+#include "guide/energy_criterion.h"
+#include "guide/step_timer.h"
+#include "integrators/all_integrators.h"
+#include "model/energy.h"
+
+namespace mssim {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+double wall_seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+std::optional<double> evaluations_of(const Integrator& integrator, const System& system) {
+  switch (integrator.solver) {
+    case Solver::none:
+      return static_cast<double>(integrator.stage_count);
+    case Solver::local_global:
+      return system.solver.iterations;
+    case Solver::constraints:
+      return system.solver.substeps;
+    case Solver::newton_step:
+    case Solver::newton:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// What the state at the horizon says.
+void take_state(WorkPoint& point, const System& system, const TrustedState& trusted, const State& state) {
+  if (first_bad_node(state)) {
+    point.diverged = true;
+    return;
+  }
+  const Deviation deviation = deviation_from(system, trusted.state, trusted.energy, state);
+  point.position_error = deviation.position;
+  point.energy_error = deviation.energy;
+  point.diverged = !(energy_of(system, state).total() <= energy_bound(system, trusted.horizon_s));
+  point.beyond_trust = deviation.position < trusted_margin * trusted.error();
+}
+
+}  // namespace
+
+const State* ExactBackwardEuler::after(int steps) {
+  const auto known = states_.find(steps);
+  if (known != states_.end()) return known->second ? &*known->second : nullptr;
+  std::optional<State>& state = states_[steps];
+  if (steps * step_seconds_ > seconds_left_) return nullptr;
+  const auto start = WallClock::now();
+  try {
+    const auto backend =
+        make_reference(system_, *find_integrator("newton-euler"), trusted_.horizon_s / steps);
+    backend->step(steps);
+    State reached = backend->state();
+    if (!first_bad_node(reached)) state = std::move(reached);
+  } catch (const Unsupported&) {
+    seconds_left_ = 0;
+    step_seconds_ = 1;
+  }
+  step_seconds_ = std::max(step_seconds_, wall_seconds_since(start) / steps);
+  seconds_left_ -= wall_seconds_since(start);
+  return state ? &*state : nullptr;
+}
+
+int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s) {
+  const int fewest = std::max(1, static_cast<int>(std::ceil(horizon_s / longest_useful_step_s - 1e-9)));
+  if (limit.stable_s <= 0) return fewest;
+  // A twentieth below the limit: it was found to a fiftieth, by other runs than that over the horizon.
+  const int stable = std::max(1, static_cast<int>(std::ceil(horizon_s / (0.95 * limit.stable_s))));
+  if (!is_implicit(integrator)) return std::max(fewest, (stable + 1) / 2);
+  // Doubled from the same number for all of them, so that they share exact backward Euler.
+  int steps = fewest;
+  while (limit.unstable_s > 0 && steps * 2 <= stable) steps *= 2;
+  return steps;
+}
+
+WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit,
+                     GuidedMethod& method, const ExecutionOptions& execution, ExactBackwardEuler& exact,
+                     double wanted_error)
+    : system_(system),
+      trusted_(trusted),
+      method_(method),
+      execution_(execution),
+      exact_(exact),
+      wanted_error_(wanted_error),
+      steps_(first_steps(*method.integrator, limit.measured, trusted.horizon_s)) {
+  if (!limit.status.empty()) {
+    method_.status = limit.status;
+    has_next_ = false;
+  } else if (limit.measured.stable_s == 0) {
+    method_.status = "no step that was tried is stable";
+    has_next_ = false;
+  }
+}
+
+double WorkCurve::next_seconds() const { return 2 * last_seconds_; }
+
+bool WorkCurve::goes_on_after(const WorkPoint& point) const {
+  constexpr int fewest = 4, most = 11;
+  if (points_ >= most) return false;
+  if (points_ < fewest || !point.counts()) return !point.beyond_trust;
+  // Rounding: half the step is as far off.
+  const bool falls = !last_error_ || *point.position_error < 0.9 * *last_error_;
+  return falls && *point.position_error > wanted_error_ / 4;
+}
+
+std::optional<WorkPoint> WorkCurve::next() {
+  constexpr double enough_s = 0.03;
+  const auto start = WallClock::now();
+  WorkPoint point;
+  point.integrator = method_.integrator;
+  point.backend = method_.backend->name;
+  point.steps = steps_;
+  point.dt_s = trusted_.horizon_s / steps_;
+  has_next_ = false;
+  const auto backend =
+      try_to_make(*method_.backend, system_, *method_.integrator, point.dt_s, execution_, method_.status);
+  if (!backend) return std::nullopt;
+  const StepTime time = time_steps(*backend, system_, steps_, enough_s);
+  point.seconds_a_step = time.seconds;
+  point.samples = time.runs;
+  point.evaluations = evaluations_of(*method_.integrator, system_);
+  const State state = backend->state();
+  take_state(point, system_, trusted_, state);
+  point.note = backend->note();
+  if (is_implicit(*method_.integrator) && !point.diverged)
+    if (const State* exact = exact_.after(steps_)) {
+      point.solver_error = position_deviation(system_, *exact, state);
+      point.step_error = position_deviation(system_, trusted_.state, *exact);
+    }
+  ++points_;
+  has_next_ = goes_on_after(point);
+  last_error_ = point.counts() ? point.position_error : std::nullopt;
+  last_seconds_ = wall_seconds_since(start);
+  steps_ *= 2;
+  return point;
+}
+
+}  // namespace mssim
