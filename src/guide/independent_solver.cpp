@@ -88,6 +88,8 @@ std::optional<State> independent_state(const System& system, double span_s, doub
     state.position[node] = vector_at(numbers, node);
     state.velocity[node] = vector_at(numbers, nodes + node);
   }
+  for (const std::uint32_t pin : system.pins)  // which extrapolation rounds
+    state.position[pin] = system.start.position[pin];
   return state;
 }
 

@@ -44,8 +44,9 @@ class HorizonWalk {
   HorizonWalk(const System& system, double dt_s)
       : system_(system),
         dt_s_(dt_s),
-        near_(make_reference(system, *find_integrator("rk4"), dt_s)),
-        beside_(make_reference(system, *find_integrator("rk4"), dt_s)) {
+        floorless_(without_floor(system)),
+        near_(make_reference(floorless_, *find_integrator("rk4"), dt_s)),
+        beside_(make_reference(floorless_, *find_integrator("rk4"), dt_s)) {
     const State neighbour = neighbour_of(system, 1e-7 * mean_rest_length(system));
     first_distance_ = position_deviation(system, system.start, neighbour);
     beside_->set_state(neighbour);
@@ -80,6 +81,7 @@ class HorizonWalk {
 
   const System& system_;
   double dt_s_;
+  System floorless_;  // who meets the floor stays below it, and is found at the next look
   std::unique_ptr<Backend> near_, beside_;
   double first_distance_ = 0, parting_ = 0;
   int steps_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
 
 namespace mssim {
 
@@ -17,6 +18,11 @@ double mean_rest_length(const System& system) {
   double sum = 0;
   for (const Spring& spring : system.springs) sum += spring.rest_length;
   return system.springs.empty() ? 0 : sum / static_cast<double>(system.springs.size());
+}
+
+System without_floor(System system) {
+  system.floor.height = std::numeric_limits<double>::lowest();
+  return system;
 }
 
 void round_to_single(double& value) {

@@ -59,6 +59,9 @@ std::optional<double> uniform_node_mass(const System& system);
 /// Mean rest length over all springs, m: the unit of position errors.
 double mean_rest_length(const System& system);
 
+/// The same system with the floor out of reach.
+System without_floor(System system);
+
 /// Rounds to single precision.
 void round_to_single(double& value);
 

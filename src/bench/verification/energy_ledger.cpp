@@ -1,21 +1,11 @@
 #include "bench/verification/energy_ledger.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "backends/reference.h"
 #include "integrators/host_stages.h"
 
 namespace mssim {
-namespace {
-
-System without_floor(System system) {
-  system.floor.height = std::numeric_limits<double>::lowest();
-  return system;
-}
-
-}  // namespace
-
 EnergyLedger::EnergyLedger(const System& system, const Integrator& integrator, double dt_s)
     : system_(system),
       floorless_(without_floor(system)),

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# mssim guide: a small run prints a recommendation of three sentences and its table, and writes a folder; what is asked for wrongly is
+# named in one sentence.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+
+# A small cloth of the committed family.
+cat >"$work/tiny.json" <<'SCENE'
+{"kind": "cloth", "description": "Tiny", "dt_s": 5e-5, "gravity_m_per_s2": 9.81, "viscous_damping_per_s": 0.1,
+ "floor": {"height_m": 0, "restitution": 0.3, "friction": 0.4},
+ "cloth": {"rows": 8, "columns": 8, "spacing_m": 0.01, "areal_density_kg_per_m2": 0.2, "ceiling_height_m": 0.5,
+  "pins": {"row": 0, "every_columns": 7}, "ripple": {"height_m": 0.0005, "wavelength_m": 0.09, "speed_m_per_s": 0.2},
+  "springs": {"structural": {"stiffness_n_per_m": 200, "damping_n_s_per_m": 0.01},
+   "shear": {"stiffness_n_per_m": 60, "damping_n_s_per_m": 0.003}, "bending": {"stiffness_n_per_m": 8, "damping_n_s_per_m": 0.0004}}}}
+SCENE
+tiny=(guide --scene "$work/tiny.json" --backend serial --integrator 'semi-euler,rk4' --threads 1 --horizon 0.01 --time-budget 8)
+
+succeed "${tiny[@]}" --error 1e-2 --out "$work/folder"
+grep -q '^Take \(semi-euler\|rk4\) on serial with a step of ' "$work/folder/guide.md" || fail "the page recommends nothing: $(head -20 "$work/folder/guide.md")"
+for file in guide.csv guide.md guide-steps.csv guide-sizes.csv guide-frames.csv provenance.json; do
+  [ -s "$work/folder/$file" ] || fail "there is no $file"
+done
+head -1 "$work/folder/guide.csv" | tr -d '\r' >"$work/columns"
+echo scene,nodes,springs_unique,integrator,backend,dt_s,steps,horizon_s,position_error,energy_error,solver_error,step_error,reference_error,ms_per_step,wall_s_per_s,force_evaluations_per_s,samples,diverged,on_front,status,note >"$work/expected"
+cmp "$work/columns" "$work/expected" || fail "guide.csv has other columns: $(cat "$work/columns")"
+column_of "$work/folder/guide.csv" integrator | sort -u | tr '\n' ' ' >"$work/integrators"
+[ "$(cat "$work/integrators")" = 'rk4 semi-euler ' ] || fail "integrators: $(cat "$work/integrators")"
+# Each curve begins with a step that diverges, and the front is not empty.
+[ "$(column_of "$work/folder/guide.csv" diverged | grep -c true)" -ge 2 ] || fail "no point diverged"
+[ "$(column_of "$work/folder/guide.csv" on_front | grep -c true)" -ge 1 ] || fail "there is no front"
+# Both limits are those of theory, on this cloth to a twentieth.
+awk -F, 'NR > 1 { ratio = $4 / $6; if (ratio < 0.95 || ratio > 1.05) print }' "$work/folder/guide-steps.csv" >"$work/off"
+[ ! -s "$work/off" ] || fail "limits differ from theory: $(cat "$work/off")"
+
+expect 2 'folder already holds results: give another --out, or --overwrite' "${tiny[@]}" --out "$work/folder"
+succeed "${tiny[@]}" --out "$work/folder" --overwrite --error 1e-9
+grep -q '^Nothing that was measured keeps the error within 1e-09 of a mean rest length' "$work/folder/guide.md" || fail "an error that nothing keeps: $(head -9 "$work/folder/guide.md")"
+
+expect 2 '^mssim: --scene NAME|FILE,... is missing; see mssim guide --help$' guide
+expect 2 'jeans1k is a garment' guide --scene jeans1k
+expect 2 'unknown integrator "rk5"' guide --scene cloth2500 --integrator rk5
+expect 2 'unknown backend "opnemp" (did you mean openmp?)' guide --scene cloth2500 --backend opnemp
+expect 2 '^mssim: --error: "0" is not a positive number' guide --scene cloth2500 --error 0
+expect 2 '^mssim: --fps: "x" is not a number from 1 to 10000' guide --scene cloth2500 --fps x
+expect 2 '^mssim: --time-budget: "-1" is not a positive number' guide --scene cloth2500 --time-budget -1
+expect 2 '^mssim: --overwrite needs the folder of an earlier run' guide --scene cloth2500 --overwrite
+
+# The suite is the same for many scenes.
+succeed bench --suite guide --dry-run --time-budget 1080
+[ "$(grep -c '^\(cloth\|bodies\)[0-9].* 90$' "$work/out")" -eq 12 ] || fail "--suite guide: $(cat "$work/out")"
+expect 2 '^mssim: --rounds cannot be used with --suite guide: leave it out$' bench --suite guide --rounds 3
+[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }
