@@ -17,9 +17,10 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 
-/// Shares of the wall time up to the end of each part. A part that ends early leaves its time to the next.
-constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.45, until_points = 0.8,
-                 share_of_exact_steps = 0.1;
+/// Shares of the wall time. A part that ends early leaves its time to the next, and one that takes longer
+/// takes none of theirs: on a busy machine the whole then takes longer.
+constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.45, share_of_points = 0.35,
+                 share_of_sizes = 0.2, share_of_exact_steps = 0.1;
 
 /// How much of a guide's time is over.
 class GuideClock {
@@ -28,7 +29,10 @@ class GuideClock {
   double spent() const { return std::chrono::duration<double>(WallClock::now() - start_).count(); }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
   bool is_past(double share) const { return spent() > share * seconds_; }
-  double left_until(double share) const { return share * seconds_ - spent(); }
+  /// Seconds after the guide's start at which a part ends that begins now: it leaves `later` to what follows.
+  double end_of_part(double share, double later) const {
+    return std::max(spent() + share * seconds_, (1 - later) * seconds_);
+  }
 
  private:
   double seconds_;
@@ -70,6 +74,7 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
 /// One point of every curve by turns, so that all are about as fine when the time ends.
 void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
                     const GuideClock& clock) {
+  const double end = clock.end_of_part(share_of_points, request.make_cloth ? share_of_sizes : 0);
   ExactBackwardEuler exact(*request.system, guide.trusted, share_of_exact_steps * request.seconds);
   std::vector<WorkCurve> curves;
   guide.methods.reserve(request.integrators.size() * request.backends.size());
@@ -84,7 +89,7 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
     for (std::size_t i = 0; i < curves.size(); ++i) {
       if (!curves[i].has_next()) continue;
       GuidedMethod& method = guide.methods[i];
-      if (watch.stop() || clock.left_until(until_points) < curves[i].next_seconds()) {
+      if (watch.stop() || clock.spent() + curves[i].next_seconds() > end) {
         if (method.status.empty()) method.status = "no time was left for smaller steps";
         continue;
       }
@@ -129,10 +134,11 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
     }
     guide.sizes.push_back(curve);
   }
+  const double end = clock.end_of_part(share_of_sizes, 0);
   measure_sizes(guide.sizes, request.make_cloth, request.execution,
                 [&](const std::string& activity, double /*done*/) {
                   watch.progress("cloths of " + activity, clock.fraction());
-                  return !watch.stop() && !clock.is_past(1);
+                  return !watch.stop() && clock.spent() < end;
                 });
 }
 

@@ -33,7 +33,7 @@ StepSearch search_for(const Integrator& integrator, const StepTheory& theory, co
 
 /// Shortens runs to what there is time for: some eight of them find a limit.
 void fit(StepSearch& search, Backend& backend, const LimitRequest& request) {
-  constexpr int trial_steps = 5, runs = 8, fewest_steps = 10;
+  constexpr int trial_steps = 2, runs = 8, fewest_steps = 10;
   const StepTime time = time_steps(backend, *request.system, trial_steps, 0);
   const double steps = request.seconds / runs / time.seconds;
   search.least_steps = static_cast<int>(std::clamp<double>(steps, fewest_steps, search.least_steps));

@@ -25,6 +25,7 @@ StepTheory step_theory(const Integrator& integrator, const System& system, const
 
 std::string why_they_differ(const Integrator& integrator, const StableStep& measured,
                             const StepTheory& theory) {
+  if (measured.stable_s == 0 && !measured.finished) return "no time was left to find the limit";
   if (is_implicit(integrator)) {
     if (measured.unstable_s == 0) return {};
     return "backward Euler damps every linear mode at every step; a solver that stops before it has "

@@ -98,7 +98,8 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
     method_.status = limit.status;
     has_next_ = false;
   } else if (limit.measured.stable_s == 0) {
-    method_.status = "no step that was tried is stable";
+    method_.status = limit.measured.finished ? "no step that was tried is stable"
+                                             : "no time was left to find a step that is stable";
     has_next_ = false;
   }
 }
