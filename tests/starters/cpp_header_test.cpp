@@ -9,6 +9,7 @@
 #include "integrators/host_stages.h"
 #include "integrators/integrators.h"
 #include "src/starters/cpp/mssim_backend.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"
 #include "tests/support/solid_system.h"
@@ -67,8 +68,8 @@ mssim_backend::Method method_of(const Integrator& integrator) {
 }
 
 /// Steps both from the start, and expects the same but for roundings.
-void expect_same_steps(const System& system, double dt_s, int steps) {
-  const mssim_backend::System copy = system_of(system, dt_s);
+void expect_same_steps(const System& system, int steps) {
+  mssim_backend::System copy = system_of(system, backend_dt_s);
   const auto acceleration = [&copy](const auto& x, const auto& v, auto& a) {
     for (std::size_t i = 0; i < x.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) a[i][k] = copy.gravity[k] - copy.viscous_damping * v[i][k];
@@ -90,7 +91,8 @@ void expect_same_steps(const System& system, double dt_s, int steps) {
   };
   for (const Integrator& integrator : integrators) {
     SCOPED_TRACE(integrator.name);
-    const std::unique_ptr<Backend> reference = make_reference(system, integrator, dt_s);
+    copy.dt = backend_dt_of(integrator);
+    const std::unique_ptr<Backend> reference = make_reference(system, integrator, copy.dt);
     reference->step(steps);
     const mssim_backend::Method method = method_of(integrator);
     const auto backend = mssim_backend::stepped_by(copy, method, acceleration);
@@ -103,18 +105,17 @@ void expect_same_steps(const System& system, double dt_s, int steps) {
   }
 }
 
-TEST(CppHeader, StepsAPinnedClothAsTheReferenceDoes) { expect_same_steps(cloth_system(12, 9), 1e-4, 200); }
+TEST(CppHeader, StepsAPinnedClothAsTheReferenceDoes) { expect_same_steps(cloth_system(12, 9), 200); }
 
 TEST(CppHeader, StepsABodyThroughTheFloorAsTheReferenceDoes) {
   const System block = solid_block(4, 4, 4, 0.001);
-  const double dt_s = 1e-4;
   const int steps = 200;
-  const std::unique_ptr<Backend> reference = make_reference(block, integrators[0], dt_s);
+  const std::unique_ptr<Backend> reference = make_reference(block, integrators[0], backend_dt_s);
   reference->step(steps);
   bool stands = false;
   for (const Vec3d& x : reference->state().position) stands |= x.y == block.floor.height;
   ASSERT_TRUE(stands);  // or the floor is not tested
-  expect_same_steps(block, dt_s, steps);
+  expect_same_steps(block, steps);
 }
 
 TEST(CppHeader, LandsAsTheFloorsLawSays) {

@@ -91,6 +91,10 @@ TEST_P(EnergyLedgerOf, BalancesAClothThatFallsOnTheFloorAndSlides) {
   for (Vec3d& v : system.start.velocity) v += {0.5, 0, 0.25};
   const Balance balance = balance_of(system, system, integrator(), 6000);
   EXPECT_LT(std::abs(balance.imbalance), cloth_tolerance);
+  if (integrator().name == "explicit-euler") {
+    EXPECT_LT(balance.losses.integration, -1) << "it feeds more in than the fall gave, and the ledger knows";
+    return;
+  }
   // Measured: 0.002 for the second order, 0.24 for the frozen ones.
   EXPECT_LT(std::abs(balance.losses.integration), integrator().order == 1 ? 0.5 : 5e-3);
   EXPECT_GT(balance.losses.friction, 0.1);

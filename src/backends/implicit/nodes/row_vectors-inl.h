@@ -20,10 +20,10 @@ namespace mssim::HWY_NAMESPACE {
 
 /// What every vector needs of the cloth. A copy, because a vector's store may change anything that has an
 /// address elsewhere, as far as the compiler knows.
-struct RowConstants {
+struct WalkedRows {
   SpringLanes spring[3];
   std::ptrdiff_t pitch;
-  HWY_INLINE explicit RowConstants(const NodeRows& nodes)
+  HWY_INLINE explicit WalkedRows(const NodeRows& nodes)
       : spring{SpringLanes(nodes.springs[structural]), SpringLanes(nodes.springs[shear]),
                SpringLanes(nodes.springs[bending])},
         pitch(static_cast<std::ptrdiff_t>(nodes.layout.pitch)) {}
@@ -60,7 +60,7 @@ struct RowSprings {
 /// A vector of nodes in a row. Edge: some of its springs or nodes do not exist, or some nodes are pinned.
 template <bool edge>
 struct RowVector {
-  const RowConstants& constants;
+  const WalkedRows& constants;
   std::conditional_t<edge, EdgeVector, InnerVector> place;
   std::conditional_t<edge, Mask, EveryLane> free;  ///< nodes that move
   std::ptrdiff_t offset;                           ///< of the first node's x in a field
@@ -109,7 +109,7 @@ struct RowVector {
 
 /// The vectors of a cloth, by row and column.
 struct RowWalk {
-  RowConstants constants;
+  WalkedRows constants;
   std::ptrdiff_t node_row, slope_row, margin;  ///< floats
   std::size_t rows, columns, row_vectors;
 
