@@ -17,6 +17,7 @@
 #include "backends/reference.h"
 #include "integrators/all_integrators.h"
 #include "platform/data_folder.h"
+#include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"
 #include "tests/support/solid_system.h"
@@ -26,8 +27,6 @@ namespace mssim {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double dt_s = 1e-4;
 
 /// tests/support/own_backend.cpp, with what it does wrong.
 BackendProgram program_that(const std::string& mistake) {
@@ -43,7 +42,8 @@ BackendProgram program_that(const std::string& mistake) {
 
 std::unique_ptr<Backend> make(const BackendProgram& program, const System& system,
                               const Integrator& integrator = integrators.front(), int threads = 2) {
-  return make_process_backend(program, system, integrator, dt_s, {.threads = threads, .scene = "made up"});
+  return make_process_backend(program, system, integrator, backend_dt_of(integrator),
+                              {.threads = threads, .scene = "made up"});
 }
 
 /// What the program's failure says, where some steps of a small cloth fail.
@@ -79,7 +79,7 @@ TEST_P(OwnProgram, AgreesWithTheReference) {
   const Integrator& integrator = *find_integrator(GetParam());
   for (const System& system : {cloth_system(6, 9), solid_block(3, 3, 3, 0.01)}) {
     const auto backend = make(program, system, integrator);
-    const auto reference = make_reference(system, integrator, dt_s);
+    const auto reference = make_reference(system, integrator, backend_dt_of(integrator));
     for (Backend* one : {backend.get(), reference.get()}) {
       one->set_state(system.start);
       one->step(3);
