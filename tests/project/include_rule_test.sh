@@ -63,7 +63,8 @@ garment/bench         text statistics integrators model backends/interface garme
 bench                 text platform statistics backends garment/stepping bench/roofline bench/verification bench/job garment/bench
 guide                 text statistics platform laws integrators model backends/interface bench/verification backends
 
-output/tables         text statistics platform integrators backends bench/machine bench/results guide
+output/tables         text statistics platform bench/machine bench/results
+output/guide          text integrators backends guide output/tables
 garment/output        text garment bench/results hdf5 output/tables
 output/traces         text platform geometry model hdf5 garment/output
 output/pictures       platform geometry render picture model scene/fields garment output/traces
@@ -76,7 +77,7 @@ commands/shared       text platform geometry integrators model mesh garment/body
 commands/run          platform model scene garment/stepping garment/fitting backends/interface backends bench bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/export       text platform output/exports output/traces commands/arguments commands/shared
-commands/guide        text platform integrators scene/spec scene backends/interface backends bench/machine guide output/tables output/folders commands/arguments commands/shared
+commands/guide        text platform integrators scene/spec scene backends/interface backends bench/machine guide output/tables output/guide output/folders commands/arguments commands/shared
 commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared commands/guide
 commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/arguments commands/shared commands/bench
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench

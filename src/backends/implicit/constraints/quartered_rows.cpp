@@ -9,11 +9,11 @@
 namespace mssim {
 namespace {
 
-/// A cloth that lies in a core's second-level cache needs no more than one small step a pass; a larger one
-/// takes so many. Measured on Zen 4, on which a small step of 350,000 nodes took 2.2 times as long as one of
-/// semi-implicit Euler with one a pass, 1.9 times with two, and 1.7 times with five or ten; of 40,000
-/// nodes 2.4 times with any number. More leave more to be done between the threads, which only some of them
-/// do.
+/// A cloth of so many bytes or fewer, which the caches nearest to the processors hold, needs no more than one
+/// small step a pass; a larger one takes so many. Measured on Zen 4, on which a small step of 350,000 nodes
+/// took 2.2 times as long as one of semi-implicit Euler with one a pass, 1.9 times with two, and 1.7 times
+/// with five or ten; of 40,000 nodes 2.4 times with any number. More leave more to be done between the
+/// threads, which only some of them do.
 constexpr std::size_t cached_bytes = std::size_t{4} << 20, most_depth = 4;
 
 /// An odd number of vectors: rows and components whose distance is a power of two share a few sets of the

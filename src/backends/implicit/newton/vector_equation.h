@@ -15,10 +15,10 @@
 
 namespace mssim {
 
-/// Slopes of so many bytes are kept, where a product with A then takes half the time. More would come from
-/// further away than it takes to compute them again, from a tenth of the memory: on two Zen 4 cores with 1
-/// MiB of second-level cache each, that is as fast for 40,000 nodes of a cloth (4 MiB), and takes 0.6 of the
-/// time for 350,000 (33 MiB) and half of it for 38,233 of bodies (8 MiB).
+/// Slopes of so many bytes are kept. More would come from further away than it takes to compute them again,
+/// from a tenth of the memory. Measured on two Zen 4 cores beside other programs, a product with slopes that
+/// are found again took 2 times as long for 2,500 nodes of a cloth, 0.6 of the time for 350,000 and half of
+/// it for 38,233 of bodies; for 40,000 of a cloth (4 MiB) now one, now the other was faster.
 inline constexpr std::size_t most_slope_bytes = std::size_t{4} << 20;
 
 /// The equation of newton_method.h as the vector code holds it, for Nodes a NodeRows or NodeSlices.

@@ -1,11 +1,11 @@
-#include "output/tables/guide_page.h"
+#include "output/guide/guide_page.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
 #include <map>
 
-#include "output/tables/guide_table.h"
+#include "output/guide/guide_table.h"
 #include "text/counted.h"
 
 namespace mssim {

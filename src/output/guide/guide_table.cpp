@@ -1,11 +1,11 @@
-#include "output/tables/guide_table.h"
+#include "output/guide/guide_table.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
-#include "output/tables/guide_page.h"
+#include "output/guide/guide_page.h"
 #include "text/decimal.h"
 
 namespace mssim {
