@@ -10,6 +10,10 @@ def semi_euler(x, v, dt, a):
     return x + dt * v, v
 
 
+def explicit_euler(x, v, dt, a):
+    return x + dt * v, v + dt * a(x, v)
+
+
 def midpoint(x, v, dt, a):
     x_half, v_half = x + dt / 2 * v, v + dt / 2 * a(x, v)
     return x + dt * v_half, v + dt * a(x_half, v_half)
@@ -34,6 +38,8 @@ formulas = {
     "rk4": rk4,
     "midpoint-frozen": held(midpoint),
     "rk4-frozen": held(rk4),
+    "explicit-euler": explicit_euler,
+    "verlet": semi_euler,  # whose states mssim moves half a step ahead
 }
 
 
