@@ -15,8 +15,9 @@ struct StepLimit {
   std::string backend;  ///< that the limit was found with
   StableStep measured;
   StepTheory theory;
-  std::string why;     ///< why the two differ, or nothing
-  std::string status;  ///< why nothing was measured; empty where it was
+  bool floor_is_why = false;  ///< the shortest unstable step is stable where there is no floor
+  std::string why;            ///< why the two differ, or nothing
+  std::string status;         ///< why nothing was measured; empty where it was
 };
 
 /// An integrator on a backend.

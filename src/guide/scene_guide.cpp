@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -55,23 +56,30 @@ void find_trusted_state(SceneGuide& guide, const GuideRequest& request, const Gu
 
 void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
                  const GuideClock& clock) {
-  LimitRequest limits{
-      .system = request.system,
-      .backends = request.backends,
-      .execution = request.execution,
-      .at_start = guide.at_start,
-      .on_the_way = guide.on_the_way,
-      .seconds = share_of_limits * request.seconds / static_cast<double>(request.integrators.size()),
-      .stop = {}};
-  limits.stop = [&] { return watch.stop() || clock.is_past(until_limits); };
-  for (const Integrator* integrator : request.integrators) {
-    watch.progress("largest stable step: " + std::string(integrator->name), clock.fraction());
+  constexpr double patience = 1.5;  // shares that an integrator may take until it has a stable step
+  LimitRequest limits{.system = request.system,
+                      .backends = request.backends,
+                      .execution = request.execution,
+                      .at_start = guide.at_start,
+                      .on_the_way = guide.on_the_way,
+                      .seconds = 0,
+                      .stop = {}};
+  const double end = clock.end_of_part(share_of_limits, 1 - until_limits);
+  for (std::size_t i = 0; i < request.integrators.size(); ++i) {
+    const Integrator& integrator = *request.integrators[i];
+    watch.progress("largest stable step: " + std::string(integrator.name), clock.fraction());
     if (watch.stop()) return;
-    guide.limits.push_back(find_step_limit(*integrator, limits));
+    const double begin = clock.spent();
+    limits.seconds = std::max(0.0, end - begin) / static_cast<double>(request.integrators.size() - i);
+    limits.stop = [&, last = begin + patience * limits.seconds] {
+      return watch.stop() || clock.spent() > std::min(last, end);
+    };
+    guide.limits.push_back(find_step_limit(integrator, limits));
   }
 }
 
-/// One point of every curve by turns, so that all are about as fine when the time ends.
+/// The point that takes the least time goes first: fast methods reach the wished error whatever the slow ones
+/// take, and all curves have begun before one goes on.
 void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
                     const GuideClock& clock) {
   const double end = clock.end_of_part(share_of_points, request.make_cloth ? share_of_sizes : 0);
@@ -84,21 +92,20 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
       curves.emplace_back(*request.system, guide.trusted, limit, method, request.execution, exact,
                           request.wish.error);
     }
-  for (bool any = true; any;) {
-    any = false;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      if (!curves[i].has_next()) continue;
-      GuidedMethod& method = guide.methods[i];
-      if (watch.stop() || clock.spent() + curves[i].next_seconds() > end) {
-        if (method.status.empty()) method.status = "no time was left for smaller steps";
-        continue;
-      }
-      watch.progress("work and precision: " + std::string(method.integrator->name) + ' ' +
-                         std::string(method.backend->name),
-                     clock.fraction());
-      if (const auto point = curves[i].next()) guide.points.push_back(*point);
-      any = true;
+  while (true) {
+    const auto next = std::ranges::min_element(curves, {}, [](const WorkCurve& curve) {
+      return curve.has_next() ? curve.next_seconds() : std::numeric_limits<double>::infinity();
+    });
+    if (next == curves.end() || !next->has_next()) break;
+    GuidedMethod& method = guide.methods[static_cast<std::size_t>(next - curves.begin())];
+    if (watch.stop() || clock.spent() + next->next_seconds() > end) {
+      next->end("no time was left for smaller steps");
+      continue;
     }
+    watch.progress("work and precision: " + std::string(method.integrator->name) + ' ' +
+                       std::string(method.backend->name),
+                   clock.fraction());
+    if (const auto point = next->next()) guide.points.push_back(*point);
   }
   const auto place = [&](const WorkPoint& point) {
     return std::ranges::find_if(guide.methods, [&](const GuidedMethod& method) {
@@ -117,7 +124,7 @@ const WorkPoint* cheapest_point(const SceneGuide& guide, const GuidedMethod& met
   const WorkPoint* cheapest = nullptr;
   for (const WorkPoint& point : guide.points)
     if (point.integrator == method.integrator && point.backend == method.backend->name && !point.diverged &&
-        (cheapest == nullptr || rank(point) < rank(*cheapest)))
+        point.within_limit && (cheapest == nullptr || rank(point) < rank(*cheapest)))
       cheapest = &point;
   return cheapest;
 }

@@ -7,21 +7,25 @@
 
 namespace mssim {
 
+bool is_stable(Backend& backend, const System& system, double dt_s, const StepSearch& search) {
+  const int steps = std::max(search.least_steps, static_cast<int>(std::ceil(search.span_s / dt_s)));
+  return stays_below(backend, system, steps, energy_bound(system, steps * dt_s));
+}
+
 StableStep largest_stable_step(const System& system, const StepMaker& make, const StepSearch& search) {
-  constexpr double stride = 1.5;
+  constexpr double first_stride = 1.5;
   StableStep found;
   found.span_s = search.span_s;
-  const auto is_stable = [&](double dt_s) {
-    const int steps = std::max(search.least_steps, static_cast<int>(std::ceil(search.span_s / dt_s)));
+  const auto try_step = [&](double dt_s) {
     ++found.runs;
-    const bool stable = stays_below(*make(dt_s), system, steps, energy_bound(system, steps * dt_s));
+    const bool stable = is_stable(*make(dt_s), system, dt_s, search);
     (stable ? found.stable_s : found.unstable_s) = dt_s;
     return stable;
   };
   double dt_s = std::clamp(search.first_s, search.shortest_s, search.longest_s);
-  const bool first_is_stable = is_stable(dt_s);
+  const bool first_is_stable = try_step(dt_s);
   // Away from the first until both kinds are known.
-  while (found.stable_s == 0 || found.unstable_s == 0) {
+  for (double stride = first_stride; found.stable_s == 0 || found.unstable_s == 0; stride *= first_stride) {
     const double next =
         std::clamp(first_is_stable ? dt_s * stride : dt_s / stride, search.shortest_s, search.longest_s);
     if (next == dt_s) return found;
@@ -30,14 +34,14 @@ StableStep largest_stable_step(const System& system, const StepMaker& make, cons
       return found;
     }
     dt_s = next;
-    is_stable(dt_s);
+    try_step(dt_s);
   }
   while (found.unstable_s > step_resolution * found.stable_s) {
-    if (search.stop()) {
+    if (search.stop() || search.hurry()) {
       found.finished = false;
       break;
     }
-    is_stable(std::sqrt(found.stable_s * found.unstable_s));
+    try_step(std::sqrt(found.stable_s * found.unstable_s));
   }
   return found;
 }

@@ -1,6 +1,7 @@
 #include "guide/step_limits.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "guide/step_timer.h"
@@ -9,6 +10,8 @@
 
 namespace mssim {
 namespace {
+
+using WallClock = std::chrono::steady_clock;
 
 /// A step that the explicit methods are near to: the limit of semi-implicit Euler in the same theory.
 double usual_limit(const LimitRequest& request) {
@@ -28,13 +31,16 @@ StepSearch search_for(const Integrator& integrator, const StepTheory& theory, co
                                            : usual;
   search.span_s = stability_span_s;
   search.stop = request.stop;
+  const auto end = WallClock::now() + std::chrono::duration<double>(request.seconds);
+  search.hurry = [end] { return WallClock::now() > end; };
   return search;
 }
 
 /// Shortens runs to what there is time for: some eight of them find a limit.
 void fit(StepSearch& search, Backend& backend, const LimitRequest& request) {
-  constexpr int trial_steps = 2, runs = 8, fewest_steps = 10;
-  const StepTime time = time_steps(backend, *request.system, trial_steps, 0);
+  constexpr int trial_steps = 5, runs = 8, fewest_steps = 10;
+  constexpr double enough_s = 0.01;
+  const StepTime time = time_steps(backend, *request.system, trial_steps, enough_s);
   const double steps = request.seconds / runs / time.seconds;
   search.least_steps = static_cast<int>(std::clamp<double>(steps, fewest_steps, search.least_steps));
   search.span_s = std::min(search.span_s, std::max(steps, 10.0 * fewest_steps) * search.first_s);
@@ -62,7 +68,13 @@ StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& requ
       return make_backend(*info, *request.system, integrator, dt_s, request.execution);
     };
     limit.measured = largest_stable_step(*request.system, make, search);
-    limit.why = why_they_differ(integrator, limit.measured, limit.theory);
+    if (is_shorter_than_theory(limit.measured, limit.theory)) {
+      const System in_the_air = without_floor(*request.system);
+      const double dt_s = limit.measured.unstable_s;
+      limit.floor_is_why = is_stable(*make_backend(*info, in_the_air, integrator, dt_s, request.execution),
+                                     in_the_air, dt_s, search);
+    }
+    limit.why = why_they_differ(integrator, limit.measured, limit.theory, limit.floor_is_why);
     break;
   }
   return limit;

@@ -14,7 +14,7 @@ struct LimitRequest {
   std::vector<const BackendInfo*> backends;
   ExecutionOptions execution;
   Spectrum at_start, on_the_way;
-  double seconds = 0;  ///< wall time for an integrator, about
+  double seconds = 0;  ///< wall time for an integrator, about; what goes beyond has found no stable step yet
   std::function<bool()> stop;
 };
 

@@ -23,8 +23,12 @@ StepTheory step_theory(const Integrator& integrator, const System& system, const
                        const Spectrum& reached);
 
 /// A sentence without a full stop that says why the measured step and theory differ; empty where they
-/// are within 10 % of each other.
+/// are within 10 % of each other. `floor_is_why`: where the measured one is shorter, only the floor makes it
+/// so.
 std::string why_they_differ(const Integrator& integrator, const StableStep& measured,
-                            const StepTheory& theory);
+                            const StepTheory& theory, bool floor_is_why);
+
+/// Whether the two differ by so much that the page says why, and theory has the longer one.
+bool is_shorter_than_theory(const StableStep& measured, const StepTheory& theory);
 
 }  // namespace mssim

@@ -20,6 +20,9 @@ struct WorkPoint {
   /// steps of xpbd. None of methods with conjugate gradients, whose number differs from step to step.
   std::optional<double> evaluations;
   bool diverged = false;  ///< not finite, or with more energy than energy_bound allows
+  /// The step is no longer than the largest that was stable in runs, which may be longer than the horizon:
+  /// what does not diverge within that may do so when it meets the floor.
+  bool within_limit = true;
   /// Largest distance from the trusted state at the horizon, in mean rest lengths; none where not finite.
   std::optional<double> position_error;
   std::optional<double> energy_error;  ///< of the total energy, over the trusted kinetic + elastic energy
@@ -34,7 +37,7 @@ struct WorkPoint {
   /// Wall time of a simulated second, s: what a user waits for.
   double seconds_a_second() const { return seconds_a_step / dt_s; }
   /// Whether conclusions may rest on it.
-  bool counts() const { return !diverged && !beyond_trust && position_error.has_value(); }
+  bool counts() const { return !diverged && within_limit && !beyond_trust && position_error.has_value(); }
 };
 
 /// Of the same method?

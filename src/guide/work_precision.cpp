@@ -74,14 +74,10 @@ const State* ExactBackwardEuler::after(int steps) {
 
 int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s) {
   const int fewest = std::max(1, static_cast<int>(std::ceil(horizon_s / longest_useful_step_s - 1e-9)));
-  if (limit.stable_s <= 0) return fewest;
+  if (is_implicit(integrator) || limit.stable_s <= 0) return fewest;
   // A twentieth below the limit: it was found to a fiftieth, by other runs than that over the horizon.
   const int stable = std::max(1, static_cast<int>(std::ceil(horizon_s / (0.95 * limit.stable_s))));
-  if (!is_implicit(integrator)) return std::max(fewest, (stable + 1) / 2);
-  // Doubled from the same number for all of them, so that they share exact backward Euler.
-  int steps = fewest;
-  while (limit.unstable_s > 0 && steps * 2 <= stable) steps *= 2;
-  return steps;
+  return std::max(fewest, (stable + 1) / 2);
 }
 
 WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit,
@@ -93,15 +89,22 @@ WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const St
       execution_(execution),
       exact_(exact),
       wanted_error_(wanted_error),
+      stable_s_(limit.measured.stable_s),
       steps_(first_steps(*method.integrator, limit.measured, trusted.horizon_s)) {
-  if (!limit.status.empty()) {
-    method_.status = limit.status;
-    has_next_ = false;
-  } else if (limit.measured.stable_s == 0) {
-    method_.status = limit.measured.finished ? "no step that was tried is stable"
-                                             : "no time was left to find a step that is stable";
-    has_next_ = false;
-  }
+  if (!limit.status.empty())
+    end(limit.status);
+  else if (stable_s_ == 0 && !is_implicit(*method.integrator))
+    end(limit.measured.finished ? "no step that was tried is stable"
+                                : "no time was left to find a step that is stable");
+  else if (stable_s_ == 0)
+    method_.status = limit.measured.finished
+                         ? "no step that was tried is stable beyond the horizon"
+                         : "no time was left to find a step that is stable beyond the horizon";
+}
+
+void WorkCurve::end(std::string_view why) {
+  has_next_ = false;
+  if (method_.status.empty()) method_.status = why;
 }
 
 double WorkCurve::next_seconds() const { return 2 * last_seconds_; }
@@ -133,6 +136,7 @@ std::optional<WorkPoint> WorkCurve::next() {
   point.evaluations = evaluations_of(*method_.integrator, system_);
   const State state = backend->state();
   take_state(point, system_, trusted_, state);
+  point.within_limit = point.dt_s <= stable_s_ * (1 + 1e-9);
   point.note = backend->note();
   if (is_implicit(*method_.integrator) && !point.diverged)
     if (const State* exact = exact_.after(steps_)) {

@@ -43,6 +43,8 @@ class WorkCurve {
   /// Wall seconds that the next point takes, about; 0 where nothing is known yet.
   double next_seconds() const;
   bool has_next() const { return has_next_; }
+  /// Takes no more points, for this reason.
+  void end(std::string_view why);
   /// Measures the next point, with half the step of the one before. None where the backend does not run;
   /// method.status says why.
   std::optional<WorkPoint> next();
@@ -55,7 +57,7 @@ class WorkCurve {
   GuidedMethod& method_;
   ExecutionOptions execution_;
   ExactBackwardEuler& exact_;
-  double wanted_error_;
+  double wanted_error_, stable_s_;
   int steps_;
   int points_ = 0;
   bool has_next_ = true;
@@ -64,7 +66,8 @@ class WorkCurve {
 };
 
 /// Steps of the coarsest point of a curve: of an explicit method twice the largest stable step, so that the
-/// first point shows that this diverges; of an implicit one the longest step that is of use.
+/// first point shows that this diverges; of an implicit one the longest step that is of use, the same for all
+/// of them, so that they share exact backward Euler.
 int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s);
 
 /// The longest step that is tried, s: a frame of the slowest rate that is asked about.

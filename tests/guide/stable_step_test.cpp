@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "backends/backends.h"
 #include "backends/reference.h"
 #include "guide/spectrum.h"
+#include "guide/step_limits.h"
 #include "guide/step_theory.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
@@ -70,7 +72,7 @@ TEST(StableStep, OfASmallClothIsThatOfItsSpectrum) {
         largest_stable_step(system, reference_of(system, name), search_from(theory.bound_s));
     EXPECT_NEAR(found.stable_s / theory.at_start_s, 1, 0.05) << name;
     EXPECT_LT(theory.bound_s, theory.at_start_s) << name;
-    EXPECT_EQ(why_they_differ(integrator, found, theory), "") << name;
+    EXPECT_EQ(why_they_differ(integrator, found, theory, false), "") << name;
   }
 }
 
@@ -93,19 +95,61 @@ TEST(StableStep, SaysThatItsSearchWasStopped) {
   EXPECT_EQ(found.runs, 1);
 }
 
+TEST(StableStep, EndsInAHurryWithABracket) {
+  const System system = fast_and_slow_oscillator();
+  const double limit = 2 / oscillator_frequency(system);
+  StepSearch search = search_from(0.3 * limit);
+  search.hurry = [] { return true; };
+  const StableStep found = largest_stable_step(system, reference_of(system, "semi-euler"), search);
+  EXPECT_FALSE(found.finished);
+  EXPECT_GT(found.stable_s, 0);
+  EXPECT_LE(found.stable_s, limit * 1.0001);
+  EXPECT_GE(found.unstable_s, limit);
+}
+
+/// A cloth without pins that hangs a row above the floor, or high above it.
+StepLimit limit_of_backward_euler(double ceiling_m) {
+  SceneSpec spec = cloth_spec(10, 10);
+  auto& cloth = std::get<ClothSpec>(spec.content);
+  cloth.pins.reset();
+  cloth.ceiling_height_m = ceiling_m;
+  const System system = build_system(spec);
+  const Spectrum spectrum = spectrum_at(system, system.start);
+  const LimitRequest request{.system = &system,
+                             .backends = {find_backend("serial")},
+                             .execution = {},
+                             .at_start = spectrum,
+                             .on_the_way = spectrum,
+                             .seconds = 1000,
+                             .stop = [] { return false; }};
+  return find_step_limit(*find_integrator("newton-euler"), request);
+}
+
+TEST(StepLimit, OfBackwardEulerIsTheFloors) {
+  const StepLimit near = limit_of_backward_euler(0.1);
+  EXPECT_GT(near.measured.unstable_s, 0);
+  EXPECT_TRUE(near.floor_is_why);
+  EXPECT_EQ(near.why.substr(0, 9), "the floor");
+  const StepLimit high = limit_of_backward_euler(20);
+  EXPECT_EQ(high.measured.unstable_s, 0);
+  EXPECT_FALSE(high.floor_is_why);
+  EXPECT_EQ(high.why, "");
+}
+
 TEST(StepTheory, SaysWhyAMeasuredStepIsAnotherOne) {
   const Integrator& euler = *find_integrator("semi-euler");
   const StepTheory theory{.at_start_s = 1, .on_the_way_s = 1, .bound_s = 0.5};
   const auto measured = [](double stable) {
     return StableStep{.stable_s = stable, .unstable_s = 1.01 * stable};
   };
-  EXPECT_EQ(why_they_differ(euler, measured(1.05), theory), "");
-  EXPECT_EQ(why_they_differ(euler, measured(0.95), theory), "");
-  EXPECT_NE(why_they_differ(euler, measured(1.5), theory).find("longer"), std::string::npos);
-  EXPECT_NE(why_they_differ(euler, measured(0.5), theory).find("shorter"), std::string::npos);
-  EXPECT_NE(why_they_differ(euler, {}, theory), "");
-  EXPECT_NE(why_they_differ(euler, measured(1), {}), "");
-  EXPECT_EQ(why_they_differ(euler, {}, {}), "");
+  EXPECT_EQ(why_they_differ(euler, measured(1.05), theory, false), "");
+  EXPECT_EQ(why_they_differ(euler, measured(0.95), theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(1.5), theory, false).find("longer"), std::string::npos);
+  EXPECT_NE(why_they_differ(euler, measured(0.5), theory, false).find("shorter"), std::string::npos);
+  EXPECT_NE(why_they_differ(euler, measured(0.5), theory, true).find("floor"), std::string::npos);
+  EXPECT_NE(why_they_differ(euler, {}, theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(1), {}, false), "");
+  EXPECT_EQ(why_they_differ(euler, {}, {}, false), "");
 }
 
 }  // namespace

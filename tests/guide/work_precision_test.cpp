@@ -51,11 +51,25 @@ TEST(WorkCurve, BeginsWithAStepThatDiverges) {
 
 TEST(WorkCurve, HasNothingWhereNoStepIsStable) { EXPECT_TRUE(curve_of("explicit-euler", 0, 1e-3).empty()); }
 
+TEST(WorkCurve, CountsNoStepBeyondTheLargestStableOne) {
+  const double limit = 0.003;
+  const std::vector<WorkPoint> points = curve_of("implicit-euler", limit, 1e-3);
+  ASSERT_GE(points.size(), 3U);
+  EXPECT_GT(points[0].dt_s, limit);
+  for (const WorkPoint& point : points) {
+    EXPECT_FALSE(point.diverged) << point.dt_s;
+    EXPECT_EQ(point.within_limit, point.dt_s <= limit) << point.dt_s;
+    EXPECT_EQ(point.counts(), point.within_limit) << point.dt_s;
+  }
+  for (const WorkPoint& point : curve_of("implicit-euler", 0, 1e-3))
+    EXPECT_FALSE(point.counts()) << point.dt_s;
+}
+
 TEST(WorkCurve, OfImplicitMethodsSharesNumbersOfSteps) {
   const Integrator &implicit = *find_integrator("implicit-euler"), &verlet = *find_integrator("verlet");
-  // Stable at all steps: the fewest that are no longer than the longest of use.
+  // The fewest that are no longer than the longest of use, whatever is stable.
   EXPECT_EQ(first_steps(implicit, {.stable_s = longest_useful_step_s}, 0.1), 3);
-  EXPECT_EQ(first_steps(implicit, {.stable_s = 0.004, .unstable_s = 0.00404}, 0.1), 24);
+  EXPECT_EQ(first_steps(implicit, {.stable_s = 0.004, .unstable_s = 0.00404}, 0.1), 3);
   // Twice the longest stable step.
   EXPECT_EQ(first_steps(verlet, {.stable_s = 0.1 / 950, .unstable_s = 0.1 / 949}, 0.1), 500);
 }

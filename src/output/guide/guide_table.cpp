@@ -18,6 +18,7 @@ Cell found(double value) { return value > 0 ? Cell(value) : Cell(); }
 
 std::string_view state_of(const WorkPoint& point) {
   if (point.diverged) return "diverged";
+  if (!point.within_limit) return "longer than the largest stable step";
   return point.beyond_trust ? "within the reference's error" : "ok";
 }
 
