@@ -7,8 +7,13 @@ namespace mssim {
 
 /// Where the values of a series come from, which its look says: measured ones have filled points, solid lines
 /// and shaded bars; published ones open points, dashed lines and bars without a shade. References are
-/// straight lines from point to point in the colour of the text, such as the roofs of a roofline.
+/// straight lines from point to point in the colour of the text, such as the roofs of a roofline. Where
+/// shapes of points repeat, lines have longer dashes (series_style.h).
 enum class Origin { measured, published, reference };
+
+/// A sign on single points of other series, or in place of one: larger than points, in the colour of the
+/// text.
+enum class PointMark { none, ring, square, cross };
 
 struct Series {
   std::string name{};  ///< as the legend has it
@@ -20,6 +25,8 @@ struct Series {
   std::vector<double> y{};  ///< of bars, one for each of Chart::groups
   /// Intervals around y, drawn as error bars: as many as y, or none.
   std::vector<double> low{}, high{};
+  /// Of references, not of bars: signs at the points instead of a line.
+  PointMark mark = PointMark::none;
 };
 
 struct Axis {
@@ -40,6 +47,8 @@ struct Chart {
   std::vector<Series> series;       ///< in the order of the legend
   /// Families that look the same in every chart that names them in the same order; others come after them.
   std::vector<std::string> families{};
+  /// What is to be said below it, each a sentence without full stop.
+  std::vector<std::string> remarks{};
 };
 
 }  // namespace mssim

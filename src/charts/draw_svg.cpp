@@ -70,7 +70,8 @@ std::string last_words(const std::string& output) {
 DrawnChart draw_svg(const Chart& chart) {
   require_id(chart.id);
   const PlottedValues values = plotted_values(chart);
-  DrawnChart drawn{{}, {}, values.notes};
+  DrawnChart drawn{{}, {}, chart.remarks};
+  drawn.notes.insert(drawn.notes.end(), values.notes.begin(), values.notes.end());
   const auto without = [&](std::string problem) {
     drawn.problem = std::move(problem);
     return drawn;
@@ -95,7 +96,7 @@ DrawnChart draw_svg(const Chart& chart) {
                                  folder.path(),
                                  most_cpu_seconds});
   const bool well = ended.signal == 0 && ended.exit_code == 0 && fs::is_regular_file(output);
-  if (const auto svg = well ? page_svg(read_file(output), words_of(chart, values.notes)) : std::nullopt)
+  if (const auto svg = well ? page_svg(read_file(output), words_of(chart, drawn.notes)) : std::nullopt)
     drawn.svg = *svg;
   else
     drawn.problem = gnuplot->string() + ' ' + how_it_ended(ended) + last_words(ended.output);

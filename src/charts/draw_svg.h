@@ -13,8 +13,9 @@ struct DrawnChart {
   /// text has 14. Text and axes have the colour of the page's text (currentColor), so that it suits light and
   /// dark pages. Empty where there is none.
   std::string svg;
-  std::string problem;             ///< why there is none, a sentence without full stop; else empty
-  std::vector<std::string> notes;  ///< what was left out, a sentence without full stop for each series
+  std::string problem;  ///< why there is none, a sentence without full stop; else empty
+  /// The chart's remarks, then what was left out of each series: sentences without full stop.
+  std::vector<std::string> notes;
 };
 
 /// Draws it with gnuplot, which must be in PATH. The same chart gives the same bytes with the same gnuplot.

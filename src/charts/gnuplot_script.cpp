@@ -15,8 +15,16 @@ namespace {
 /// gnuplot's numbers of point shapes, for filled and open ones.
 constexpr std::array<int, point_shapes> filled_points{7, 5, 9, 13, 11, 15}, open_points{6, 4, 8, 12, 10, 14};
 
+/// Those of marks, and how large they are.
+struct MarkShape {
+  int point;
+  std::string_view size;
+};
+constexpr std::array<MarkShape, 4> mark_shapes{{{0, "0"}, {6, "1.8"}, {4, "1.8"}, {2, "1.1"}}};
+
 /// Dashes, in lengths of strokes and gaps.
-constexpr std::string_view published_dashes = "(4,3)";
+constexpr std::array<std::string_view, line_dashes> measured_dashes{"solid", "(9,4)"},
+    published_dashes{"(4,3)", "(4,3,1,3)"};
 constexpr std::array<std::string_view, 4> reference_dashes{"solid", "(2,3)", "(10,3,2,3)", "(14,4)"};
 
 /// What stands for a fill until page_svg() draws its pattern.
@@ -149,7 +157,7 @@ class Script {
     const std::vector<PlottedPoint>& points = values_.series[s];
     if (points.empty()) return {};
     const std::string number = std::to_string(s);
-    std::vector<std::string> plots{"$s" + number + " using " + look(styles_[s]) + " title " +
+    std::vector<std::string> plots{"$s" + number + " using " + look(s) + " title " +
                                    gnuplot_text(layout_.names[s])};
     if (std::ranges::any_of(points, [](const PlottedPoint& point) { return point.interval.has_value(); }))
       plots.push_back("$i" + number + " using 1:2:3:4 with yerrorbars linewidth 1.5 pointtype 0" +
@@ -158,7 +166,14 @@ class Script {
   }
 
   /// The columns of a series and how they are drawn.
-  std::string look(const SeriesStyle& style) const {
+  std::string look(std::size_t s) const {
+    const SeriesStyle& style = styles_[s];
+    if (const PointMark mark = chart_.series[s].mark;
+        style.origin == Origin::reference && mark != PointMark::none) {
+      const MarkShape& shape = mark_shapes[static_cast<std::size_t>(mark)];
+      return "1:2 with points linewidth 1.5" + colour("black") + " pointtype " + std::to_string(shape.point) +
+             " pointsize " + std::string(shape.size);
+    }
     if (style.origin == Origin::reference)
       return "1:2 with lines linewidth 1.5" + colour("black") + " dashtype " +
              std::string(reference_dashes[style.family % reference_dashes.size()]);
@@ -169,7 +184,8 @@ class Script {
     const int shape = (published ? open_points : filled_points)[style.shape()];
     std::string look = "1:2 with points";
     if (chart_.form == ChartForm::lines)
-      look = "1:2 with linespoints dashtype " + std::string(published ? published_dashes : "solid");
+      look = "1:2 with linespoints dashtype " +
+             std::string((published ? published_dashes : measured_dashes)[style.dashes()]);
     return look + " linewidth 2" + colour(style.colour()) + " pointtype " + std::to_string(shape) +
            " pointsize 0.9";
   }

@@ -13,7 +13,7 @@ std::vector<SeriesStyle> series_styles(std::span<const Series> series, std::span
   for (const std::string& family : fixed) families.try_emplace(family, next++);
   for (const Series& one : series) {
     if (one.origin == Origin::reference) {
-      styles.push_back({next_reference++, one.origin});
+      styles.push_back({one.mark == PointMark::none ? next_reference++ : 0, one.origin});
       continue;
     }
     const auto known = families.find(one.family);

@@ -20,6 +20,9 @@ inline constexpr std::array<std::string_view, 8> series_colours{"#2f7ed8", "#b87
 /// Shapes of points (circle, square, triangles, diamond, pentagon), and patterns of bars.
 inline constexpr std::size_t point_shapes = 6, bar_patterns = 6;
 
+/// Lines of measured, and of published, values that differ by their dashes.
+inline constexpr std::size_t line_dashes = 2;
+
 /// Combinations of colour and shape, or colour and pattern, that differ.
 inline constexpr std::size_t looks = std::lcm(series_colours.size(), bar_patterns);
 
@@ -31,6 +34,8 @@ struct SeriesStyle {
 
   std::string_view colour() const { return series_colours[family % series_colours.size()]; }
   std::size_t shape() const { return family % point_shapes; }
+  /// Of lines, after all shapes another dash: twice as many differ without colours.
+  std::size_t dashes() const { return family / point_shapes % line_dashes; }
   std::size_t pattern() const { return family % bar_patterns; }
   /// Of bars, a number for colour, pattern and origin.
   std::size_t fill() const { return 2 * (family % looks) + (origin == Origin::published ? 1 : 0); }
@@ -41,8 +46,8 @@ inline SeriesStyle style_of_fill(std::size_t fill) {
   return {fill / 2, fill % 2 == 0 ? Origin::measured : Origin::published};
 }
 
-/// One for each series; no two are the same. The families `fixed` have the first numbers, whether they occur
-/// or not. References have a numbering of their own.
+/// One for each series; no two are the same but those of equal marks. The families `fixed` have the first
+/// numbers, whether they occur or not. References that are lines have a numbering of their own.
 std::vector<SeriesStyle> series_styles(std::span<const Series> series,
                                        std::span<const std::string> fixed = {});
 

@@ -2,6 +2,7 @@
 #include <exception>
 
 #include "charts/draw_svg.h"
+#include "report/guide_charts.h"
 #include "report/html.h"
 #include "report/report_charts.h"
 #include "report/sections.h"
@@ -18,7 +19,7 @@ std::string figure_of(const Chart& chart) {
            ".</p>\n";
   // The chart has its title in it.
   const std::string notes =
-      drawn.notes.empty() ? "" : "<figcaption>" + html_text(joined(drawn.notes, "; ")) + ".</figcaption>";
+      drawn.notes.empty() ? "" : "<figcaption>" + html_text(joined(drawn.notes, ". ")) + ".</figcaption>";
   return "<figure>" + drawn.svg + notes + "</figure>\n";
 }
 
@@ -77,6 +78,75 @@ std::string scaling_section(const ReportInput& input) {
                           return figures_of(scaling_charts(folder.rows, input.legend, input.published, id)) +
                                  (slopes.rows.empty() ? "" : html_of(slopes));
                         });
+}
+
+namespace {
+
+/// The page of a guide from a heading of this level to the next one: what comes before the first is a part of
+/// its own, without a heading.
+std::vector<Document> parts_of(const Document& page, int level) {
+  std::vector<Document> parts(1);
+  for (const auto& block : page) {
+    const auto* heading = std::get_if<Heading>(&block);
+    if (heading && heading->level == level) parts.emplace_back();
+    parts.back().push_back(block);
+  }
+  return parts;
+}
+
+const std::string& heading_of(const Document& part) { return std::get<Heading>(part.front()).text; }
+
+/// Is the part about the scene? Headings go on with its size.
+bool is_about(const Document& part, const std::string& scene) {
+  return heading_of(part) == scene || heading_of(part).starts_with(scene + ":");
+}
+
+std::string to_unfold(const std::string& summary, const Document& blocks, int level) {
+  return blocks.empty() ? ""
+                        : "<details><summary>" + html_text(summary) + "</summary>\n" +
+                              html_of(blocks, level) + "</details>\n";
+}
+
+/// What the page says of a scene in words, the charts, and the page's tables to unfold.
+std::string guide_of_scene(const Document& scene, const std::vector<Chart>& charts, int level) {
+  const std::vector<Document> parts = parts_of(scene, 3);
+  Document words, methods;
+  for (const auto& block : parts.front())
+    (std::holds_alternative<Table>(block) ? methods : words).push_back(block);
+  std::string text = html_of(words, level) + figures_of(charts) + to_unfold("Methods", methods, level + 1);
+  for (std::size_t i = 1; i < parts.size(); ++i)
+    text += to_unfold(heading_of(parts[i]), Document(parts[i].begin() + 1, parts[i].end()), level + 1);
+  return text;
+}
+
+std::string guide_of(const FoundGuide& guide, const std::string& id, int level) {
+  std::vector<Document> parts = parts_of(guide.page, 2);
+  // The title is the section's.
+  std::erase_if(parts.front(), [](const auto& block) { return std::holds_alternative<Heading>(block); });
+  std::string text = html_of(parts.front(), level);
+  const std::vector<std::string> scenes = guide.scenes();
+  for (const std::string& scene : scenes)
+    if (std::none_of(parts.begin() + 1, parts.end(),
+                     [&](const Document& part) { return is_about(part, scene); }))
+      parts.push_back({Heading{2, scene}});
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const auto scene =
+        std::ranges::find_if(scenes, [&](const std::string& name) { return is_about(parts[i], name); });
+    std::vector<Chart> charts;
+    if (scene != scenes.end())
+      charts = guide_charts(guide, *scene, id + "-guide-" + std::to_string(scene - scenes.begin() + 1));
+    text += guide_of_scene(parts[i], charts, level);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string guide_section(const ReportInput& input) {
+  const int level = input.folders.size() < 2 ? 3 : 4;
+  return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string& id) {
+    return folder.guide ? guide_of(*folder.guide, id, level) : std::string();
+  });
 }
 
 std::string roofline_section(const ReportInput& input) {

@@ -9,6 +9,23 @@
 namespace mssim {
 namespace {
 
+/// The points of a guide as charts have them.
+Table points_of(const FoundGuide& guide) {
+  Table table;
+  for (const GuidePoint& point : guide.points)
+    table.add({{"scene", point.scene},
+               {"integrator", point.integrator},
+               {"backend", point.backend},
+               {"dt_s", point.dt_s},
+               {"position_error", point.position_error},
+               {"wall_s_per_s", point.wall_s_per_s},
+               {"force_evaluations_per_s", point.force_evaluations_per_s},
+               {"diverged", point.diverged},
+               {"on_front", point.on_front},
+               {"status", point.status}});
+  return table;
+}
+
 std::string json_of(const ReportFolder& folder, const ReportInput& input) {
   Table verdict{{{"outcome"}, {"sentence"}}, {}};
   for (const Finding& finding : findings_of(folder, input))
@@ -18,6 +35,7 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
   return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" + joined(problems, ", ") +
          "],\n\"verdict\": " + table_json_text(verdict) +
          ", \"timings\": " + table_json_text(timings_table(folder.rows)) +
+         (folder.guide ? ", \"guide\": " + table_json_text(points_of(*folder.guide)) : "") +
          ", \"provenance\": " + (folder.provenance ? provenance_text(*folder.provenance) : "null") + "}";
 }
 

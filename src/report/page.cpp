@@ -16,12 +16,13 @@ struct Section {
 };
 
 /// In the order in which they stand; one without content is left out.
-constexpr std::array<Section, 11> sections{{
+constexpr std::array<Section, 12> sections{{
     {"machine", "Machine and settings", machine_section},
     {"verdict", "Verdict", verdict_section},
     {"changes", "What changed", changes_section},
     {"headline", "Times", headline_section},
     {"published", "Published beside measured", published_section},
+    {"guide", "Guide", guide_section},
     {"speed-up", "Speed-up", speedup_section},
     {"scaling", "Scaling", scaling_section},
     {"roofline", "Roofline", roofline_section},

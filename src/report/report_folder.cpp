@@ -11,6 +11,7 @@
 #include "output/tables/csv.h"
 #include "output/tables/timings_csv.h"
 #include "platform/whole_file.h"
+#include "report/readable_records.h"
 #include "text/counted.h"
 
 namespace mssim {
@@ -23,6 +24,10 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, error);
 }
 
+bool has_results(const fs::path& folder) {
+  return is_there(folder / timings_name) || is_there(folder / guide_name);
+}
+
 /// What lies in a folder, by name; nothing where it cannot be listed.
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries;
@@ -33,26 +38,6 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return entries;
 }
 
-/// The rows of a timings.csv whose lines cannot all be read: each line that can be read alone.
-std::vector<ResultRow> readable_rows(const fs::path& file, std::string_view text, std::size_t& lost) {
-  std::vector<ResultRow> rows;
-  const std::size_t head = std::min(text.find('\n'), text.size());
-  const std::string header(text.substr(0, head));
-  std::string_view rest = text.substr(std::min(head + 1, text.size()));
-  while (!rest.empty()) {
-    const std::size_t length = std::min(rest.find('\n'), rest.size());
-    std::string line = header + '\n';
-    line.append(rest.substr(0, length)) += '\n';
-    rest.remove_prefix(std::min(length + 1, rest.size()));
-    try {
-      for (ResultRow& row : read_timings(CsvTable(file.string(), line))) rows.push_back(std::move(row));
-    } catch (const CsvError&) {
-      ++lost;
-    }
-  }
-  return rows;
-}
-
 void read_rows(const fs::path& file, ReportFolder& folder) {
   std::string text;
   try {
@@ -61,15 +46,7 @@ void read_rows(const fs::path& file, ReportFolder& folder) {
     folder.problems.push_back(error.sentence(file, "without it there is nothing to show"));
     return;
   }
-  try {
-    folder.rows = read_timings(CsvTable(file.string(), text));
-  } catch (const CsvError& error) {
-    std::size_t lost = 0;
-    folder.rows = readable_rows(file, text, lost);
-    folder.problems.push_back(std::string(error.what()) + "; " + counted(lost, "row") + " left out, " +
-                              std::to_string(folder.rows.size()) + " shown");
-  }
-  if (folder.rows.empty()) folder.problems.push_back(file.string() + " has no row that can be shown");
+  folder.rows = readable_records<ResultRow>(file, text, read_timings, folder.problems);
 }
 
 /// Reads what belongs to the rows from a file beside timings.csv; false where that cannot be read.
@@ -136,9 +113,9 @@ void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
 
 std::vector<fs::path> result_folders(const fs::path& folder) {
   std::vector<fs::path> folders;
-  if (!is_there(folder / timings_name))
+  if (!has_results(folder))
     for (const fs::path& entry : entries_of(folder))
-      if (is_there(entry / timings_name)) folders.push_back(entry);
+      if (has_results(entry)) folders.push_back(entry);
   if (folders.empty()) folders.push_back(folder);
   return folders;
 }
@@ -146,7 +123,8 @@ std::vector<fs::path> result_folders(const fs::path& folder) {
 ReportFolder read_report_folder(const fs::path& path) {
   ReportFolder folder;
   folder.name = path.string();
-  read_rows(path / timings_name, folder);
+  folder.guide = read_guide(path, folder.problems);
+  if (!folder.guide || is_there(path / timings_name)) read_rows(path / timings_name, folder);
   if (!folder.rows.empty()) {
     if (read_beside(path / samples_name, folder, "intervals of ratios are those of the times",
                     [](const fs::path& file, std::span<ResultRow> rows) { read_samples(file, rows); }))

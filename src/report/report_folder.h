@@ -8,6 +8,7 @@
 
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
+#include "report/guide_folder.h"
 
 namespace mssim {
 
@@ -27,14 +28,15 @@ struct FoundPicture {
 struct ReportFolder {
   std::string name;             ///< as it was given
   std::vector<ResultRow> rows;  ///< those that can be read; all have samples, or none where they are damaged
+  std::optional<FoundGuide> guide;  ///< of a folder that mssim guide wrote
   std::optional<Provenance> provenance;
   std::vector<FoundCurve> curves;
   std::vector<FoundPicture> pictures;
   std::vector<std::string> problems;  ///< without a full stop
 };
 
-/// The result folders that a folder stands for: itself where it has a timings.csv; else its subfolders that
-/// have one, by name; itself where none has.
+/// The result folders that a folder stands for: itself where it has a timings.csv or a guide.csv; else its
+/// subfolders that have one, by name; itself where none has.
 std::vector<std::filesystem::path> result_folders(const std::filesystem::path& folder);
 
 ReportFolder read_report_folder(const std::filesystem::path& path);

@@ -26,6 +26,10 @@ std::string headline_section(const ReportInput& input);
 /// The tables of the papers, published beside measured.
 std::string published_section(const ReportInput& input);
 
+/// Of folders of guides: scene by scene what the guide recommends, charts of errors and costs, and the
+/// guide's tables to unfold. Empty where there is none.
+std::string guide_section(const ReportInput& input);
+
 std::string speedup_section(const ReportInput& input);
 std::string scaling_section(const ReportInput& input);
 std::string roofline_section(const ReportInput& input);

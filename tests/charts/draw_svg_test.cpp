@@ -133,6 +133,32 @@ TEST_F(DrawSvg, ChartsOfOnePageShareNoId) {
     }
 }
 
+TEST_F(DrawSvg, MarksAreSignsInTheColourOfTheText) {
+  Chart chart = small_chart(ChartForm::lines);
+  chart.remarks = {"What <crosses> are"};
+  const std::string before = drawn(chart);
+  std::set<std::string> drawings;
+  for (const PointMark mark : {PointMark::ring, PointMark::square, PointMark::cross}) {
+    chart.series.back() = {
+        .name = "a mark", .origin = Origin::reference, .x = {2500}, .y = {0.1}, .mark = mark};
+    const std::string svg = drawn(chart);
+    expect_well_formed(svg);
+    EXPECT_THAT(svg, AllOf(HasSubstr(">a mark<"), HasSubstr("What &lt;crosses&gt; are.")));
+    EXPECT_EQ(count(svg, "color=\"currentColor\"/>"), 2U) << "in the legend and on the point";
+    EXPECT_TRUE(drawings.insert(svg).second);
+  }
+  EXPECT_EQ(count(before, "color=\"currentColor\"/>"), 0U);
+}
+
+TEST_F(DrawSvg, LinesBeyondTheShapesOfPointsAreDashed) {
+  Chart chart = small_chart(ChartForm::lines);
+  chart.series.clear();
+  for (int i = 0; i < 7; ++i) chart.series.push_back({.name = "a", .x = {1, 2}, .y = {1.0 + i, 2}});
+  EXPECT_EQ(count(drawn(chart), "stroke-dasharray"), 1U) << "the line and its sample are one path";
+  chart.series.pop_back();
+  EXPECT_EQ(count(drawn(chart), "stroke-dasharray"), 0U);
+}
+
 TEST_F(DrawSvg, IsTheSameEachTime) {
   const Chart chart = small_chart(ChartForm::lines);
   EXPECT_EQ(drawn(chart), drawn(chart));

@@ -72,6 +72,21 @@ TEST(SeriesStyle, SixFamiliesDifferWithoutColours) {
   }
 }
 
+TEST(SeriesStyle, TwelveLinesDifferWithoutColours) {
+  std::set<std::pair<std::size_t, std::size_t>> looks_of_lines;
+  for (const SeriesStyle& style : series_styles(std::vector<Series>(12)))
+    EXPECT_TRUE(looks_of_lines.emplace(style.shape(), style.dashes()).second);
+}
+
+TEST(SeriesStyle, MarksTakeNoLookOfOthers) {
+  const std::vector<Series> lines{{.name = "a"}, {.name = "roof", .origin = Origin::reference}};
+  std::vector<Series> with_marks = lines;
+  with_marks.insert(with_marks.begin(),
+                    {.name = "front", .origin = Origin::reference, .mark = PointMark::ring});
+  EXPECT_EQ(series_styles(with_marks)[1].family, series_styles(lines)[0].family);
+  EXPECT_EQ(series_styles(with_marks)[2].family, series_styles(lines)[1].family);
+}
+
 TEST(SeriesStyle, AFillSaysWhatItLooksLike) {
   for (const Origin origin : {Origin::measured, Origin::published})
     for (std::size_t family = 0; family < 300; ++family) {

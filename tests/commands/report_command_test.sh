@@ -154,6 +154,47 @@ cp "$work/empty/timings.csv" "$work/empty/samples.csv"
 cp "$work/empty/timings.csv" "$work/empty/provenance.json"
 report "$work/empty"
 
+# A guide: charts, words of its page and tables to unfold; damaged, it says so.
+guide=$work/guides/one
+mkdir -p "$guide"
+cp "$results/table1/zen5/provenance.json" "$guide"
+{
+  echo 'scene,nodes,springs_unique,integrator,backend,dt_s,steps,horizon_s,position_error,energy_error,solver_error,step_error,reference_error,ms_per_step,wall_s_per_s,force_evaluations_per_s,samples,diverged,on_front,status,note'
+  echo 'cloth,9,20,rk4,serial,0.004,5,0.02,,,,,1e-08,2,0.5,1000,9,true,false,diverged,'
+  echo 'cloth,9,20,rk4,serial,0.002,10,0.02,0.01,0.1,,,1e-08,2,1,2000,9,false,true,ok,'
+  echo 'cloth,9,20,rk4,serial,0.001,20,0.02,4e-07,0.1,,,1e-08,2,2,4000,9,false,false,within the reference'"'"'s error,'
+  echo 'cloth,9,20,newton-euler,openmp,0.01,2,0.02,0.2,0.1,,,1e-08,20,2,,9,false,false,ok,'
+  echo 'cloth,9,20,xpbd,openmp,,,0.02,,,,,,,,,,,,"no time, and no <b>",'
+} >"$guide/guide.csv"
+printf 'scene,integrator,backend,dt_s,nodes,ms_per_step\ncloth,rk4,serial,0.001,256,1\ncloth,rk4,serial,0.001,529,2\n' >"$guide/guide-sizes.csv"
+printf '# Which\n\n*x* is y.\n\n## cloth: 9 nodes\n\nTake rk4.\n\n| a |\n|---|\n| b |\n\n### The front\n\n| c |\n|---|\n| d |\n' >"$guide/guide.md"
+report "$work/guides" "$work/next"
+has '<section id="guide">'
+has '<h4>cloth: 9 nodes</h4>'
+has '<p>Take rk4.</p>'
+has '<summary>Methods</summary>'
+has '<summary>The front</summary>'
+has '"status": "diverged"'
+lacks 'timings.csv: there is no such file'
+if command -v gnuplot >/dev/null; then
+  for chart in work-precision error-step error-evaluations sizes-explicit; do
+    has "<svg id=\"f1-guide-1-$chart\" class=\"chart\" .*role=\"img\""
+  done
+  has '<figcaption>Crosses at an error of 1 diverged, whatever their error. Points in squares are too near'
+  has 'No points: xpbd (no time, and no &lt;b&gt;)'
+fi
+report "$guide"
+has '<h3>cloth: 9 nodes</h3>'
+truncate -s -30 "$guide/guide.csv"
+rm "$guide/guide.md"
+report "$guide"
+has '1 row left out, 4 shown'
+has 'what the guide recommends is not shown'
+head -c 4000 /dev/urandom >"$guide/guide.csv"
+cp "$guide/guide.csv" "$guide/guide-sizes.csv"
+cp "$guide/guide.csv" "$guide/guide.md"
+report "$guide"
+
 # Mistakes.
 expect 2 '^mssim: DIR... is missing' report
 expect 2 '^mssim: there is no folder /no/such: give folders that mssim bench --out wrote' report /no/such

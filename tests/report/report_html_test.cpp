@@ -92,6 +92,29 @@ TEST(ReportPage, SaysWhatIsNotThere) {
     EXPECT_TRUE(has(page, sentence)) << sentence;
 }
 
+TEST(ReportPage, ShowsAGuideSceneByScene) {
+  ReportFolder folder;
+  folder.name = "guide";
+  EXPECT_FALSE(has(report_page(input_of(folder)), "<h2>Guide</h2>"));
+  folder.guide.emplace();
+  folder.guide->points = {
+      {.scene = "<script>alert(1)</script>", .integrator = "rk4", .backend = "serial", .status = "no"},
+      {.scene = "cloth", .integrator = "rk4", .backend = "serial", .status = "no"}};
+  folder.guide->page = {Heading{1, "Which one"},    Paragraph{"Measured."}, Heading{2, "cloth: 9 nodes"},
+                        Paragraph{"Take `rk4`."},   Table{{{"a"}}, {}},     Heading{3, "The front"},
+                        Paragraph{"The <script>."}, Table{{{"b"}}, {}}};
+  const std::string page = report_page(input_of(folder));
+  EXPECT_FALSE(has(page, "<script>"));
+  EXPECT_FALSE(has(page, "Which one"));
+  for (const char* text : {"<p>Measured.</p>\n<h3>cloth: 9 nodes</h3>\n<p>Take "
+                           "<code>rk4</code>.</p>\n<details><summary>Methods</summary>\n",
+                           "<details><summary>The front</summary>\n<p>The &lt;script&gt;.</p>\n",
+                           "</details>\n<h3>&lt;script&gt;alert(1)&lt;/script&gt;</h3>\n", "\"guide\": ["})
+    EXPECT_TRUE(has(page, text)) << text;
+  folder.guide->points.clear();
+  EXPECT_TRUE(has(report_page(input_of(folder)), "<h3>cloth: 9 nodes</h3>")) << "where guide.csv is damaged";
+}
+
 TEST(ReportPage, ComparesTwoFoldersAsCompareDoes) {
   ReportFolder folder;
   folder.name = "base";

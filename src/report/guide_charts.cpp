@@ -1,0 +1,269 @@
+#include "report/guide_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "charts/plotted_values.h"
+#include "integrators/all_integrators.h"
+#include "report/report_charts.h"
+#include "text/counted.h"
+#include "text/decimal.h"
+#include "text/joined.h"
+
+namespace mssim {
+namespace {
+
+/// Integrators have the same look in every chart of errors.
+const std::vector<std::string>& integrator_families() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Integrator* integrator : all_integrators) all.emplace_back(integrator->name);
+    return all;
+  }();
+  return names;
+}
+
+/// A line of a chart: for each step of an integrator, from the longest on, the point of one backend.
+struct GuideLine {
+  std::string integrator;
+  std::vector<const GuidePoint*> points;
+};
+
+double cost_of(const GuidePoint& point) {
+  return point.wall_s_per_s.value_or(std::numeric_limits<double>::infinity());
+}
+
+/// Where one backend diverged and another did not, the one that did not.
+bool is_better(const GuidePoint& point, const GuidePoint& than) {
+  return std::pair(point.diverged, cost_of(point)) < std::pair(than.diverged, cost_of(than));
+}
+
+std::vector<GuideLine> lines_of(const FoundGuide& guide, const std::string& scene) {
+  std::vector<GuideLine> lines;
+  std::vector<std::map<double, const GuidePoint*, std::greater<>>> best;  // by step, as many as lines
+  for (const GuidePoint& point : guide.points) {
+    if (point.scene != scene) continue;
+    const auto line = std::ranges::find(lines, point.integrator, &GuideLine::integrator);
+    const auto number = static_cast<std::size_t>(line - lines.begin());
+    if (line == lines.end()) {
+      lines.push_back({point.integrator, {}});
+      best.emplace_back();
+    }
+    if (!point.dt_s) continue;
+    const GuidePoint*& known = best[number][*point.dt_s];
+    if (known == nullptr || is_better(point, *known)) known = &point;
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (const auto& [dt_s, point] : best[i]) lines[i].points.push_back(point);
+  return lines;
+}
+
+using Along = std::function<std::optional<double>(const GuidePoint&)>;
+
+/// A power of ten above all errors that are drawn.
+double edge_of(const std::vector<GuideLine>& lines) {
+  double largest = 0;
+  for (const GuideLine& line : lines)
+    for (const GuidePoint* point : line.points)
+      if (!point->diverged) largest = std::max(largest, point->position_error.value_or(0));
+  return largest > 0 ? std::pow(10, std::floor(std::log10(largest)) + 1) : 1;
+}
+
+/// The lines over `along`, and the marks on them. Methods that have nothing along are left out.
+Chart error_chart(const std::vector<GuideLine>& lines, const Along& along) {
+  Chart chart;
+  chart.y = {"position error (mean rest lengths)", true};
+  chart.families = integrator_families();
+  const double edge = edge_of(lines);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Series untrusted{.name = "near the reference", .origin = Origin::reference, .mark = PointMark::square},
+      diverged{.name = "diverged", .origin = Origin::reference, .mark = PointMark::cross};
+  const auto put = [](Series& series, double x, double y) {
+    series.x.push_back(x);
+    series.y.push_back(y);
+  };
+  for (const GuideLine& line : lines) {
+    Series series{.name = line.integrator, .family = line.integrator};
+    for (const GuidePoint* point : line.points) {
+      const auto x = along(*point);
+      if (!x) continue;
+      const double error = point->position_error.value_or(none);
+      put(point->diverged ? diverged : series, *x, point->diverged ? edge : error);
+      if (point->status == untrusted_status) put(untrusted, *x, error);
+    }
+    if (!series.x.empty()) chart.series.push_back(std::move(series));
+  }
+  if (!diverged.x.empty())
+    chart.remarks.push_back("Crosses at an error of " + decimal(edge) + " diverged, whatever their error");
+  if (!untrusted.x.empty())
+    chart.remarks.emplace_back("Points in squares are too near the error of the reference to be compared");
+  for (Series* marks : {&untrusted, &diverged})
+    if (!marks->x.empty()) chart.series.push_back(std::move(*marks));
+  return chart;
+}
+
+/// Rings around the points that no other one beats in cost and error.
+void add_front(Chart& work, const std::vector<GuideLine>& lines) {
+  Series front{.name = "on the front", .origin = Origin::reference, .mark = PointMark::ring};
+  for (const GuideLine& line : lines)
+    for (const GuidePoint* point : line.points)
+      if (point->on_front && point->wall_s_per_s && point->position_error) {
+        front.x.push_back(*point->wall_s_per_s);
+        front.y.push_back(*point->position_error);
+      }
+  if (!front.x.empty()) work.series.push_back(std::move(front));
+}
+
+/// Lines error ~ step^p to hold others against, for the orders p of the chart's integrators: from one point
+/// low on the right, where long steps seldom have small errors, up a part of the way.
+void add_orders(Chart& steps) {
+  const PlottedValues values = plotted_values(steps);
+  if (values.empty()) return;
+  const Interval x = values.x_range(), y = values.y_range();
+  const double decades_across = std::log10(x.high) - std::log10(x.low),
+               decades_up = std::log10(y.high) - std::log10(y.low);
+  if (!(decades_across > 0 && decades_up > 0)) return;
+  const double from = std::log10(x.low) + 0.7 * decades_across;
+  std::set<int> orders;
+  for (const Series& series : steps.series)
+    if (const Integrator* integrator = find_integrator(series.family)) orders.insert(integrator->order);
+  for (const int order : orders) {
+    const double across = std::min(0.3 * decades_across, 0.4 * decades_up / order);
+    steps.series.push_back({.name = "order " + std::to_string(order),
+                            .origin = Origin::reference,
+                            .x = {std::pow(10, from), std::pow(10, from + across)},
+                            .y = {y.low, y.low * std::pow(10, across * order)}});
+  }
+}
+
+std::optional<double> evaluations_of(const GuidePoint& point) { return point.force_evaluations_per_s; }
+
+/// Integrators that have points, but no number of force evaluations.
+std::vector<std::string> without_evaluations(const std::vector<GuideLine>& lines) {
+  std::vector<std::string> names;
+  for (const GuideLine& line : lines)
+    if (!line.points.empty() && std::ranges::none_of(line.points, [](const GuidePoint* point) {
+          return evaluations_of(*point).has_value();
+        }))
+      names.push_back(line.integrator);
+  return names;
+}
+
+void add_names(Chart& chart, const std::string& before, const std::vector<std::string>& names) {
+  if (!names.empty()) chart.remarks.push_back(before + joined(names, ", "));
+}
+
+/// "midpoint on openmp and serial".
+std::string with_backends(const GuideLine& line) {
+  std::vector<std::string> backends;
+  for (const GuidePoint* point : line.points)
+    if (std::ranges::find(backends, point->backend) == backends.end()) backends.push_back(point->backend);
+  return line.integrator + " on " + joined(backends, " and ");
+}
+
+/// "rk4 with 0.78 ms".
+std::string with_step(const GuidePoint& point) {
+  return point.integrator + " with " + three_digits(*point.dt_s * 1000) + " ms";
+}
+
+/// Why an integrator has no points, as its first row says.
+std::string reason_of(const FoundGuide& guide, const std::string& scene, const std::string& integrator) {
+  for (const GuidePoint& point : guide.points)
+    if (point.scene == scene && point.integrator == integrator) return integrator + " (" + point.status + ")";
+  return integrator;
+}
+
+/// What the chart of work and precision leaves to words: backends, the steps of crosses, and what is not
+/// drawn.
+void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene,
+                 const std::vector<GuideLine>& lines) {
+  std::vector<std::string> drawn, crosses, without;
+  std::size_t on_front = 0, drawn_on_front = 0;
+  for (const GuidePoint& point : guide.points)
+    if (point.scene == scene && point.on_front) ++on_front;
+  for (const GuideLine& line : lines) {
+    if (line.points.empty())
+      without.push_back(reason_of(guide, scene, line.integrator));
+    else
+      drawn.push_back(with_backends(line));
+    for (const GuidePoint* point : line.points) {
+      if (point->diverged) crosses.push_back(with_step(*point));
+      if (point->on_front) ++drawn_on_front;
+    }
+  }
+  add_names(chart, "Diverged: ", crosses);
+  add_names(chart, "Each point is that of the cheapest backend with its step: ", drawn);
+  if (on_front > drawn_on_front)
+    chart.remarks.push_back(std::to_string(on_front - drawn_on_front) + " of " + counted(on_front, "point") +
+                            " on the front not drawn, as their backends take longer for the same step");
+  add_names(chart, "No points: ", without);
+}
+
+/// Those of an integrator whose backends have two sizes.
+std::optional<Chart> size_chart(const FoundGuide& guide, const std::string& scene,
+                                const std::string& integrator) {
+  Chart chart;
+  chart.title = scene + " in other sizes, " + integrator;
+  chart.x = {"nodes", true};
+  chart.y = {"time of a step (ms)", true};
+  chart.families = backend_families;
+  for (const GuideTime& time : guide.times) {
+    if (time.scene != scene || time.integrator != integrator) continue;
+    auto series = std::ranges::find(chart.series, time.backend, &Series::name);
+    if (series == chart.series.end())
+      series = chart.series.insert(series, Series{.name = time.backend, .family = time.backend});
+    series->x.push_back(time.nodes);
+    series->y.push_back(time.ms_per_step);
+  }
+  std::erase_if(chart.series, [](const Series& series) { return series.x.size() < 2; });
+  return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
+}
+
+/// Of the first explicit and the first implicit integrator that have one.
+std::vector<Chart> size_charts(const FoundGuide& guide, const std::string& scene, const std::string& id) {
+  std::vector<Chart> charts;
+  for (const bool implicit : {false, true})
+    for (const Integrator* integrator : all_integrators) {
+      if (is_implicit(*integrator) != implicit) continue;
+      auto chart = size_chart(guide, scene, std::string(integrator->name));
+      if (!chart) continue;
+      chart->id = id + "-sizes-" + (implicit ? "implicit" : "explicit");
+      charts.push_back(std::move(*chart));
+      break;
+    }
+  return charts;
+}
+
+}  // namespace
+
+std::vector<Chart> guide_charts(const FoundGuide& guide, const std::string& scene, const std::string& id) {
+  const std::vector<GuideLine> lines = lines_of(guide, scene);
+  Chart work = error_chart(lines, [](const GuidePoint& point) { return point.wall_s_per_s; });
+  work.id = id + "-work-precision";
+  work.title = scene + ": error over cost";
+  work.x = {"wall seconds a simulated second", true};
+  add_front(work, lines);
+  add_remarks(work, guide, scene, lines);
+  Chart steps = error_chart(lines, [](const GuidePoint& point) { return point.dt_s; });
+  steps.id = id + "-error-step";
+  steps.title = scene + ": error over the step";
+  steps.x = {"step (s)", true};
+  add_orders(steps);
+  Chart evaluations = error_chart(lines, evaluations_of);
+  evaluations.id = id + "-error-evaluations";
+  evaluations.title = scene + ": error over force evaluations";
+  evaluations.x = {"force evaluations a simulated second", true};
+  add_names(evaluations, "Without a fixed number of force evaluations: ", without_evaluations(lines));
+  std::vector<Chart> charts;
+  for (Chart* chart : {&work, &steps, &evaluations})
+    if (!chart->series.empty()) charts.push_back(std::move(*chart));
+  for (Chart& chart : size_charts(guide, scene, id)) charts.push_back(std::move(chart));
+  return charts;
+}
+
+}  // namespace mssim

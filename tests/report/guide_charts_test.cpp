@@ -1,0 +1,155 @@
+#include "report/guide_charts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace mssim {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+GuidePoint guide_point(const std::string& integrator, const std::string& backend, double dt_s, double wall_s,
+                       double error) {
+  return {.scene = "cloth",
+          .integrator = integrator,
+          .backend = backend,
+          .dt_s = dt_s,
+          .position_error = error,
+          .wall_s_per_s = wall_s,
+          .force_evaluations_per_s = integrator == "rk4" ? std::optional(4 / dt_s) : std::nullopt,
+          .status = "ok"};
+}
+
+GuidePoint diverged_point(GuidePoint point, std::optional<double> error = std::nullopt) {
+  point.diverged = true;
+  point.status = "diverged";
+  point.position_error = error;
+  return point;
+}
+
+/// rk4 on two backends, implicit-euler on one, xpbd on none.
+FoundGuide two_methods() {
+  FoundGuide guide;
+  guide.points = {
+      diverged_point(guide_point("rk4", "serial", 0.004, 1, 0), 1e12),
+      guide_point("rk4", "serial", 0.002, 4, 0.5),
+      guide_point("rk4", "serial", 0.001, 8, 0.03),
+      diverged_point(guide_point("rk4", "openmp", 0.004, 0.5, 0)),
+      guide_point("rk4", "openmp", 0.002, 2, 0.5),
+      guide_point("implicit-euler", "openmp", 0.02, 3, 2),
+      {.scene = "cloth", .integrator = "xpbd", .backend = "openmp", .status = "no time was left"}};
+  guide.points[1].on_front = guide.points[4].on_front = true;
+  return guide;
+}
+
+const Chart& chart_called(const std::vector<Chart>& charts, const std::string& id) {
+  for (const Chart& chart : charts)
+    if (chart.id == id) return chart;
+  ADD_FAILURE() << "no chart " << id;
+  return charts.front();
+}
+
+std::vector<std::string> names_in(const Chart& chart) {
+  std::vector<std::string> names;
+  for (const Series& series : chart.series) names.push_back(series.name);
+  return names;
+}
+
+const Series& series_called(const Chart& chart, const std::string& name) {
+  for (const Series& each : chart.series)
+    if (each.name == name) return each;
+  ADD_FAILURE() << chart.id << " has no series " << name;
+  return chart.series.front();
+}
+
+TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
+  const auto charts = guide_charts(two_methods(), "cloth", "f1-guide-1");
+  const Chart& work = chart_called(charts, "f1-guide-1-work-precision");
+  EXPECT_TRUE(work.x.logarithmic && work.y.logarithmic);
+  EXPECT_THAT(names_in(work), ElementsAre("rk4", "implicit-euler", "diverged", "on the front"));
+  EXPECT_THAT(series_called(work, "rk4").x, ElementsAre(2, 8));
+  EXPECT_THAT(series_called(work, "rk4").y, ElementsAre(0.5, 0.03));
+  EXPECT_THAT(series_called(work, "on the front").x, ElementsAre(2));
+  EXPECT_THAT(work.remarks,
+              Contains("1 of 2 points on the front not drawn, as their backends take longer for "
+                       "the same step"));
+  EXPECT_THAT(work.remarks, Contains("Each point is that of the cheapest backend with its step: "
+                                     "rk4 on openmp and serial, implicit-euler on openmp"));
+  EXPECT_THAT(work.remarks, Contains("No points: xpbd (no time was left)"));
+  EXPECT_THAT(guide_charts(two_methods(), "other", "f1"), IsEmpty());
+}
+
+TEST(GuideCharts, PutDivergedPointsAtTheEdgeWhateverTheirError) {
+  for (const Chart& chart : guide_charts(two_methods(), "cloth", "f1")) {
+    const Series& diverged = series_called(chart, "diverged");
+    EXPECT_EQ(diverged.mark, PointMark::cross);
+    EXPECT_THAT(diverged.y, ElementsAre(10)) << chart.id;
+    EXPECT_THAT(chart.remarks, Contains("Crosses at an error of 10 diverged, whatever their error"));
+  }
+  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  EXPECT_THAT(charts.front().remarks, Contains("Diverged: rk4 with 4.00 ms"));
+}
+
+TEST(GuideCharts, PreferABackendThatDidNotDiverge) {
+  FoundGuide guide = two_methods();
+  guide.points[0] = guide_point("rk4", "serial", 0.004, 1, 0.7);
+  const auto charts = guide_charts(guide, "cloth", "f1");
+  EXPECT_THAT(series_called(charts.front(), "rk4").x, ElementsAre(1, 2, 8));
+  EXPECT_THAT(names_in(charts.front()), Not(Contains("diverged")));
+}
+
+TEST(GuideCharts, MarkWhatIsTooNearTheReference) {
+  FoundGuide guide = two_methods();
+  guide.points[2].status = untrusted_status;
+  for (const Chart& chart : guide_charts(guide, "cloth", "f1")) {
+    const Series& marked = series_called(chart, "near the reference");
+    EXPECT_EQ(marked.mark, PointMark::square);
+    EXPECT_THAT(marked.y, ElementsAre(0.03));
+    EXPECT_THAT(chart.remarks, Contains(HasSubstr("too near the error of the reference")));
+  }
+}
+
+TEST(GuideCharts, ShowErrorsOverStepsWithTheirOrders) {
+  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  const Chart& steps = chart_called(charts, "f1-error-step");
+  EXPECT_THAT(names_in(steps), ElementsAre("rk4", "implicit-euler", "diverged", "order 1", "order 4"));
+  EXPECT_THAT(series_called(steps, "rk4").x, ElementsAre(0.002, 0.001));
+  for (const int order : {1, 4}) {
+    const Series& line = series_called(steps, "order " + std::to_string(order));
+    ASSERT_EQ(line.x.size(), 2U);
+    EXPECT_NEAR(std::log(line.y[1] / line.y[0]) / std::log(line.x[1] / line.x[0]), order, 1e-9);
+  }
+}
+
+TEST(GuideCharts, SayWhichMethodsHaveNoNumberOfEvaluations) {
+  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  const Chart& evaluations = chart_called(charts, "f1-error-evaluations");
+  EXPECT_THAT(names_in(evaluations), ElementsAre("rk4", "diverged"));
+  EXPECT_THAT(series_called(evaluations, "rk4").x, ElementsAre(2000, 4000));
+  EXPECT_THAT(evaluations.remarks, Contains("Without a fixed number of force evaluations: implicit-euler"));
+}
+
+TEST(GuideCharts, ShowSizesOfAnExplicitAndAnImplicitIntegrator) {
+  FoundGuide guide;
+  for (const char* integrator : {"implicit-euler", "rk4", "semi-euler", "xpbd"})
+    for (const double nodes : {256.0, 529.0}) {
+      guide.times.push_back({"cloth", integrator, "openmp", nodes, nodes / 100});
+      if (nodes < 300) guide.times.push_back({"cloth", integrator, "serial", nodes, nodes / 10});
+    }
+  const auto charts = guide_charts(guide, "cloth", "f1");
+  ASSERT_EQ(charts.size(), 2U);
+  EXPECT_EQ(charts[0].id, "f1-sizes-explicit");
+  EXPECT_EQ(charts[0].title, "cloth in other sizes, semi-euler");
+  EXPECT_EQ(charts[1].title, "cloth in other sizes, implicit-euler");
+  EXPECT_THAT(names_in(charts[0]), ElementsAre("openmp")) << "one size is no line";
+  EXPECT_THAT(series_called(charts[0], "openmp").y, ElementsAre(2.56, 5.29));
+}
+
+}  // namespace
+}  // namespace mssim
