@@ -158,12 +158,20 @@ void add_names(Chart& chart, const std::string& before, const std::vector<std::s
   if (!names.empty()) chart.remarks.push_back(before + joined(names, ", "));
 }
 
-/// "midpoint on openmp and serial".
-std::string with_backends(const GuideLine& line) {
-  std::vector<std::string> backends;
-  for (const GuidePoint* point : line.points)
-    if (std::ranges::find(backends, point->backend) == backends.end()) backends.push_back(point->backend);
-  return line.integrator + " on " + joined(backends, " and ");
+/// "openmp (midpoint, verlet)", "openmp and serial (rk4)": which backends the points of lines are of.
+std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
+  std::map<std::string, std::vector<std::string>> integrators;
+  for (const GuideLine& line : lines) {
+    std::vector<std::string> backends;
+    for (const GuidePoint* point : line.points)
+      if (std::ranges::find(backends, point->backend) == backends.end()) backends.push_back(point->backend);
+    std::ranges::sort(backends);
+    if (!backends.empty()) integrators[joined(backends, " and ")].push_back(line.integrator);
+  }
+  std::vector<std::string> groups;
+  for (const auto& [backends, names] : integrators)
+    groups.push_back(backends + " (" + joined(names, ", ") + ")");
+  return groups;
 }
 
 /// "rk4 with 0.78 ms".
@@ -182,22 +190,19 @@ std::string reason_of(const FoundGuide& guide, const std::string& scene, const s
 /// drawn.
 void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene,
                  const std::vector<GuideLine>& lines) {
-  std::vector<std::string> drawn, crosses, without;
+  std::vector<std::string> crosses, without;
   std::size_t on_front = 0, drawn_on_front = 0;
   for (const GuidePoint& point : guide.points)
     if (point.scene == scene && point.on_front) ++on_front;
   for (const GuideLine& line : lines) {
-    if (line.points.empty())
-      without.push_back(reason_of(guide, scene, line.integrator));
-    else
-      drawn.push_back(with_backends(line));
+    if (line.points.empty()) without.push_back(reason_of(guide, scene, line.integrator));
     for (const GuidePoint* point : line.points) {
       if (point->diverged) crosses.push_back(with_step(*point));
       if (point->on_front) ++drawn_on_front;
     }
   }
   add_names(chart, "Diverged: ", crosses);
-  add_names(chart, "Each point is that of the cheapest backend with its step: ", drawn);
+  add_names(chart, "Each point is that of the cheapest backend with its step: ", by_backends(lines));
   if (on_front > drawn_on_front)
     chart.remarks.push_back(std::to_string(on_front - drawn_on_front) + " of " + counted(on_front, "point") +
                             " on the front not drawn, as their backends take longer for the same step");

@@ -80,7 +80,7 @@ TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
               Contains("1 of 2 points on the front not drawn, as their backends take longer for "
                        "the same step"));
   EXPECT_THAT(work.remarks, Contains("Each point is that of the cheapest backend with its step: "
-                                     "rk4 on openmp and serial, implicit-euler on openmp"));
+                                     "openmp (implicit-euler), openmp and serial (rk4)"));
   EXPECT_THAT(work.remarks, Contains("No points: xpbd (no time was left)"));
   EXPECT_THAT(guide_charts(two_methods(), "other", "f1"), IsEmpty());
 }
