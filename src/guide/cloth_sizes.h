@@ -43,10 +43,9 @@ struct SizeCurve {
 /// logarithms of the samples that both have; none where one is faster at all of these.
 std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b);
 
-/// The number of nodes along a side of the cloths that are measured: each has about twice the nodes of
-/// the one before.
-inline constexpr std::array<std::uint32_t, 12> cloth_sides{16,  23,  32,  45,  64,  90,
-                                                           128, 181, 256, 362, 512, 724};
+/// The number of nodes along a side of the cloths that are measured: each but the last has
+/// four times the nodes of the one before.
+inline constexpr std::array<std::uint32_t, 7> cloth_sides{16, 32, 64, 128, 256, 512, 724};
 
 /// Makes a square cloth of the family, with so many nodes along a side.
 using ClothMaker = std::function<System(std::uint32_t side)>;

@@ -4,23 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "guide/pareto_front.h"
-#include "integrators/all_integrators.h"
+#include "tests/guide/made_points.h"
 
 namespace mssim {
 namespace {
-
-/// A point that counts. `cost`: wall seconds a simulated second.
-WorkPoint point(std::string_view integrator, double dt_s, double cost, double error,
-                const std::string& backend = "openmp") {
-  WorkPoint point;
-  point.integrator = find_integrator(integrator);
-  point.backend = backend;
-  point.dt_s = dt_s;
-  point.seconds_a_step = cost * dt_s;
-  point.position_error = error;
-  point.energy_error = 0;
-  return point;
-}
 
 WorkPoint diverged(WorkPoint point) {
   point.diverged = true;
@@ -42,23 +29,24 @@ std::vector<std::size_t> front_of(std::vector<WorkPoint> points) {
 
 TEST(ParetoFront, HasWhatNothingBeats) {
   const std::vector<WorkPoint> points{
-      point("rk4", 1e-3, 3, 1e-6),        point("verlet", 1e-3, 1, 1e-3),
-      point("semi-euler", 1e-3, 2, 1e-2),  // slower and worse than verlet
-      point("midpoint", 1e-3, 3, 1e-5),    // as fast as rk4, and worse
-      point("midpoint", 2e-3, 0.5, 1e-1),
+      made_point("rk4", 1e-3, 3, 1e-6),        made_point("verlet", 1e-3, 1, 1e-3),
+      made_point("semi-euler", 1e-3, 2, 1e-2),  // slower and worse than verlet
+      made_point("midpoint", 1e-3, 3, 1e-5),    // as fast as rk4, and worse
+      made_point("midpoint", 2e-3, 0.5, 1e-1),
   };
   EXPECT_THAT(front_of(points), testing::ElementsAre(0, 1, 4));
 }
 
 TEST(ParetoFront, LeavesOutWhatDoesNotCount) {
-  EXPECT_THAT(front_of({diverged(point("rk4", 1e-3, 0.1, 1e-9)), beyond_trust(point("rk4", 1e-3, 0.2, 1e-9)),
-                        point("verlet", 1e-3, 1, 1e-3)}),
-              testing::ElementsAre(2));
+  EXPECT_THAT(
+      front_of({diverged(made_point("rk4", 1e-3, 0.1, 1e-9)),
+                beyond_trust(made_point("rk4", 1e-3, 0.2, 1e-9)), made_point("verlet", 1e-3, 1, 1e-3)}),
+      testing::ElementsAre(2));
   EXPECT_THAT(front_of({}), testing::IsEmpty());
 }
 
 TEST(ParetoFront, KeepsEqualPoints) {
-  EXPECT_THAT(front_of({point("rk4", 1e-3, 1, 1e-3), point("verlet", 1e-3, 1, 1e-3)}),
+  EXPECT_THAT(front_of({made_point("rk4", 1e-3, 1, 1e-3), made_point("verlet", 1e-3, 1, 1e-3)}),
               testing::ElementsAre(0, 1));
 }
 
@@ -71,9 +59,9 @@ TEST(StepsAFrame, AreWholeAndNoLonger) {
 
 TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
   const std::vector<WorkPoint> points{
-      point("semi-euler", 1e-4, 0.2, 2e-3), point("verlet", 1e-4, 0.3, 5e-4),
-      point("verlet", 5e-5, 0.6, 1e-4),     point("verlet", 1e-4, 3, 5e-4, "serial"),
-      point("rk4", 2e-4, 0.5, 1e-6),        diverged(point("rk4", 4e-4, 0.1, 1e-9)),
+      made_point("semi-euler", 1e-4, 0.2, 2e-3), made_point("verlet", 1e-4, 0.3, 5e-4),
+      made_point("verlet", 5e-5, 0.6, 1e-4),     made_point("verlet", 1e-4, 3, 5e-4, "serial"),
+      made_point("rk4", 2e-4, 0.5, 1e-6),        diverged(made_point("rk4", 4e-4, 0.1, 1e-9)),
   };
   const Recommendation chosen = recommend(points, {60, 1e-3}, 0.05);
   EXPECT_EQ(chosen.best, 1U);
@@ -88,7 +76,7 @@ TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
 }
 
 TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
-  const Recommendation chosen = recommend(std::vector{point("verlet", 1e-4, 3, 5e-4)}, {60, 1e-3}, 0.05);
+  const Recommendation chosen = recommend(std::vector{made_point("verlet", 1e-4, 3, 5e-4)}, {60, 1e-3}, 0.05);
   EXPECT_EQ(chosen.best, 0U);
   EXPECT_FALSE(chosen.holds_frames);
   EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("60 frames a second do not hold"));
@@ -96,15 +84,16 @@ TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
 }
 
 TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator) {
-  const std::vector<WorkPoint> points{point("verlet", 1e-4, 0.3, 5e-4),
-                                      point("verlet", 1e-4, 3, 5e-4, "serial")};
+  const std::vector<WorkPoint> points{made_point("verlet", 1e-4, 0.3, 5e-4),
+                                      made_point("verlet", 1e-4, 3, 5e-4, "serial")};
   const Recommendation chosen = recommend(points, {60, 1e-3}, 0.05);
   EXPECT_EQ(chosen.runner_up, 1U);
   EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("cheaper at no error"));
 }
 
 TEST(Recommendation, NamesTheNearestWhereNothingIsAccurateEnough) {
-  const std::vector<WorkPoint> points{point("semi-euler", 1e-4, 0.2, 2e-3), point("verlet", 1e-4, 0.9, 1e-3)};
+  const std::vector<WorkPoint> points{made_point("semi-euler", 1e-4, 0.2, 2e-3),
+                                      made_point("verlet", 1e-4, 0.9, 1e-3)};
   const Recommendation chosen = recommend(points, {60, 1e-4}, 0.05);
   EXPECT_FALSE(chosen.best);
   EXPECT_EQ(chosen.nearest, 1U);
@@ -114,7 +103,8 @@ TEST(Recommendation, NamesTheNearestWhereNothingIsAccurateEnough) {
 }
 
 TEST(Recommendation, SaysThatEverythingDiverged) {
-  const Recommendation chosen = recommend(std::vector{diverged(point("rk4", 4e-4, 0.1, 1))}, {60, 1}, 0.05);
+  const Recommendation chosen =
+      recommend(std::vector{diverged(made_point("rk4", 4e-4, 0.1, 1))}, {60, 1}, 0.05);
   EXPECT_FALSE(chosen.best || chosen.nearest || chosen.runner_up);
   EXPECT_EQ(chosen.sentences.size(), 1U);
 }

@@ -1,12 +1,16 @@
 #include "output/guide/guide_page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 #include <map>
 
+#include "guide/equal_error.h"
 #include "output/guide/guide_table.h"
 #include "text/counted.h"
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {
@@ -65,22 +69,108 @@ void add_table(Document& page, const std::string& heading, const std::string& te
   page.insert(page.end(), {Heading{3, heading}, Paragraph{text}, std::move(table)});
 }
 
-void add_frames(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
-  Table frames = of_scene(table_named(tables, "guide-frames"), guide.scene);
-  // Methods that have none say why in the summary.
-  std::erase_if(frames.rows, [](const std::vector<Cell>& row) {
-    return std::holds_alternative<std::monostate>(row[6].value);
-  });
-  add_table(page, "Largest cloths of the family",
-            "With springs, masses and spacing of this scene, as squares; the step is that of the cheapest "
-            "point above that keeps the error, or where none does of the cheapest stable one. Between two "
-            "sizes that were measured the logarithm of the time "
-            "is taken as linear in that of the nodes.",
-            std::move(frames));
+Cell worded(const std::string& text) { return text.empty() ? Cell() : Cell(text); }
+
+/// A row a method, a column a frame rate.
+Table cloths_at_rates(const SceneGuide& guide) {
+  Table table;
+  table.columns = {{"integrator"}, {"backend"}, {"dt_s", Align::right}, {"keeps_error"}};
+  for (const double rate : frame_rates) table.columns.push_back({decimal(rate) + " a second", Align::right});
+  table.columns.push_back({"remark"});
+  for (const SizeCurve& curve : guide.sizes) {
+    if (curve.samples.empty()) continue;  // the summary says why
+    std::vector<Cell> row{curve.integrator->name, curve.backend->name, in_two_digits(curve.dt_s),
+                          curve.keeps_error};
+    for (const double rate : frame_rates) {
+      const SizeCurve::Largest largest = *curve.largest(rate);
+      const auto nodes = static_cast<std::uint64_t>(std::llround(largest.nodes));
+      row.emplace_back((largest.at_least ? "≥ "
+                        : nodes == 0     ? "< "
+                                         : "") +
+                       grouped(nodes == 0 ? curve.samples.front().nodes : nodes));
+    }
+    row.push_back(worded(curve.status));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+void add_cloths(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
   add_table(
-      page, "Where backends change places",
-      "Nodes from which `other` is the faster one; nothing where one is faster at all sizes that both have.",
-      of_scene(table_named(tables, "guide-crossovers"), guide.scene));
+      page, "Largest cloths of the family",
+      "In nodes, as squares with springs, masses and spacing of this scene, at frames a second; the step is "
+      "that of the cheapest point above that keeps the error, or where none does of the cheapest stable one. "
+      "Between two sizes that were measured the logarithm of the time is taken as linear in that of the "
+      "nodes.",
+      cloths_at_rates(guide));
+  Table crossovers = of_scene(table_named(tables, "guide-crossovers"), guide.scene);
+  std::erase_if(crossovers.rows, [](const std::vector<Cell>& row) {
+    return std::holds_alternative<std::monostate>(row.back().value);
+  });
+  add_table(page, "Where backends change places",
+            "Nodes from which `other` is the faster one. Of pairs that are not here one is faster at all "
+            "sizes that "
+            "both have.",
+            std::move(crossovers));
+}
+
+/// The limits without what only programs ask for.
+Table limits_table(const SceneGuide& guide) {
+  Table table;
+  const auto step = [](double seconds) {
+    return seconds > 0 && std::isfinite(seconds) ? Cell(in_two_digits(seconds)) : Cell();
+  };
+  for (const StepLimit& limit : guide.limits) {
+    std::string remark = limit.status.empty() ? limit.why : limit.status;
+    if (!limit.measured.finished && limit.measured.stable_s > 0)
+      remark = "between these two, time was short" + (remark.empty() ? "" : "; " + remark);
+    table.add({{"integrator", limit.integrator->name},
+               {"stable_dt_s", step(limit.measured.stable_s)},
+               {"unstable_dt_s", step(limit.measured.unstable_s)},
+               {"theory_dt_s", step(limit.theory.shortest_s())},
+               {"gershgorin_dt_s", step(limit.theory.bound_s)},
+               {"remark", worded(remark)}});
+  }
+  for (Column& column : table.columns)
+    if (column.name.ends_with("_s")) column.align = Align::right;
+  return table;
+}
+
+/// A row a method, a column an error; the cheapest at the wished error first.
+Table costs_at_errors(const SceneGuide& guide) {
+  const auto errors = errors_around(guide.wish);
+  Table table;
+  table.columns = {{"integrator"}, {"backend"}};
+  for (const double error : errors) table.columns.push_back({in_two_digits(error), Align::right});
+  std::vector<std::pair<double, std::vector<Cell>>> rows;
+  for (const GuidedMethod& method : guide.methods) {
+    std::vector<Cell> row{method.integrator->name, method.backend->name};
+    double at_wish = std::numeric_limits<double>::infinity();
+    bool any = false;
+    for (const double error : errors) {
+      const auto cost = cost_at_error(guide.points, *method.integrator, method.backend->name, error);
+      row.push_back(cost ? Cell(three_digits(cost->seconds_a_second) + (cost->at_longest_step ? " ‡" : ""))
+                         : Cell());
+      if (cost && error == guide.wish.error) at_wish = cost->seconds_a_second;
+      any = any || cost;
+    }
+    if (any) rows.emplace_back(at_wish, std::move(row));
+  }
+  std::ranges::stable_sort(rows, {}, &std::pair<double, std::vector<Cell>>::first);
+  for (auto& [cost, row] : rows) table.rows.push_back(std::move(row));
+  return table;
+}
+
+void add_costs(Document& page, const SceneGuide& guide) {
+  add_table(
+      page, "At equal error",
+      "Seconds that a simulated second takes where the error may be as large as the column says, by a line "
+      "through the logarithms of two points. ‡: the longest step that was stable is more accurate than that.",
+      costs_at_errors(guide));
+  const std::vector<std::string> sentences = beside_the_paper(guide);
+  if (sentences.empty()) return;
+  page.emplace_back(Paragraph{"Beside milliseconds a step, which Hong et al. compare:"});
+  for (const std::string& sentence : sentences) page.emplace_back(Paragraph{sentence});
 }
 
 void add_scene(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
@@ -103,14 +193,15 @@ void add_scene(Document& page, const SceneGuide& guide, const std::vector<Result
     add_table(page, "The front",
               "No other point that was measured is both as fast and as accurate as one of these.",
               front_table(guide));
+    add_costs(page, guide);
   }
   add_table(
       page, "Largest stable steps",
       "Measured by real runs whose energy may not grow, beside linear theory with the spectrum of the "
       "scene at its start and on the way. Gershgorin's bound, which `mssim check` shows, takes all springs "
       "of a node for parallel and all its neighbours for moving against it, and is on the safe side.",
-      of_scene(table_named(tables, "guide-steps"), guide.scene));
-  add_frames(page, guide, tables);
+      limits_table(guide));
+  add_cloths(page, guide, tables);
 }
 
 }  // namespace

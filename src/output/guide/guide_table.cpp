@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "guide/equal_error.h"
 #include "output/guide/guide_page.h"
 #include "text/decimal.h"
 
@@ -113,6 +114,21 @@ Table steps_table(std::span<const SceneGuide> guides) {
   return table;
 }
 
+Table errors_table(std::span<const SceneGuide> guides) {
+  Table table;
+  for (const SceneGuide& guide : guides)
+    for (const GuidedMethod& method : guide.methods)
+      for (const double error : errors_around(guide.wish))
+        if (const auto cost = cost_at_error(guide.points, *method.integrator, method.backend->name, error))
+          table.add({{"scene", guide.scene},
+                     {"integrator", method.integrator->name},
+                     {"backend", method.backend->name},
+                     {"position_error", error},
+                     {"wall_s_per_s", cost->seconds_a_second},
+                     {"at_longest_step", cost->at_longest_step}});
+  return table;
+}
+
 Table sizes_table(std::span<const SceneGuide> guides) {
   Table table;
   for (const SceneGuide& guide : guides)
@@ -216,11 +232,10 @@ Table guide_summary(const SceneGuide& guide) {
 }
 
 std::vector<ResultTable> guide_tables(std::span<const SceneGuide> guides, const Provenance& provenance) {
-  std::vector<ResultTable> tables{{"guide", points_table(guides), {}},
-                                  {"guide-steps", steps_table(guides), {}},
-                                  {"guide-sizes", sizes_table(guides), {}},
-                                  {"guide-frames", frames_table(guides), {}},
-                                  {"guide-crossovers", crossovers_table(guides), {}}};
+  std::vector<ResultTable> tables{
+      {"guide", points_table(guides), {}},        {"guide-steps", steps_table(guides), {}},
+      {"guide-errors", errors_table(guides), {}}, {"guide-sizes", sizes_table(guides), {}},
+      {"guide-frames", frames_table(guides), {}}, {"guide-crossovers", crossovers_table(guides), {}}};
   tables.front().page = guide_page(guides, tables, provenance);
   std::erase_if(tables, [](const ResultTable& table) { return table.data.rows.empty(); });
   return tables;

@@ -13,9 +13,9 @@ namespace mssim {
 Table guide_summary(const SceneGuide& guide);
 
 /// The tables of a guide's folder. "guide" has all points and the page; these have no page of their own:
-/// "guide-steps" the largest stable steps beside theory, "guide-sizes" the times of cloths by their nodes,
-/// "guide-frames" the largest cloths that hold a frame rate, and "guide-crossovers" the sizes at which two
-/// backends take the same time.
+/// "guide-steps" the largest stable steps beside theory, "guide-errors" the costs at equal error,
+/// "guide-sizes" the times of cloths by their nodes, "guide-frames" the largest cloths that hold a frame
+/// rate, and "guide-crossovers" the sizes at which two backends take the same time.
 std::vector<ResultTable> guide_tables(std::span<const SceneGuide> guides, const Provenance& provenance);
 
 }  // namespace mssim
