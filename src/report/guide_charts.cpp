@@ -81,7 +81,7 @@ Chart error_chart(const std::vector<GuideLine>& lines, const Along& along) {
   chart.families = integrator_families();
   const double edge = edge_of(lines);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  Series untrusted{.name = "near the reference", .origin = Origin::reference, .mark = PointMark::square},
+  Series uncompared{.name = "not compared", .origin = Origin::reference, .mark = PointMark::square},
       diverged{.name = "diverged", .origin = Origin::reference, .mark = PointMark::cross};
   const auto put = [](Series& series, double x, double y) {
     series.x.push_back(x);
@@ -94,15 +94,18 @@ Chart error_chart(const std::vector<GuideLine>& lines, const Along& along) {
       if (!x) continue;
       const double error = point->position_error.value_or(none);
       put(point->diverged ? diverged : series, *x, point->diverged ? edge : error);
-      if (point->status == untrusted_status) put(untrusted, *x, error);
+      if (!point->diverged && point->status != compared_status) put(uncompared, *x, error);
     }
     if (!series.x.empty()) chart.series.push_back(std::move(series));
   }
   if (!diverged.x.empty())
     chart.remarks.push_back("Crosses at an error of " + decimal(edge) + " diverged, whatever their error");
-  if (!untrusted.x.empty())
-    chart.remarks.emplace_back("Points in squares are too near the error of the reference to be compared");
-  for (Series* marks : {&untrusted, &diverged})
+  if (!uncompared.x.empty())
+    chart.remarks.emplace_back(
+        "Points in squares are not compared: their errors are too near that of the reference, or their steps "
+        "longer "
+        "than the largest stable one");
+  for (Series* marks : {&uncompared, &diverged})
     if (!marks->x.empty()) chart.series.push_back(std::move(*marks));
   return chart;
 }

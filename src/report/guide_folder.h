@@ -20,8 +20,9 @@ struct GuidePoint {
   std::string status{};
 };
 
-/// What stands in a point's status where its error is too near that of the reference.
-inline constexpr const char* untrusted_status = "within the reference's error";
+/// What stands in a point's status where conclusions may rest on it. Else it diverged, is too near the error of
+/// the reference, or has a longer step than the largest stable one.
+inline constexpr const char* compared_status = "ok";
 
 /// A row of guide-sizes.csv.
 struct GuideTime {
