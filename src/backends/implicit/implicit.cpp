@@ -1,5 +1,7 @@
 #include "backends/implicit/implicit.h"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 
@@ -10,86 +12,113 @@
 namespace mssim {
 namespace {
 
-[[noreturn]] void refuse_explicit(const Integrator& integrator) {
-  throw std::invalid_argument(std::string(integrator.name) + " is no implicit integrator");
+/// What takes the steps of one solver.
+struct SolverSteps {
+  using Make = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s);
+  using MakeOpenMp = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s,
+                                              const ExecutionOptions& options);
+
+  Make* serial;
+  MemoryUse serial_memory;
+  Make* reference;
+  MemoryUse reference_memory;
+  MakeOpenMp* openmp;
+  MemoryUse openmp_memory;  ///< for a cloth; for bodies what their slices take comes to it
+};
+
+/// A maker of a room that steps one integrator and need not be told which.
+template <auto make, class... More>
+std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrator& /*integrator*/,
+                                           double dt_s, const More&... more) {
+  return make(system, dt_s, more...);
 }
+
+/// Of a SpringEquation<float>: of a node what PlainNodes hold, six vectors and a block of P; of a spring what
+/// it adds to A.
+constexpr MemoryUse plain_newton{.node = 29 + 6 * 12 + 24, .spring = 20};
 
 /// Sparse factors in double precision, with an index each: 5 to 6 entries a node and doubling are what
 /// minimum degree leaves of the matrix of a cloth of 40,000 to 160,000 nodes.
 constexpr double factor_bytes = 6 * 12;
 
+/// What slices take, each spring at both its ends, as for explicit integrators.
+constexpr MemoryUse body_slices{.node = 130, .spring = 38};
+
+constexpr SolverSteps newton{
+    .serial = make_serial_newton,
+    .serial_memory = plain_newton,
+    .reference = make_newton_reference,
+    .reference_memory = {.node = 2 * plain_newton.node - 1, .spring = 2 * plain_newton.spring},
+    .openmp = make_openmp_newton,
+    .openmp_memory = {.node = 8 * 12 + 24}};
+
+constexpr SolverSteps local_global{.serial = of_one_integrator<make_serial_local_global>,
+                                   .serial_memory = {.node = 150, .doubling_node = factor_bytes},
+                                   .reference = of_one_integrator<make_local_global_reference>,
+                                   .reference_memory = {.node = 250, .doubling_node = factor_bytes},
+                                   .openmp = of_one_integrator<make_openmp_local_global>,
+                                   .openmp_memory = {.node = 150, .doubling_node = factor_bytes}};
+
+constexpr SolverSteps constraints{.serial = of_one_integrator<make_serial_constraints>,
+                                  .serial_memory = {.node = 41, .spring = 16},
+                                  .reference = of_one_integrator<make_constraints_reference>,
+                                  .reference_memory = {.node = 81, .spring = 16},
+                                  .openmp = of_one_integrator<make_openmp_constraints>,
+                                  .openmp_memory = {.node = 40}};
+
+struct Row {
+  Solver solver;
+  SolverSteps steps;
+};
+
+/// The TABLE of solvers.
+constexpr std::array<Row, 4> table{{{Solver::newton_step, newton},
+                                    {Solver::newton, newton},
+                                    {Solver::local_global, local_global},
+                                    {Solver::constraints, constraints}}};
+
+const SolverSteps& steps_of(const Integrator& integrator) {
+  const auto row = std::ranges::find(table, integrator.solver, &Row::solver);
+  if (row == table.end())
+    throw std::invalid_argument(std::string(integrator.name) + " is no implicit integrator");
+  return row->steps;
+}
+
 }  // namespace
 
 MemoryUse serial_implicit_memory(const Integrator& integrator, bool /*grid*/) {
-  if (integrator.solver == Solver::local_global) return {.node = 150, .doubling_node = factor_bytes};
-  if (integrator.solver == Solver::constraints) return {.node = 41, .spring = 16};
-  return plain_newton_memory;
+  return steps_of(integrator).serial_memory;
 }
 
 MemoryUse implicit_reference_memory(const Integrator& integrator, bool /*grid*/) {
-  if (integrator.solver == Solver::local_global) return {.node = 250, .doubling_node = factor_bytes};
-  if (integrator.solver == Solver::constraints) return {.node = 81, .spring = 16};
-  return newton_reference_memory;
+  return steps_of(integrator).reference_memory;
 }
 
 MemoryUse openmp_implicit_memory(const Integrator& integrator, bool grid) {
-  // Bodies are cut into slices, as for explicit integrators, with each spring at both its ends.
-  const double node = grid ? 0 : 130, spring = grid ? 0 : 38;
-  if (integrator.solver == Solver::local_global)
-    return {.node = node + 150, .doubling_node = factor_bytes, .spring = spring};
-  if (integrator.solver == Solver::constraints) return {.node = node + 40, .spring = spring};
-  return {.node = node + 8 * 12 + 24, .spring = spring};
+  MemoryUse use = steps_of(integrator).openmp_memory;
+  if (!grid) {
+    use.node += body_slices.node;
+    use.spring += body_slices.spring;
+  }
+  return use;
 }
 
 std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& /*options*/) {
   refuse_garment(system);
-  switch (integrator.solver) {
-    case Solver::newton_step:
-    case Solver::newton:
-      return make_serial_newton(system, integrator, dt_s);
-    case Solver::local_global:
-      return make_serial_local_global(system, dt_s);
-    case Solver::constraints:
-      return make_serial_constraints(system, dt_s);
-    case Solver::none:
-      break;
-  }
-  refuse_explicit(integrator);
+  return steps_of(integrator).serial(system, integrator, dt_s);
 }
 
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
                                                  double dt_s) {
   refuse_garment(system);
-  switch (integrator.solver) {
-    case Solver::newton_step:
-    case Solver::newton:
-      return make_newton_reference(system, integrator, dt_s);
-    case Solver::local_global:
-      return make_local_global_reference(system, dt_s);
-    case Solver::constraints:
-      return make_constraints_reference(system, dt_s);
-    case Solver::none:
-      break;
-  }
-  refuse_explicit(integrator);
+  return steps_of(integrator).reference(system, integrator, dt_s);
 }
 
 std::unique_ptr<Backend> make_openmp_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options) {
   refuse_garment(system);
-  switch (integrator.solver) {
-    case Solver::newton_step:
-    case Solver::newton:
-      return make_openmp_newton(system, integrator, dt_s, options);
-    case Solver::local_global:
-      return make_openmp_local_global(system, dt_s, options);
-    case Solver::constraints:
-      return make_openmp_constraints(system, dt_s, options);
-    case Solver::none:
-      break;
-  }
-  refuse_explicit(integrator);
+  return steps_of(integrator).openmp(system, integrator, dt_s, options);
 }
 
 }  // namespace mssim

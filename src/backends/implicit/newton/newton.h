@@ -20,10 +20,4 @@ std::unique_ptr<Backend> make_newton_reference(const System& system, const Integ
 std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
                                             const ExecutionOptions& options);
 
-/// Of a SpringEquation<float>: of a node what PlainNodes hold, six vectors and a block of P; of a spring what
-/// it adds to A.
-inline constexpr MemoryUse plain_newton_memory{.node = 29 + 6 * 12 + 24, .spring = 20};
-inline constexpr MemoryUse newton_reference_memory{.node = 2 * plain_newton_memory.node - 1,
-                                                   .spring = 2 * plain_newton_memory.spring};
-
 }  // namespace mssim
