@@ -26,6 +26,12 @@ std::string three_digits(double value) {
   return fixed_decimal(value, std::max(0, 3 - before_point));
 }
 
+std::string two_digits(double value) {
+  std::array<char, 32> text;
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 2).ptr};
+}
+
 std::string grouped(std::uint64_t number) {
   std::string text = std::to_string(number);
   for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');

@@ -22,5 +22,13 @@ TEST(ThreeDigits, AreSignificantOnes) {
   EXPECT_EQ(three_digits(0), "0.00");
 }
 
+TEST(TwoDigits, HaveAnExponentWhereTheNumberIsSmallOrLarge) {
+  EXPECT_EQ(two_digits(2.14e-7), "2.1e-07");
+  EXPECT_EQ(two_digits(0.000999), "0.001");
+  EXPECT_EQ(two_digits(-60), "-60");
+  EXPECT_EQ(two_digits(120), "1.2e+02");
+  EXPECT_EQ(two_digits(0), "0");
+}
+
 }  // namespace
 }  // namespace mssim

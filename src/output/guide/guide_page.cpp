@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -15,19 +14,12 @@
 namespace mssim {
 namespace {
 
-/// "2.1e-07": errors and steps differ by orders of magnitude.
-std::string in_two_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
-
 /// Small numbers as text with two digits, which three decimals would show as 0.
 void show_small_numbers(Table& table) {
   for (std::vector<Cell>& row : table.rows)
     for (Cell& cell : row)
       if (const double* number = std::get_if<double>(&cell.value); number && std::abs(*number) < 0.1)
-        cell = Cell(in_two_digits(*number));
+        cell = Cell(two_digits(*number));
   for (Column& column : table.columns)
     if (column.name.ends_with("_s") || column.name.ends_with("_error")) column.align = Align::right;
 }
@@ -79,7 +71,7 @@ Table cloths_at_rates(const SceneGuide& guide) {
   table.columns.push_back({"remark"});
   for (const SizeCurve& curve : guide.sizes) {
     if (curve.samples.empty()) continue;  // the summary says why
-    std::vector<Cell> row{curve.integrator->name, curve.backend->name, in_two_digits(curve.dt_s),
+    std::vector<Cell> row{curve.integrator->name, curve.backend->name, two_digits(curve.dt_s),
                           curve.keeps_error};
     for (const double rate : frame_rates) {
       const SizeCurve::Largest largest = *curve.largest(rate);
@@ -118,7 +110,7 @@ void add_cloths(Document& page, const SceneGuide& guide, const std::vector<Resul
 Table limits_table(const SceneGuide& guide) {
   Table table;
   const auto step = [](double seconds) {
-    return seconds > 0 && std::isfinite(seconds) ? Cell(in_two_digits(seconds)) : Cell();
+    return seconds > 0 && std::isfinite(seconds) ? Cell(two_digits(seconds)) : Cell();
   };
   for (const StepLimit& limit : guide.limits) {
     std::string remark = limit.status.empty() ? limit.why : limit.status;
@@ -141,7 +133,7 @@ Table costs_at_errors(const SceneGuide& guide) {
   const auto errors = errors_around(guide.wish);
   Table table;
   table.columns = {{"integrator"}, {"backend"}};
-  for (const double error : errors) table.columns.push_back({in_two_digits(error), Align::right});
+  for (const double error : errors) table.columns.push_back({two_digits(error), Align::right});
   std::vector<std::pair<double, std::vector<Cell>>> rows;
   for (const GuidedMethod& method : guide.methods) {
     std::vector<Cell> row{method.integrator->name, method.backend->name};
@@ -208,19 +200,19 @@ void add_scene(Document& page, const SceneGuide& guide, const std::vector<Result
 
 std::vector<std::string> about_trusted_state(const TrustedState& trusted) {
   std::vector<std::string> sentences;
-  sentences.push_back("Errors are those " + in_two_digits(trusted.horizon_s) + " s after the start (" +
+  sentences.push_back("Errors are those " + two_digits(trusted.horizon_s) + " s after the start (" +
                       trusted.why_there + "; a neighbouring trajectory is then " +
-                      in_two_digits(trusted.parting) + " times as far away as at the start).");
+                      two_digits(trusted.parting) + " times as far away as at the start).");
   std::string reference = "The reference is rk4 in double precision with a step of " +
-                          in_two_digits(trusted.dt_s) + " s, whose own error is " +
-                          in_two_digits(trusted.own_error) + " of a mean rest length";
+                          two_digits(trusted.dt_s) + " s, whose own error is " +
+                          two_digits(trusted.own_error) + " of a mean rest length";
   if (trusted.confirmed)
-    reference += "; another solver (Bulirsch-Stoer) ends " + in_two_digits(*trusted.confirmed) + " from it";
+    reference += "; another solver (Bulirsch-Stoer) ends " + two_digits(*trusted.confirmed) + " from it";
   else
     reference += "; there was no time to confirm it by another solver";
   sentences.push_back(reference + ".");
-  sentences.push_back("Points whose error is below " + in_two_digits(trusted_margin * trusted.error()) +
-                      ", " + in_two_digits(trusted_margin) + " times that, are marked and not compared.");
+  sentences.push_back("Points whose error is below " + two_digits(trusted_margin * trusted.error()) + ", " +
+                      two_digits(trusted_margin) + " times that, are marked and not compared.");
   return sentences;
 }
 
