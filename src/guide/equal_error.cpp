@@ -5,6 +5,7 @@
 
 #include "integrators/all_integrators.h"
 #include "text/decimal.h"
+#include "text/nearest_name.h"
 
 namespace mssim {
 namespace {
@@ -25,14 +26,6 @@ std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const 
     if (point.counts() && point.integrator == &integrator && point.backend == backend)
       curve.push_back(&point);
   return curve;
-}
-
-/// "a, b and c".
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
-  return text;
 }
 
 std::string integrators_of(std::span<const Compared> compared) {

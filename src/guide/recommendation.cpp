@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "text/counted.h"
 #include "text/decimal.h"
+#include "text/nearest_name.h"
 
 namespace mssim {
 namespace {
@@ -23,12 +25,6 @@ std::optional<std::size_t> least(std::span<const WorkPoint> points, const Takes&
 double cost_of(const WorkPoint& point) { return point.seconds_a_second(); }
 double error_of(const WorkPoint& point) { return *point.position_error; }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
-
 std::string named(const WorkPoint& point) {
   return std::string(point.integrator->name) + " on " + point.backend;
 }
@@ -44,7 +40,7 @@ bool holds(const WorkPoint& point, double frames_per_second) {
 
 std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
   const double rate = 1 / frame_seconds(point, wish.frames_per_second);
-  const std::string asked = short_number(wish.frames_per_second);
+  const std::string asked = two_digits(wish.frames_per_second);
   return holds(point, wish.frames_per_second)
              ? "and " + asked + " frames a second hold (" + three_digits(rate) + " would)"
              : "so that " + asked + " frames a second do not hold (" + three_digits(rate) + " would)";
@@ -54,53 +50,83 @@ std::string what_to_take(std::span<const WorkPoint> points, const Recommendation
   if (!chosen.best) {
     if (!chosen.nearest) return "Nothing that was measured can be recommended: all points diverged.";
     const WorkPoint& point = points[*chosen.nearest];
-    return "Nothing that was measured keeps the error within " + short_number(wish.error) +
+    return "Nothing that was measured keeps the error within " + two_digits(wish.error) +
            " of a mean rest length: the most accurate is " + named(point) + " with a step of " +
-           short_number(point.dt_s) + " s.";
+           two_digits(point.dt_s) + " s.";
   }
   const WorkPoint& point = points[*chosen.best];
   const int steps = steps_a_frame(point.dt_s, wish.frames_per_second);
-  return "Take " + named(point) + " with a step of " + short_number(point.dt_s) + " s, which is " +
+  return "Take " + named(point) + " with a step of " + two_digits(point.dt_s) + " s, which is " +
          counted(static_cast<std::uint64_t>(steps), "step") + " a frame at " +
-         short_number(wish.frames_per_second) + " frames a second.";
+         two_digits(wish.frames_per_second) + " frames a second.";
 }
 
 std::string what_it_costs(const WorkPoint& point, const Wish& wish, double horizon_s) {
   return "A simulated second takes " + three_digits(cost_of(point)) + " s, " + frames_sentence(point, wish) +
-         "; " + short_number(horizon_s) + " s after the start no node is off by more than " +
-         short_number(error_of(point)) + " of a mean rest length, and the energy by " +
-         short_number(std::abs(point.energy_error.value_or(0))) + " of what is kinetic and elastic.";
+         "; " + two_digits(horizon_s) + " s after the start no node is off by more than " +
+         two_digits(error_of(point)) + " of a mean rest length, and the energy by " +
+         two_digits(std::abs(point.energy_error.value_or(0))) + " of what is kinetic and elastic.";
 }
 
-/// At which errors `other` is cheaper than `winner`: in words, or empty where it is nowhere.
-std::string where_it_wins(std::span<const WorkPoint> points, const WorkPoint& winner,
-                          const WorkPoint& other) {
+/// Errors that a user can bear, from one on up to another, which is not one of them; or without an end.
+struct ErrorRange {
+  double from = 0;
+  std::optional<double> to;
+};
+
+/// For which errors `other` is cheaper than `winner`, in order. What a method costs for an error is what its
+/// cheapest point within it does.
+std::vector<ErrorRange> ranges_to_win(std::span<const WorkPoint> points, const WorkPoint& winner,
+                                      const WorkPoint& other) {
   const auto cheapest = [&](const WorkPoint& method, double error) {
     return least(
         points, [&](const WorkPoint& p) { return same_method(p, method) && error_of(p) <= error; }, cost_of);
   };
-  std::optional<double> least_error, largest_error;
-  for (const WorkPoint& at : points) {
-    if (!at.counts()) continue;
-    const auto mine = cheapest(other, error_of(at)), its = cheapest(winner, error_of(at));
-    if (!mine || (its && cost_of(points[*its]) <= cost_of(points[*mine]))) continue;
-    least_error = std::min(least_error.value_or(error_of(at)), error_of(at));
-    largest_error = std::max(largest_error.value_or(error_of(at)), error_of(at));
+  const auto is_cheaper = [&](double error) {
+    const auto mine = cheapest(other, error), its = cheapest(winner, error);
+    return mine && (!its || cost_of(points[*mine]) < cost_of(points[*its]));
+  };
+  std::vector<double> errors;  // from one of these to the next nothing changes
+  for (const WorkPoint& point : points)
+    if (point.counts()) errors.push_back(error_of(point));
+  std::ranges::sort(errors);
+  std::vector<ErrorRange> ranges;
+  bool cheaper = false;
+  for (const double error : errors) {
+    const bool was_cheaper = std::exchange(cheaper, is_cheaper(error));
+    if (cheaper && !was_cheaper) ranges.push_back({error, std::nullopt});
+    if (!cheaper && was_cheaper) ranges.back().to = error;
   }
-  if (!least_error) return {};
-  if (*least_error == *largest_error) return "at an error of about " + short_number(*least_error);
-  return "at errors of " + short_number(*least_error) + " to " + short_number(*largest_error);
+  return ranges;
+}
+
+/// Three of them at most, in words.
+std::string in_words(std::span<const ErrorRange> ranges) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> texts;
+  for (const ErrorRange& range : ranges.first(std::min(most, ranges.size()))) {
+    const std::string from = two_digits(range.from);
+    if (!range.to)
+      texts.push_back(from + " or more");
+    else if (const std::string to = two_digits(*range.to); to != from)
+      texts.push_back(from + " to below " + to);
+    else
+      texts.push_back("about " + from);
+  }
+  if (ranges.size() > most) texts.emplace_back("some larger ones");
+  return listed(texts);
 }
 
 std::string who_comes_second(std::span<const WorkPoint> points, const Recommendation& chosen) {
   const WorkPoint& winner = points[chosen.best ? *chosen.best : *chosen.nearest];
   if (!chosen.runner_up) return "No other method that was measured is accurate enough.";
   const WorkPoint& second = points[*chosen.runner_up];
-  const std::string where = where_it_wins(points, winner, second);
+  const std::vector<ErrorRange> wins = ranges_to_win(points, winner, second);
   const double ratio = cost_of(second) / cost_of(winner);
-  return "The runner-up is " + named(second) + " with a step of " + short_number(second.dt_s) +
+  return "The runner-up is " + named(second) + " with a step of " + two_digits(second.dt_s) +
          " s, which takes " + three_digits(ratio) + " times as long" +
-         (where.empty() ? "; it is cheaper at no error that was measured." : "; it would win " + where + ".");
+         (wins.empty() ? "; it is cheaper at no error."
+                       : "; it would win at errors of " + in_words(wins) + ".");
 }
 
 }  // namespace

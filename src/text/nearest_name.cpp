@@ -56,6 +56,10 @@ std::string listed(std::span<const std::string_view> names, std::string_view las
   return list;
 }
 
+std::string listed(const std::vector<std::string>& names, std::string_view last_word) {
+  return listed(std::vector<std::string_view>(names.begin(), names.end()), last_word);
+}
+
 std::string unknown_name(std::string_view what, std::string_view name,
                          std::span<const std::string_view> known) {
   std::string sentence = "unknown ";

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mssim {
 
@@ -13,6 +14,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
 
 /// "a, b and c", or with another last word "a, b or c".
 std::string listed(std::span<const std::string_view> names, std::string_view last_word = "and");
+std::string listed(const std::vector<std::string>& names, std::string_view last_word = "and");
 
 /// The complaint about a name that is none of the known: "unknown WHAT "NAME" (did you mean NEAREST?): known
 /// are A, B and C".

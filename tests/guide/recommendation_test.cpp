@@ -72,7 +72,40 @@ TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
   EXPECT_THAT(chosen.sentences[0], testing::HasSubstr("167 steps a frame"));
   EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("60 frames a second hold"));
   EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("runner-up is rk4 on openmp"));
-  EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("it would win at errors of 1e-06 to 0.0001"));
+  EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("it would win at errors of 1e-06 to below 0.0005."));
+}
+
+/// Each of two methods is the cheaper one for some errors between those for which the other is.
+const std::vector<WorkPoint> by_turns{
+    made_point("rk4", 1e-5, 5, 1e-6),   made_point("verlet", 1e-5, 4, 1e-5),
+    made_point("rk4", 2e-5, 2, 1e-4),   made_point("verlet", 1e-4, 0.3, 5e-4),
+    made_point("rk4", 1e-4, 0.1, 5e-3), made_point("verlet", 1e-3, 0.05, 2e-2),
+};
+
+std::string runner_up_sentence(const std::vector<WorkPoint>& points) {
+  return recommend(points, {60, 1e-3}, 0.05).sentences.at(2);
+}
+
+TEST(Recommendation, LeavesOutErrorsBetweenThoseForWhichTheRunnerUpIsCheaper) {
+  // At 5e-4, say, the winner's own error, it is not.
+  EXPECT_THAT(runner_up_sentence(by_turns),
+              testing::EndsWith("it would win at errors of 1e-06 to below 1e-05, 0.0001 to below 0.0005 and "
+                                "0.005 to below 0.02."));
+  std::vector<WorkPoint> many = by_turns;
+  many.push_back(made_point("rk4", 2e-3, 0.01, 5e-2));
+  EXPECT_THAT(runner_up_sentence(many), testing::EndsWith("0.005 to below 0.02 and some larger ones."));
+}
+
+TEST(Recommendation, SaysThatTheRunnerUpIsCheaperFromAnErrorOn) {
+  EXPECT_THAT(runner_up_sentence({made_point("rk4", 1e-4, 2, 1e-4), made_point("verlet", 1e-4, 0.3, 1e-4),
+                                  made_point("rk4", 1e-3, 0.1, 5e-3)}),
+              testing::EndsWith("it would win at errors of 0.005 or more."));
+}
+
+TEST(Recommendation, TellsNoRangeWhoseEndsAreTheSameInTwoDigits) {
+  EXPECT_THAT(
+      runner_up_sentence({made_point("rk4", 1e-4, 0.5, 1e-4), made_point("verlet", 1e-4, 0.3, 1.001e-4)}),
+      testing::EndsWith("it would win at errors of about 0.0001."));
 }
 
 TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
