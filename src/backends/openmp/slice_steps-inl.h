@@ -12,6 +12,7 @@
 #include <bit>
 #include <utility>
 
+#include "backends/layouts/slice_entries.h"
 #include "backends/layouts/update_nodes-inl.h"
 #include "backends/openmp/sliced_bodies.h"
 #include "backends/threads/chunk_tickets.h"
@@ -32,7 +33,7 @@ HWY_INLINE Lanes3 spring_acceleration(const SlicedBodies& bodies, const float* p
   for (const float* entry = bodies.entries.data() + bodies.first_entry[slice] * 2 * vector_nodes; entry < end;
        entry += 2 * vector_nodes) {
     const NodeLanes other = load_records<vector_nodes>([&](std::size_t i) MSSIM_INLINE_LAMBDA {
-      return pair + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * SlicedBodies::offset_floats;
+      return pair + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * slice_offset_floats;
     });
     const Lanes stiffness_rest = hn::Load(d, entry + vector_nodes);
     const Lanes3 to_other = other.x - node.x;

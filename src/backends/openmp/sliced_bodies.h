@@ -25,12 +25,9 @@ struct SlicedBodies {
   std::size_t lanes = 0;
   std::vector<std::uint32_t> slot;         ///< SlicedGraph::slot
   std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
-  /// [entries][2][lanes] in one stream: where the neighbours' records start, in units of offset_floats and as
-  /// std::uint32_t, then SlicedGraph::stiffness_rest.
-  AlignedArray entries;
+  AlignedArray entries;                    ///< slice_entries()
   /// [slices][3][lanes] SlicedGraph's stiffness, damping and `held`, the last as 0 or 1.
   AlignedArray constants;
-  static constexpr std::size_t offset_floats = 2;
 
   const Integrator* integrator = nullptr;
   Coefficients<float> coefficients{};
@@ -41,7 +38,7 @@ struct SlicedBodies {
   std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
 
   /// Cuts the bodies into slices of `slice_lanes` nodes, for at most `thread_count` threads.
-  /// Throws Unsupported like SlicedGraph, and for more nodes than offsets can name.
+  /// Throws Unsupported like SlicedGraph, and for more nodes than entries can name.
   SlicedBodies(const System& system, const Integrator& method, double dt_s, std::size_t slice_lanes,
                std::size_t thread_count);
   void set_state(const State& state);

@@ -1,17 +1,9 @@
 #include "backends/implicit/nodes/node_slices.h"
 
-#include <bit>
-#include <limits>
-#include <string>
-
-#include "backends/interface/backend.h"
-#include "backends/layouts/sliced_graph.h"
+#include "backends/layouts/slice_entries.h"
 
 namespace mssim {
 namespace {
-
-/// What a slice costs beside its entries, in entries.
-constexpr std::size_t slice_cost = 4;
 
 /// The record of a slot. Four vectors hold the records of a slice. Transposed in blocks of four, record b of
 /// vector k goes to lane 4 b + k: a node of that lane stands there, so that blocks need not change places.
@@ -24,24 +16,11 @@ std::uint32_t record_of(std::size_t slot, std::size_t lanes) {
 
 NodeSlices::NodeSlices(const System& system, std::size_t slice_lanes)
     : lanes(slice_lanes), surroundings(surroundings_of(system)), nodes(system.nodes()) {
-  constexpr std::size_t offsets = record_floats / offset_floats;
-  constexpr std::size_t most_nodes =
-      std::numeric_limits<std::uint32_t>::max() / offsets - SlicedGraph::window;
-  if (nodes > most_nodes)
-    throw Unsupported("the scene has " + std::to_string(nodes) +
-                      " nodes; openmp supports bodies of at most " + std::to_string(most_nodes));
+  require_nameable_records(system, record_floats);
   const SlicedGraph graph(system, lanes);
   first_entry = graph.first_entry;
   for (const std::uint32_t slot : graph.slot) record.push_back(record_of(slot, lanes));
-  entries = AlignedArray(graph.entries() * 2 * lanes);
-  for (std::size_t entry = 0; entry < graph.entries(); ++entry)
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      float* row = entries.data() + entry * 2 * lanes;
-      const std::size_t element = entry * lanes + lane;
-      row[lane] = std::bit_cast<float>(
-          static_cast<std::uint32_t>(record_of(graph.neighbour[element], lanes) * offsets));
-      row[lanes + lane] = graph.stiffness_rest[element];
-    }
+  entries = slice_entries(graph, record_floats, [&](std::uint32_t slot) { return record_of(slot, lanes); });
   constants = AlignedArray(graph.slots() * constant_count);
   for (std::size_t slot = 0; slot < graph.slots(); ++slot) {
     if (graph.scene_node[slot] == SlicedGraph::no_node) continue;
@@ -52,7 +31,7 @@ NodeSlices::NodeSlices(const System& system, std::size_t slice_lanes)
     first[mass * lanes] = static_cast<float>(system.node_mass[graph.scene_node[slot]]);
   }
   chunks = balanced_node_chunks(slices(),
-                                [&](std::size_t slice) { return first_entry[slice] + slice * slice_cost; });
+                                [&](std::size_t slice) { return cost_of_slices_before(first_entry, slice); });
 }
 
 }  // namespace mssim

@@ -16,8 +16,6 @@ namespace mssim {
 /// records and transposing them in registers.
 struct NodeSlices {
   static constexpr std::size_t record_floats = 4;
-  /// What entries count in: a processor's address can have such a factor.
-  static constexpr std::size_t offset_floats = 2;
   /// Numbers of each node in `constants`.
   enum Constant : std::size_t { stiffness, damping, free, mass, constant_count };
 
@@ -26,15 +24,13 @@ struct NodeSlices {
   std::size_t nodes = 0;
   std::vector<std::uint32_t> record;       ///< [nodes] the number of a node's record
   std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
-  /// [entries][2][lanes] in one stream: where the neighbours' records start, in units of offset_floats and as
-  /// std::uint32_t, then SlicedGraph::stiffness_rest.
-  AlignedArray entries;
+  AlignedArray entries;                    ///< slice_entries()
   /// [slices][constant_count][lanes] SlicedGraph's stiffness and damping, 1 where a node moves or else 0, and
   /// mass in kg, 0 where no node is.
   AlignedArray constants;
   std::vector<NodeChunk> chunks;  ///< of slices
 
-  /// Throws Unsupported like SlicedGraph, and for more nodes than offsets can name.
+  /// Throws Unsupported like SlicedGraph, and for more nodes than entries can name.
   NodeSlices(const System& system, std::size_t lanes);
 
   std::size_t slices() const { return first_entry.size() - 1; }

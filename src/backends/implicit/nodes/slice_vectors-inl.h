@@ -12,6 +12,7 @@
 #include "backends/implicit/nodes/node_slices.h"
 #include "backends/implicit/nodes/slope_lanes-inl.h"
 #include "backends/layouts/records-inl.h"
+#include "backends/layouts/slice_entries.h"
 #include "backends/layouts/spring_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -90,7 +91,7 @@ struct SliceSprings {
   /// A field at the neighbours.
   HWY_INLINE Lanes3 load(const float* field) const {
     return gather_records([&](std::size_t i) MSSIM_INLINE_LAMBDA {
-      return field + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * NodeSlices::offset_floats;
+      return field + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * slice_offset_floats;
     });
   }
 
