@@ -1,7 +1,6 @@
 #include "guide/scene_guide.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,11 +11,10 @@
 #include "guide/step_theory.h"
 #include "guide/work_precision.h"
 #include "integrators/all_integrators.h"
+#include "platform/stopwatch.h"
 
 namespace mssim {
 namespace {
-
-using WallClock = std::chrono::steady_clock;
 
 /// Shares of the wall time. A part that ends early leaves its time to the next, and one that takes longer
 /// takes none of theirs: on a busy machine the whole then takes longer.
@@ -27,7 +25,7 @@ constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.4
 class GuideClock {
  public:
   explicit GuideClock(double seconds) : seconds_(seconds) {}
-  double spent() const { return std::chrono::duration<double>(WallClock::now() - start_).count(); }
+  double spent() const { return watch_.seconds(); }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
   bool is_past(double share) const { return spent() > share * seconds_; }
   /// Seconds after the guide's start at which a part ends that begins now: it leaves `later` to what follows.
@@ -37,7 +35,7 @@ class GuideClock {
 
  private:
   double seconds_;
-  WallClock::time_point start_ = WallClock::now();
+  Stopwatch watch_;
 };
 
 /// A third of the stability limit of rk4 by theory: well within its order.

@@ -1,17 +1,15 @@
 #include "guide/step_limits.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "guide/step_timer.h"
 #include "guide/work_precision.h"
 #include "integrators/integrators.h"
+#include "platform/stopwatch.h"
 
 namespace mssim {
 namespace {
-
-using WallClock = std::chrono::steady_clock;
 
 /// A step that the explicit methods are near to: the limit of semi-implicit Euler in the same theory.
 double usual_limit(const LimitRequest& request) {
@@ -31,8 +29,7 @@ StepSearch search_for(const Integrator& integrator, const StepTheory& theory, co
                                            : usual;
   search.span_s = stability_span_s;
   search.stop = request.stop;
-  const auto end = WallClock::now() + std::chrono::duration<double>(request.seconds);
-  search.hurry = [end] { return WallClock::now() > end; };
+  search.hurry = [watch = Stopwatch(), seconds = request.seconds] { return watch.seconds() > seconds; };
   return search;
 }
 

@@ -1,20 +1,20 @@
 #include "guide/step_timer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <vector>
+
+#include "platform/stopwatch.h"
 
 namespace mssim {
 
 StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s) {
-  using WallClock = std::chrono::steady_clock;
   constexpr std::size_t few = 5, many = 100;
   const auto run = [&](int count) {
     backend.set_state(system.start);
-    const auto start = WallClock::now();
+    const Stopwatch watch;
     backend.step(count);
-    return std::chrono::duration<double>(WallClock::now() - start).count();
+    return watch.seconds();
   };
   run(std::min(steps, 10));  // the first touches memory and starts threads
   std::vector<double> seconds;

@@ -1,7 +1,6 @@
 #include "guide/trusted_state.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <memory>
@@ -13,16 +12,11 @@
 #include "guide/independent_solver.h"
 #include "integrators/all_integrators.h"
 #include "platform/process_cpus.h"
+#include "platform/stopwatch.h"
 #include "text/decimal.h"
 
 namespace mssim {
 namespace {
-
-using WallClock = std::chrono::steady_clock;
-
-double seconds_since(WallClock::time_point start) {
-  return std::chrono::duration<double>(WallClock::now() - start).count();
-}
 
 /// The system's start with every free node moved by up to `distance`.
 State neighbour_of(const System& system, double distance_m) {
@@ -93,9 +87,9 @@ class HorizonWalk {
 double seconds_a_step(const System& system, double dt_s) {
   constexpr int steps = 3;
   const auto backend = make_reference(system, *find_integrator("rk4"), dt_s);
-  const auto start = WallClock::now();
+  const Stopwatch watch;
   backend->step(steps);
-  return seconds_since(start) / steps;
+  return watch.seconds() / steps;
 }
 
 }  // namespace
@@ -105,7 +99,7 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   // Two trajectories at once, then half the step, with the other solver beside it.
   constexpr double runs = 5;
   TrustedState trusted;
-  const auto start = WallClock::now();
+  const Stopwatch watch;
   const double step_seconds = seconds_a_step(system, request.first_dt_s);
   const double affordable_s = request.seconds / runs / step_seconds * request.first_dt_s;
   const double longest_s = std::min(request.longest_s, affordable_s);
@@ -128,7 +122,7 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
                                                       : "no longer horizon is asked for";
 
   const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
-  const auto out_of_time = [&] { return request.stop() || seconds_since(start) > 2 * request.seconds; };
+  const auto out_of_time = [&] { return request.stop() || watch.seconds() > 2 * request.seconds; };
   std::future<std::optional<State>> other = std::async(std::launch::async, [&] {
     return independent_state(system, trusted.horizon_s, 1e-8 * mean_rest_length(system), out_of_time);
   });
@@ -137,13 +131,13 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   do {
     steps *= 2;
     dt_s /= 2;
-    const auto run_start = WallClock::now();
+    const Stopwatch run_watch;
     const auto backend = make_reference(system, *find_integrator("rk4"), dt_s);
     backend->step(steps);
     trusted.state = backend->state();
     trusted.own_error = position_deviation(system, coarse, trusted.state) / 15;
     coarse = trusted.state;
-    if (seconds_since(start) + 2 * seconds_since(run_start) > request.seconds) break;
+    if (watch.seconds() + 2 * run_watch.seconds() > request.seconds) break;
   } while (trusted.own_error > request.wanted_error && !request.stop());
   trusted.dt_s = dt_s;
   trusted.energy = energy_of(system, trusted.state);

@@ -1,7 +1,6 @@
 #include "guide/work_precision.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "backends/reference.h"
@@ -11,15 +10,10 @@
 #include "guide/step_timer.h"
 #include "integrators/all_integrators.h"
 #include "model/energy.h"
+#include "platform/stopwatch.h"
 
 namespace mssim {
 namespace {
-
-using WallClock = std::chrono::steady_clock;
-
-double wall_seconds_since(WallClock::time_point start) {
-  return std::chrono::duration<double>(WallClock::now() - start).count();
-}
 
 std::optional<double> evaluations_of(const Integrator& integrator, const System& system) {
   switch (integrator.solver) {
@@ -56,7 +50,7 @@ const State* ExactBackwardEuler::after(int steps) {
   if (known != states_.end()) return known->second ? &*known->second : nullptr;
   std::optional<State>& state = states_[steps];
   if (steps * step_seconds_ > seconds_left_) return nullptr;
-  const auto start = WallClock::now();
+  const Stopwatch watch;
   try {
     const auto backend =
         make_reference(system_, *find_integrator("newton-euler"), trusted_.horizon_s / steps);
@@ -67,8 +61,8 @@ const State* ExactBackwardEuler::after(int steps) {
     seconds_left_ = 0;
     step_seconds_ = 1;
   }
-  step_seconds_ = std::max(step_seconds_, wall_seconds_since(start) / steps);
-  seconds_left_ -= wall_seconds_since(start);
+  step_seconds_ = std::max(step_seconds_, watch.seconds() / steps);
+  seconds_left_ -= watch.seconds();
   return state ? &*state : nullptr;
 }
 
@@ -120,7 +114,7 @@ bool WorkCurve::goes_on_after(const WorkPoint& point) const {
 
 std::optional<WorkPoint> WorkCurve::next() {
   constexpr double enough_s = 0.03;
-  const auto start = WallClock::now();
+  const Stopwatch watch;
   WorkPoint point;
   point.integrator = method_.integrator;
   point.backend = method_.backend->name;
@@ -146,7 +140,7 @@ std::optional<WorkPoint> WorkCurve::next() {
   ++points_;
   has_next_ = goes_on_after(point);
   last_error_ = point.counts() ? point.position_error : std::nullopt;
-  last_seconds_ = wall_seconds_since(start);
+  last_seconds_ = watch.seconds();
   steps_ *= 2;
   return point;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -15,13 +14,10 @@
 #include "output/tables/combination_times.h"
 #include "platform/available_memory.h"
 #include "platform/child_process.h"
+#include "platform/stopwatch.h"
 
 namespace mssim {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// A combination under way. Its pairs grow until they are settled.
 struct Series {
@@ -148,15 +144,15 @@ RunComparison compare_programs(const AbOptions& options) {
   std::mt19937_64 random(std::random_device{}());
   std::vector<Series> series;
   const auto settled = [&] { return !series.empty() && std::ranges::all_of(series, &Series::settled); };
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   double longest_s = 0;
   std::size_t rounds = 0;
   {
     ProgressLine progress({1});
     progress.begin_scene(options.base + " and " + options.next + " alternately");
     series = verify(programs, options, progress);
-    while (!settled() && (rounds == 0 || seconds_since(start) + longest_s <= options.time_budget_s)) {
-      const auto round_start = std::chrono::steady_clock::now();
+    while (!settled() && (rounds == 0 || watch.seconds() + longest_s <= options.time_budget_s)) {
+      const Stopwatch round_watch;
       const bool all = series.empty();
       std::array<std::vector<CombinationTime>, 2> times;
       const std::size_t first = random() & 1U;
@@ -168,12 +164,12 @@ RunComparison compare_programs(const AbOptions& options) {
       for (Series& one : series)
         if (!one.settled) add_round(one, times[0], times[1], options.threshold);
       ++rounds;
-      longest_s = std::max(longest_s, seconds_since(round_start));
-      progress.update("round " + std::to_string(rounds), seconds_since(start) / options.time_budget_s);
+      longest_s = std::max(longest_s, round_watch.seconds());
+      progress.update("round " + std::to_string(rounds), watch.seconds() / options.time_budget_s);
     }
   }
   std::cerr << "mssim: " << rounds << (rounds == 1 ? " round in " : " rounds in ")
-            << std::lround(seconds_since(start)) << " s"
+            << std::lround(watch.seconds()) << " s"
             << (settled() ? "" : "; the time budget ended before every verdict was settled") << '\n';
   RunComparison comparison;
   comparison.threshold = options.threshold;

@@ -1,6 +1,5 @@
 #include "commands/run/dressing_run.h"
 
-#include <chrono>
 #include <iomanip>
 #include <iostream>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "commands/shared/progress_line.h"
 #include "garment/fitting/fit_bounds.h"
 #include "output/tables/table_text.h"
+#include "platform/stopwatch.h"
 
 namespace mssim {
 
@@ -33,7 +33,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
   DressingResult result;
   double seconds = 0;
   recorder.finish_after([&] {
-    const auto before = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     ProgressLine progress({1}, ProgressLine::Log::nothing);
     progress.begin_scene(scene.spec.name);
     progress.update("closing seams", 0);
@@ -50,7 +50,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
           return true;
         },
         recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    seconds = watch.seconds();
   });
   const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.body));
   Table dressing, fitting;

@@ -1,7 +1,6 @@
 #include "commands/run/run_scene.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -25,6 +24,7 @@
 #include "garment/stepping/serial_dressing.h"
 #include "output/tables/table_text.h"
 #include "output/traces/trace_name.h"
+#include "platform/stopwatch.h"
 #include "scene/scene_file.h"
 
 namespace mssim {
@@ -130,7 +130,7 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
   std::optional<EnergyLosses> losses;
   double seconds = 0;
   recorder.finish_after([&] {
-    const auto before = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     ProgressLine progress({1}, ProgressLine::Log::nothing);
     progress.begin_scene(scene.spec.name);
     simulate(*backend, scene.system, integrator, plan,
@@ -145,7 +145,7 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
                                       static_cast<double>(done) / static_cast<double>(all));
                 stop.throw_if_requested();
               }});
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    seconds = watch.seconds();
   });
 
   const std::vector<EnergySample>& curve = recorder.energies();
