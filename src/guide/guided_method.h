@@ -6,6 +6,7 @@
 #include "backends/backends.h"
 #include "guide/stable_step.h"
 #include "guide/step_theory.h"
+#include "guide/work_point.h"
 
 namespace mssim {
 
@@ -26,6 +27,11 @@ struct GuidedMethod {
   const BackendInfo* backend = nullptr;
   std::string status;  ///< why there is no point, or why there are no more; empty: all there is to measure is
 };
+
+/// Is the point of the method?
+inline bool is_of(const WorkPoint& point, const GuidedMethod& method) {
+  return point.integrator == method.integrator && point.backend == method.backend->name;
+}
 
 /// Makes the backend, or says in `status` why it cannot run here or not this.
 inline std::unique_ptr<Backend> try_to_make(const BackendInfo& backend, const System& system,

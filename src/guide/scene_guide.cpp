@@ -106,9 +106,8 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
     if (const auto point = next->next()) guide.points.push_back(*point);
   }
   const auto place = [&](const WorkPoint& point) {
-    return std::ranges::find_if(guide.methods, [&](const GuidedMethod& method) {
-      return method.integrator == point.integrator && method.backend->name == point.backend;
-    });
+    return std::ranges::find_if(guide.methods,
+                                [&](const GuidedMethod& method) { return is_of(point, method); });
   };
   std::ranges::stable_sort(guide.points, {}, [&](const WorkPoint& point) { return place(point); });
 }
@@ -121,8 +120,8 @@ const WorkPoint* cheapest_point(const SceneGuide& guide, const GuidedMethod& met
   };
   const WorkPoint* cheapest = nullptr;
   for (const WorkPoint& point : guide.points)
-    if (point.integrator == method.integrator && point.backend == method.backend->name && !point.diverged &&
-        point.within_limit && (cheapest == nullptr || rank(point) < rank(*cheapest)))
+    if (is_of(point, method) && !point.diverged && point.within_limit &&
+        (cheapest == nullptr || rank(point) < rank(*cheapest)))
       cheapest = &point;
   return cheapest;
 }

@@ -74,10 +74,6 @@ void add_reason(Table& table, const SceneGuide& guide, const GuidedMethod& metho
              {"note", {}}});
 }
 
-bool is_of(const WorkPoint& point, const GuidedMethod& method) {
-  return point.integrator == method.integrator && point.backend == method.backend->name;
-}
-
 Table points_table(std::span<const SceneGuide> guides) {
   Table table;
   for (const SceneGuide& guide : guides)
