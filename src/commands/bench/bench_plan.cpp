@@ -4,9 +4,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -15,7 +13,6 @@
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
 #include "commands/shared/run_provenance.h"
-#include "integrators/all_integrators.h"
 #include "output/traces/trace_name.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -31,38 +28,24 @@ std::vector<std::string> timed_names(const BenchOptions& options) {
   return scenes;
 }
 
-/// All of the table, or those asked for in the table's order, and the user's own behind them.
+/// Those asked for, or else all of the table and, where the suite compares them, all that are described.
 std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const Comparison& comparison,
                                             BackendChoice& choice) {
-  std::vector<const BackendInfo*> asked, all;
-  for (const std::string& name : options.backends) asked.push_back(&choice.require(name));
-  if (comparison.described_too && asked.empty() && choice.described().empty())
+  if (!options.backends.empty()) return choice.require_all(options.backends);
+  std::vector<const BackendInfo*> all = comparison.backends();
+  if (!comparison.described_too) return all;
+  if (choice.described().empty())
     throw UsageError("--suite " + options.suite +
                      " compares backends that are described in files, and there are none: run scripts/peers, "
                      "which makes some, or give their --backend-folder");
-  for (const BackendInfo* backend : comparison.backends())
-    if (asked.empty() || std::ranges::find(asked, backend) != asked.end()) all.push_back(backend);
   std::ranges::copy(choice.own(), std::back_inserter(all));
-  return all;
-}
-
-std::vector<const Integrator*> integrators_of(const BenchOptions& options,
-                                              std::span<const std::string_view> by_default) {
-  const bool every = options.integrators == std::vector<std::string>{"all"};
-  std::vector<const Integrator*> asked, all;
-  if (options.integrators.empty())
-    for (const std::string_view name : by_default) asked.push_back(&require_integrator(std::string(name)));
-  else if (!every)
-    for (const std::string& name : options.integrators) asked.push_back(&require_integrator(name));
-  for (const Integrator* integrator : all_integrators)
-    if (every || std::ranges::find(asked, integrator) != asked.end()) all.push_back(integrator);
   return all;
 }
 
 BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison, BackendChoice& choice) {
   BenchSettings settings;
   settings.backends = backends_of(options, comparison, choice);
-  settings.integrators = integrators_of(options, comparison.integrators);
+  settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.execution = complete(options.execution);
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
   return settings;

@@ -1,7 +1,7 @@
 #include "commands/guide/guide_run.h"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -17,7 +17,6 @@
 #include "commands/shared/run_provenance.h"
 #include "commands/shared/stop_request.h"
 #include "guide/scene_guide.h"
-#include "integrators/all_integrators.h"
 #include "output/folders/result_folder.h"
 #include "output/guide/guide_page.h"
 #include "output/guide/guide_table.h"
@@ -29,26 +28,6 @@
 
 namespace mssim {
 namespace {
-
-std::vector<const BackendInfo*> asked_backends(const GuideOptions& options, BackendChoice& choice) {
-  if (options.backends.empty()) return guide_backends();
-  std::vector<const BackendInfo*> asked;
-  for (const std::string& name : options.backends) {
-    const BackendInfo* info = &choice.require(name);
-    if (std::ranges::find(asked, info) == asked.end()) asked.push_back(info);
-  }
-  return asked;
-}
-
-std::vector<const Integrator*> asked_integrators(const GuideOptions& options) {
-  const bool every = options.integrators.empty() || options.integrators == std::vector<std::string>{"all"};
-  std::vector<const Integrator*> asked, all;
-  if (!every)
-    for (const std::string& name : options.integrators) asked.push_back(&require_integrator(name));
-  for (const Integrator* integrator : all_integrators)
-    if (every || std::ranges::find(asked, integrator) != asked.end()) all.push_back(integrator);
-  return all;
-}
 
 std::vector<SceneSpec> asked_scenes(const GuideOptions& options) {
   std::vector<SceneSpec> scenes;
@@ -101,6 +80,8 @@ void print(const SceneGuide& guide) {
   std::cout << '\n' << table_text(guide_summary(guide)) << '\n';
   for (const std::string& sentence : about_trusted_state(guide.trusted)) std::cout << sentence << '\n';
 }
+
+constexpr std::array<std::string_view, 1> every_integrator{"all"};
 
 /// What can be known before anything is measured.
 struct GuidePlan {
@@ -155,8 +136,8 @@ std::vector<const BackendInfo*> guide_backends() {
 int run_guide(const GuideOptions& options) {
   GuidePlan plan;
   BackendChoice choice(table_backends(), {}, options.scenes);
-  plan.backends = asked_backends(options, choice);
-  plan.integrators = asked_integrators(options);
+  plan.backends = options.backends.empty() ? guide_backends() : choice.require_all(options.backends);
+  plan.integrators = chosen_integrators(options.integrators, every_integrator);
   plan.scenes = asked_scenes(options);
   plan.execution = complete(options.execution);
   plan.scene_seconds = options.time_budget_s

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -113,6 +114,15 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   for (const BackendInfo* info : known_) names.push_back(info->name);
   for (const BackendInfo* info : described()) names.push_back(info->name);
   throw UsageError(unknown_name("backend", name, names));
+}
+
+std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std::string>& names) {
+  std::vector<const BackendInfo*> asked, rows;
+  for (const std::string& name : names) asked.push_back(&require(name));
+  for (const BackendInfo* row : known_)
+    if (std::ranges::find(asked, row) != asked.end()) rows.push_back(row);
+  std::ranges::copy(own(), std::back_inserter(rows));
+  return rows;
 }
 
 std::vector<const BackendInfo*> BackendChoice::described() {

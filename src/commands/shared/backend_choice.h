@@ -45,6 +45,10 @@ class BackendChoice {
   /// MissingProgram for a path at which nothing can be run; SceneError for a description that is wrong.
   const BackendInfo& require(const std::string& name);
 
+  /// The rows of these names in the order of the table, and behind them those that are none of it. Throws
+  /// like require().
+  std::vector<const BackendInfo*> require_all(const std::vector<std::string>& names);
+
   /// All that are described in --backend-folder and the user's own folder. Throws like require().
   std::vector<const BackendInfo*> described();
 

@@ -28,6 +28,18 @@ const Integrator& require_integrator(const std::string& name) {
   throw UsageError(unknown_name("integrator", name, names));
 }
 
+std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>& asked,
+                                                  std::span<const std::string_view> by_default) {
+  const std::vector<std::string> names =
+      asked.empty() ? std::vector<std::string>(by_default.begin(), by_default.end()) : asked;
+  if (names == std::vector<std::string>{"all"}) return {all_integrators.begin(), all_integrators.end()};
+  std::vector<const Integrator*> named, chosen;
+  for (const std::string& name : names) named.push_back(&require_integrator(name));
+  for (const Integrator* integrator : all_integrators)
+    if (std::ranges::find(named, integrator) != named.end()) chosen.push_back(integrator);
+  return chosen;
+}
+
 Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,
                     const std::string& description) {
   return arguments

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "backends/interface/backend.h"
@@ -12,6 +14,11 @@ namespace mssim {
 
 /// The integrator of that name. Throws UsageError naming the nearest or listing the known.
 const Integrator& require_integrator(const std::string& name);
+
+/// Those of `asked`, or where it is empty of `by_default`, in the order of the table; "all" alone stands for
+/// every one. Throws UsageError like require_integrator.
+std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>& asked,
+                                                  std::span<const std::string_view> by_default);
 
 /// More host threads than this are a typing error, and would only fail later and less clearly.
 inline constexpr int most_threads = 4096;
