@@ -204,6 +204,17 @@ HWY_NOINLINE void add_chunk(const Nodes& nodes, NodeChunk chunk, float* to, cons
   });
 }
 
+/// a . M b, undivided, for fields a and b that are zero where nothing moves.
+template <class Nodes>
+HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, NodeChunk chunk, const float* a,
+                                  const float* b) {
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    sum.add(vector.weighted(dot(vector.load(a), vector.load(b))));
+  });
+  return sum.total();
+}
+
 /// v = w, x += dt w, and the floor acts.
 template <class Nodes>
 HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {

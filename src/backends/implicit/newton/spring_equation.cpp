@@ -129,6 +129,21 @@ void SpringEquation<Real>::add(double factor) {
 }
 
 template <class Real>
+double SpringEquation<Real>::along_solution() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) sum += static_cast<double>(dot(e_[i], s_[i]));
+  return sum;
+}
+
+template <class Real>
+double SpringEquation<Real>::motion() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    sum += static_cast<double>(nodes_.mass[i] * dot(w_[i], w_[i]));
+  return sum;
+}
+
+template <class Real>
 void SpringEquation<Real>::end() {
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.x[i] = mul_add(dt_, w_[i], nodes_.x[i]);
   std::swap(nodes_.v, w_);

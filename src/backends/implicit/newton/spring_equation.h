@@ -24,6 +24,8 @@ class SpringEquation {
   double turn(double factor);
   double advance(double factor);
   void add(double factor);
+  double along_solution() const;
+  double motion() const;
   void end();
 
   /// e and s, for tests.

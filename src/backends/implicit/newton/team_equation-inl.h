@@ -61,6 +61,8 @@ class TeamEquation {
                 shared_.s.data());
     });
   }
+  double along_solution() { return product(shared_.e.data(), shared_.s.data()); }
+  double motion() { return product(shared_.w.data(), shared_.w.data()); }
   void end() {
     for_own_chunks([&](NodeChunk chunk) HWY_ATTR { end_chunk(shared_, chunk); });
   }
@@ -69,6 +71,10 @@ class TeamEquation {
   template <class Act>
   void for_own_chunks(Act&& act) {
     for (std::size_t chunk = begin_; chunk < end_; ++chunk) act(shared_.nodes.chunks[chunk]);
+  }
+
+  double product(const float* a, const float* b) {
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return product_chunk(shared_, chunk, a, b); });
   }
 
   /// The sum of what act(chunk) returns for all chunks, of all threads, when all have called it.
