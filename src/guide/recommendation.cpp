@@ -40,7 +40,7 @@ bool holds(const WorkPoint& point, double frames_per_second) {
 
 std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
   const double rate = 1 / frame_seconds(point, wish.frames_per_second);
-  const std::string asked = two_digits(wish.frames_per_second);
+  const std::string asked = decimal(wish.frames_per_second);
   return holds(point, wish.frames_per_second)
              ? "and " + asked + " frames a second hold (" + three_digits(rate) + " would)"
              : "so that " + asked + " frames a second do not hold (" + three_digits(rate) + " would)";
@@ -58,7 +58,7 @@ std::string what_to_take(std::span<const WorkPoint> points, const Recommendation
   const int steps = steps_a_frame(point.dt_s, wish.frames_per_second);
   return "Take " + named(point) + " with a step of " + two_digits(point.dt_s) + " s, which is " +
          counted(static_cast<std::uint64_t>(steps), "step") + " a frame at " +
-         two_digits(wish.frames_per_second) + " frames a second.";
+         decimal(wish.frames_per_second) + " frames a second.";
 }
 
 std::string what_it_costs(const WorkPoint& point, const Wish& wish, double horizon_s) {
