@@ -109,7 +109,8 @@ TEST(Recommendation, TellsNoRangeWhoseEndsAreTheSameInTwoDigits) {
 }
 
 TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
-  const Recommendation chosen = recommend(std::vector{made_point("verlet", 1e-4, 3, 5e-4)}, {120, 1e-3}, 0.05);
+  const Recommendation chosen =
+      recommend(std::vector{made_point("verlet", 1e-4, 3, 5e-4)}, {120, 1e-3}, 0.05);
   EXPECT_EQ(chosen.best, 0U);
   EXPECT_FALSE(chosen.holds_frames);
   EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("120 frames a second do not hold"));
