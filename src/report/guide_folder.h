@@ -20,8 +20,8 @@ struct GuidePoint {
   std::string status{};
 };
 
-/// What stands in a point's status where conclusions may rest on it. Else it diverged, is too near the error of
-/// the reference, or has a longer step than the largest stable one.
+/// What stands in a point's status where conclusions may rest on it. Else it diverged, is too near the error
+/// of the reference, or has a longer step than the largest stable one.
 inline constexpr const char* compared_status = "ok";
 
 /// A row of guide-sizes.csv.

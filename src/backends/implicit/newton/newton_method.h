@@ -112,9 +112,10 @@ void newton_step(Equation& equation, double tolerance, SolverWork& work) {
 /// Newton method: Dembo, Eisenstat and Steihaug 1982).
 ///
 /// A part of s is taken if r becomes less, or if it does not lead far uphill. Without damping, r is the
-/// gradient of a potential (Martin et al. 2011, Eq. 5), whose minimum is sought; s leads down from where it
-/// starts, because A is positive definite. That r becomes less cannot be asked: A is not its Jacobian across
-/// compressed springs, so that r may grow along every part of s, however short.
+/// gradient by w of (w - v) . M (w - v) / 2 + E(x + dt w), E the elastic and gravitational energy; its
+/// minimum is sought, and s leads down from where it starts, because A is positive definite. That r becomes
+/// less cannot be asked: A is not its Jacobian across compressed springs, so that r may grow along every part
+/// of s, however short.
 template <BackwardEulerEquation Equation>
 void newtons_method(Equation& equation, const SolverGoal& goal, SolverWork& work) {
   constexpr double forcing = 0.01, shortest = 1. / 64, most_uphill = 0.5;
