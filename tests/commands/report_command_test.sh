@@ -180,7 +180,7 @@ if command -v gnuplot >/dev/null; then
   for chart in work-precision error-step error-evaluations sizes-explicit; do
     has "<svg id=\"f1-guide-1-$chart\" class=\"chart\" .*role=\"img\""
   done
-  has '<figcaption>Crosses at an error of 1 diverged, whatever their error. Points in squares are too near'
+  has '<figcaption>Crosses at an error of 1 diverged, whatever their error. Points in squares are not compared: their errors are too near'
   has 'No points: xpbd (no time, and no &lt;b&gt;)'
 fi
 report "$guide"
