@@ -19,12 +19,10 @@ struct Compared {
   std::optional<CostAtError> cost;
 };
 
-std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const Integrator& integrator,
-                                       std::string_view backend) {
+std::vector<const WorkPoint*> counting(std::span<const WorkPoint> points, const GuidedMethod& method) {
   std::vector<const WorkPoint*> curve;
   for (const WorkPoint& point : points)
-    if (point.counts() && point.integrator == &integrator && point.backend == backend)
-      curve.push_back(&point);
+    if (point.counts() && is_of(point, method)) curve.push_back(&point);
   return curve;
 }
 
@@ -36,14 +34,14 @@ std::string integrators_of(std::span<const Compared> compared) {
 
 /// What becomes of the order of the integrators at the wished error; empty where fewer than two were
 /// measured.
-std::string order_on(const SceneGuide& guide, std::string_view backend) {
+std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
   std::vector<Compared> all;
   for (const std::string_view name : paper_integrators) {
-    const Integrator& integrator = *find_integrator(name);
-    const auto curve = counting(guide.points, integrator, backend);
+    const GuidedMethod method{find_integrator(name), &backend, {}};
+    const auto curve = counting(guide.points, method);
     if (!curve.empty())
-      all.push_back({name, curve.back()->seconds_a_step,
-                     cost_at_error(guide.points, integrator, backend, guide.wish.error)});
+      all.push_back(
+          {name, curve.back()->seconds_a_step, cost_at_error(guide.points, method, guide.wish.error)});
   }
   if (all.size() < 2) return {};
   std::ranges::stable_sort(all, {}, &Compared::seconds_a_step);
@@ -53,7 +51,7 @@ std::string order_on(const SceneGuide& guide, std::string_view backend) {
     milliseconds.push_back(three_digits(1000 * one.seconds_a_step));
     (one.cost ? reaching : others).push_back(one);
   }
-  std::string text = "On " + std::string(backend) + " a step of " + integrators_of(all) + " takes " +
+  std::string text = "On " + std::string(backend.name) + " a step of " + integrators_of(all) + " takes " +
                      listed(milliseconds) + " ms";
   const std::string error = decimal(guide.wish.error);
   if (reaching.empty()) return text + "; none of them reaches an error of " + error + ".";
@@ -77,8 +75,7 @@ std::string explicit_euler_beside(const SceneGuide& guide) {
   if (euler <= 0 || semi <= 0) return {};
   std::optional<double> cheapest, its;
   for (const GuidedMethod& method : guide.methods)
-    if (const auto cost =
-            cost_at_error(guide.points, *method.integrator, method.backend->name, guide.wish.error)) {
+    if (const auto cost = cost_at_error(guide.points, method, guide.wish.error)) {
       const double seconds = cost->seconds_a_second;
       cheapest = std::min(cheapest.value_or(seconds), seconds);
       if (method.integrator == find_integrator("explicit-euler"))
@@ -92,14 +89,14 @@ std::string explicit_euler_beside(const SceneGuide& guide) {
 
 }  // namespace
 
-std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const Integrator& integrator,
-                                         std::string_view backend, double error) {
+std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
+                                         double error) {
   std::optional<CostAtError> least;
   const auto take = [&](double seconds, bool at_longest_step) {
     if (!least || seconds < least->seconds_a_second) least = CostAtError{seconds, at_longest_step};
   };
   const WorkPoint* coarser = nullptr;
-  for (const WorkPoint* point : counting(points, integrator, backend)) {
+  for (const WorkPoint* point : counting(points, method)) {
     const double here = *point->position_error, cost = point->seconds_a_second();
     if (here <= error) {
       take(cost, coarser == nullptr);
@@ -119,11 +116,12 @@ std::array<double, 4> errors_around(const Wish& wish) {
 }
 
 std::vector<std::string> beside_the_paper(const SceneGuide& guide) {
-  std::vector<std::string> sentences, backends;
+  std::vector<std::string> sentences;
+  std::vector<const BackendInfo*> backends;
   for (const GuidedMethod& method : guide.methods)
-    if (std::ranges::find(backends, method.backend->name) == backends.end()) {
-      backends.emplace_back(method.backend->name);
-      sentences.push_back(order_on(guide, method.backend->name));
+    if (std::ranges::find(backends, method.backend) == backends.end()) {
+      backends.push_back(method.backend);
+      sentences.push_back(order_on(guide, *method.backend));
     }
   sentences.push_back(explicit_euler_beside(guide));
   std::erase(sentences, "");

@@ -21,8 +21,8 @@ struct CostAtError {
 
 /// Between two points of the curve the logarithm of the cost is taken as linear in that of the error; none
 /// where no point is accurate enough. Points that do not count are left out.
-std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const Integrator& integrator,
-                                         std::string_view backend, double error);
+std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
+                                         double error);
 
 /// Errors at which costs are shown, from large to small: the wished one and three around it.
 std::array<double, 4> errors_around(const Wish& wish);

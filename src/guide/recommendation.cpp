@@ -48,7 +48,9 @@ std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
 
 std::string what_to_take(std::span<const WorkPoint> points, const Recommendation& chosen, const Wish& wish) {
   if (!chosen.best) {
-    if (!chosen.nearest) return "Nothing that was measured can be recommended: all points diverged.";
+    if (!chosen.nearest)
+      return "Nothing that was measured can be recommended: no point is both stable and far enough from the "
+             "reference's error.";
     const WorkPoint& point = points[*chosen.nearest];
     return "Nothing that was measured keeps the error within " + two_digits(wish.error) +
            " of a mean rest length: the most accurate is " + named(point) + " with a step of " +

@@ -27,7 +27,6 @@ class GuideClock {
   explicit GuideClock(double seconds) : seconds_(seconds) {}
   double spent() const { return watch_.seconds(); }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
-  bool is_past(double share) const { return spent() > share * seconds_; }
   /// Seconds after the guide's start at which a part ends that begins now: it leaves `later` to what follows.
   double end_of_part(double share, double later) const {
     return std::max(spent() + share * seconds_, (1 - later) * seconds_);

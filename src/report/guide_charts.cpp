@@ -103,8 +103,7 @@ Chart error_chart(const std::vector<GuideLine>& lines, const Along& along) {
   if (!uncompared.x.empty())
     chart.remarks.emplace_back(
         "Points in squares are not compared: their errors are too near that of the reference, or their steps "
-        "longer "
-        "than the largest stable one");
+        "longer than the largest stable one");
   for (Series* marks : {&uncompared, &diverged})
     if (!marks->x.empty()) chart.series.push_back(std::move(*marks));
   return chart;

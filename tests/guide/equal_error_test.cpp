@@ -16,22 +16,22 @@ using testing::ElementsAre;
 TEST(CostAtError, IsALineThroughTheLogarithms) {
   const std::vector<WorkPoint> points{made_point("rk4", 4e-4, 1, 1e-2), made_point("rk4", 2e-4, 2, 1e-4),
                                       made_point("verlet", 2e-4, 0.1, 1e-6)};
-  const Integrator& rk4 = *find_integrator("rk4");
-  const auto cost = cost_at_error(points, rk4, "openmp", 1e-3);
+  const GuidedMethod rk4{find_integrator("rk4"), find_backend("openmp"), {}};
+  const auto cost = cost_at_error(points, rk4, 1e-3);
   ASSERT_TRUE(cost);
   EXPECT_NEAR(cost->seconds_a_second, std::sqrt(2), 1e-9);
   EXPECT_FALSE(cost->at_longest_step);
   // No longer step than the coarsest, no smaller error than the finest, no other backend.
-  EXPECT_NEAR(cost_at_error(points, rk4, "openmp", 1)->seconds_a_second, 1, 1e-12);
-  EXPECT_TRUE(cost_at_error(points, rk4, "openmp", 1)->at_longest_step);
-  EXPECT_FALSE(cost_at_error(points, rk4, "openmp", 0.9e-4));
-  EXPECT_FALSE(cost_at_error(points, rk4, "serial", 1));
+  EXPECT_NEAR(cost_at_error(points, rk4, 1)->seconds_a_second, 1, 1e-12);
+  EXPECT_TRUE(cost_at_error(points, rk4, 1)->at_longest_step);
+  EXPECT_FALSE(cost_at_error(points, rk4, 0.9e-4));
+  EXPECT_FALSE(cost_at_error(points, {find_integrator("rk4"), find_backend("serial"), {}}, 1));
 }
 
 TEST(CostAtError, LeavesOutWhatDoesNotCount) {
   std::vector<WorkPoint> points{made_point("rk4", 4e-4, 1, 1e-3), made_point("rk4", 2e-4, 2, 1e-4)};
   points.front().diverged = true;
-  const auto cost = cost_at_error(points, *find_integrator("rk4"), "openmp", 1e-3);
+  const auto cost = cost_at_error(points, {find_integrator("rk4"), find_backend("openmp"), {}}, 1e-3);
   ASSERT_TRUE(cost);
   EXPECT_NEAR(cost->seconds_a_second, 2, 1e-12);
   EXPECT_TRUE(cost->at_longest_step);

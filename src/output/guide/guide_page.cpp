@@ -140,7 +140,7 @@ Table costs_at_errors(const SceneGuide& guide) {
     double at_wish = std::numeric_limits<double>::infinity();
     bool any = false;
     for (const double error : errors) {
-      const auto cost = cost_at_error(guide.points, *method.integrator, method.backend->name, error);
+      const auto cost = cost_at_error(guide.points, method, error);
       row.push_back(cost ? Cell(three_digits(cost->seconds_a_second) + (cost->at_longest_step ? " ‡" : ""))
                          : Cell());
       if (cost && error == guide.wish.error) at_wish = cost->seconds_a_second;

@@ -115,7 +115,7 @@ Table errors_table(std::span<const SceneGuide> guides) {
   for (const SceneGuide& guide : guides)
     for (const GuidedMethod& method : guide.methods)
       for (const double error : errors_around(guide.wish))
-        if (const auto cost = cost_at_error(guide.points, *method.integrator, method.backend->name, error))
+        if (const auto cost = cost_at_error(guide.points, method, error))
           table.add({{"scene", guide.scene},
                      {"integrator", method.integrator->name},
                      {"backend", method.backend->name},
