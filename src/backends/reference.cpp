@@ -6,8 +6,9 @@
 
 namespace mssim {
 
-std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s) {
-  if (is_implicit(integrator)) return make_implicit_reference(system, integrator, dt_s);
+std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s,
+                                        const std::function<bool()>& stop) {
+  if (is_implicit(integrator)) return make_implicit_reference(system, integrator, dt_s, stop);
   return step_ahead(make_serial_in_double(system, integrator, dt_s), system, integrator, dt_s);
 }
 

@@ -13,7 +13,9 @@ namespace mssim {
 /// An integrator, and the limit of its step.
 struct StepLimit {
   const Integrator* integrator = nullptr;
-  std::string backend;  ///< that the limit was found with
+  std::string backend;       ///< that the limit was found with
+  double first_seconds = 0;  ///< wall time to make that backend with the step that was tried first
+  double step_seconds = 0;   ///< and of a step then
   StableStep measured;
   StepTheory theory;
   bool floor_is_why = false;  ///< the shortest unstable step is stable where there is no floor

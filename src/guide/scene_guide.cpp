@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "guide/exact_steps.h"
 #include "guide/pareto_front.h"
 #include "guide/step_limits.h"
 #include "guide/step_theory.h"
@@ -79,14 +80,15 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
 /// take, and all curves have begun before one goes on.
 void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
                     const GuideClock& clock) {
-  const double end = clock.end_of_part(share_of_points, request.make_cloth ? share_of_sizes : 0);
-  ExactBackwardEuler exact(*request.system, guide.trusted, share_of_exact_steps * request.seconds);
+  const double later = request.make_cloth ? share_of_sizes : 0;
+  const double end = clock.end_of_part(share_of_points, later + share_of_exact_steps);
+  std::vector<ImplicitEnd> ends;
   std::vector<WorkCurve> curves;
   guide.methods.reserve(request.integrators.size() * request.backends.size());
   for (const StepLimit& limit : guide.limits)
     for (const BackendInfo* backend : request.backends) {
       GuidedMethod& method = guide.methods.emplace_back(GuidedMethod{limit.integrator, backend, {}});
-      curves.emplace_back(*request.system, guide.trusted, limit, method, request.execution, exact,
+      curves.emplace_back(*request.system, guide.trusted, limit, method, request.execution,
                           request.wish.error);
     }
   while (true) {
@@ -102,8 +104,16 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
     watch.progress("work and precision: " + std::string(method.integrator->name) + ' ' +
                        std::string(method.backend->name),
                    clock.fraction());
-    if (const auto point = next->next()) guide.points.push_back(*point);
+    auto measured = next->next();
+    if (!measured) continue;
+    if (is_implicit(*method.integrator) && !measured->point.diverged)
+      ends.push_back({guide.points.size(), std::move(measured->state)});
+    guide.points.push_back(std::move(measured->point));
   }
+  watch.progress("errors of steps and solvers", clock.fraction());
+  const double last = clock.end_of_part(share_of_exact_steps, later);
+  tell_errors_apart(guide.points, ends, *request.system, guide.trusted,
+                    [&] { return watch.stop() || clock.spent() > last; });
   const auto place = [&](const WorkPoint& point) {
     return std::ranges::find_if(guide.methods,
                                 [&](const GuidedMethod& method) { return is_of(point, method); });

@@ -33,14 +33,22 @@ StepSearch search_for(const Integrator& integrator, const StepTheory& theory, co
   return search;
 }
 
-/// Shortens runs to what there is time for: some eight of them find a limit.
-void fit(StepSearch& search, Backend& backend, const LimitRequest& request) {
-  constexpr int trial_steps = 5, runs = 8, fewest_steps = 10;
+/// Wall time of a step.
+double step_seconds(Backend& backend, const System& system) {
+  constexpr int trial_steps = 5;
   constexpr double enough_s = 0.01;
-  const StepTime time = time_steps(backend, *request.system, trial_steps, enough_s);
-  const double steps = request.seconds / runs / time.seconds;
+  const double one = time_steps(backend, system, 1, enough_s / 10).seconds;
+  return one > enough_s ? one : time_steps(backend, system, trial_steps, enough_s).seconds;
+}
+
+/// Shortens runs to what there is time for: some eight of them find a limit. False if not even one run ends
+/// in it.
+bool fit(StepSearch& search, double seconds_a_step, double seconds) {
+  constexpr int runs = 8, fewest_steps = 10;
+  const double steps = seconds / runs / seconds_a_step;
   search.least_steps = static_cast<int>(std::clamp<double>(steps, fewest_steps, search.least_steps));
   search.span_s = std::min(search.span_s, std::max(steps, 10.0 * fewest_steps) * search.first_s);
+  return runs * steps >= fewest_steps;
 }
 
 }  // namespace
@@ -54,13 +62,19 @@ StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& requ
   std::ranges::stable_partition(order, [](const BackendInfo* info) { return info->name == "openmp"; });
   for (const BackendInfo* info : order) {
     std::string status;
+    const Stopwatch watch;
     const auto backend =
         try_to_make(*info, *request.system, integrator, search.first_s, request.execution, status);
     if (limit.status.empty()) limit.status = status;
     if (!backend) continue;
     limit.status.clear();
     limit.backend = info->name;
-    fit(search, *backend, request);
+    limit.first_seconds = watch.seconds();
+    limit.step_seconds = step_seconds(*backend, *request.system);
+    if (!fit(search, limit.step_seconds, request.seconds)) {
+      limit.measured.finished = false;
+      break;
+    }
     const StepMaker make = [&](double dt_s) {
       return make_backend(*info, *request.system, integrator, dt_s, request.execution);
     };

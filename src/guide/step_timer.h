@@ -10,8 +10,9 @@ struct StepTime {
   int runs = 0;
 };
 
-/// Times runs of `steps` steps from the system's start, after a short one that is not counted, until they
-/// have taken `enough_s` and are five, or have taken ten times that; one at least. Only step() is timed.
+/// Times runs of `steps` steps from the system's start, after one of at most ten that is not counted, until
+/// they have taken `enough_s` and are five, or have taken ten times that; one at least. Where the first run
+/// alone takes that long with all the steps, it is the only one. Only step() is timed.
 StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s);
 
 }  // namespace mssim

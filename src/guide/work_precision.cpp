@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "backends/reference.h"
 #include "bench/verification/blow_up.h"
 #include "bench/verification/deviation.h"
 #include "guide/energy_criterion.h"
@@ -45,27 +45,6 @@ void take_state(WorkPoint& point, const System& system, const TrustedState& trus
 
 }  // namespace
 
-const State* ExactBackwardEuler::after(int steps) {
-  const auto known = states_.find(steps);
-  if (known != states_.end()) return known->second ? &*known->second : nullptr;
-  std::optional<State>& state = states_[steps];
-  if (steps * step_seconds_ > seconds_left_) return nullptr;
-  const Stopwatch watch;
-  try {
-    const auto backend =
-        make_reference(system_, *find_integrator("newton-euler"), trusted_.horizon_s / steps);
-    backend->step(steps);
-    State reached = backend->state();
-    if (!first_bad_node(reached)) state = std::move(reached);
-  } catch (const Unsupported&) {
-    seconds_left_ = 0;
-    step_seconds_ = 1;
-  }
-  step_seconds_ = std::max(step_seconds_, watch.seconds() / steps);
-  seconds_left_ -= watch.seconds();
-  return state ? &*state : nullptr;
-}
-
 int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s) {
   const int fewest = std::max(1, static_cast<int>(std::ceil(horizon_s / longest_useful_step_s - 1e-9)));
   if (is_implicit(integrator) || limit.stable_s <= 0) return fewest;
@@ -75,16 +54,15 @@ int first_steps(const Integrator& integrator, const StableStep& limit, double ho
 }
 
 WorkCurve::WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit,
-                     GuidedMethod& method, const ExecutionOptions& execution, ExactBackwardEuler& exact,
-                     double wanted_error)
+                     GuidedMethod& method, const ExecutionOptions& execution, double wanted_error)
     : system_(system),
       trusted_(trusted),
       method_(method),
       execution_(execution),
-      exact_(exact),
       wanted_error_(wanted_error),
       stable_s_(limit.measured.stable_s),
-      steps_(first_steps(*method.integrator, limit.measured, trusted.horizon_s)) {
+      steps_(first_steps(*method.integrator, limit.measured, trusted.horizon_s)),
+      next_seconds_(limit.first_seconds + steps_ * limit.step_seconds) {
   if (!limit.status.empty())
     end(limit.status);
   else if (stable_s_ == 0 && !is_implicit(*method.integrator))
@@ -101,8 +79,6 @@ void WorkCurve::end(std::string_view why) {
   if (method_.status.empty()) method_.status = why;
 }
 
-double WorkCurve::next_seconds() const { return 2 * last_seconds_; }
-
 bool WorkCurve::goes_on_after(const WorkPoint& point) const {
   constexpr int fewest = 4, most = 11;
   if (points_ >= most) return false;
@@ -112,7 +88,7 @@ bool WorkCurve::goes_on_after(const WorkPoint& point) const {
   return falls && *point.position_error > wanted_error_ / 4;
 }
 
-std::optional<WorkPoint> WorkCurve::next() {
+std::optional<MeasuredPoint> WorkCurve::next() {
   constexpr double enough_s = 0.03;
   const Stopwatch watch;
   WorkPoint point;
@@ -128,21 +104,16 @@ std::optional<WorkPoint> WorkCurve::next() {
   point.seconds_a_step = time.seconds;
   point.samples = time.runs;
   point.evaluations = evaluations_of(*method_.integrator, system_);
-  const State state = backend->state();
+  State state = backend->state();
   take_state(point, system_, trusted_, state);
   point.within_limit = point.dt_s <= stable_s_ * (1 + 1e-9);
   point.note = backend->note();
-  if (is_implicit(*method_.integrator) && !point.diverged)
-    if (const State* exact = exact_.after(steps_)) {
-      point.solver_error = position_deviation(system_, *exact, state);
-      point.step_error = position_deviation(system_, trusted_.state, *exact);
-    }
   ++points_;
   has_next_ = goes_on_after(point);
   last_error_ = point.counts() ? point.position_error : std::nullopt;
-  last_seconds_ = watch.seconds();
+  next_seconds_ = 2 * watch.seconds();
   steps_ *= 2;
-  return point;
+  return MeasuredPoint{std::move(point), std::move(state)};
 }
 
 }  // namespace mssim

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,41 +11,28 @@
 
 namespace mssim {
 
-/// Exact backward Euler over the horizon: newton-euler in double precision until it gains nothing more, for
-/// each number of steps at most once.
-class ExactBackwardEuler {
- public:
-  /// All states together may take about `seconds`; both must outlive it.
-  ExactBackwardEuler(const System& system, const TrustedState& trusted, double seconds)
-      : system_(system), trusted_(trusted), seconds_left_(seconds) {}
-
-  /// Its state after that many steps to the horizon; null where newton-euler does not run, or takes too long.
-  const State* after(int steps);
-
- private:
-  const System& system_;
-  const TrustedState& trusted_;
-  double seconds_left_;
-  double step_seconds_ = 0;  ///< of the last state that was computed
-  std::map<int, std::optional<State>> states_;
+/// A point of a curve, and where it ended.
+struct MeasuredPoint {
+  WorkPoint point;
+  State state;  ///< at the horizon
 };
 
 /// A work-precision curve, from its coarsest step on.
 class WorkCurve {
  public:
-  /// `limit`: of the method's integrator. `exact`: for implicit ones; all must outlive it. `wanted_error`: no
-  /// point is taken beyond a quarter of it.
+  /// `limit`: of the method's integrator; all must outlive it. `wanted_error`: no point is taken beyond a
+  /// quarter of it.
   WorkCurve(const System& system, const TrustedState& trusted, const StepLimit& limit, GuidedMethod& method,
-            const ExecutionOptions& execution, ExactBackwardEuler& exact, double wanted_error);
+            const ExecutionOptions& execution, double wanted_error);
 
-  /// Wall seconds that the next point takes, about; 0 where nothing is known yet.
-  double next_seconds() const;
+  /// Wall seconds that the next point takes, about: the first as if it ran on the backend of the limit.
+  double next_seconds() const { return next_seconds_; }
   bool has_next() const { return has_next_; }
   /// Takes no more points, for this reason.
   void end(std::string_view why);
   /// Measures the next point, with half the step of the one before. None where the backend does not run;
   /// method.status says why.
-  std::optional<WorkPoint> next();
+  std::optional<MeasuredPoint> next();
 
  private:
   bool goes_on_after(const WorkPoint& point) const;
@@ -56,12 +41,11 @@ class WorkCurve {
   const TrustedState& trusted_;
   GuidedMethod& method_;
   ExecutionOptions execution_;
-  ExactBackwardEuler& exact_;
   double wanted_error_, stable_s_;
   int steps_;
   int points_ = 0;
   bool has_next_ = true;
-  double last_seconds_ = 0;
+  double next_seconds_;
   std::optional<double> last_error_;
 };
 

@@ -18,11 +18,10 @@ std::vector<WorkPoint> curve_of(std::string_view integrator, double stable_s, do
   limit.integrator = find_integrator(integrator);
   limit.measured = {.stable_s = stable_s, .unstable_s = 1.01 * stable_s};
   GuidedMethod method{limit.integrator, find_backend("serial"), {}};
-  ExactBackwardEuler exact(system, trusted, 0);
-  WorkCurve curve(system, trusted, limit, method, {.threads = 1}, exact, wanted_error);
+  WorkCurve curve(system, trusted, limit, method, {.threads = 1}, wanted_error);
   std::vector<WorkPoint> points;
   while (curve.has_next())
-    if (const auto point = curve.next()) points.push_back(*point);
+    if (const auto measured = curve.next()) points.push_back(measured->point);
   return points;
 }
 

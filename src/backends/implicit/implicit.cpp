@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -17,10 +18,12 @@ struct SolverSteps {
   using Make = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s);
   using MakeOpenMp = std::unique_ptr<Backend>(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options);
+  using MakeReference = std::unique_ptr<Backend>(const System& system, const Integrator& integrator,
+                                                 double dt_s, const std::function<bool()>& stop);
 
   Make* serial;
   MemoryUse serial_memory;
-  Make* reference;
+  MakeReference* reference;
   MemoryUse reference_memory;
   MakeOpenMp* openmp;
   MemoryUse openmp_memory;  ///< for a cloth; for bodies what their slices take comes to it
@@ -31,6 +34,13 @@ template <auto make, class... More>
 std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrator& /*integrator*/,
                                            double dt_s, const More&... more) {
   return make(system, dt_s, more...);
+}
+
+/// The same of a reference, whose steps end soon enough without being told to.
+template <auto make>
+std::unique_ptr<Backend> reference_of_one_integrator(const System& system, const Integrator& /*integrator*/,
+                                                     double dt_s, const std::function<bool()>& /*stop*/) {
+  return make(system, dt_s);
 }
 
 /// Of a SpringEquation<float>: of a node what PlainNodes hold, six vectors and a block of P; of a spring what
@@ -54,14 +64,14 @@ constexpr SolverSteps newton{
 
 constexpr SolverSteps local_global{.serial = of_one_integrator<make_serial_local_global>,
                                    .serial_memory = {.node = 150, .doubling_node = factor_bytes},
-                                   .reference = of_one_integrator<make_local_global_reference>,
+                                   .reference = reference_of_one_integrator<make_local_global_reference>,
                                    .reference_memory = {.node = 250, .doubling_node = factor_bytes},
                                    .openmp = of_one_integrator<make_openmp_local_global>,
                                    .openmp_memory = {.node = 150, .doubling_node = factor_bytes}};
 
 constexpr SolverSteps constraints{.serial = of_one_integrator<make_serial_constraints>,
                                   .serial_memory = {.node = 41, .spring = 16},
-                                  .reference = of_one_integrator<make_constraints_reference>,
+                                  .reference = reference_of_one_integrator<make_constraints_reference>,
                                   .reference_memory = {.node = 81, .spring = 16},
                                   .openmp = of_one_integrator<make_openmp_constraints>,
                                   .openmp_memory = {.node = 40}};
@@ -110,9 +120,9 @@ std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integr
 }
 
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
-                                                 double dt_s) {
+                                                 double dt_s, const std::function<bool()>& stop) {
   refuse_garment(system);
-  return steps_of(integrator).reference(system, integrator, dt_s);
+  return steps_of(integrator).reference(system, integrator, dt_s, stop);
 }
 
 std::unique_ptr<Backend> make_openmp_implicit(const System& system, const Integrator& integrator, double dt_s,

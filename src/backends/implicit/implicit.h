@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "backends/interface/backend.h"
@@ -14,9 +15,10 @@ namespace mssim {
 std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options);
 
-/// The same code in double precision, whose solvers go on until they gain nothing more.
+/// The same code in double precision, whose solvers go on until they gain nothing more, or `stop` says that
+/// nobody waits for them any longer (make_reference in backends/reference.h).
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
-                                                 double dt_s);
+                                                 double dt_s, const std::function<bool()>& stop);
 
 /// With vectors and options.threads threads: the same bits at every number of threads.
 std::unique_ptr<Backend> make_openmp_implicit(const System& system, const Integrator& integrator, double dt_s,

@@ -21,6 +21,7 @@
 #include "output/guide/guide_page.h"
 #include "output/guide/guide_table.h"
 #include "output/tables/table_text.h"
+#include "platform/stopwatch.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/decimal.h"
@@ -83,16 +84,20 @@ void print(const SceneGuide& guide) {
 
 constexpr std::array<std::string_view, 1> every_integrator{"all"};
 
+/// A scene gets so much even where those before it have overrun the whole, s.
+constexpr double least_scene_s = 1;
+
 /// What can be known before anything is measured.
 struct GuidePlan {
   std::vector<SceneSpec> scenes;
   std::vector<const BackendInfo*> backends;
   std::vector<const Integrator*> integrators;
   ExecutionOptions execution;
-  double scene_seconds = 0;
+  double seconds = 0;  ///< wall time for all scenes
 };
 
-SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::size_t number,
+/// `seconds`: wall time for this scene.
+SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::size_t number, double seconds,
                     ProgressLine& progress, const StopRequest& stop) {
   const SceneSpec& spec = plan.scenes[number];
   const PreparedScene scene = prepare_scene(spec);
@@ -103,7 +108,7 @@ SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::siz
                        .integrators = plan.integrators,
                        .execution = plan.execution,
                        .wish = options.wish,
-                       .seconds = plan.scene_seconds,
+                       .seconds = seconds,
                        .longest_horizon_s = options.horizon_s,
                        .make_cloth = {}};
   request.execution.scene = spec.name;
@@ -122,9 +127,8 @@ void tell(const GuidePlan& plan) {
     table.add({{"scene", spec.name},
                {"integrators", plan.integrators.size()},
                {"backends", plan.backends.size()},
-               {"expected_s", plan.scene_seconds}});
-  std::cout << table_text(table) << "about "
-            << three_digits(plan.scene_seconds * static_cast<double>(plan.scenes.size())) << " s in all\n";
+               {"expected_s", plan.seconds / static_cast<double>(plan.scenes.size())}});
+  std::cout << table_text(table) << "about " << three_digits(plan.seconds) << " s in all\n";
 }
 
 }  // namespace
@@ -140,9 +144,7 @@ int run_guide(const GuideOptions& options) {
   plan.integrators = chosen_integrators(options.integrators, every_integrator);
   plan.scenes = asked_scenes(options);
   plan.execution = complete(options.execution);
-  plan.scene_seconds = options.time_budget_s
-                           ? *options.time_budget_s / static_cast<double>(plan.scenes.size())
-                           : usual_guide_s;
+  plan.seconds = options.time_budget_s.value_or(usual_guide_s * static_cast<double>(plan.scenes.size()));
   if (options.dry_run) {
     tell(plan);
     return exit_ok;
@@ -160,9 +162,13 @@ int run_guide(const GuideOptions& options) {
   StopRequest stop;
   {
     ProgressLine progress(std::vector<double>(plan.scenes.size(), 1));
+    const Stopwatch watch;
     for (std::size_t number = 0; number < plan.scenes.size() && !stop.requested(); ++number) {
       progress.begin_scene(plan.scenes[number].name);
-      guides.push_back(measured(plan, options, number, progress, stop));
+      // What a scene leaves goes to those after it, and what it overruns they make good.
+      const double share =
+          (plan.seconds - watch.seconds()) / static_cast<double>(plan.scenes.size() - number);
+      guides.push_back(measured(plan, options, number, std::max(share, least_scene_s), progress, stop));
       if (folder) folder->write(guide_tables(guides, provenance));
     }
   }

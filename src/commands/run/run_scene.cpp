@@ -121,7 +121,10 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
 
 int run_simulation(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
                    const Integrator& integrator, const SimulationPlan& plan) {
-  const auto backend = chosen_backend(options, info, scene, integrator, make_backend, make_reference);
+  const auto in_double = [](const System& system, const Integrator& method, double dt_s) {
+    return make_reference(system, method, dt_s);
+  };
+  const auto backend = chosen_backend(options, info, scene, integrator, make_backend, in_double);
   const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
   StopRequest stop;  // where run_garment has it
   RunRecorder recorder(options.files, scene, headers);

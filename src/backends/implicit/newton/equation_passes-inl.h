@@ -215,6 +215,18 @@ HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, NodeChu
   return sum.total();
 }
 
+/// (w - v) . M (w - v), undivided.
+template <class Nodes>
+HWY_NOINLINE double change_chunk(const VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const float *const w = equation.w.data(), *const v = equation.v.data();
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 change = vector.load(w) - vector.load(v);
+    sum.add(vector.weighted(dot(change, change)));
+  });
+  return sum.total();
+}
+
 /// v = w, x += dt w, and the floor acts.
 template <class Nodes>
 HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {

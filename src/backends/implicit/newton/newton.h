@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "backends/interface/backend.h"
@@ -12,9 +13,10 @@ namespace mssim {
 /// By plain loops over the spring list on one thread.
 std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s);
 
-/// The same in double precision, until nothing more is gained.
+/// The same in double precision, until nothing more is gained. Where `stop`, which is asked often in a step,
+/// says so, the step ends there; the state is then of no use.
 std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
-                                               double dt_s);
+                                               double dt_s, const std::function<bool()>& stop = {});
 
 /// With vectors, on as many threads: the same bits at every number of them.
 std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,

@@ -42,6 +42,8 @@ concept BackwardEulerEquation = requires(Equation& equation, double factor) {
   { equation.along_solution() } -> std::same_as<double>;
   /// w . M w.
   { equation.motion() } -> std::same_as<double>;
+  /// (w - v) . M (w - v).
+  { equation.change() } -> std::same_as<double>;
   /// v = w, x += dt w, and the floor acts.
   equation.end();
 };
@@ -108,8 +110,11 @@ void newton_step(Equation& equation, double tolerance, SolverWork& work) {
 }
 
 /// A step by Newton's method from w = v, until the norm of r, sqrt(r . M^-1 r), has come to the goal, or to
-/// where rounding keeps it from falling. Linear systems are solved to a part of what r is then (an inexact
-/// Newton method: Dembo, Eisenstat and Steihaug 1982).
+/// where rounding keeps it from falling. The goal is a part of sqrt((w - v) . M (w - v)): no eigenvalue of
+/// M^-1 A is below 1, so that w - v is then off by no larger part, whatever the step, where no spring is
+/// compressed. (A part of the first r would not say so: the longer the step, the more of it is that of stiff
+/// springs.) Linear systems are solved
+/// to a part of what r is then (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982).
 ///
 /// A part of s is taken if r becomes less, or if it does not lead far uphill. Without damping, r is the
 /// gradient by w of (w - v) . M (w - v) / 2 + E(x + dt w), E the elastic and gravitational energy; its
@@ -121,8 +126,11 @@ void newtons_method(Equation& equation, const SolverGoal& goal, SolverWork& work
   constexpr double forcing = 0.01, shortest = 1. / 64, most_uphill = 0.5;
   equation.begin();
   double norm = equation.linearise();
-  const double small = std::max(goal.tolerance * goal.tolerance * norm, goal.rounding * goal.rounding);
-  for (int i = 0; !(norm <= small); ++i) {
+  const auto is_small = [&] {
+    return norm <= goal.rounding * goal.rounding ||
+           norm <= goal.tolerance * goal.tolerance * equation.change();
+  };
+  for (int i = 0; !is_small(); ++i) {
     if (i == most_newton_iterations) {
       ++work.unfinished_steps;
       break;

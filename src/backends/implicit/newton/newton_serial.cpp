@@ -1,3 +1,6 @@
+#include <functional>
+#include <utility>
+
 #include "backends/implicit/newton/newton.h"
 #include "backends/implicit/newton/newton_method.h"
 #include "backends/implicit/newton/spring_equation.h"
@@ -5,11 +8,32 @@
 namespace mssim {
 namespace {
 
+/// What a step ends with that nobody waits for any longer.
+struct GivenUp {};
+
+/// An equation whose solver asks before each product whether anybody waits for it still.
+template <class Real>
+class AwaitedEquation : public SpringEquation<Real> {
+ public:
+  AwaitedEquation(const System& system, double dt_s, std::function<bool()> stop)
+      : SpringEquation<Real>(system, dt_s), stop_(std::move(stop)) {}
+  double turn(double factor) {
+    if (stop_ && stop_()) throw GivenUp();
+    return SpringEquation<Real>::turn(factor);
+  }
+
+ private:
+  std::function<bool()> stop_;
+};
+
 template <class Real>
 class NewtonSerial final : public Backend {
  public:
-  NewtonSerial(const System& system, const Integrator& integrator, double dt_s, double tolerance)
-      : equation_(system, dt_s), integrator_(integrator), goal_(solver_goal<Real>(system, dt_s, tolerance)) {}
+  NewtonSerial(const System& system, const Integrator& integrator, double dt_s, double tolerance,
+               std::function<bool()> stop = {})
+      : equation_(system, dt_s, std::move(stop)),
+        integrator_(integrator),
+        goal_(solver_goal<Real>(system, dt_s, tolerance)) {}
 
   void set_state(const State& state) override { equation_.set_state(state); }
   State state() const override { return equation_.state(); }
@@ -18,11 +42,15 @@ class NewtonSerial final : public Backend {
   std::string note() const override { return note_of(work_); }
 
   void step(int count) override {
-    for (int step = 0; step < count; ++step) take_step(equation_, integrator_, goal_, work_);
+    try {
+      for (int step = 0; step < count; ++step) take_step(equation_, integrator_, goal_, work_);
+    } catch (const GivenUp&) {
+      // Who gave it up knows.
+    }
   }
 
  private:
-  SpringEquation<Real> equation_;
+  AwaitedEquation<Real> equation_;
   const Integrator& integrator_;
   const SolverGoal goal_;
   SolverWork work_;
@@ -38,8 +66,8 @@ std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrat
 }
 
 std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
-                                               double dt_s) {
-  return std::make_unique<NewtonSerial<double>>(system, integrator, dt_s, reference_tolerance);
+                                               double dt_s, const std::function<bool()>& stop) {
+  return std::make_unique<NewtonSerial<double>>(system, integrator, dt_s, reference_tolerance, stop);
 }
 
 }  // namespace mssim

@@ -13,7 +13,7 @@ namespace mssim {
 
 /// Where the methods of newton_method.h end.
 struct SolverGoal {
-  double tolerance = 0;  ///< the part of the first norm of r
+  double tolerance = 0;  ///< of newton_step and newtons_method: the part that may be left
   double rounding = 0;   ///< the norm of r, kg^1/2 m/s, which rounded forces do not let it fall below
   double rounding_of_motion = 0;  ///< what rounded velocities add to that, in parts of sqrt(w . M w)
 };

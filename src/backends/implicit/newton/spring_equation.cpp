@@ -144,6 +144,16 @@ double SpringEquation<Real>::motion() const {
 }
 
 template <class Real>
+double SpringEquation<Real>::change() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Vec3<Real> change = w_[i] - nodes_.v[i];
+    sum += static_cast<double>(nodes_.mass[i] * dot(change, change));
+  }
+  return sum;
+}
+
+template <class Real>
 void SpringEquation<Real>::end() {
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.x[i] = mul_add(dt_, w_[i], nodes_.x[i]);
   std::swap(nodes_.v, w_);

@@ -26,6 +26,7 @@ class SpringEquation {
   void add(double factor);
   double along_solution() const;
   double motion() const;
+  double change() const;
   void end();
 
   /// e and s, for tests.

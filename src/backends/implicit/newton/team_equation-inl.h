@@ -63,6 +63,9 @@ class TeamEquation {
   }
   double along_solution() { return product(shared_.e.data(), shared_.s.data()); }
   double motion() { return product(shared_.w.data(), shared_.w.data()); }
+  double change() {
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return change_chunk(shared_, chunk); });
+  }
   void end() {
     for_own_chunks([&](NodeChunk chunk) HWY_ATTR { end_chunk(shared_, chunk); });
   }
