@@ -79,13 +79,18 @@ void WorkCurve::end(std::string_view why) {
   if (method_.status.empty()) method_.status = why;
 }
 
-bool WorkCurve::goes_on_after(const WorkPoint& point) const {
+bool WorkCurve::goes_on_after(const WorkPoint& point) {
   constexpr int fewest = 4, most = 11;
+  constexpr double largest_rounding = 0.02;  // of a rest length: what roundings have come to within a horizon
   if (points_ >= most) return false;
   if (points_ < fewest || !point.counts()) return !point.beyond_trust;
-  // Rounding: half the step is as far off.
-  const bool falls = !last_error_ || *point.position_error < 0.9 * *last_error_;
-  return falls && *point.position_error > wanted_error_ / 4;
+  if (*point.position_error <= wanted_error_ / 4) return false;
+  if (last_error_ && *point.position_error >= 0.9 * *last_error_ &&
+      *point.position_error < largest_rounding) {
+    end("smaller steps are no more accurate: single precision rounds");
+    return false;
+  }
+  return true;
 }
 
 std::optional<MeasuredPoint> WorkCurve::next() {

@@ -35,7 +35,8 @@ class WorkCurve {
   std::optional<MeasuredPoint> next();
 
  private:
-  bool goes_on_after(const WorkPoint& point) const;
+  /// Says in the method's status why not, where that is not for the points that there are.
+  bool goes_on_after(const WorkPoint& point);
 
   const System& system_;
   const TrustedState& trusted_;

@@ -1,5 +1,6 @@
 #include "report/page.h"
 
+#include <algorithm>
 #include <array>
 
 #include "report/embedded_data.h"
@@ -13,23 +14,31 @@ namespace {
 struct Section {
   std::string_view id, title;
   std::string (*content)(const ReportInput& input);
+  bool of_rows = true;  ///< it shows what mssim bench has measured
 };
 
 /// In the order in which they stand; one without content is left out.
 constexpr std::array<Section, 12> sections{{
-    {"machine", "Machine and settings", machine_section},
+    {"machine", "Machine and settings", machine_section, false},
     {"verdict", "Verdict", verdict_section},
     {"changes", "What changed", changes_section},
     {"headline", "Times", headline_section},
     {"published", "Published beside measured", published_section},
-    {"guide", "Guide", guide_section},
+    {"guide", "Guide", guide_section, false},
     {"speed-up", "Speed-up", speedup_section},
     {"scaling", "Scaling", scaling_section},
     {"roofline", "Roofline", roofline_section},
     {"energy", "Energy", energy_section},
     {"pictures", "Pictures", picture_section},
-    {"provenance", "Provenance", provenance_section},
+    {"provenance", "Provenance", provenance_section, false},
 }};
+
+/// Whether all that there is are guides, which have no rows.
+bool has_only_guides(const ReportInput& input) {
+  return !input.folders.empty() && std::ranges::all_of(input.folders, [](const ReportFolder& folder) {
+    return folder.guide && folder.rows.empty();
+  });
+}
 
 std::string title_of(const ReportInput& input) {
   std::string title = "mssim report";
@@ -42,7 +51,9 @@ std::string title_of(const ReportInput& input) {
 
 std::string report_page(const ReportInput& input) {
   std::string links, body;
+  const bool rows = !has_only_guides(input);
   for (const Section& section : sections) {
+    if (section.of_rows && !rows) continue;
     const std::string content = section.content(input);
     if (content.empty()) continue;
     const std::string id(section.id), title(section.title);

@@ -8,7 +8,7 @@
 namespace mssim {
 
 /// The contents of the sections of a report, as HTML, in their order. Each says so where it has nothing to
-/// show.
+/// show; those that show rows are left out where all folders are guides.
 
 /// Which processor, threads, devices and program each folder comes from, and what is missing.
 std::string machine_section(const ReportInput& input);

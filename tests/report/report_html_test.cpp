@@ -111,6 +111,10 @@ TEST(ReportPage, ShowsAGuideSceneByScene) {
                            "<details><summary>The front</summary>\n<p>The &lt;script&gt;.</p>\n",
                            "</details>\n<h3>&lt;script&gt;alert(1)&lt;/script&gt;</h3>\n", "\"guide\": ["})
     EXPECT_TRUE(has(page, text)) << text;
+  EXPECT_FALSE(has(page, "There is no row to judge")) << "a guide has none";
+  folder.rows = {measured_row("serial", 1, 1.0)};
+  EXPECT_TRUE(has(report_page(input_of(folder)), "<h2>Verdict</h2>"));
+  folder.rows.clear();
   folder.guide->points.clear();
   EXPECT_TRUE(has(report_page(input_of(folder)), "<h3>cloth: 9 nodes</h3>")) << "where guide.csv is damaged";
 }
