@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "backends/implicit/constraints/constraints.h"
 #include "backends/implicit/local_global/local_global.h"
@@ -47,9 +48,15 @@ std::unique_ptr<Backend> reference_of_one_integrator(const System& system, const
 /// it adds to A.
 constexpr MemoryUse plain_newton{.node = 29 + 6 * 12 + 24, .spring = 20};
 
-/// Sparse factors in double precision, with an index each: 5 to 6 entries a node and doubling are what
-/// minimum degree leaves of the matrix of a cloth of 40,000 to 160,000 nodes.
-constexpr double factor_bytes = 6 * 12;
+/// Entries of a sparse factor in minimum degree order, a node: 5 to 6 and doubling of a cloth of 40,000 to
+/// 160,000 nodes; 5 to 7 and cube root of the number of nodes in the scenes of bodies, and 7 to 13 in one
+/// body of 1,700 to 27,000.
+constexpr double cloth_entries = 6, body_entries = 13;
+/// An entry takes 12 bytes in Eigen's factor, and as many in the copy that is made of it; the matrix itself,
+/// in three forms, takes so much a node.
+constexpr double entry_bytes = 2 * 12, matrix_bytes = 550;
+/// The blocks of openmp, beside what they are made from.
+constexpr double block_bytes = 38;
 
 /// What slices take, each spring at both its ends, as for explicit integrators.
 constexpr MemoryUse body_slices{.node = 130, .spring = 38};
@@ -62,17 +69,18 @@ constexpr SolverSteps newton{
     .openmp = make_openmp_newton,
     .openmp_memory = {.node = 8 * 12 + 24}};
 
-constexpr SolverSteps local_global{.serial = of_one_integrator<make_serial_local_global>,
-                                   .serial_memory = {.node = 150, .doubling_node = factor_bytes},
-                                   .reference = reference_of_one_integrator<make_local_global_reference>,
-                                   .reference_memory = {.node = 250, .doubling_node = factor_bytes},
-                                   .openmp = of_one_integrator<make_openmp_local_global>,
-                                   .openmp_memory = {.node = 150, .doubling_node = factor_bytes}};
+constexpr SolverSteps local_global{
+    .serial = of_one_integrator<make_serial_local_global>,
+    .serial_memory = {.node = 150 + matrix_bytes, .doubling_node = cloth_entries * entry_bytes},
+    .reference = reference_of_one_integrator<make_local_global_reference>,
+    .reference_memory = {.node = 250 + matrix_bytes, .doubling_node = cloth_entries * entry_bytes},
+    .openmp = of_one_integrator<make_openmp_local_global>,
+    .openmp_memory = {.node = 150 + matrix_bytes, .doubling_node = cloth_entries * block_bytes}};
 
 constexpr SolverSteps constraints{.serial = of_one_integrator<make_serial_constraints>,
-                                  .serial_memory = {.node = 41, .spring = 16},
+                                  .serial_memory = {.node = 41, .spring = 16 + 20},
                                   .reference = reference_of_one_integrator<make_constraints_reference>,
-                                  .reference_memory = {.node = 81, .spring = 16},
+                                  .reference_memory = {.node = 81, .spring = 16 + 32},
                                   .openmp = of_one_integrator<make_openmp_constraints>,
                                   .openmp_memory = {.node = 40}};
 
@@ -94,18 +102,24 @@ const SolverSteps& steps_of(const Integrator& integrator) {
   return row->steps;
 }
 
-}  // namespace
-
-MemoryUse serial_implicit_memory(const Integrator& integrator, bool /*grid*/) {
-  return steps_of(integrator).serial_memory;
+/// What the solver's factor takes for a cloth or for bodies.
+MemoryUse filled(MemoryUse use, bool grid) {
+  if (!grid) use.cube_root_node = body_entries / cloth_entries * std::exchange(use.doubling_node, 0);
+  return use;
 }
 
-MemoryUse implicit_reference_memory(const Integrator& integrator, bool /*grid*/) {
-  return steps_of(integrator).reference_memory;
+}  // namespace
+
+MemoryUse serial_implicit_memory(const Integrator& integrator, bool grid) {
+  return filled(steps_of(integrator).serial_memory, grid);
+}
+
+MemoryUse implicit_reference_memory(const Integrator& integrator, bool grid) {
+  return filled(steps_of(integrator).reference_memory, grid);
 }
 
 MemoryUse openmp_implicit_memory(const Integrator& integrator, bool grid) {
-  MemoryUse use = steps_of(integrator).openmp_memory;
+  MemoryUse use = filled(steps_of(integrator).openmp_memory, grid);
   if (!grid) {
     use.node += body_slices.node;
     use.spring += body_slices.spring;

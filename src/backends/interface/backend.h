@@ -126,13 +126,16 @@ struct MemoryUse {
   double pair_node = 0;
   Storage storage = Storage::in_place;  ///< which pairs it needs
   double thread_node = 0;
-  double doubling_node = 0;  ///< of sparse factors, which fill as they grow
+  double doubling_node = 0;   ///< of sparse factors of a cloth, which fill as they grow
+  double cube_root_node = 0;  ///< of sparse factors of bodies, which fill faster
   double spring = 0;
 
   double bytes(const Integrator& integrator, std::uint64_t nodes, std::uint64_t springs, int threads) const {
     const auto pairs = static_cast<double>(stored_pairs(integrator, storage).size());
     const double doublings = std::log2(std::max(1.0, static_cast<double>(nodes)));
-    return (node + pair_node * pairs + thread_node * threads + doubling_node * doublings) *
+    const double cube_root = std::cbrt(static_cast<double>(nodes));
+    return (node + pair_node * pairs + thread_node * threads + doubling_node * doublings +
+            cube_root_node * cube_root) *
                static_cast<double>(nodes) +
            spring * static_cast<double>(springs);
   }

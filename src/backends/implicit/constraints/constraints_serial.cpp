@@ -21,6 +21,7 @@ class SerialConstraints final : public Backend {
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       mobility_.push_back(nodes_.pinned[i] ? Real{} : static_cast<Real>(1 / system.node_mass[i]));
     const double h_s = dt_s / system.solver.substeps;
+    springs_.reserve(system.springs.size());
     for (const Spring& spring : spring_order(system).springs)
       springs_.push_back({spring.first, spring.second,
                           Compliance<Real>(system.materials[spring.kind], spring.rest_length, h_s,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <variant>
+#include <vector>
 
 namespace mssim {
 namespace {
@@ -26,13 +28,14 @@ ClothColour colour_of(const GridPatch& grid, const Spring& spring) {
 SpringColouring spring_order(const System& system) {
   const auto* grid = std::get_if<GridPatch>(&system.topology);
   if (grid == nullptr) return colour_springs(system.springs, system.nodes());
-  std::array<std::vector<Spring>, cloth_colours> springs;
-  for (const Spring& spring : system.springs) springs[colour_of(*grid, spring)].push_back(spring);
-  SpringColouring order{{}, {0}};
-  for (const std::vector<Spring>& colour : springs) {
-    order.springs.insert(order.springs.end(), colour.begin(), colour.end());
-    order.first.push_back(order.springs.size());
+  std::array<std::size_t, cloth_colours> next{};  // place of each colour's next spring
+  for (const Spring& spring : system.springs) ++next[colour_of(*grid, spring)];
+  SpringColouring order{std::vector<Spring>(system.springs.size()), {0}};
+  for (std::size_t& place : next) {
+    order.first.push_back(order.first.back() + place);
+    place = order.first[order.first.size() - 2];
   }
+  for (const Spring& spring : system.springs) order.springs[next[colour_of(*grid, spring)]++] = spring;
   return order;
 }
 
