@@ -41,6 +41,11 @@ void round_to_single(State& state) {
     }
 }
 
+void round_start_to_single(System& system) {
+  round_to_single(system.start);
+  round_to_single(system.floor.height);
+}
+
 StiffnessBound stiffness_bound(const System& system) {
   struct Sum {
     double stiffness = 0, damping = 0;

@@ -68,6 +68,9 @@ void round_to_single(double& value);
 /// Rounds all numbers of a state.
 void round_to_single(State& state);
 
+/// Rounds what a system starts from: its start state, and its floor's height.
+void round_start_to_single(System& system);
+
 /// Bounds on what the springs can do to one node, for the stability limit.
 struct StiffnessBound {
   double stiffness = 0;  ///< 1/s^2, at least the largest eigenvalue of K/m

@@ -161,13 +161,11 @@ SceneParts read_cloth(const SceneSpec& spec) {
   return {counts, counts, [](const SceneSpec& of) { return BuiltScene{build_cloth(of)}; }};
 }
 
-System build_cloth(const SceneSpec& spec) {
+System build_cloth_window(const SceneSpec& spec, const ClothWindow& window) {
   const ClothSpec& cloth = cloth_of(spec);
-  require_memory(spec, "/cloth", cloth_counts(spec));
   System system;
-  const GridPatch grid{cloth.rows, cloth.columns, cloth.spacing_m};
+  const GridPatch grid{window.rows, window.columns, cloth.spacing_m};
   system.topology = grid;
-  system.springs = springs_of(grid);
   system.materials.assign(cloth.springs.begin(), cloth.springs.end());
   system.node_mass.assign(grid.nodes(), cloth.areal_density_kg_per_m2 * cloth.spacing_m * cloth.spacing_m);
   system.gravity = spec.gravity_m_per_s2;
@@ -179,12 +177,12 @@ System build_cloth(const SceneSpec& spec) {
   const double height = cloth.ripple.height_m, speed = cloth.ripple.speed_m_per_s;
   system.start.position.reserve(grid.nodes());
   system.start.velocity.reserve(grid.nodes());
-  for (std::uint32_t row = 0; row < cloth.rows; ++row)
-    for (std::uint32_t column = 0; column < cloth.columns; ++column) {
+  for (std::uint32_t row = window.row; row < window.row + window.rows; ++row)
+    for (std::uint32_t column = window.column; column < window.column + window.columns; ++column) {
       Vec3d position{column * cloth.spacing_m, cloth.ceiling_height_m, row * cloth.spacing_m};
       Vec3d velocity;
       if (is_pinned(cloth, row, column)) {
-        system.pins.push_back(grid.node(row, column));
+        system.pins.push_back(grid.node(row - window.row, column - window.column));
       } else {
         velocity = speed * ripple.at(row, column, Ripple::velocity);
         const Vec3d wave = ripple.at(row, column, Ripple::position);
@@ -193,6 +191,14 @@ System build_cloth(const SceneSpec& spec) {
       system.start.position.push_back(position);
       system.start.velocity.push_back(velocity);
     }
+  return system;
+}
+
+System build_cloth(const SceneSpec& spec) {
+  const ClothSpec& cloth = cloth_of(spec);
+  require_memory(spec, "/cloth", cloth_counts(spec));
+  System system = build_cloth_window(spec, {.rows = cloth.rows, .columns = cloth.columns});
+  system.springs = springs_of(std::get<GridPatch>(system.topology));
   return system;
 }
 

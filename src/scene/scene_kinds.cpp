@@ -77,8 +77,7 @@ void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint6
 
 BuiltScene build_scene(const SceneSpec& spec, const SceneParts& parts) {
   BuiltScene scene = parts.build(spec);
-  round_to_single(scene.system.start);
-  round_to_single(scene.system.floor.height);
+  round_start_to_single(scene.system);
   return scene;
 }
 

@@ -12,6 +12,8 @@ constexpr std::size_t halo = BandLayout::halo;
 /// Threads recompute two columns a stage and side; a partition narrower than this would be mostly that.
 std::size_t narrowest_part(const Integrator& integrator) { return 2 * halo * integrator.stage_count; }
 
+}  // namespace
+
 /// Steps to take in one pass. A state that the last-level cache holds (the half of it that one may count on)
 /// is best left there: more columns under way than the first-level cache holds cost 4 to 12 % at 350,000
 /// nodes. From memory, as many as there is room for among the stages under way: semi-euler was 1.9 times as
@@ -30,8 +32,6 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
   return fits || narrow ? 1 : steps;
 }
 
-}  // namespace
-
 BandLayout::BandLayout(const GridPatch& grid, std::size_t lane_count)
     : lanes(lane_count),
       rows(grid.rows),
@@ -39,21 +39,20 @@ BandLayout::BandLayout(const GridPatch& grid, std::size_t lane_count)
       height(std::max(halo, (rows + lanes - 1) / lanes)) {}
 
 BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-                   std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass)
+                   std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass,
+                   std::optional<ColumnRange> piece)
     : layout(grid, lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
       springs(spring_constants_of(system, grid)),
       surroundings(surroundings_of(system)),
+      own(piece.value_or(ColumnRange{0, layout.columns})),
       spacing_(grid.spacing) {
-  partitions.resize(
-      std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, layout.columns / narrowest_part(method))));
-  steps_per_pass = steps_in_a_pass.value_or(steps_per_pass_for(layout, method, partitions.size()));
-  for (std::size_t p = 0; p < partitions.size(); ++p) {
-    BandPartition& partition = partitions[p];
-    partition.first = layout.columns * p / partitions.size();
-    partition.count = layout.columns * (p + 1) / partitions.size() - partition.first;
-    partition.ghosts = halo * method.stage_count * steps_per_pass;
+  const std::size_t most_partitions =
+      std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, own.count / narrowest_part(method)));
+  steps_per_pass = steps_in_a_pass.value_or(steps_per_pass_for(layout, method, most_partitions));
+  cut(most_partitions);
+  for (BandPartition& partition : partitions) {
     const std::size_t columns = partition.ghosts + partition.count + partition.ghosts;
     for (const Pair pair : stored_pairs(method, Storage::in_place))
       partition.pairs[index(pair)] =
@@ -73,13 +72,40 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
   }
 }
 
+void BandGrid::cut(std::size_t threads) {
+  const std::size_t ghosts = ghost_columns(*integrator, steps_per_pass);
+  const auto add = [&](ColumnRange columns) {
+    BandPartition& partition = partitions.emplace_back();
+    partition.first = columns.first;
+    partition.count = columns.count;
+    partition.ghosts = ghosts;
+  };
+  const bool left = own.first > 0, right = own.end() < layout.columns;
+  const std::size_t edge_columns = ghosts * (std::size_t{left} + std::size_t{right});
+  const bool has_edges = own.count >= edge_columns + narrowest_part(*integrator);
+  ColumnRange inner = own;
+  if (has_edges && left) {
+    add({own.first, ghosts});
+    inner = {own.first + ghosts, inner.count - ghosts};
+  }
+  if (has_edges && right) inner.count -= ghosts;
+  first_inner = partitions.size();
+  // Without edges one partition has them all: messages bring the ghosts of the first and the last alone.
+  inner_count = (left || right) && !has_edges
+                    ? 1
+                    : std::clamp<std::size_t>(
+                          threads, 1, std::max<std::size_t>(1, inner.count / narrowest_part(*integrator)));
+  for (std::size_t p = 0; p < inner_count; ++p) add(part_of(inner, p, inner_count));
+  if (has_edges && right) add({inner.end(), ghosts});
+}
+
 void BandGrid::fill_partition(BandPartition& partition, const State& state) const {
   const auto reach = static_cast<std::ptrdiff_t>(halo);
   const auto rows = static_cast<std::ptrdiff_t>(layout.rows);
   const auto height = static_cast<std::ptrdiff_t>(layout.height);
-  const std::size_t begin = partition.first - std::min(partition.first, partition.ghosts);
-  const std::size_t end = std::min(partition.first + partition.count + partition.ghosts, layout.columns);
-  for (std::size_t column = begin; column < end; ++column) {
+  const ColumnRange filled =
+      with_ghosts({partition.first, partition.count}, partition.ghosts, layout.columns);
+  for (std::size_t column = filled.first; column < filled.end(); ++column) {
     float* out = partition.column(layout, Pair::state, column);
     for (std::ptrdiff_t r = -reach; r < height + reach; ++r, out += layout.row_floats())
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {

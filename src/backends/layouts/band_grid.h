@@ -9,6 +9,8 @@
 
 #include "backends/interface/surroundings.h"
 #include "backends/layouts/aligned_array.h"
+#include "backends/layouts/column_messages.h"
+#include "backends/layouts/column_range.h"
 #include "backends/layouts/spring_constants.h"
 #include "backends/threads/team_gain.h"
 #include "integrators/coefficients.h"
@@ -62,6 +64,15 @@ static_assert(max_stages <= stages_under_way);
 /// trial pair keeps: they are used in turn.
 inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * stages_under_way);
 
+/// Columns beside those of a partition that a pass of so many steps needs.
+inline std::size_t ghost_columns(const Integrator& integrator, std::size_t steps_per_pass) {
+  return BandLayout::halo * integrator.stage_count * steps_per_pass;
+}
+
+/// Steps that a pass had best take over a cloth of that layout and so many partitions.
+std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator,
+                               std::size_t partitions);
+
 /// The columns of one thread, and on each side ghost columns that repeat the neighbours': two for each stage
 /// under way. The thread computes what stages but the last do there a second time, and so needs nobody until
 /// the last is through.
@@ -91,27 +102,38 @@ struct BandPartition {
 };
 
 /// What the vector code needs to take steps: one cloth, one integrator, one dt.
+///
+/// The cloth may be a piece of a larger one, whose other columns other processes step: it owns some of its
+/// columns, and those beside them are ghosts, which messages bring. What the others wait for is walked first:
+/// of a wide piece, the columns at its ends are partitions of their own.
 struct BandGrid {
   BandLayout layout;
   const Integrator* integrator = nullptr;
   Coefficients<float> coefficients{};
   std::vector<SpringConstants> springs;  ///< [kinds]
   Surroundings surroundings{};
-  std::size_t steps_per_pass = 1;  ///< steps under way at once
-  std::vector<BandPartition> partitions;
-  TeamGain team_gain;  ///< of a thread for each partition
+  std::size_t steps_per_pass = 1;         ///< steps under way at once
+  std::vector<BandPartition> partitions;  ///< in the order of their columns
+  ColumnRange own;                        ///< what the partitions cover: all columns, or those of the piece
+  std::size_t first_inner = 0;            ///< partitions before this one are an edge
+  std::size_t inner_count = 0;            ///< partitions from there on that have a thread each; then an edge
+  ColumnMessages* messages = nullptr;     ///< of a piece; outlives the steps
+  TeamGain team_gain;                     ///< of a thread for each inner partition
 
   /// Cuts the cloth for `lanes` lanes and at most `threads` partitions. Arrays stay untouched until
   /// set_state. `steps_in_a_pass`: chosen by the size of the cloth unless given; their stages must not be
-  /// more than stages_under_way.
+  /// more than stages_under_way. `piece`: the columns that it owns, unless all; of the others there must be
+  /// ghost_columns on each side, or none where the cloth ends.
   BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-           std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass = {});
+           std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass = {},
+           std::optional<ColumnRange> piece = {});
   /// Spreads the state over the partitions, each by a thread of its own, ghosts, halos and dummies included.
   void set_state(const State& state);
   State state() const;
 
  private:
   double spacing_ = 0;  ///< m, places the dummies
+  void cut(std::size_t threads);
   void fill_partition(BandPartition& partition, const State& state) const;
 };
 

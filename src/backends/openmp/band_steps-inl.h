@@ -108,9 +108,11 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
   std::rotate(under_way.forces.begin(), under_way.forces.begin() + 1, under_way.forces.end());
 }
 
-/// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other.
+/// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other. Messages
+/// that are under way meanwhile go on (null: there are none).
 template <std::size_t method>
-HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, std::size_t steps) {
+HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, std::size_t steps,
+                               ColumnMessages* messages) {
   constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
   const std::size_t count = steps * stages, columns = bands.layout.columns;
   std::array<StageUnderWay, stages_under_way> under_way;
@@ -126,7 +128,9 @@ HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, 
   }
   const std::size_t start = under_way[0].begin - std::min(under_way[0].begin, distance);
   const std::size_t end = under_way[count - 1].end + distance * (count - 1);
-  for (std::size_t head = start; head < end; ++head)
+  constexpr std::size_t columns_an_advance = 8;  // some microseconds
+  for (std::size_t head = start; head < end; ++head) {
+    if (messages && head % columns_an_advance == 0) messages->advance();
     for (std::size_t step = 0; step < steps; ++step)
       for_each_stage<method>([&](auto stage) HWY_ATTR {
         const std::size_t i = step * stages + stage, behind = distance * i;
@@ -135,9 +139,11 @@ HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, 
           return;
         walk_stage<method, stage>(bands, partition, under_way[i], head - behind);
       });
+  }
 }
 
-/// Copies the ghost columns of the state from the partitions that own them.
+/// Copies the ghost columns of the state from the partitions that own them, where that is one of this
+/// process.
 HWY_NOINLINE inline void fetch_ghosts(BandGrid& bands, std::size_t p) {
   BandPartition& partition = bands.partitions[p];
   const std::size_t bytes = bands.layout.column_floats() * sizeof(float);
@@ -145,13 +151,14 @@ HWY_NOINLINE inline void fetch_ghosts(BandGrid& bands, std::size_t p) {
     std::memcpy(partition.column(bands.layout, Pair::state, column),
                 bands.partitions[owner].column(bands.layout, Pair::state, column), bytes);
   };
-  const std::size_t begin = partition.first - std::min(partition.first, partition.ghosts);
+  const std::size_t begin =
+      std::max(partition.first - std::min(partition.first, partition.ghosts), bands.own.first);
   for (std::size_t column = partition.first, owner = p; column-- > begin;) {
     while (column < bands.partitions[owner].first) --owner;
     fetch(owner, column);
   }
   const std::size_t first_right = partition.first + partition.count;
-  const std::size_t end = std::min(first_right + partition.ghosts, bands.layout.columns);
+  const std::size_t end = std::min(first_right + partition.ghosts, bands.own.end());
   for (std::size_t column = first_right, owner = p; column < end; ++column) {
     while (column >= bands.partitions[owner].first + bands.partitions[owner].count) ++owner;
     fetch(owner, column);
@@ -161,17 +168,30 @@ HWY_NOINLINE inline void fetch_ghosts(BandGrid& bands, std::size_t p) {
 template <std::size_t method>
 HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   // Every thread computes its own columns whole, whatever their number: the order of every sum depends on the
-  // cloth alone, and the result is the same to the last bit for any number of threads.
-  const int partitions = static_cast<int>(bands.partitions.size());
+  // cloth alone, and the result is the same to the last bit for any number of threads, and of processes.
+  const std::size_t partitions = bands.partitions.size();
+  const bool has_edges = bands.inner_count < partitions;
   const std::size_t passes = (count + bands.steps_per_pass - 1) / bands.steps_per_pass;
-  // Of every stride-th partition from `first` on.
+  // Of every stride-th inner partition from `first` on; the first thread before that of the edges.
   const auto walk = [&](std::size_t first, std::size_t stride, std::size_t pass) HWY_ATTR {
     const std::size_t steps = std::min(bands.steps_per_pass, count - pass * bands.steps_per_pass);
-    for (std::size_t p = first; p < bands.partitions.size(); p += stride)
-      walk_partition<method>(bands, bands.partitions[p], steps);
+    if (bands.messages && first == 0) {
+      if (pass > 0) bands.messages->finish();
+      if (has_edges) {
+        if (bands.first_inner > 0) walk_partition<method>(bands, bands.partitions.front(), steps, nullptr);
+        if (bands.first_inner + bands.inner_count < partitions)
+          walk_partition<method>(bands, bands.partitions.back(), steps, nullptr);
+        bands.messages->begin();
+      }
+    }
+    for (std::size_t p = first; p < bands.inner_count; p += stride)
+      walk_partition<method>(bands, bands.partitions[bands.first_inner + p], steps,
+                             first == 0 ? bands.messages : nullptr);
   };
+  // Of every stride-th partition from `first` on.
   const auto fetch = [&](std::size_t first, std::size_t stride) HWY_ATTR {
-    for (std::size_t p = first; p < bands.partitions.size(); p += stride) fetch_ghosts(bands, p);
+    if (bands.messages && first == 0 && !has_edges) bands.messages->begin();
+    for (std::size_t p = first; p < partitions; p += stride) fetch_ghosts(bands, p);
   };
   const auto pass_alone = [&](std::size_t pass) HWY_ATTR {
     if (pass >= passes) return false;
@@ -180,9 +200,9 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
     return true;
   };
   const std::size_t begin = bands.team_gain.take_rounds(pass_alone);
-  if (begin == passes) return;
   std::optional<SpinBarrier> barrier;
-#pragma omp parallel num_threads(partitions)
+  if (begin < passes)
+#pragma omp parallel num_threads(static_cast <int>(bands.inner_count))
   {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
@@ -190,12 +210,13 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
     barrier.emplace(threads, bands.team_gain);
     for (std::size_t pass = begin; pass < passes; ++pass) {
       walk(thread, threads, pass);
-      if (partitions == 1) continue;
+      if (partitions == 1 && !bands.messages) continue;
       barrier->wait();
       fetch(thread, threads);
       pass += barrier->end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); });
     }
   }
+  if (bands.messages && passes > 0) bands.messages->finish();
 }
 
 /// Takes `count` steps of an integrator of `fewest` to `most` stages.
