@@ -124,9 +124,10 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
   return "";
 }
 
-std::string excess_of(const Backend& backend, int threads) {
-  if (backend.threads() <= threads) return "";
-  return "on " + std::to_string(backend.threads()) + " processors instead of " + std::to_string(threads) +
+std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options) {
+  const int asked = info.program ? processors_of(*info.program, options) : options.threads;
+  if (backend.threads() <= asked) return "";
+  return "on " + std::to_string(backend.threads()) + " processors instead of " + std::to_string(asked) +
          ": " + backend.reason_for_excess();
 }
 

@@ -64,8 +64,8 @@ std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backen
 /// Whether the backend has Algorithm 1 (garment/stepping/); one that has not refuses garments.
 inline bool dresses(const BackendInfo& backend) { return backend.make_dressing != nullptr; }
 
-/// What a reader of its times must know of a backend that takes more processors than `threads`, which it was
-/// made for; empty for all others.
-std::string excess_of(const Backend& backend, int threads);
+/// What a reader of its times must know of a backend that takes more processors than those that it was made
+/// for; empty for all others.
+std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options);
 
 }  // namespace mssim

@@ -240,6 +240,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, watch.stop)) return {};
       }
+      if (combination.backend) leave_untimed(combination);
       if (combination.backend) calibrate(combination, job);
     }
   }

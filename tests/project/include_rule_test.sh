@@ -54,6 +54,8 @@ backends              integrators backends/interface backends/devices backends/s
 backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 
+ranks                 text platform integrators model scene/spec scene backends/interface backends/vectors backends/layouts backends/openmp
+
 bench/machine         mssim text platform
 bench/results         text statistics bench/machine
 bench/roofline        integrators model
@@ -90,6 +92,7 @@ commands              text platform geometry scene/fields backends/interface ben
 main.cpp              commands/shared
 ask_opencl.cpp
 supervise.cpp         platform
+mssim_mpi.cpp         ranks
 '
 
 # offences ROOT: prints FILE:LINE: what is wrong with each include under ROOT/src and ROOT/kernels that breaks the rule, and

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -25,6 +26,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_words = 64;
 constexpr std::string_view cloth = "cloth", bodies = "bodies";
+constexpr std::string_view ranks = "ranks";
+constexpr std::array<std::string_view, 2> process_words{"one", ranks};
 constexpr std::string_view remedy = "give the description of a backend, NAME.json";
 
 /// What a description says, field by field.
@@ -33,6 +36,8 @@ struct Description {
   std::string text;
   std::vector<std::pair<std::string, std::string>> environment;
   std::optional<double> time_limit_s;
+  std::string install;
+  std::uint32_t processes = 0;  ///< of process_words
 };
 
 void visit(FieldVisitor& fields, Description& description) {
@@ -48,6 +53,12 @@ void visit(FieldVisitor& fields, Description& description) {
                      description.environment);
   fields.optional_number({"time_limit_s", "Longest time of an answer, s (default: 120)."},
                          description.time_limit_s, above(0, longest_time_limit_s));
+  fields.text({"install", "What to do where the program is missing."}, Presence::optional,
+              description.install);
+  fields.choice({"processes",
+                 "ranks: it runs in MSSIM_RANKS processes, and builds cloths from the file MSSIM_SCENE_FILE "
+                 "(default: one)."},
+                Presence::optional, process_words, description.processes);
 }
 
 void require_known(const fs::path& file, const std::string& list, const std::vector<std::string>& words,
@@ -107,7 +118,10 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
     program.environment.push_back(name + '=' + value);
   }
   if (description.time_limit_s) program.time_limit_s = *description.time_limit_s;
+  program.in_ranks = process_words.at(description.processes) == ranks;
   find_file(program, file);
+  if (!program.missing.empty() && !description.install.empty())
+    program.missing += "; " + printable(description.install);
   return program;
 }
 

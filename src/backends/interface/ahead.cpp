@@ -34,6 +34,7 @@ class AheadBackend final : public Backend {
   int steps_per_pass() const override { return backend_->steps_per_pass(); }
   bool runs_on_host() const override { return backend_->runs_on_host(); }
   std::string note() const override { return backend_->note(); }
+  std::string reason_not_to_time() const override { return backend_->reason_not_to_time(); }
   std::string reason_for_excess() const override { return backend_->reason_for_excess(); }
   void rest() override { backend_->rest(); }
   std::string end() override { return backend_->end(); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -39,7 +40,11 @@ struct ExecutionOptions {
       {};  ///< OpenCL device: its number in `mssim list devices` or a part of its name; empty: first
   DeviceMemory memory = DeviceMemory::shared;  ///< of the backends that use a device
   Roots roots = Roots::fast;
-  std::string scene = {};  ///< its name, which a program that is a backend is told
+  std::string scene = {};                 ///< its name, which a program that is a backend is told
+  std::filesystem::path scene_file = {};  ///< the file that it comes from, the same
+  int ranks = 0;                          ///< processes of a program that runs in several
+  int rank_threads = 1;                   ///< of each of them
+  std::string launcher = {};              ///< command that starts them; empty: the program's usual one
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.
@@ -103,6 +108,8 @@ class Backend {
   virtual bool runs_on_host() const { return true; }
   /// What a reader of its times must know of it by now, or nothing: the limits that its steps have met, say.
   virtual std::string note() const { return {}; }
+  /// Why its times would mean nothing on this machine, though its steps are right; or nothing.
+  virtual std::string reason_not_to_time() const { return {}; }
   /// Why it takes more processors than it was asked to, where it does.
   virtual std::string reason_for_excess() const { return "the driver of " + device() + " cannot divide it"; }
   /// Says that nothing will be asked of it for a while: it shall not disturb what is timed meanwhile.

@@ -17,7 +17,7 @@ class ColumnMessages {
   /// Lets messages that are under way go on. Does not wait.
   virtual void advance() = 0;
   /// Waits until the ghosts are the neighbours' columns of the next pass, and the own ones may change again.
-  /// Throws what the messages' library does.
+  /// Throws nothing, like the others: threads of a step call them.
   virtual void finish() = 0;
 };
 

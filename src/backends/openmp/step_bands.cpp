@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 BandKernel band_kernel_of_one_stage() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &step_bands<1, 1>};
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, fuses, &step_bands<1, 1>};
 }
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

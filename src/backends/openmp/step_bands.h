@@ -13,6 +13,7 @@ struct BandKernel {
   std::size_t lanes;                         ///< floats in a vector: BandLayout::lanes must equal it
   const char* instruction_set;               ///< Highway's name for it
   bool exact_roots;                          ///< as inverse_length (backends/vectors/lanes-inl.h) says
+  bool fuses;                                ///< the same of multiplications and additions
   void (*step)(BandGrid& bands, int count);  ///< takes `count` steps
 };
 

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 BandKernel band_kernel_of_many_stages() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &step_bands<3, max_stages>};
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, fuses, &step_bands<3, max_stages>};
 }
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

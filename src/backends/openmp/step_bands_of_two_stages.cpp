@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 BandKernel band_kernel_of_two_stages() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &step_bands<2, 2>};
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, fuses, &step_bands<2, 2>};
 }
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

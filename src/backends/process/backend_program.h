@@ -19,6 +19,8 @@ struct BackendProgram {
   bool steps_bodies = true;
   std::vector<std::string> integrators;  ///< those that it has; empty: all explicit ones
   double time_limit_s = 120;             ///< of every answer
+  /// It runs in several processes (--ranks), and builds its parts of a cloth from the scene's file.
+  bool in_ranks = false;
 };
 
 /// Longest time limit, s.

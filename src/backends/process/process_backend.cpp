@@ -58,12 +58,18 @@ std::string last_line(std::string_view output) {
 }
 
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
-                                        int threads) {
+                                        const ExecutionOptions& options) {
   const char* path = std::getenv("PYTHONPATH");
-  const std::string count = std::to_string(threads);
+  const std::string count = std::to_string(processors_of(program, options));
   std::vector<std::string> all{
       "MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count, "OMP_NUM_THREADS=" + count,
       "PYTHONPATH=" + (data_folder() / "python").string() + (path && *path ? std::string(":") + path : "")};
+  if (program.in_ranks) {
+    all.push_back("MSSIM_RANKS=" + std::to_string(options.ranks));
+    all.push_back("MSSIM_LAUNCHER=" + options.launcher);
+    all.push_back("MSSIM_SCENE_FILE=" + options.scene_file.string());
+    all.push_back(std::string("MSSIM_ROOTS=") + (options.roots == Roots::exact ? "exact" : "fast"));
+  }
   all.insert(all.end(), program.environment.begin(), program.environment.end());
   return all;
 }
@@ -93,6 +99,7 @@ struct Introduction {
   std::string device = "cpu";
   int threads = 0;
   std::string note;
+  std::string untimed;
 };
 
 class ProcessBackend final : public Backend {
@@ -101,19 +108,21 @@ class ProcessBackend final : public Backend {
                  double dt_s, const ExecutionOptions& options)
       : program_(program), conversation_(folder_.path()), state_file_(system.nodes(), folder_.path()) {
     const std::filesystem::path system_file = folder_.path() / "system.h5";
-    write_system(system_file, system);
-    process_.emplace(
-        SupervisedProgram{program.program,
-                          {program.command.begin() + 1, program.command.end()},
-                          environment_of(program, conversation_.socket().string(), options.threads),
-                          program.folder,
-                          first_cpus(options.threads)});
+    // A cloth of a program in several processes is built by each for itself, and may be large.
+    if (!program.in_ranks || !std::holds_alternative<GridPatch>(system.topology))
+      write_system(system_file, system);
+    const int processors = processors_of(program, options);
+    process_.emplace(SupervisedProgram{program.program,
+                                       {program.command.begin() + 1, program.command.end()},
+                                       environment_of(program, conversation_.socket().string(), options),
+                                       program.folder,
+                                       first_cpus(processors)});
     std::ostringstream lines;
     lines << std::setprecision(std::numeric_limits<double>::max_digits10) << "mssim-backend 1\nscene "
-          << escaped(options.scene) << "\ndt " << dt_s << "\nthreads " << options.threads << '\n'
+          << escaped(options.scene) << "\ndt " << dt_s << "\nthreads " << processors << '\n'
           << method_text(integrator) << "system " << system_file.string() << "\nstate "
           << state_file_.path().string() << "\nprepare\n";
-    introduction_.threads = options.threads;
+    introduction_.threads = processors;
     conversing([&] {
       conversation_.begin(std::chrono::duration<double>(program.time_limit_s), process_->end_descriptor());
       conversation_.ask(lines.str(), "prepare");
@@ -151,6 +160,7 @@ class ProcessBackend final : public Backend {
   int threads() const override { return introduction_.threads; }
   bool runs_on_host() const override { return introduction_.device == "cpu"; }
   std::string note() const override { return introduction_.note; }
+  std::string reason_not_to_time() const override { return introduction_.untimed; }
   std::string reason_for_excess() const override { return "the program takes them"; }
 
   void rest() override {
@@ -200,6 +210,8 @@ class ProcessBackend final : public Backend {
   bool takes(const std::string& line) {
     const auto [word, text] = split(line);
     const std::string shown = printable(text, longest_shown);
+    // It may have to tidy up.
+    if (word == "unsupported" || word == "unavailable") end_politely();
     if (word == "unsupported") throw Unsupported(shown);
     if (word == "unavailable") throw Unavailable(shown);
     if (word == "failed") fail("failed at \"prepare\": " + shown);
@@ -212,9 +224,11 @@ class ProcessBackend final : public Backend {
       add_to_note(introduction_.note, shown + " precision");
     else if (word == "note" && !text.empty())
       add_to_note(introduction_.note, shown);
+    else if (word == "untimed" && !text.empty())
+      introduction_.untimed = shown;
     else
       fail_at(line, "prepare",
-              "device, threads, precision, note, ready 1, unsupported, unavailable or failed");
+              "device, threads, precision, note, untimed, ready 1, unsupported, unavailable or failed");
     return false;
   }
 
@@ -258,6 +272,10 @@ class ProcessBackend final : public Backend {
 };
 
 }  // namespace
+
+int processors_of(const BackendProgram& program, const ExecutionOptions& options) {
+  return program.in_ranks ? options.ranks * options.rank_threads : options.threads;
+}
 
 std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
                                               const Integrator& integrator, double dt_s,

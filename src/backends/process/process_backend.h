@@ -7,6 +7,9 @@
 
 namespace mssim {
 
+/// Processors that the program may use.
+int processors_of(const BackendProgram& program, const ExecutionOptions& options);
+
 /// Starts the program for a cloth or bodies and waits until it is prepared. `program` and `system` must
 /// outlive the backend. A call of it takes about 15 us beside what the program does with it (measured with
 /// tests/backends/process/ on two cores of an AMD EPYC, Zen 4). Throws Unavailable, Unsupported and, like

@@ -44,6 +44,9 @@ HWY_INLINE Lanes mul_add(Lanes a, Lanes b, Lanes c) { return hn::MulAdd(a.v, b.v
 HWY_INLINE Lanes square_root(Lanes a) { return hn::Sqrt(a.v); }
 HWY_INLINE Lanes inverse_sqrt(Lanes a) { return hn::Div(hn::Set(FloatTag(), 1.0F), hn::Sqrt(a.v)); }
 
+/// Whether a multiplication and an addition are rounded once. Where they are rounded twice, results differ.
+constexpr bool fuses = HWY_NATIVE_FMA != 0;
+
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
 constexpr bool exact_roots = false;
 #else

@@ -69,6 +69,14 @@ void fail(Combination& combination, const std::string& status) {
   combination.dressing = nullptr;
 }
 
+void leave_untimed(Combination& combination) {
+  const std::string reason = combination.backend->reason_not_to_time();
+  if (reason.empty()) return;
+  combination.row.status = "not timed: " + reason;
+  end(combination);
+  combination.backend.reset();
+}
+
 void attempt(Combination& combination, const std::function<void()>& work) {
   try {
     work();
@@ -103,7 +111,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
     add_to_note(row.note, combination.backend->note());
-    add_to_note(row.note, excess_of(*combination.backend, job.execution.threads));
+    add_to_note(row.note, excess_of(info, *combination.backend, job.execution));
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
   };

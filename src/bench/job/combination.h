@@ -39,6 +39,9 @@ void fail(Combination& combination, const std::string& status);
 /// a program behind it wrote.
 void end(Combination& combination);
 
+/// Where the backend's times would mean nothing: ends it, and the row says why. Verified it stays.
+void leave_untimed(Combination& combination);
+
 /// Does something with the combination's backend; the row has failed where the program behind it fails.
 void attempt(Combination& combination, const std::function<void()>& work);
 

@@ -85,15 +85,21 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
   return provenance;
 }
 
-void add_program(Provenance& provenance, std::string_view name, const std::vector<std::string>& command,
-                 const std::filesystem::path& program, const std::filesystem::path& folder) {
+int asked_processors(const Provenance& provenance, std::string_view backend) {
+  for (const BackendProgramRecord& program : provenance.backend_programs)
+    if (program.name == backend && program.ranks > 0) return program.ranks * program.rank_threads;
+  return provenance.threads;
+}
+
+void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
+                 const std::filesystem::path& folder) {
   // Larger ones are data, and reading them would take longer than a step.
   constexpr std::size_t largest_file = std::size_t{64} << 20;
-  BackendProgramRecord record{std::string(name), {}, {}};
-  for (const std::string& word : command) {
-    const std::string& shown = record.command.emplace_back(escaped(without_home(word)));
+  for (std::string& word : record.command) {
+    const bool is_program = &word == &record.command.front();
+    const std::filesystem::path file = is_program ? program : folder / word;
+    const std::string& shown = word = escaped(without_home(word));
     try {
-      const std::filesystem::path file = record.command.size() == 1 ? program : folder / word;
       record.files.push_back({shown, fnv1a_64(read_file(file, largest_file))});
     } catch (const ReadError&) {
       continue;  // an argument that is no file

@@ -30,8 +30,11 @@ struct FileHash {
 /// A program of the user's that is a backend.
 struct BackendProgramRecord {
   std::string name;
-  std::vector<std::string> command;  ///< as its user wrote it
-  std::vector<FileHash> files;       ///< the program, and those of its arguments that are files, by name
+  std::vector<std::string> command = {};  ///< as its user wrote it
+  std::vector<FileHash> files = {};       ///< the program, and those of its arguments that are files, by name
+  int ranks = 0;              ///< processes that it runs in; 0: one, of as many threads as are asked for
+  int rank_threads = 0;       ///< of each of them
+  std::string launcher = {};  ///< the command that starts them; empty: the usual one
 
   friend bool operator==(const BackendProgramRecord& a, const BackendProgramRecord& b) = default;
 };
@@ -62,10 +65,13 @@ struct Provenance {
 /// `arguments` are main's.
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
 
-/// Adds a program that is a backend: `program` is the file of the command's first word, `folder` the one it
-/// runs in.
-void add_program(Provenance& provenance, std::string_view name, const std::vector<std::string>& command,
-                 const std::filesystem::path& program, const std::filesystem::path& folder);
+/// Processors that a row of this backend was asked to use.
+int asked_processors(const Provenance& provenance, std::string_view backend);
+
+/// Adds a program that is a backend, `record`, to which the hashes of its files are added: `program` is the
+/// file of the command's first word, `folder` the one it runs in.
+void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
+                 const std::filesystem::path& folder);
 
 /// Adds the hash of a scene file's text.
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);

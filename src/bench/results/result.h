@@ -55,7 +55,7 @@ struct ResultRow {
   /// to the last bit. None where an older mssim did not tell.
   std::optional<std::uint64_t> state_hash;
   bool verified = false;
-  std::string status = "ok";  ///< ok, or failed/unsupported/unavailable with the reason after a colon
+  std::string status = "ok";  ///< ok, or failed/unsupported/unavailable/not timed, and why after a colon
   std::string note;           ///< what a reader of the numbers should know, or empty
   int warm_up_trials = 0;     ///< before the samples, until the backend was warm
   int outliers = 0;           ///< samples that lie far from the rest (statistics/outliers.h); they count too

@@ -124,7 +124,7 @@ int run(const BenchOptions& options) {
   if (!plan.timed.empty()) {
     measure_scenes(plan, budget, stop, results);
     if (!plan.described.empty() && format == SummaryFormat::table) std::cout << '\n';
-    std::cout << summary(results.rows(), format, plan.settings.execution.threads, terminal_of(STDOUT_FILENO));
+    std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
     if (format == SummaryFormat::github) results.keep_for_github();
     const BenchVerdict verdict =
         verdict_of(results.rows(), asked_backends(options, plan), options.integrators);

@@ -136,7 +136,7 @@ BenchPlan plan_of(const BenchOptions& options) {
 
   plan.uses_device = !timed.empty() && std::ranges::any_of(plan.settings.backends, &BackendInfo::uses_device);
   plan.provenance = run_provenance(plan.settings.execution.threads, plan.uses_device && !options.dry_run);
-  add_programs(plan.provenance, plan.backends.own());
+  add_programs(plan.provenance, plan.backends.own(), plan.settings.execution);
   plan.provenance.device_memory = name_of(plan.settings.execution.memory);
   for (const UnbuiltScene& scene : plan.described)
     add_scene(plan.provenance, scene.spec.name, scene.spec.source);

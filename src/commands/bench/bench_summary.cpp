@@ -42,10 +42,11 @@ std::vector<std::string> devices_of(RowPointers rows) {
 }
 
 /// What stands below `table`, a row_table.
-std::string remarks(RowPointers rows, std::string_view table, int threads, std::optional<int> width) {
+std::string remarks(RowPointers rows, std::string_view table, const Provenance& provenance,
+                    std::optional<int> width) {
   std::vector<std::string> sentences = devices_of(rows);
-  sentences.insert(sentences.end(),
-                   {legend_of_ratios(table), legend_of_excess(rows, threads), reason_without_speedups(rows)});
+  sentences.insert(sentences.end(), {legend_of_ratios(table), legend_of_excess(rows, provenance),
+                                     reason_without_speedups(rows)});
   std::string text;
   for (const std::string& sentence : sentences)
     if (!sentence.empty())
@@ -55,13 +56,13 @@ std::string remarks(RowPointers rows, std::string_view table, int threads, std::
 
 }  // namespace
 
-std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads,
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
                     const Terminal& terminal) {
   if (format == SummaryFormat::github) return table_json_text(github_table(rows));
   if (format == SummaryFormat::table) {
     const std::vector<const ResultRow*> pointers = pointers_to(rows);
-    const std::string text = row_table(pointers, threads, terminal);
-    return text + remarks(pointers, text, threads, terminal.width);
+    const std::string text = row_table(pointers, provenance, terminal);
+    return text + remarks(pointers, text, provenance, terminal.width);
   }
   Table table;
   for (const ResultRow& row : rows)

@@ -14,9 +14,9 @@ namespace mssim {
 enum class SummaryFormat : std::uint8_t { table, csv, json, github };
 
 /// The rows for a reader: the columns that answer "how fast, how right". As a table (row_table) they are
-/// written for `terminal`, with what is to know of the numbers below. `threads`: asked for. Ends with a
-/// newline; empty for a table without rows.
-std::string summary(std::span<const ResultRow> rows, SummaryFormat format, int threads,
+/// written for `terminal`, with what is to know of the numbers below. `provenance` tells what was asked for.
+/// Ends with a newline; empty for a table without rows.
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
                     const Terminal& terminal);
 
 /// The rows of scenes of which only the structure is told; none in the format `github`, which is for times.

@@ -15,7 +15,7 @@ bool is_missed(const ResultRow& row, const std::vector<std::string>& names, std:
                const std::vector<ResultRow>& rows) {
   return std::ranges::find(names, row.*member) != names.end() &&
          std::ranges::none_of(rows, [&](const ResultRow& other) {
-           return other.scene == row.scene && other.*member == row.*member && other.status == "ok";
+           return other.scene == row.scene && other.*member == row.*member && other.verified;
          });
 }
 

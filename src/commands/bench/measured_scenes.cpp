@@ -37,6 +37,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
     SceneJob job{plan.settings};
     job.name = planned.spec.name;
     job.execution.scene = job.name;
+    job.execution.scene_file = planned.spec.file;
     job.deadline = budget.begin_scene();
     job.earlier = results.of_scene(job.name);
     progress.begin_scene(job.name);

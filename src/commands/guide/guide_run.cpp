@@ -152,7 +152,7 @@ int run_guide(const GuideOptions& options) {
   require_available(options, plan.backends, plan.execution);
   const bool uses_device = std::ranges::any_of(plan.backends, &BackendInfo::uses_device);
   Provenance provenance = run_provenance(plan.execution.threads, uses_device);
-  add_programs(provenance, choice.own());
+  add_programs(provenance, choice.own(), plan.execution);
   for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
   const std::unique_ptr<ResultFolder> folder = empty_folder(options, provenance);
   for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';

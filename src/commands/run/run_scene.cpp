@@ -43,9 +43,10 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   if (options.precision == "single") {
     ExecutionOptions execution = complete(options.execution);
     execution.scene = scene.spec.name;
+    execution.scene_file = scene.spec.file;
     auto backend = in_single(info, scene.system, integrator, scene.dt_s, execution);
     if (info.uses_device) tell_of_opencl();
-    if (const std::string excess = excess_of(*backend, execution.threads); !excess.empty())
+    if (const std::string excess = excess_of(info, *backend, execution); !excess.empty())
       std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
     return backend;
   }
@@ -92,7 +93,7 @@ FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const
                        const Backend& backend, const Integrator& integrator) {
   if (!options.files.any()) return {};
   Provenance provenance = run_provenance(backend.threads(), info.uses_device);
-  add_programs(provenance, {&info});
+  add_programs(provenance, {&info}, complete(options.execution));
   add_scene(provenance, scene.spec.name, scene.spec.source);
   FileHeaders headers{trace_header(scene, backend, std::string(info.name), integrator, provenance),
                       command_line(provenance), pictures_of(options)};

@@ -10,6 +10,7 @@
 
 #include "backends/described/backend_description.h"
 #include "commands/shared/exit_code.h"
+#include "platform/data_folder.h"
 #include "platform/missing_program.h"
 #include "scene/scene_file.h"
 #include "text/nearest_name.h"
@@ -98,6 +99,7 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
     folders_.emplace_back(folder);
   }
   if (const auto folder = user_folder()) folders_.push_back(*folder);
+  folders_.push_back(data_folder() / "backends");
   for (const std::string& scene : scenes) {
     const fs::path folder = fs::path(scene).parent_path();
     if (is_path_of_scene(scene)) scene_folders_.push_back(folder.empty() ? fs::path(".") : folder);
@@ -187,10 +189,19 @@ const BackendInfo& BackendChoice::add(BackendProgram program) {
   return rows_.emplace_back(std::make_unique<Row>(std::move(program)))->info;
 }
 
-void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows) {
-  for (const BackendInfo* info : rows)
-    if (const BackendProgram* program = info->program)
-      add_program(provenance, program->name, program->command, program->program, program->folder);
+void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
+                  const ExecutionOptions& execution) {
+  for (const BackendInfo* info : rows) {
+    const BackendProgram* program = info->program;
+    if (!program) continue;
+    BackendProgramRecord record{.name = program->name, .command = program->command};
+    if (program->in_ranks) {
+      record.ranks = execution.ranks;
+      record.rank_threads = execution.rank_threads;
+      record.launcher = execution.launcher;
+    }
+    add_program(provenance, std::move(record), program->program, program->folder);
+  }
 }
 
 }  // namespace mssim

@@ -74,6 +74,7 @@ class BackendChoice {
 };
 
 /// Adds the programs of those rows that have one.
-void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows);
+void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
+                  const ExecutionOptions& execution);
 
 }  // namespace mssim

@@ -23,6 +23,9 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
 /// More host threads than this are a typing error, and would only fail later and less clearly.
 inline constexpr int most_threads = 4096;
 
+/// The same of processes.
+inline constexpr int most_ranks = 65536;
+
 /// Declares an argument that takes scenes: names or files. `target` must outlive the parsing.
 Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,
                     const std::string& description);
@@ -30,14 +33,16 @@ Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<s
 /// Declares --format of a listing. `target` must outlive the parsing.
 void declare_listing_format(Arguments& arguments, ListingFormat& target);
 
-/// Declares --threads, --device and --memory. `options` must outlive the parsing.
+/// Declares --threads, --ranks, --launcher, --device, --memory and --roots. `options` must outlive the
+/// parsing.
 void declare_execution(Arguments& arguments, ExecutionOptions& options);
 
 /// The word for it that --memory takes.
 std::string name_of(DeviceMemory memory);
 
 /// `threads` as given or, for 0, one for every processor that this process may use; OpenMP then gives as
-/// many, whatever OMP_DYNAMIC says. Throws UsageError where OMP_THREAD_LIMIT is lower.
+/// many, whatever OMP_DYNAMIC says. `ranks` as given, each of the threads given or of its share of all; for 0
+/// as many as threads, of one thread each. Throws UsageError where OMP_THREAD_LIMIT is lower.
 ExecutionOptions complete(ExecutionOptions options);
 
 }  // namespace mssim

@@ -72,7 +72,7 @@ Table table_of(const Layout& layout, const Provenance& provenance, const std::st
     for (const ResultRow* scene : layout.scenes()) {
       const ResultRow* row = layout.find(*scene, line);
       Cell& cell = cells.emplace_back(row ? make(layout.rows(), *row) : Cell());
-      if (row) cell.suffix += mark_of_excess(*row, provenance.threads);
+      if (row) cell.suffix += mark_of_excess(*row, provenance);
     }
   }
   return table;
@@ -95,7 +95,7 @@ Document page_of(const Layout& layout, const Provenance& provenance) {
           "`garment.csv` says how each fits."},
       table_of(layout, provenance, "dressing", dressing_cell)};
   add_sentence(page, legend_of_ratios(page));
-  add_sentence(page, legend_of_excess(layout.rows(), provenance.threads));
+  add_sentence(page, legend_of_excess(layout.rows(), provenance));
   add_sentence(page, reason_without_speedups(layout.rows()));
   add_rows_without_a_time(page, layout.rows());
   return page;

@@ -143,10 +143,17 @@ Machine read_machine(const Place& document) {
 }
 
 BackendProgramRecord read_program(const std::string& name, const Place& program) {
-  return {name, program["command"].list([](const Place& word) { return word.text(); }),
-          program["files_fnv1a_64"].members([](const std::string& file, const Place& value) {
-            return FileHash{file, value.hash()};
-          })};
+  BackendProgramRecord record{
+      name, program["command"].list([](const Place& word) { return word.text(); }),
+      program["files_fnv1a_64"].members([](const std::string& file, const Place& value) {
+        return FileHash{file, value.hash()};
+      })};
+  if (const auto processes = program.find("processes")) {
+    record.ranks = (*processes)["ranks"].count<int>();
+    record.rank_threads = (*processes)["threads_a_rank"].count<int>();
+    record.launcher = (*processes)["launcher"].text();
+  }
+  return record;
 }
 
 json programs_json(const std::vector<BackendProgramRecord>& programs) {
@@ -154,7 +161,10 @@ json programs_json(const std::vector<BackendProgramRecord>& programs) {
   for (const BackendProgramRecord& program : programs) {
     json files = json::object();
     for (const FileHash& file : program.files) files[file.name] = hexadecimal(file.fnv1a_64);
-    all[program.name] = {{"command", program.command}, {"files_fnv1a_64", files}};
+    json& record = all[program.name] = {{"command", program.command}, {"files_fnv1a_64", files}};
+    if (program.ranks > 0)
+      record["processes"] = {
+          {"ranks", program.ranks}, {"threads_a_rank", program.rank_threads}, {"launcher", program.launcher}};
   }
   return all;
 }

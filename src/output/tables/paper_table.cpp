@@ -132,7 +132,7 @@ class Page {
     }
     const std::vector<const ResultRow*> shown = shown_rows();
     add_sentence(page, legend_of_ratios(page));
-    add_sentence(page, legend_of_excess(shown, provenance_.threads));
+    add_sentence(page, legend_of_excess(shown, provenance_));
     add_sentence(page, reason_without_speedups(shown));
     add_rows_without_a_time(page, shown);
     return page;
@@ -196,7 +196,7 @@ class Page {
       const Timing timing = measured_timing(row);
       Cell& cell = cells.emplace_back(measured_cell(row, timing.ms));
       if (!timing.ms) continue;
-      cell.suffix = mark_of_excess(*row, provenance_.threads);
+      cell.suffix = mark_of_excess(*row, provenance_);
       if (timing.speedup && backend.configuration != baseline_configuration)
         cell.suffix.append(in_brackets(*timing.speedup)).append(mark_of_speedup(measured_.rows(), *row));
     }

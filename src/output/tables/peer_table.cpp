@@ -71,7 +71,7 @@ std::vector<Cell> cells_of(RowPointers rows, const ResultRow& row, const Provena
   Cell threads, processors, ratio, interval, error;
   if (ms) {
     threads = row.threads;
-    threads.suffix = mark_of_excess(row, provenance.threads);
+    threads.suffix = mark_of_excess(row, provenance);
     if (row.processors_used) processors = fixed_decimal(*row.processors_used, 2);
     if (row.position_error) error = *row.position_error;
   }
@@ -114,7 +114,7 @@ Document page_of(RowPointers rows, const Provenance& provenance) {
     std::get<Table>(page.back()).rows.push_back(cells_of(rows, *row, provenance));
   }
   add_sentence(page, legend_of_ratios(page));
-  add_sentence(page, legend_of_excess(rows, provenance.threads));
+  add_sentence(page, legend_of_excess(rows, provenance));
   if (BulletList notes = notes_of(rows); !notes.items.empty())
     page.insert(page.end(), {Heading{2, "What they say of themselves"}, std::move(notes)});
   add_rows_without_a_time(page, rows);

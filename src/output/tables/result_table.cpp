@@ -103,17 +103,17 @@ std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row) {
   return mark_of_ratio(*row.speedup_vs_serial, *serial->ms_per_step, *row.ms_per_step);
 }
 
-std::string_view mark_of_excess(const ResultRow& row, int threads) {
-  return exceeds(row, threads) ? " (!)" : "";
+std::string_view mark_of_excess(const ResultRow& row, const Provenance& provenance) {
+  return exceeds(row, asked_processors(provenance, row.backend)) ? " (!)" : "";
 }
 
-std::string legend_of_excess(RowPointers rows, int threads) {
+std::string legend_of_excess(RowPointers rows, const Provenance& provenance) {
   std::set<std::string> backends;
   for (const ResultRow* row : rows)
-    if (exceeds(*row, threads)) backends.insert(row->backend + " (" + std::to_string(row->threads) + ")");
+    if (exceeds(*row, asked_processors(provenance, row->backend)))
+      backends.insert(row->backend + " (" + std::to_string(row->threads) + ")");
   if (backends.empty()) return {};
-  std::string text = "(!) on more processors than the " + std::to_string(threads) +
-                     " asked for, since its device cannot be divided: ";
+  std::string text = "(!) on more processors than the " + std::to_string(provenance.threads) + " asked for: ";
   for (const std::string& backend : backends) text += (backend == *backends.begin() ? "" : ", ") + backend;
   return text;
 }

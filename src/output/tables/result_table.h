@@ -72,12 +72,12 @@ std::string in_brackets(double ratio);
 /// "†" where the row's speed-up contradicts its time and that of `serial` (ratio_mark.h); else empty.
 std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row);
 
-/// What stands behind the number of threads, or the time, of a row that took more processors than `threads`,
-/// which were asked for; nothing of others.
-std::string_view mark_of_excess(const ResultRow& row, int threads);
+/// What stands behind the number of threads, or the time, of a row that took more processors than
+/// it was asked to; nothing of others.
+std::string_view mark_of_excess(const ResultRow& row, const Provenance& provenance);
 
 /// What that mark means, and which backends have it; empty where none has.
-std::string legend_of_excess(RowPointers rows, int threads);
+std::string legend_of_excess(RowPointers rows, const Provenance& provenance);
 
 /// Why a table shows no speed-ups, and what to do, where serial is not one of the backends; else empty.
 std::string reason_without_speedups(std::span<const std::string_view> backends);

@@ -60,7 +60,7 @@ RowCell verified_cell(const ResultRow& row, bool utf8) {
 /// Where there is no speed-up because the row does not count, the first word of why.
 RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
   const std::string status = status_of(row);
-  if (!counts(row)) return {status.substr(0, status.find(':')), cannot_run(row) ? dim : red};
+  if (!counts(row)) return {status.substr(0, status.find(':')), status.starts_with("failed") ? red : dim};
   if (!row.speedup_vs_serial) return {};
   const double ratio = *row.speedup_vs_serial;
   return {three_digits(ratio) + (utf8 ? "×" : "x"),
@@ -70,7 +70,7 @@ RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
           mark_of_speedup(rows, row)};
 }
 
-RowCells cells_of(RowPointers rows, const ResultRow& row, int threads, bool utf8) {
+RowCells cells_of(RowPointers rows, const ResultRow& row, const Provenance& provenance, bool utf8) {
   RowCells cells;
   cells[RowColumn::integrator].text = row.integrator;
   cells[RowColumn::backend].text = row.backend;
@@ -78,7 +78,7 @@ RowCells cells_of(RowPointers rows, const ResultRow& row, int threads, bool utf8
   cells[RowColumn::verified] = verified_cell(row, utf8);
   cells[RowColumn::speedup] = speedup_cell(rows, row, utf8);
   if (row.ms_per_step)
-    cells[RowColumn::ms] = {three_digits(*row.ms_per_step), {}, mark_of_excess(row, threads)};
+    cells[RowColumn::ms] = {three_digits(*row.ms_per_step), {}, mark_of_excess(row, provenance)};
   if (row.ms_per_step_low && row.ms_per_step_high)
     cells[RowColumn::interval].text = three_digits(*row.ms_per_step_low)
                                           .append(utf8 ? "–" : "-")
@@ -201,11 +201,11 @@ std::string reasons_of(RowPointers rows, std::size_t width) {
 
 }  // namespace
 
-std::string row_table(RowPointers rows, int threads, const Terminal& terminal) {
+std::string row_table(RowPointers rows, const Provenance& provenance, const Terminal& terminal) {
   std::vector<RowCells> lines;
   double largest = 0;
   for (const ResultRow* row : rows) {
-    lines.push_back(cells_of(rows, *row, threads, terminal.utf8));
+    lines.push_back(cells_of(rows, *row, provenance, terminal.utf8));
     if (counts(*row)) largest = std::max(largest, row->speedup_vs_serial.value_or(0));
   }
   add_marks(lines, RowColumn::ms);

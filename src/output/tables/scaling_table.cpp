@@ -41,11 +41,12 @@ std::vector<std::string> each_of(RowPointers rows, std::string ResultRow::*membe
 }
 
 /// The ratio is that of the two times shown, so that they always agree.
-Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base, int threads) {
+Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base,
+               const Provenance& provenance) {
   const auto ns = row ? ns_per_node(*row, row->ms_per_step) : std::nullopt;
   Cell cell = measured_cell(row, ns);
   if (!ns) return cell;
-  cell.suffix = mark_of_excess(*row, threads);
+  cell.suffix = mark_of_excess(*row, provenance);
   if (const auto ratio = growth(rows, *row, base)) cell.suffix += in_brackets(*ratio);
   return cell;
 }
@@ -68,12 +69,11 @@ Document page_of(RowPointers rows, const std::string& base, const Provenance& pr
       std::vector<Cell>& cells = table.rows.emplace_back();
       cells.emplace_back(backend_label(rows, backend, provenance));
       for (const std::string& scene : scenes)
-        cells.push_back(
-            cost_cell(rows, find_row(rows, scene, backend, integrator), base, provenance.threads));
+        cells.push_back(cost_cell(rows, find_row(rows, scene, backend, integrator), base, provenance));
     }
     page.insert(page.end(), {Heading{2, integrator}, std::move(table)});
   }
-  add_sentence(page, legend_of_excess(rows, provenance.threads));
+  add_sentence(page, legend_of_excess(rows, provenance));
   add_rows_without_a_time(page, rows);
   return page;
 }

@@ -44,17 +44,21 @@ TEST_F(BackendDescriptionTest, NeedsACommandAlone) {
   EXPECT_TRUE(program.steps_cloths && program.steps_bodies);
   EXPECT_THAT(program.integrators, IsEmpty());
   EXPECT_EQ(program.time_limit_s, 120);
+  EXPECT_FALSE(program.in_ranks);
 }
 
 TEST_F(BackendDescriptionTest, TakesEveryField) {
   const BackendProgram program = parse(R"({"command": ["sh"], "description": "a shell", "scenes": ["bodies"],
-      "integrators": ["rk4", "semi-euler"], "environment": {"A": "1", "B": ""}, "time_limit_s": 2.5})");
+      "integrators": ["rk4", "semi-euler"], "environment": {"A": "1", "B": ""}, "time_limit_s": 2.5, "processes": "ranks",
+      "install": "nothing to install"})");
   EXPECT_EQ(program.description, "a shell");
   EXPECT_FALSE(program.steps_cloths);
   EXPECT_TRUE(program.steps_bodies);
   EXPECT_THAT(program.integrators, ElementsAre("rk4", "semi-euler"));
   EXPECT_THAT(program.environment, ElementsAre("A=1", "B="));
   EXPECT_EQ(program.time_limit_s, 2.5);
+  EXPECT_TRUE(program.in_ranks);
+  EXPECT_EQ(program.missing, "");
 }
 
 TEST_F(BackendDescriptionTest, FindsAPathFromItsOwnFolder) {
@@ -71,6 +75,8 @@ TEST_F(BackendDescriptionTest, SaysWhatIsMissing) {
             "there is no program no-such-program in PATH");
   EXPECT_THAT(parse(R"({"command": ["./no-such-file"]})").missing,
               HasSubstr("there is no file ./no-such-file beside "));
+  EXPECT_EQ(parse(R"({"command": ["no-such-program"], "install": "install it"})").missing,
+            "there is no program no-such-program in PATH; install it");
 }
 
 TEST_F(BackendDescriptionTest, RefusesWhatItDoesNotKnow) {

@@ -97,7 +97,7 @@ TEST(SubDevice, KeepsTheBackendsToTheThreadsThatWereAskedFor) {
       };
       const auto one = make(1);
       EXPECT_EQ(one->threads(), 1) << name;
-      EXPECT_EQ(excess_of(*one, 1), "") << name;
+      EXPECT_EQ(excess_of(*find_backend(name), *one, {.threads = 1}), "") << name;
       EXPECT_EQ(busy_threads([&] { one->step(100); }), 1) << name;
       EXPECT_EQ(make(units)->threads(), units) << name;
     }

@@ -143,6 +143,15 @@ TEST(Provenance, NamesNeitherTheHomeFolderNorTheRestOfTheEnvironment) {
   EXPECT_THAT(json, HasSubstr(R"(["mssim","bench","--out=~/results","/home/jane_doe2","~"])"));
 }
 
+TEST(Provenance, KnowsHowManyProcessorsABackendWasAskedToUse) {
+  Provenance provenance;
+  provenance.threads = 3;
+  provenance.backend_programs = {{"mine", {"./mine"}}, {.name = "mpi", .ranks = 4, .rank_threads = 2}};
+  EXPECT_EQ(asked_processors(provenance, "openmp"), 3);
+  EXPECT_EQ(asked_processors(provenance, "mine"), 3);
+  EXPECT_EQ(asked_processors(provenance, "mpi"), 8);
+}
+
 TEST(Provenance, HoldsTheseFactsAndNoOthers) {
   std::vector<std::string> facts;
   const nlohmann::json json = nlohmann::json::parse(provenance_text(gather_provenance({"mssim"}, 1)));

@@ -37,6 +37,7 @@ Provenance full_provenance() {
   provenance.device_memory = "copy";
   provenance.backend_programs = {
       {"mine.py", {"./mine.py"}, {{"./mine.py", 2}}},
+      {"mpi", {"mssim-mpi"}, {{"mssim-mpi", 5}}, 4, 2, "srun"},
       {"numba", {"python3", "numba.py", "-v"}, {{"numba.py", 0xfedcba9876543210}, {"python3", 3}}}};
   provenance.scenes = {{"cloth2500", 0xfedcba9876543210}, {"mine", 1}};
   return provenance;

@@ -15,7 +15,9 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 std::string table_of(const std::vector<ResultRow>& rows, const Terminal& terminal) {
-  return row_table(pointers_to(rows), 2, terminal);
+  Provenance provenance;
+  provenance.threads = 2;
+  return row_table(pointers_to(rows), provenance, terminal);
 }
 
 std::size_t widest_line(const std::string& text) {

@@ -1,0 +1,12 @@
+// Steps cloths on several processes, over one machine or several: a backend of mssim's that is a program of
+// its own, so that mssim needs no MPI.
+
+#include <cstring>
+
+#include "ranks/launch.h"
+#include "ranks/rank_program.h"
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "rank") == 0) return mssim::run_rank(argc, argv);
+  return mssim::launch_ranks();
+}

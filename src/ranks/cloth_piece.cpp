@@ -1,0 +1,105 @@
+#include "ranks/cloth_piece.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "backends/vectors/instruction_sets.h"
+#include "text/counted.h"
+
+namespace mssim {
+namespace {
+
+/// The kernels of this processor: of those the ones that one with the instruction set of the variable
+/// MSSIM_INSTRUCTION_SET would have, by which different processors can be tried on one machine.
+std::vector<BandKernel> kernels_of_rank(const Integrator& integrator) {
+  std::vector<BandKernel> kernels = band_kernels(integrator);
+  const char* name = std::getenv("MSSIM_INSTRUCTION_SET");
+  const auto first = std::ranges::find_if(kernels, [&](const BandKernel& kernel) {
+    return name && kernel.instruction_set == std::string_view(name);
+  });
+  if (first != kernels.end()) kernels.erase(kernels.begin(), first);
+  return kernels;
+}
+
+bool all_equal(const std::vector<std::string>& texts) {
+  return std::ranges::all_of(texts, [&](const std::string& text) { return text == texts.front(); });
+}
+
+/// A kernel with which all ranks give the same bits: the best of each where that is the same one, and else
+/// the best that finds roots exactly. Throws Unsupported, on all ranks, where their bits would differ.
+BandKernel common_kernel(const Session& session, const Integrator& integrator, Roots roots) {
+  const std::vector<BandKernel> kernels = kernels_of_rank(integrator);
+  const BandKernel best = best_kernel(kernels, roots);
+  const std::vector<std::string> sets = session.gather(best.instruction_set);
+  if (all_equal(sets)) return best;
+  const BandKernel exact = best_kernel(kernels, Roots::exact);
+  const std::vector<std::string> roundings = session.gather(exact.fuses ? "once" : "twice");
+  if (all_equal(roundings)) return exact;
+  const auto other = static_cast<int>(
+      std::ranges::find_if(roundings,
+                           [&](const std::string& rounding) { return rounding != roundings.front(); }) -
+      roundings.begin());
+  throw Unsupported(session.name_of(0) + " has " + sets.front() + " and " + session.name_of(other) + " " +
+                    sets[static_cast<std::size_t>(other)] +
+                    ", which round differently: take machines of one kind");
+}
+
+/// Columns of a cloth that one host of this run steps, about: what shares its last-level cache.
+std::size_t columns_on_host(const Session& session, std::size_t columns) {
+  const auto ranks = static_cast<std::size_t>(session.ranks());
+  return std::max<std::size_t>(1, columns * static_cast<std::size_t>(session.ranks_on_host()) / ranks);
+}
+
+}  // namespace
+
+ClothPiece::ClothPiece(const Session& session, const RankJob& job)
+    : ranks_(session.ranks()),
+      rank_(session.rank()),
+      columns_(std::get<ClothSpec>(job.scene.content).columns),
+      kernel_(common_kernel(session, *job.integrator, job.roots)) {
+  const auto& cloth = std::get<ClothSpec>(job.scene.content);
+  const std::size_t least = ghost_columns(*job.integrator, 1);
+  if (ranks_ > 1 && columns_ / static_cast<std::size_t>(ranks_) < least)
+    throw Unsupported(counted(columns_, "column") + " cannot be cut for " +
+                      counted(static_cast<std::uint64_t>(ranks_), "rank") + ": a step of " +
+                      std::string(job.integrator->name) + " needs " + std::to_string(least) +
+                      " columns in each, so give at most --ranks " +
+                      std::to_string(std::max<std::size_t>(1, columns_ / least)));
+  const GridPatch on_host{cloth.rows, static_cast<std::uint32_t>(columns_on_host(session, columns_)),
+                          cloth.spacing_m};
+  // All ranks take the steps of a pass that rank 0 chooses.
+  const std::size_t chosen =
+      steps_per_pass_for(BandLayout(on_host, kernel_.lanes), *job.integrator,
+                         static_cast<std::size_t>(session.ranks_on_host() * job.threads));
+  const std::size_t steps = std::stoul(session.share(std::to_string(chosen)));
+  ghosts_ = ghost_columns(*job.integrator, steps);
+  const ColumnRange own = columns_of(rank_), all = with_ghosts(rank_);
+  System system = build_cloth_window(job.scene, {.row = 0,
+                                                 .column = static_cast<std::uint32_t>(all.first),
+                                                 .rows = cloth.rows,
+                                                 .columns = static_cast<std::uint32_t>(all.count)});
+  round_start_to_single(system);
+  bands_.emplace(system, std::get<GridPatch>(system.topology), *job.integrator, job.dt_s, kernel_.lanes,
+                 static_cast<std::size_t>(job.threads), steps, ColumnRange{own.first - all.first, own.count});
+  messages_.emplace(session, *bands_);
+  if (ranks_ > 1) bands_->messages = &*messages_;
+  bands_->set_state(system.start);
+}
+
+ColumnRange ClothPiece::columns_of(int rank) const {
+  return part_of({0, columns_}, static_cast<std::size_t>(rank), static_cast<std::size_t>(ranks_));
+}
+
+ColumnRange ClothPiece::with_ghosts(int rank) const {
+  return mssim::with_ghosts(columns_of(rank), ghosts_, columns_);
+}
+
+std::string ClothPiece::note() const {
+  return std::string(kernel_.instruction_set) + ", " +
+         counted(static_cast<std::uint64_t>(steps_per_pass()), "step") + " an exchange";
+}
+
+}  // namespace mssim

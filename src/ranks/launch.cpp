@@ -1,0 +1,215 @@
+#include "ranks/launch.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "platform/descriptor.h"
+#include "platform/find_program.h"
+#include "ranks/launch_words.h"
+#include "ranks/requests.h"
+#include "text/shell_word.h"
+
+namespace mssim {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// Until then the launcher must have started all ranks.
+constexpr std::chrono::seconds start_limit = 25s;
+/// How long a launcher that is to end gets to end the ranks.
+constexpr std::chrono::seconds patience = 3s;
+
+std::string variable(const char* name, const char* otherwise) {
+  const char* value = std::getenv(name);
+  return value && *value ? value : otherwise;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+/// What the launcher and its ranks print, of which some lines say why they fail.
+class Printed {
+ public:
+  void take(std::string_view bytes) {
+    unfinished_ += bytes;
+    for (std::size_t end = unfinished_.find('\n'); end != std::string::npos; end = unfinished_.find('\n')) {
+      take_line(unfinished_.substr(0, end));
+      unfinished_.erase(0, end + 1);
+    }
+  }
+  bool ranks_started() const { return started_; }
+  /// Why it has failed: what a rank says, or else the launcher of a rank, or else what it says first between
+  /// lines of dashes, after what ssh says, or else its last line.
+  std::string reason() const {
+    for (const std::string* text : {&of_rank_, &about_rank_})
+      if (!text->empty()) return *text;
+    if (!in_frame_.empty()) return before_frame_ + (before_frame_.empty() ? "" : "; ") + in_frame_;
+    return last_.empty() ? "it printed nothing" : last_;
+  }
+
+ private:
+  void take_line(const std::string& line) {
+    if (line == ranks_have_started) {
+      started_ = true;
+      return;
+    }
+    if (line.starts_with("mpirun: Forwarding signal")) return;  // for each pause that mssim makes
+    std::cerr << line << '\n';
+    if (const std::size_t mark = line.find(sentence_mark); mark != std::string::npos && of_rank_.empty())
+      of_rank_ = line.substr(mark + sentence_mark.size());
+    // "process rank 1 with PID 7 on node a exited on signal 9 (Killed)" (mpirun), "a: task 1: Killed" (srun)
+    if (line.find(" rank ") != std::string::npos || line.find(" task ") != std::string::npos)
+      about_rank_ = line;
+    const bool is_dashes = !line.empty() && line.find_first_not_of('-') == std::string::npos;
+    const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
+    if (is_dashes || is_blank) {
+      framed_ = is_dashes && in_frame_.empty();
+      if (framed_) before_frame_ = last_;
+      return;
+    }
+    last_ = line;
+    if (framed_) in_frame_ += (in_frame_.empty() ? "" : " ") + line;
+  }
+
+  std::string unfinished_, of_rank_, about_rank_, in_frame_, before_frame_, last_;
+  bool framed_ = false;  ///< in the first paragraph after a line of dashes
+  bool started_ = false;
+};
+
+/// A launcher that runs.
+class Launcher {
+ public:
+  Launcher(const std::filesystem::path& program, std::vector<std::string> words) {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+      throw std::runtime_error(std::string("cannot make a pipe (") + std::strerror(errno) + ')');
+    output_ = Descriptor(ends[0]);
+    const Descriptor written(ends[1]);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    process_ = ::fork();
+    if (process_ == 0) {
+      ::dup2(written.get(), STDOUT_FILENO);
+      ::dup2(written.get(), STDERR_FILENO);
+      ::execv(program.c_str(), arguments.data());
+      _exit(127);
+    }
+    if (process_ < 0) throw std::runtime_error(std::string("cannot fork (") + std::strerror(errno) + ')');
+  }
+
+  /// Passes on what is printed until the launcher ends, or has not started the ranks in time: false then.
+  bool watch(Printed& printed) {
+    const Clock::time_point limit = Clock::now() + start_limit;
+    for (;;) {
+      pollfd readable{output_.get(), POLLIN, 0};
+      ::poll(&readable, 1, 100);
+      std::array<char, 4096> bytes;
+      if (readable.revents != 0) {
+        const ssize_t count = ::read(output_.get(), bytes.data(), bytes.size());
+        if (count > 0) printed.take({bytes.data(), static_cast<std::size_t>(count)});
+        if (count == 0) break;
+      }
+      if (!printed.ranks_started() && Clock::now() > limit) return false;
+    }
+    if (!status_) {
+      int status = 0;
+      ::waitpid(process_, &status, 0);
+      status_ = status;
+    }
+    return true;
+  }
+
+  /// Ends it, and with it, where it can still do that, the ranks.
+  void end() {
+    ::kill(process_, SIGTERM);
+    const Clock::time_point limit = Clock::now() + patience;
+    int status = 0;
+    while (::waitpid(process_, &status, WNOHANG) == 0) {
+      if (Clock::now() > limit) ::kill(process_, SIGKILL);
+      std::this_thread::sleep_for(10ms);
+    }
+    status_ = status;
+  }
+
+  bool succeeded() const { return status_ && WIFEXITED(*status_) && WEXITSTATUS(*status_) == 0; }
+
+ private:
+  Descriptor output_;
+  pid_t process_ = -1;
+  std::optional<int> status_;
+};
+
+/// What Open MPI is told unless the user has told it something else. Other launchers do not read it.
+void set_defaults() {
+  const auto set = [](const char* name, const char* value) { ::setenv(name, value, 0); };
+  // Ranks bind themselves, whatever launcher has started them.
+  set("OMPI_MCA_hwloc_base_binding_policy", "none");
+  // Open MPI leaves files behind; mssim removes what is in the folder of its socket.
+  ::setenv("TMPDIR", std::filesystem::path(variable("MSSIM_SOCKET", "/tmp/")).parent_path().c_str(), 1);
+  // These are for mssim's own threads: with them all ranks would begin on the same processor.
+  for (const char* name : {"OMP_PROC_BIND", "OMP_PLACES", "GOMP_CPU_AFFINITY"}) ::unsetenv(name);
+}
+
+}  // namespace
+
+int launch_ranks() {
+  const std::string launcher = variable("MSSIM_LAUNCHER", "mpirun");
+  const std::string ranks = variable("MSSIM_RANKS", "1");
+  std::vector<std::string> words = words_of(launcher);
+  try {
+    if (words.empty()) throw std::runtime_error("MSSIM_LAUNCHER is empty");
+    const auto program = find_program(words.front());
+    if (!program) {
+      Requests requests;
+      requests.read_introduction();
+      requests.answer("unavailable there is no " + words.front() +
+                      " in PATH: install Open MPI (Debian: openmpi-bin), or name another launcher "
+                      "(--launcher)");
+      return 0;
+    }
+    words.insert(words.end(),
+                 {"-n", ranks, std::filesystem::read_symlink("/proc/self/exe").string(), "rank"});
+    set_defaults();
+    Printed printed;
+    Launcher running(*program, words);
+    if (!running.watch(printed)) {
+      running.end();
+      std::cerr << launcher << " has not started " << ranks << " ranks within " << start_limit.count()
+                << " s; do all hosts answer? It says: " << printed.reason() << '\n';
+      return 1;
+    }
+    if (running.succeeded()) return 0;
+    std::cerr << (printed.ranks_started() ? "" : launcher + " has not started " + ranks + " ranks: ")
+              << printed.reason() << '\n';
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+  }
+  return 1;
+}
+
+}  // namespace mssim

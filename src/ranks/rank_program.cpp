@@ -1,0 +1,202 @@
+#include "ranks/rank_program.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "integrators/all_integrators.h"
+#include "platform/process_cpus.h"
+#include "platform/whole_file.h"
+#include "ranks/cloth_piece.h"
+#include "ranks/launch_words.h"
+#include "ranks/piece_states.h"
+#include "ranks/requests.h"
+#include "ranks/session.h"
+#include "scene/scene_file.h"
+#include "text/counted.h"
+#include "text/number_in.h"
+
+namespace mssim {
+namespace {
+
+/// What rank 0 asks of all ranks, itself included.
+struct Wish {
+  enum Kind : int { set, step, get, end };
+  int kind = end;
+  int count = 0;  ///< of steps
+};
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+/// What mssim has told rank 0, as a text for the other ranks. Only rank 0 needs the scene's file and the
+/// environment that mssim has set.
+std::string job_text(const std::map<std::string, std::string>& introduction, int ranks) {
+  const std::filesystem::path file = variable("MSSIM_SCENE_FILE");
+  const int processors = number_in<int>(introduction.at("threads")).value_or(1);
+  return nlohmann::json{{"file", file.string()},
+                        {"scene", read_file(file, largest_scene_bytes)},
+                        {"integrator", introduction.at("integrator")},
+                        {"dt", introduction.at("dt")},
+                        {"threads", std::max(1, processors / ranks)},
+                        {"exact_roots", variable("MSSIM_ROOTS") == "exact"}}
+      .dump();
+}
+
+RankJob job_of(const std::string& text) {
+  const nlohmann::json json = nlohmann::json::parse(text);
+  RankJob job;
+  job.scene = parse_scene(json.at("file").get<std::string>(), json.at("scene").get<std::string>());
+  const auto name = json.at("integrator").get<std::string>();
+  job.integrator = find_integrator(name);
+  if (!job.integrator) throw Unsupported("it has no " + name);
+  job.dt_s = number_in<double>(json.at("dt").get<std::string>()).value();
+  job.threads = json.at("threads").get<int>();
+  job.roots = json.at("exact_roots").get<bool>() ? Roots::exact : Roots::fast;
+  return job;
+}
+
+/// Gives the ranks of a host processors of their own, as many as they have threads, where there are enough,
+/// and where nobody has bound them already. Returns where they have to share, in words; empty elsewhere.
+std::string take_processors(const Session& session, int threads) {
+  const std::vector<int> cpus = process_cpus();
+  std::string own;
+  for (const int cpu : cpus) own += std::to_string(cpu) + ' ';
+  const std::vector<std::string> all = session.gather(own);
+  bool same = true;
+  for (int rank = 0; rank < session.ranks(); ++rank) {
+    const auto r = static_cast<std::size_t>(rank);
+    if (session.hosts()[r] == session.hosts()[static_cast<std::size_t>(session.rank())])
+      same = same && all[r] == own;
+  }
+  const auto each = static_cast<std::size_t>(threads);
+  const int ranks = same ? session.ranks_on_host() : 1;
+  if (cpus.size() < each * static_cast<std::size_t>(ranks))
+    return counted(static_cast<std::uint64_t>(ranks), "rank") + " of " + counted(each, "thread") + " on " +
+           counted(cpus.size(), "processor") + " of " +
+           session.hosts()[static_cast<std::size_t>(session.rank())];
+  if (!same) return "";
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (std::size_t i = 0; i < each; ++i)
+    CPU_SET(static_cast<std::size_t>(cpus[each * static_cast<std::size_t>(session.rank_on_host()) + i]),
+            &set);
+  ::sched_setaffinity(0, sizeof set, &set);
+  return "";
+}
+
+/// The first of these texts that says something.
+std::string first_of(const std::vector<std::string>& texts) {
+  const auto found = std::ranges::find_if(texts, [](const std::string& text) { return !text.empty(); });
+  return found == texts.end() ? "" : *found;
+}
+
+/// What rank 0 says of all before "ready 1".
+void introduce(const Session& session, const ClothPiece& piece, const std::string& crowded,
+               Requests& requests) {
+  std::vector<std::string> hosts = session.hosts();
+  std::ranges::sort(hosts);
+  const auto host_count = static_cast<std::uint64_t>(std::ranges::unique(hosts).begin() - hosts.begin());
+  std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> version{};
+  int length = 0;
+  MPI_Get_library_version(version.data(), &length);
+  std::string library(version.data(), static_cast<std::size_t>(length));
+  library = library.substr(0, library.find(','));
+  if (host_count > 1) requests.answer("device " + counted(host_count, "host"));
+  requests.answer("threads " + std::to_string(session.ranks() * piece.threads()));
+  requests.answer("precision single");
+  requests.answer(in_one_line(
+      "note " + library + ", " + counted(static_cast<std::uint64_t>(session.ranks()), "rank") + " of " +
+      counted(static_cast<std::uint64_t>(piece.threads()), "thread") + ", " + piece.note()));
+  if (!crowded.empty()) requests.answer(in_one_line("untimed " + crowded));
+  requests.answer("ready 1");
+}
+
+/// The wish of a line of mssim's. Throws RankFailure for one that is none.
+Wish wish_of(const std::string& line) {
+  if (line == "set") return {Wish::set};
+  if (line == "get") return {Wish::get};
+  if (line == "end") return {Wish::end};
+  if (line.starts_with("step "))
+    if (const auto count = number_in<int>(std::string_view(line).substr(5))) return {Wish::step, *count};
+  throw RankFailure("mssim asks for \"" + line + "\", which this program does not know");
+}
+
+/// Does what mssim asks for, until it asks for the end.
+void serve(const Session& session, ClothPiece& piece, std::optional<Requests>& requests,
+           const std::filesystem::path& state_file) {
+  for (;;) {
+    Wish wish = requests ? wish_of(requests->next()) : Wish{};
+    MPI_Request request = MPI_REQUEST_NULL;
+    check_mpi(MPI_Ibcast(&wish, 2, MPI_INT, 0, MPI_COMM_WORLD, &request), "sharing a request");
+    Session::wait_idle(request);
+    if (wish.kind == Wish::end) return;
+    if (wish.kind == Wish::set) scatter_state(session, state_file, piece);
+    if (wish.kind == Wish::step) piece.step(wish.count);
+    if (wish.kind == Wish::get) gather_state(session, state_file, piece);
+    session.meet();
+    if (requests) requests->answer("done");
+  }
+}
+
+void work(Session& session) {
+  std::optional<Requests> requests;
+  std::map<std::string, std::string> introduction;
+  std::string text;
+  if (session.rank() == 0) {
+    std::cout << ranks_have_started << std::endl;
+    requests.emplace();
+    introduction = requests->read_introduction();
+    text = job_text(introduction, session.ranks());
+  }
+  try {
+    const RankJob job = job_of(session.share(text));
+    if (!std::holds_alternative<ClothSpec>(job.scene.content)) throw Unsupported("it steps cloths alone");
+    const std::string crowded = take_processors(session, job.threads);
+    session.share_processors(!crowded.empty());
+    ClothPiece piece(session, job);
+    const std::string where_crowded = first_of(session.gather(crowded));
+    if (requests) introduce(session, piece, where_crowded, *requests);
+    serve(session, piece, requests, introduction["state"]);
+  } catch (const Unsupported& unsupported) {  // by all ranks alike
+    if (requests) requests->answer(in_one_line(std::string("unsupported ") + unsupported.what()));
+  }
+}
+
+}  // namespace
+
+int run_rank(int argc, char** argv) {
+  std::optional<Session> session;
+  try {
+    session.emplace(&argc, &argv);
+    if (session->rank() == 0) {
+      const int asked = number_in<int>(variable("MSSIM_RANKS")).value_or(1);
+      if (asked != session->ranks())
+        throw RankFailure("the launcher has started " +
+                          counted(static_cast<std::uint64_t>(session->ranks()), "rank") + " instead of " +
+                          std::to_string(asked) + ": it may be that of another MPI than this program's");
+    }
+    work(*session);
+    session.reset();
+    return 0;
+  } catch (const std::exception& error) {
+    if (session) session->give_up(error.what());
+    std::cerr << sentence_mark << error.what() << std::endl;
+  }
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  return 1;
+}
+
+}  // namespace mssim

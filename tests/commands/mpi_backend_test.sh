@@ -1,0 +1,147 @@
+#!/usr/bin/env bash
+# The backend mpi: the same bits as openmp's with any number of ranks, and one sentence for whatever ends them.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+# shellcheck source=scripts/lib/mpi.sh
+. "$2/scripts/lib/mpi.sh"
+[ -x "${mssim%/*}/../libexec/mssim/mssim-mpi" ] || { echo "mssim was built without MPI"; exit 77; }
+command -v mpirun >/dev/null || { echo "there is no mpirun"; exit 77; }
+cd "$work"
+export TMPDIR=$work/tmp
+mkdir -p tmp one two
+let_ranks_share
+
+# rank_of NUMBER RUN: the process of that rank of the bench with the folder tmpRUN, once it is there
+rank_of() {
+  local pid i
+  for ((i = 0; i < 100; ++i)); do
+    for pid in $(pgrep -f "^[^ ]*/mssim-mpi rank$"); do
+      grep -qz "^TMPDIR=$work/tmp$2/" "/proc/$pid/environ" 2>/dev/null || continue
+      grep -qzx "OMPI_COMM_WORLD_RANK=$1" "/proc/$pid/environ" 2>/dev/null && echo "$pid" && return
+    done
+    sleep 0.1
+  done
+}
+
+# nothing_left WHAT: no rank, and no folder of mssim's for one
+nothing_left() {
+  local i
+  for ((i = 0; i < 50; ++i)); do
+    pgrep -f "^[^ ]*/mssim-mpi rank$" >/dev/null || break
+    sleep 0.1
+  done
+  ! pgrep -af "^[^ ]*/mssim-mpi rank$" || fail "$1 leaves a rank"
+}
+
+# hashes FOLDER: of the states of all integrators, each once; notes before them hold commas
+hashes() { sed -nE 's/^([^,]*,){7}([^,]*),.*,([0-9a-f]{16}),.*/\2 \3/p' "$1/timings.csv" | sort -u; }
+
+# fails_with PATTERN FOLDER: the row of mpi has failed with that sentence, and the one of openmp is verified
+fails_with() {
+  grep -q ',openmp,.*,true,ok,' "$2/timings.csv" || fail "the row of openmp is missing: $(cat "$2/timings.csv")"
+  grep ',mpi,' "$2/timings.csv" | grep -q -- "$1" || fail "the row of mpi does not say \"$1\": $(grep ',mpi,' "$2/timings.csv")"
+}
+
+# Every explicit integrator; the last bit is openmp's, for 1 to 8 ranks, parts of different widths and several threads.
+explicit=semi-euler,midpoint,rk4,midpoint-frozen,rk4-frozen,explicit-euler,verlet
+succeed bench --scene cloth4900 --backend openmp,mpi --integrator "$explicit" --ranks 2 --threads 1 --rounds 1 --out all
+[ "$(column_of all/timings.csv verified | sort | uniq -c | xargs)" = '14 true' ] || fail "not every row is verified: $(cat all/timings.csv)"
+[ "$(hashes all | wc -l)" -eq 7 ] || fail "mpi and openmp differ: $(cat all/timings.csv)"
+same_bits() {  # same_bits SCENE RANKS THREADS INTEGRATORS COUNT
+  rm -rf bits
+  succeed bench --scene "$1" --backend openmp,mpi --integrator "$4" --ranks "$2" --threads "$3" --rounds 1 --out bits
+  [ "$(column_of bits/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * $5)) true" ] ||
+    fail "$1 with $2 ranks of $3 threads: $(cat bits/timings.csv)"
+  [ "$(hashes bits | wc -l)" -eq "$5" ] || fail "$1 with $2 ranks of $3 threads has other bits"
+}
+for ranks in 1 3 4 5 6 7 8; do same_bits cloth4900 "$ranks" 1 semi-euler,rk4 2; done
+same_bits cloth4900 2 2 semi-euler,rk4 2
+grep ',mpi,' bits/timings.csv | grep -q 'not timed: 2 ranks of 2 threads on [1-3] processor' || [ "$(nproc)" -ge 4 ] ||
+  fail "ranks that share processors are timed: $(cat bits/timings.csv)"
+
+# What it does not do is said, and what is asked for wrongly.
+"$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator rk4 --ranks 8 --threads 1 --rounds 1 --out narrow >/dev/null 2>&1 &&
+  fail "fifty columns do for eight ranks"
+grep -q 'unsupported: 50 columns cannot be cut for 8 ranks: .* at most --ranks 6' narrow/timings.csv || fail "eight ranks: $(cat narrow/timings.csv)"
+"$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator xpbd --ranks 2 --threads 1 --rounds 1 --out implicit >/dev/null 2>&1 &&
+  fail "a backend that was asked for has no row, and the bench is content"
+grep -q 'unsupported: it has no xpbd' implicit/timings.csv || fail "xpbd: $(cat implicit/timings.csv)"
+expect 2 '"0" is' bench --scene cloth2500 --backend mpi --ranks 0
+succeed list backends
+grep -q '^mpi .*on one machine or several' out || fail "mssim list backends does not show mpi"
+"$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler --launcher no-mpirun --rounds 1 --out missing >/dev/null 2>&1 &&
+  fail "a launcher that is missing does"
+fails_with 'unavailable: there is no no-mpirun in PATH: install Open MPI' missing
+
+# Different processors: the bits of exact roots, or a refusal.
+if [ "$(uname -m)" = x86_64 ]; then
+  # shellcheck disable=SC2016 # they are the inner shell's
+  printf '#!/bin/sh\nn=$2\nshift 2\nexec mpirun -n "$n" sh -c %s sh "$@"\n' \
+    "'[ \"\$OMPI_COMM_WORLD_RANK\" = 0 ] || export MSSIM_INSTRUCTION_SET=\$SET; exec \"\$@\"'" >mixed
+  chmod +x mixed
+  succeed bench --scene cloth2500 --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
+  SET=AVX2 succeed bench --scene cloth2500 --backend mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
+  [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"
+  SET=SSE4 "$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out sse >/dev/null 2>&1 &&
+    fail "SSE4 beside other sets does"
+  fails_with "unsupported: rank 0 on .* and rank 1 on $(uname -n) SSE4, which round differently" sse
+fi
+
+# A simulation, to the last bit.
+for backend in openmp mpi; do
+  succeed run --scene cloth2500 --backend "$backend" --ranks 2 --threads 1 --duration 0.0025 --trace "$backend.h5"
+done
+h5diff -q openmp.h5 mpi.h5 /particles/cloth/position/value || fail "run: mpi has other positions than openmp"
+
+# A launcher that fails: too few slots, a host that cannot be reached, an MPI of another kind.
+bench=(bench --scene cloth2500 --integrator semi-euler --backend openmp,mpi --threads 1 --rounds 2)
+OMPI_MCA_rmaps_base_oversubscribe=0 "$mssim" "${bench[@]}" --ranks 3 --launcher "mpirun --host localhost:1" --out slots >/dev/null 2>&1 && fail "too few slots are enough"
+fails_with 'has not started 3 ranks: .*not enough slots' slots
+printf '#!/bin/sh\necho "ssh: connect to host node7 port 22: No route to host" >&2\nexit 255\n' >one/ssh
+printf '#!/bin/sh\nsleep 100\n' >two/ssh
+printf '#!/bin/sh\nshift 2\n"$@" & "$@"\n' >one/other-mpirun
+chmod +x one/* two/*
+OMPI_MCA_plm_rsh_agent=$work/one/ssh "$mssim" "${bench[@]}" --ranks 2 --launcher "mpirun --host node7,node8" --out route >/dev/null 2>&1 &&
+  fail "a host that cannot be reached is reached"
+fails_with 'mpirun --host node7,node8 has not started 2 ranks: ssh: connect to host node7' route
+"$mssim" "${bench[@]}" --ranks 2 --launcher "$work/one/other-mpirun" --out other >/dev/null 2>&1 && fail "an MPI of another kind does"
+fails_with 'started 1 rank instead of 2' other
+
+# Ranks that end or fall silent on the way: within 30 seconds, and the other rows are measured. All three at once.
+long=(bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds 40)
+mkdir -p tmp1 tmp2 tmp3
+seconds=$SECONDS
+TMPDIR=$work/tmp1 "$mssim" "${long[@]}" --out killed >/dev/null 2>&1 &
+killed=$!
+TMPDIR=$work/tmp2 "$mssim" "${long[@]}" --out stopped >/dev/null 2>&1 &
+stopped=$!
+TMPDIR=$work/tmp3 OMPI_MCA_plm_rsh_agent=$work/two/ssh "$mssim" "${long[@]}" --launcher "mpirun --host node9" --out silent >/dev/null 2>&1 &
+silent=$!
+victim=$(rank_of 1 1)
+sleep 2
+kill -KILL "$victim" || fail "there is no rank to kill"
+frozen=$(rank_of 1 2)
+for ((i = 0; i < 2500; ++i)); do  # mssim continues all ranks before each sample
+  kill -STOP "$frozen" 2>/dev/null || break
+  sleep 0.01
+done
+[ "$i" -gt 500 ] || fail "there is no rank to stop"
+for process in "$killed" "$stopped" "$silent"; do
+  wait "$process" && fail "a bench with a row that failed is content"
+done
+echo "failures took $((SECONDS - seconds)) s"
+fails_with 'rank 1 .*exited on signal 9' killed
+fails_with "has heard nothing for 20 seconds from rank 1 on $(uname -n)" stopped
+fails_with 'mpirun --host node9 has not started 2 ranks within 25 s' silent
+
+# What was measured beside a row that failed is kept, and the row is measured when the bench goes on.
+measured=$(column_of killed/timings.csv rounds | head -n 1)
+[ "$measured" -gt 3 ] || fail "the other row is not measured: $(cat killed/timings.csv)"
+succeed bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds $((measured + 3)) --resume --out killed
+[ "$(grep -c 'true,ok' killed/timings.csv)" -eq 2 ] || fail "--resume does not measure mpi: $(cat killed/timings.csv)"
+nothing_left "the end of all"
+[ -z "$(ls tmp tmp1 tmp2 tmp3 | grep -v :)" ] || fail "folders stay behind: $(ls tmp tmp1 tmp2 tmp3)"
+exit $((failures > 0))
