@@ -85,12 +85,6 @@ Provenance gather_provenance(const std::vector<std::string>& arguments, int thre
   return provenance;
 }
 
-int asked_processors(const Provenance& provenance, std::string_view backend) {
-  for (const BackendProgramRecord& program : provenance.backend_programs)
-    if (program.name == backend && program.ranks > 0) return program.ranks * program.rank_threads;
-  return provenance.threads;
-}
-
 void add_program(Provenance& provenance, BackendProgramRecord record, const std::filesystem::path& program,
                  const std::filesystem::path& folder) {
   // Larger ones are data, and reading them would take longer than a step.

@@ -66,7 +66,11 @@ struct Provenance {
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads);
 
 /// Processors that a row of this backend was asked to use.
-int asked_processors(const Provenance& provenance, std::string_view backend);
+inline int asked_processors(const Provenance& provenance, std::string_view backend) {
+  for (const BackendProgramRecord& program : provenance.backend_programs)
+    if (program.name == backend && program.ranks > 0) return program.ranks * program.rank_threads;
+  return provenance.threads;
+}
 
 /// Adds a program that is a backend, `record`, to which the hashes of its files are added: `program` is the
 /// file of the command's first word, `folder` the one it runs in.
