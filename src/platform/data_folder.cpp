@@ -16,21 +16,27 @@ std::filesystem::path own_program() {
   return program;
 }
 
+/// What `bin`, which has mssim, and `libexec/mssim`, which has its helpers, lie in.
+std::filesystem::path own_prefix() {
+  const std::filesystem::path folder = own_program().parent_path();
+  return folder.parent_path().filename() == "libexec" ? folder.parent_path().parent_path()
+                                                      : folder.parent_path();
+}
+
 }  // namespace
 
 std::filesystem::path data_folder() {
   std::error_code error;
-  const std::filesystem::path program = own_program();
-  std::filesystem::path folder = program.parent_path().parent_path() / "share" / "mssim";
+  std::filesystem::path folder = own_prefix() / "share" / "mssim";
   if (!std::filesystem::is_directory(folder, error))
     throw std::runtime_error(
-        "the data folder " + folder.string() + " of " + program.string() +
+        "the data folder " + folder.string() + " of " + own_program().string() +
         " is missing: run mssim from its build tree or from where `cmake --install` put it");
   return folder;
 }
 
 std::filesystem::path helper_program(std::string_view name) {
-  return own_program().parent_path().parent_path() / "libexec" / "mssim" / name;
+  return own_prefix() / "libexec" / "mssim" / name;
 }
 
 }  // namespace mssim

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "backends/vectors/instruction_sets.h"
+#include "scene/cloth.h"
 #include "text/counted.h"
 
 namespace mssim {
@@ -97,9 +98,31 @@ ColumnRange ClothPiece::with_ghosts(int rank) const {
   return mssim::with_ghosts(columns_of(rank), ghosts_, columns_);
 }
 
+std::vector<NodeRun> ClothPiece::runs_of(ColumnRange columns) const {
+  std::vector<NodeRun> runs;
+  for (std::size_t row = 0; row < bands_->layout.rows; ++row)
+    runs.push_back({row * columns_ + columns.first, columns.count});
+  return runs;
+}
+
+State ClothPiece::state() const {
+  const State with_ghosts = bands_->state();
+  const std::size_t pitch = bands_->layout.columns;
+  State own;
+  for (std::size_t row = 0; row < bands_->layout.rows; ++row) {
+    const auto copy = [&](const std::vector<Vec3d>& from, std::vector<Vec3d>& to) {
+      const auto first = from.begin() + static_cast<std::ptrdiff_t>(row * pitch + bands_->own.first);
+      to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(bands_->own.count));
+    };
+    copy(with_ghosts.position, own.position);
+    copy(with_ghosts.velocity, own.velocity);
+  }
+  return own;
+}
+
 std::string ClothPiece::note() const {
-  return std::string(kernel_.instruction_set) + ", " +
-         counted(static_cast<std::uint64_t>(steps_per_pass()), "step") + " an exchange";
+  return std::string(kernel_.instruction_set) + ", " + counted(bands_->steps_per_pass, "step") +
+         " an exchange";
 }
 
 }  // namespace mssim

@@ -4,58 +4,42 @@
 #include <optional>
 #include <string>
 
-#include "backends/interface/backend.h"
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/step_bands.h"
 #include "ranks/neighbour_messages.h"
+#include "ranks/piece.h"
 #include "ranks/session.h"
-#include "scene/cloth.h"
-#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-/// What every rank must know to step its part of a scene.
-struct RankJob {
-  SceneSpec scene;
-  const Integrator* integrator = nullptr;
-  double dt_s = 0;
-  int threads = 1;  ///< of each rank
-  Roots roots = Roots::fast;
-};
-
 /// The columns of a cloth that one rank steps, and the ghost columns beside them, by openmp's own walk: the
-/// same bits as there. The rest of the cloth is nowhere in this process.
-class ClothPiece {
+/// same bits as there.
+class ClothPiece final : public Piece {
  public:
-  /// At the scene's start state. Throws Unsupported, on all ranks alike, for more ranks than the cloth can be
-  /// cut for, and RankFailure where the processors of the ranks cannot give the same bits.
+  /// Throws Unsupported for more ranks than the cloth can be cut for, and where the processors of the ranks
+  /// cannot give the same bits.
   ClothPiece(const Session& session, const RankJob& job);
-  ClothPiece(const ClothPiece&) = delete;
-  ClothPiece& operator=(const ClothPiece&) = delete;
 
-  /// The columns of the scene that a rank owns.
-  ColumnRange columns_of(int rank) const;
-  /// Those and its ghosts: what a state of it has.
-  ColumnRange with_ghosts(int rank) const;
-  std::size_t rows() const { return bands_->layout.rows; }
-  std::size_t columns() const { return columns_; }  ///< of the scene
-
-  /// A state of the piece, [rows][columns with ghosts].
-  void set_state(const State& state) { bands_->set_state(state); }
-  /// The same; only its own columns are filled in.
-  State state() const { return bands_->state(); }
-  void step(int count) { kernel_.step(*bands_, count); }
-
-  int threads() const { return static_cast<int>(bands_->inner_count); }
-  int steps_per_pass() const { return static_cast<int>(bands_->steps_per_pass); }
-  const NeighbourMessages& messages() const { return *messages_; }
-  /// What a reader of its times should know: instruction set, steps an exchange.
-  std::string note() const;
+  std::vector<NodeRun> taken_by(int rank) const override { return runs_of(with_ghosts(rank)); }
+  std::vector<NodeRun> owned_by(int rank) const override { return runs_of(columns_of(rank)); }
+  std::size_t scene_nodes() const override { return bands_->layout.rows * columns_; }
+  void set_state(const State& state) override { bands_->set_state(state); }
+  State state() const override;
+  void step(int count) override { kernel_.step(*bands_, count); }
+  int threads() const override { return static_cast<int>(bands_->inner_count); }
+  std::string note() const override;
 
  private:
+  /// The columns of the scene that a rank owns.
+  ColumnRange columns_of(int rank) const;
+  /// Those and its ghosts.
+  ColumnRange with_ghosts(int rank) const;
+  std::vector<NodeRun> runs_of(ColumnRange columns) const;
+
   int ranks_;
   int rank_;
-  std::size_t columns_, ghosts_ = 0;
+  std::size_t columns_;  ///< of the scene
+  std::size_t ghosts_ = 0;
   BandKernel kernel_;
   std::optional<BandGrid> bands_;
   std::optional<NeighbourMessages> messages_;

@@ -7,8 +7,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <span>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "platform/descriptor.h"
@@ -47,120 +48,130 @@ class MappedState {
   Vec3d* vectors_ = nullptr;
 };
 
-/// Some rows of the columns of a rank, as they travel: for each row its positions, and then its velocities.
-struct RowBlock {
-  std::size_t row, rows;
-  std::vector<Vec3d> vectors;
+/// Goes through the nodes of some runs.
+class NodeWalk {
+ public:
+  explicit NodeWalk(std::vector<NodeRun> runs) : runs_(std::move(runs)) {}
+  /// The next nodes, as many as a message holds; none at the end.
+  std::vector<NodeRun> next() {
+    std::vector<NodeRun> some;
+    std::size_t room = nodes_at_once;
+    while (room > 0 && run_ < runs_.size()) {
+      const NodeRun run = runs_[run_];
+      const std::size_t count = std::min(room, run.count - taken_);
+      some.push_back({run.first + taken_, count});
+      room -= count;
+      taken_ += count;
+      if (taken_ == run.count) {
+        ++run_;
+        taken_ = 0;
+      }
+    }
+    return some;
+  }
+
+ private:
+  std::vector<NodeRun> runs_;
+  std::size_t run_ = 0, taken_ = 0;
 };
 
-/// Calls `take` with blocks that cover so many rows of so many columns.
+/// The states of some nodes on their way: all positions, and then all velocities.
+struct Message {
+  std::size_t nodes = 0;
+  std::vector<Vec3d> vectors;
+
+  explicit Message(const std::vector<NodeRun>& runs) {
+    for (const NodeRun& run : runs) nodes += run.count;
+    vectors.resize(2 * nodes);
+  }
+  Vec3d* positions() { return vectors.data(); }
+  Vec3d* velocities() { return vectors.data() + nodes; }
+};
+
+/// Calls `take` with every run of a message and its place there.
 template <class Take>
-void for_each_block(std::size_t rows, std::size_t columns, const Take& take) {
-  const std::size_t at_once = std::max<std::size_t>(1, nodes_at_once / columns);
-  for (std::size_t row = 0; row < rows; row += at_once) {
-    const std::size_t count = std::min(at_once, rows - row);
-    take(RowBlock{row, count, std::vector<Vec3d>(2 * count * columns)});
+void for_each_run(const std::vector<NodeRun>& runs, const Take& take) {
+  std::size_t place = 0;
+  for (const NodeRun& run : runs) {
+    take(run, place);
+    place += run.count;
   }
 }
 
-/// Sends a block to, or receives it from, a rank.
-void send(const Session& session, RowBlock& block, int rank) {
+void send(const Session& session, Message& message, int rank) {
   MPI_Request request = MPI_REQUEST_NULL;
-  check_mpi(MPI_Isend(block.vectors.data(), static_cast<int>(3 * block.vectors.size()), MPI_DOUBLE, rank,
+  check_mpi(MPI_Isend(message.vectors.data(), static_cast<int>(3 * message.vectors.size()), MPI_DOUBLE, rank,
                       state_tag, MPI_COMM_WORLD, &request),
             "sending a state");
   session.wait({&request, 1}, std::array{rank});
 }
 
-void receive(const Session& session, RowBlock& block, int rank) {
+void receive(const Session& session, Message& message, int rank) {
   MPI_Request request = MPI_REQUEST_NULL;
-  check_mpi(MPI_Irecv(block.vectors.data(), static_cast<int>(3 * block.vectors.size()), MPI_DOUBLE, rank,
+  check_mpi(MPI_Irecv(message.vectors.data(), static_cast<int>(3 * message.vectors.size()), MPI_DOUBLE, rank,
                       state_tag, MPI_COMM_WORLD, &request),
             "receiving a state");
   session.wait({&request, 1}, std::array{rank});
 }
 
-/// Between a block of these columns and arrays whose rows have `pitch` nodes, of which the columns begin at
-/// `first`: `copy(in the block, position or velocity there, columns)`.
-template <class Position, class Velocity, class Copy>
-void copy_rows(RowBlock& block, ColumnRange columns, std::size_t pitch, std::size_t first,
-               const Position& position, const Velocity& velocity, const Copy& copy) {
-  for (std::size_t r = 0; r < block.rows; ++r) {
-    const std::size_t node = (block.row + r) * pitch + first;
-    Vec3d* row = block.vectors.data() + 2 * r * columns.count;
-    copy(row, position(node), columns.count);
-    copy(row + columns.count, velocity(node), columns.count);
-  }
-}
-
-void into_block(Vec3d* block, const Vec3d* array, std::size_t count) { std::copy_n(array, count, block); }
-void from_block(const Vec3d* block, Vec3d* array, std::size_t count) { std::copy_n(block, count, array); }
-
 }  // namespace
 
-void scatter_state(const Session& session, const std::filesystem::path& file, ClothPiece& piece) {
-  const ColumnRange here = piece.with_ghosts(session.rank());
-  State state;
-  state.position.resize(piece.rows() * here.count);
-  state.velocity.resize(piece.rows() * here.count);
-  const auto keep = [&](RowBlock& block) {
-    copy_rows(
-        block, here, here.count, 0, [&](std::size_t node) { return &state.position[node]; },
-        [&](std::size_t node) { return &state.velocity[node]; }, from_block);
+void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece) {
+  State own;
+  const auto keep = [&](Message& message) {
+    own.position.insert(own.position.end(), message.positions(), message.positions() + message.nodes);
+    own.velocity.insert(own.velocity.end(), message.velocities(), message.velocities() + message.nodes);
   };
-  if (session.rank() == 0) {
-    const MappedState all(file, piece.rows() * piece.columns());
-    for (int rank = session.ranks() - 1; rank >= 0; --rank) {
-      const ColumnRange columns = piece.with_ghosts(rank);
-      for_each_block(piece.rows(), columns.count, [&](RowBlock block) {
-        copy_rows(
-            block, columns, piece.columns(), columns.first,
-            [&](std::size_t node) { return all.position(node); },
-            [&](std::size_t node) { return all.velocity(node); }, into_block);
-        if (rank == 0)
-          keep(block);
-        else
-          send(session, block, rank);
-      });
+  std::optional<MappedState> all;
+  if (session.rank() == 0) all.emplace(file, piece.scene_nodes());
+  for (int rank = 0; rank < session.ranks(); ++rank) {
+    if (session.rank() != 0 && session.rank() != rank) continue;
+    NodeWalk walk(piece.taken_by(rank));
+    for (std::vector<NodeRun> runs = walk.next(); !runs.empty(); runs = walk.next()) {
+      Message message(runs);
+      if (all)
+        for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+          std::copy_n(all->position(run.first), run.count, message.positions() + place);
+          std::copy_n(all->velocity(run.first), run.count, message.velocities() + place);
+        });
+      else
+        receive(session, message, 0);
+      if (session.rank() == rank)
+        keep(message);
+      else
+        send(session, message, rank);
     }
-  } else {
-    for_each_block(piece.rows(), here.count, [&](RowBlock block) {
-      receive(session, block, 0);
-      keep(block);
-    });
   }
-  piece.set_state(state);
+  piece.set_state(own);
 }
 
-void gather_state(const Session& session, const std::filesystem::path& file, const ClothPiece& piece) {
-  const State state = piece.state();
-  const ColumnRange own = piece.columns_of(session.rank()), here = piece.with_ghosts(session.rank());
-  const auto fill = [&](RowBlock& block) {
-    copy_rows(
-        block, own, here.count, own.first - here.first,
-        [&](std::size_t node) { return &state.position[node]; },
-        [&](std::size_t node) { return &state.velocity[node]; }, into_block);
+void gather_state(const Session& session, const std::filesystem::path& file, const Piece& piece) {
+  const State own = piece.state();
+  std::size_t given = 0;
+  const auto fill = [&](Message& message) {
+    std::copy_n(own.position.data() + given, message.nodes, message.positions());
+    std::copy_n(own.velocity.data() + given, message.nodes, message.velocities());
+    given += message.nodes;
   };
-  if (session.rank() != 0) {
-    for_each_block(piece.rows(), own.count, [&](RowBlock block) {
-      fill(block);
-      send(session, block, 0);
-    });
-    return;
-  }
-  const MappedState all(file, piece.rows() * piece.columns());
+  std::optional<MappedState> all;
+  if (session.rank() == 0) all.emplace(file, piece.scene_nodes());
   for (int rank = 0; rank < session.ranks(); ++rank) {
-    const ColumnRange columns = piece.columns_of(rank);
-    for_each_block(piece.rows(), columns.count, [&](RowBlock block) {
-      if (rank == 0)
-        fill(block);
+    if (session.rank() != 0 && session.rank() != rank) continue;
+    NodeWalk walk(piece.owned_by(rank));
+    for (std::vector<NodeRun> runs = walk.next(); !runs.empty(); runs = walk.next()) {
+      Message message(runs);
+      if (session.rank() == rank)
+        fill(message);
       else
-        receive(session, block, rank);
-      copy_rows(
-          block, columns, piece.columns(), columns.first,
-          [&](std::size_t node) { return all.position(node); },
-          [&](std::size_t node) { return all.velocity(node); }, from_block);
-    });
+        receive(session, message, rank);
+      if (all)
+        for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+          std::copy_n(message.positions() + place, run.count, all->position(run.first));
+          std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
+        });
+      else
+        send(session, message, 0);
+    }
   }
 }
 

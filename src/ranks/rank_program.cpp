@@ -8,6 +8,7 @@
 #include <exception>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,9 +17,8 @@
 
 #include "integrators/all_integrators.h"
 #include "platform/process_cpus.h"
-#include "platform/whole_file.h"
-#include "ranks/cloth_piece.h"
 #include "ranks/launch_words.h"
+#include "ranks/piece.h"
 #include "ranks/piece_states.h"
 #include "ranks/requests.h"
 #include "ranks/session.h"
@@ -47,7 +47,7 @@ std::string job_text(const std::map<std::string, std::string>& introduction, int
   const std::filesystem::path file = variable("MSSIM_SCENE_FILE");
   const int processors = number_in<int>(introduction.at("threads")).value_or(1);
   return nlohmann::json{{"file", file.string()},
-                        {"scene", read_file(file, largest_scene_bytes)},
+                        {"scene", load_scene(file).source},
                         {"integrator", introduction.at("integrator")},
                         {"dt", introduction.at("dt")},
                         {"threads", std::max(1, processors / ranks)},
@@ -104,8 +104,7 @@ std::string first_of(const std::vector<std::string>& texts) {
 }
 
 /// What rank 0 says of all before "ready 1".
-void introduce(const Session& session, const ClothPiece& piece, const std::string& crowded,
-               Requests& requests) {
+void introduce(const Session& session, const Piece& piece, const std::string& crowded, Requests& requests) {
   std::vector<std::string> hosts = session.hosts();
   std::ranges::sort(hosts);
   const auto host_count = static_cast<std::uint64_t>(std::ranges::unique(hosts).begin() - hosts.begin());
@@ -135,7 +134,7 @@ Wish wish_of(const std::string& line) {
 }
 
 /// Does what mssim asks for, until it asks for the end.
-void serve(const Session& session, ClothPiece& piece, std::optional<Requests>& requests,
+void serve(const Session& session, Piece& piece, std::optional<Requests>& requests,
            const std::filesystem::path& state_file) {
   for (;;) {
     Wish wish = requests ? wish_of(requests->next()) : Wish{};
@@ -163,13 +162,12 @@ void work(Session& session) {
   }
   try {
     const RankJob job = job_of(session.share(text));
-    if (!std::holds_alternative<ClothSpec>(job.scene.content)) throw Unsupported("it steps cloths alone");
     const std::string crowded = take_processors(session, job.threads);
     session.share_processors(!crowded.empty());
-    ClothPiece piece(session, job);
+    const std::unique_ptr<Piece> piece = make_piece(session, job);
     const std::string where_crowded = first_of(session.gather(crowded));
-    if (requests) introduce(session, piece, where_crowded, *requests);
-    serve(session, piece, requests, introduction["state"]);
+    if (requests) introduce(session, *piece, where_crowded, *requests);
+    serve(session, *piece, requests, introduction["state"]);
   } catch (const Unsupported& unsupported) {  // by all ranks alike
     if (requests) requests->answer(in_one_line(std::string("unsupported ") + unsupported.what()));
   }

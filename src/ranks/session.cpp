@@ -74,7 +74,8 @@ std::string Session::name_of(int rank) const {
 }
 
 void Session::give_up(const std::string& sentence) const {
-  std::cerr << sentence_mark << name_of(rank_) << ": " << sentence << std::endl;
+  // In one piece: other ranks may say something at the same time.
+  std::cerr << std::string(sentence_mark) + name_of(rank_) + ": " + sentence + '\n' << std::flush;
   MPI_Abort(MPI_COMM_WORLD, 1);
   std::abort();
 }

@@ -62,6 +62,25 @@ same_bits cloth4900 2 2 semi-euler,rk4 2
 grep ',mpi,' bits/timings.csv | grep -q 'not timed: 2 ranks of 2 threads on [1-3] processor' || [ "$(nproc)" -ge 4 ] ||
   fail "ranks that share processors are timed: $(cat bits/timings.csv)"
 
+# Bodies: whole ones to each rank.
+body='{"shape": "box", "box": {"size_m": [0.1, 0.1, 0.1], "cells_x": 3, "cells_y": 3, "cells_z": 3,
+  "interior": {"points": 20, "seed": 1, "jitter": 0.1, "margin": 0.6}}, "velocity_m_per_s": [0.1, 0, 0], "spin_rad_per_s": [1, 2, 0],
+  "swell_per_s": 1, "centre_m"'
+cat >boxes.json <<END
+{"kind": "bodies", "description": "of a test", "dt_s": 5e-5, "gravity_m_per_s2": 9.81, "viscous_damping_per_s": 0.1,
+ "floor": {"height_m": 0, "restitution": 0.5, "friction": 0.4},
+ "bodies": {"density_kg_per_m3": 1000, "springs": {"stiffness_n_per_m": 10000, "damping_n_s_per_m": 0.5}, "list": [
+   $body: [0, 0.3, 0]}, $body: [0.3, 0.3, 0]}, $body: [0.6, 0.3, 0]}]}}
+END
+for ranks in 1 2 3; do
+  rm -rf bodies
+  succeed bench --scene ./boxes.json --backend openmp,mpi --integrator "$explicit" --ranks "$ranks" --threads 1 --rounds 1 --out bodies
+  [ "$(grep -c ',true,' bodies/timings.csv)" -eq 14 ] || fail "bodies on $ranks ranks: $(cat bodies/timings.csv)"
+done
+"$mssim" bench --scene ./boxes.json --backend openmp,mpi --integrator rk4 --ranks 4 --threads 1 --rounds 1 --out four >/dev/null 2>&1 &&
+  fail "three bodies do for four ranks"
+fails_with 'unsupported: 3 bodies cannot be given to 4 ranks: .* at most --ranks 3' four
+
 # What it does not do is said, and what is asked for wrongly.
 "$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator rk4 --ranks 8 --threads 1 --rounds 1 --out narrow >/dev/null 2>&1 &&
   fail "fifty columns do for eight ranks"

@@ -67,7 +67,7 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
   if (program.in_ranks) {
     all.push_back("MSSIM_RANKS=" + std::to_string(options.ranks));
     all.push_back("MSSIM_LAUNCHER=" + options.launcher);
-    all.push_back("MSSIM_SCENE_FILE=" + options.scene_file.string());
+    all.push_back("MSSIM_SCENE_FILE=" + std::filesystem::absolute(options.scene_file).string());
     all.push_back(std::string("MSSIM_ROOTS=") + (options.roots == Roots::exact ? "exact" : "fast"));
   }
   all.insert(all.end(), program.environment.begin(), program.environment.end());

@@ -53,7 +53,7 @@ bool cannot_run(const ResultRow& row) { return row.status.starts_with("un"); }  
 
 RowCell verified_cell(const ResultRow& row, bool utf8) {
   if (cannot_run(row)) return {"-", dim};
-  if (counts(row)) return {utf8 ? "✓" : "yes", green};
+  if (row.verified) return {utf8 ? "✓" : "yes", green};
   return {utf8 ? "✗" : "NO", red};
 }
 

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/interface/backend.h"
+#include "ranks/session.h"
+#include "scene/spec/scene_spec.h"
+
+namespace mssim {
+
+/// What every rank must know to step its part of a scene.
+struct RankJob {
+  SceneSpec scene;
+  const Integrator* integrator = nullptr;
+  double dt_s = 0;
+  int threads = 1;  ///< of each rank
+  Roots roots = Roots::fast;
+};
+
+/// Nodes of a scene that follow each other.
+struct NodeRun {
+  std::size_t first = 0, count = 0;
+};
+
+/// The part of a scene that one rank steps. The rest of the scene is nowhere in this process.
+class Piece {
+ public:
+  Piece() = default;
+  Piece(const Piece&) = delete;
+  Piece& operator=(const Piece&) = delete;
+  virtual ~Piece() = default;
+
+  /// The nodes of the scene whose states a rank takes, ghosts included, in the order in which its states have
+  /// them.
+  virtual std::vector<NodeRun> taken_by(int rank) const = 0;
+  /// The same of those that it steps: every node of the scene is one rank's.
+  virtual std::vector<NodeRun> owned_by(int rank) const = 0;
+  virtual std::size_t scene_nodes() const = 0;
+
+  /// Takes a state of the nodes of taken_by(this rank).
+  virtual void set_state(const State& state) = 0;
+  /// The present state of the nodes of owned_by(this rank).
+  virtual State state() const = 0;
+  /// Takes so many steps, as all ranks do at the same time.
+  virtual void step(int count) = 0;
+
+  virtual int threads() const = 0;
+  /// What a reader of its times should know of how it steps.
+  virtual std::string note() const = 0;
+};
+
+/// The part of this rank, at the scene's start state. Throws Unsupported, on all ranks alike, where the scene
+/// cannot be cut for so many.
+std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job);
+
+}  // namespace mssim
