@@ -1,11 +1,9 @@
 #include "ranks/bodies_piece.h"
 
-#include <algorithm>
-#include <functional>
-#include <numeric>
 #include <string>
 
 #include "backends/openmp/openmp.h"
+#include "ranks/ranks_by_weight.h"
 #include "scene/scene_kinds.h"
 #include "text/counted.h"
 
@@ -20,19 +18,6 @@ SceneSpec with_bodies(const SceneSpec& scene, const std::vector<BodySpec>& bodie
 }
 
 }  // namespace
-
-std::vector<int> ranks_by_weight(const std::vector<std::size_t>& weights, int ranks) {
-  std::vector<std::size_t> order(weights.size()), load(static_cast<std::size_t>(ranks), 0);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return weights[i]; });
-  std::vector<int> rank_of(weights.size());
-  for (const std::size_t i : order) {
-    const auto least = std::ranges::min_element(load);
-    *least += weights[i];
-    rank_of[i] = static_cast<int>(least - load.begin());
-  }
-  return rank_of;
-}
 
 BodiesPiece::BodiesPiece(const Session& session, const RankJob& job) {
   const std::vector<BodySpec>& list = std::get<BodiesSpec>(job.scene.content).list;

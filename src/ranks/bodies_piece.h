@@ -30,8 +30,4 @@ class BodiesPiece final : public Piece {
   std::unique_ptr<Backend> backend_;
 };
 
-/// Gives things of these weights to so many ranks: the heaviest first, each to the rank with the least so
-/// far (Graham 1969, LPT). [things] the rank of each.
-std::vector<int> ranks_by_weight(const std::vector<std::size_t>& weights, int ranks);
-
 }  // namespace mssim

@@ -18,13 +18,12 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "platform/descriptor.h"
 #include "platform/find_program.h"
-#include "ranks/launch_words.h"
+#include "ranks/launcher_output.h"
 #include "ranks/requests.h"
 #include "text/shell_word.h"
 
@@ -51,55 +50,6 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-/// What the launcher and its ranks print, of which some lines say why they fail.
-class Printed {
- public:
-  void take(std::string_view bytes) {
-    unfinished_ += bytes;
-    for (std::size_t end = unfinished_.find('\n'); end != std::string::npos; end = unfinished_.find('\n')) {
-      take_line(unfinished_.substr(0, end));
-      unfinished_.erase(0, end + 1);
-    }
-  }
-  bool ranks_started() const { return started_; }
-  /// Why it has failed: what a rank says, or else the launcher of a rank, or else what it says first between
-  /// lines of dashes, after what ssh says, or else its last line.
-  std::string reason() const {
-    for (const std::string* text : {&of_rank_, &about_rank_})
-      if (!text->empty()) return *text;
-    if (!in_frame_.empty()) return before_frame_ + (before_frame_.empty() ? "" : "; ") + in_frame_;
-    return last_.empty() ? "it printed nothing" : last_;
-  }
-
- private:
-  void take_line(const std::string& line) {
-    if (line == ranks_have_started) {
-      started_ = true;
-      return;
-    }
-    if (line.starts_with("mpirun: Forwarding signal")) return;  // for each pause that mssim makes
-    std::cerr << line << '\n';
-    if (const std::size_t mark = line.find(sentence_mark); mark != std::string::npos && of_rank_.empty())
-      of_rank_ = line.substr(mark + sentence_mark.size());
-    // "process rank 1 with PID 7 on node a exited on signal 9 (Killed)" (mpirun), "a: task 1: Killed" (srun)
-    if (line.find(" rank ") != std::string::npos || line.find(" task ") != std::string::npos)
-      about_rank_ = line;
-    const bool is_dashes = !line.empty() && line.find_first_not_of('-') == std::string::npos;
-    const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
-    if (is_dashes || is_blank) {
-      framed_ = is_dashes && in_frame_.empty();
-      if (framed_) before_frame_ = last_;
-      return;
-    }
-    last_ = line;
-    if (framed_) in_frame_ += (in_frame_.empty() ? "" : " ") + line;
-  }
-
-  std::string unfinished_, of_rank_, about_rank_, in_frame_, before_frame_, last_;
-  bool framed_ = false;  ///< in the first paragraph after a line of dashes
-  bool started_ = false;
-};
-
 /// A launcher that runs.
 class Launcher {
  public:
@@ -123,7 +73,7 @@ class Launcher {
   }
 
   /// Passes on what is printed until the launcher ends, or has not started the ranks in time: false then.
-  bool watch(Printed& printed) {
+  bool watch(LauncherOutput& printed) {
     const Clock::time_point limit = Clock::now() + start_limit;
     for (;;) {
       pollfd readable{output_.get(), POLLIN, 0};
@@ -195,7 +145,7 @@ int launch_ranks() {
     words.insert(words.end(),
                  {"-n", ranks, std::filesystem::read_symlink("/proc/self/exe").string(), "rank"});
     set_defaults();
-    Printed printed;
+    LauncherOutput printed(std::cerr);
     Launcher running(*program, words);
     if (!running.watch(printed)) {
       running.end();
