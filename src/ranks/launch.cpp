@@ -19,6 +19,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "platform/descriptor.h"
@@ -72,9 +73,11 @@ class Launcher {
     if (process_ < 0) throw std::runtime_error(std::string("cannot fork (") + std::strerror(errno) + ')');
   }
 
-  /// Passes on what is printed until the launcher ends, or has not started the ranks in time: false then.
+  /// Passes on what is printed until the launcher ends. False where it does not: it has not started the ranks
+  /// in time, or a rank has failed, and it does not hear from other machines that theirs have ended.
   bool watch(LauncherOutput& printed) {
-    const Clock::time_point limit = Clock::now() + start_limit;
+    Clock::time_point limit = Clock::now() + start_limit;
+    bool failed = false;
     for (;;) {
       pollfd readable{output_.get(), POLLIN, 0};
       ::poll(&readable, 1, 100);
@@ -84,7 +87,8 @@ class Launcher {
         if (count > 0) printed.take({bytes.data(), static_cast<std::size_t>(count)});
         if (count == 0) break;
       }
-      if (!printed.ranks_started() && Clock::now() > limit) return false;
+      if (printed.rank_has_failed() && !std::exchange(failed, true)) limit = Clock::now() + patience;
+      if ((failed || !printed.ranks_started()) && Clock::now() > limit) return false;
     }
     if (!status_) {
       int status = 0;
@@ -147,8 +151,9 @@ int launch_ranks() {
     set_defaults();
     LauncherOutput printed(std::cerr);
     Launcher running(*program, words);
-    if (!running.watch(printed)) {
-      running.end();
+    const bool ended = running.watch(printed);
+    if (!ended) running.end();
+    if (!ended && !printed.rank_has_failed()) {
       std::cerr << launcher << " has not started " << ranks << " ranks within " << start_limit.count()
                 << " s; do all hosts answer? It says: " << printed.reason() << '\n';
       return 1;

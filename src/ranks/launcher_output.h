@@ -16,6 +16,8 @@ class LauncherOutput {
   void take(std::string_view bytes);
   /// Whether the ranks have said that they have started (launch_words.h).
   bool ranks_started() const { return started_; }
+  /// Whether a rank has said why it has failed.
+  bool rank_has_failed() const { return !of_rank_.empty(); }
   /// Why they have failed, in a sentence: what a rank has said first; or else the last line of the launcher
   /// that names one; or else what Open MPI says first between lines of dashes, behind the line before those,
   /// which is ssh's; or else the last line.

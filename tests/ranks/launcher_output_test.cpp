@@ -11,14 +11,14 @@ namespace {
 /// What is made of a text that comes in pieces of so many bytes.
 struct Heard {
   std::string reason, passed_on;
-  bool started;
+  bool started, failed;
 };
 
 Heard heard(const std::string& text, std::size_t piece = 7) {
   std::ostringstream passed_on;
   LauncherOutput output(passed_on);
   for (std::size_t i = 0; i < text.size(); i += piece) output.take(std::string_view(text).substr(i, piece));
-  return {output.reason(), passed_on.str(), output.ranks_started()};
+  return {output.reason(), passed_on.str(), output.ranks_started(), output.rank_has_failed()};
 }
 
 const std::string dashes(74, '-');
@@ -28,7 +28,9 @@ TEST(LauncherOutput, SaysThatTheRanksHaveStartedAndPassesOnTheRest) {
       heard("first\nmssim-mpi: all ranks have started\nmpirun: Forwarding signal 18 to job\nsecond\n");
   EXPECT_TRUE(output.started);
   EXPECT_EQ(output.passed_on, "first\nsecond\n");
+  EXPECT_FALSE(output.failed);
   EXPECT_FALSE(heard("first\n").started);
+  EXPECT_TRUE(heard("mssim-mpi: rank 1 on a: it is broken\n").failed);
 }
 
 TEST(LauncherOutput, TakesWhatARankSaysFirst) {

@@ -36,8 +36,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long a program that has closed its connection, or was asked to end, gets to end by itself.
+/// How long a program that was asked to end gets to do so.
 constexpr std::chrono::milliseconds patience = 2s;
+/// The same of one that has closed its connection: it may be about to say why, and what has started its
+/// processes on other machines takes seconds to hear of their end.
+constexpr std::chrono::milliseconds patience_for_reasons = 8s;
 /// Lines that a program may say of itself before it is ready.
 constexpr int most_lines = 100;
 constexpr std::size_t longest_shown = 300;
@@ -179,7 +182,7 @@ class ProcessBackend final : public Backend {
     } catch (const ConversationFailure& failure) {
       if (failure.cause != Cause::closed) fail(failure.what(), failure.cause == Cause::silence);
       pollfd ended{process_->end_descriptor(), POLLIN, 0};
-      if (::poll(&ended, 1, static_cast<int>(patience.count())) > 0)
+      if (::poll(&ended, 1, static_cast<int>(patience_for_reasons.count())) > 0)
         fail(describe(process_->end(patience)) + ' ' + failure.what(), true);
       fail(std::string("closed its connection ") + failure.what(), true);
     }
