@@ -1,6 +1,7 @@
 #include "ranks/cloth_piece.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -61,7 +62,6 @@ ClothPiece::ClothPiece(const Session& session, const RankJob& job)
       rank_(session.rank()),
       columns_(std::get<ClothSpec>(job.scene.content).columns),
       kernel_(common_kernel(session, *job.integrator, job.roots)) {
-  const auto& cloth = std::get<ClothSpec>(job.scene.content);
   const std::size_t least = ghost_columns(*job.integrator, 1);
   if (ranks_ > 1 && columns_ / static_cast<std::size_t>(ranks_) < least)
     throw Unsupported(counted(columns_, "column") + " cannot be cut for " +
@@ -69,18 +69,17 @@ ClothPiece::ClothPiece(const Session& session, const RankJob& job)
                       std::string(job.integrator->name) + " needs " + std::to_string(least) +
                       " columns in each, so give at most --ranks " +
                       std::to_string(std::max<std::size_t>(1, columns_ / least)));
-  const GridPatch on_host{cloth.rows, static_cast<std::uint32_t>(columns_on_host(session, columns_)),
-                          cloth.spacing_m};
-  // All ranks take the steps of a pass that rank 0 chooses.
-  const std::size_t chosen =
-      steps_per_pass_for(BandLayout(on_host, kernel_.lanes), *job.integrator,
-                         static_cast<std::size_t>(session.ranks_on_host() * job.threads));
-  const std::size_t steps = std::stoul(session.share(std::to_string(chosen)));
+  make(session, job, chosen_steps(session, job));
+}
+
+void ClothPiece::make(const Session& session, const RankJob& job, std::size_t steps) {
+  messages_.reset();
+  bands_.reset();
   ghosts_ = ghost_columns(*job.integrator, steps);
   const ColumnRange own = columns_of(rank_), all = with_ghosts(rank_);
   System system = build_cloth_window(job.scene, {.row = 0,
                                                  .column = static_cast<std::uint32_t>(all.first),
-                                                 .rows = cloth.rows,
+                                                 .rows = std::get<ClothSpec>(job.scene.content).rows,
                                                  .columns = static_cast<std::uint32_t>(all.count)});
   round_start_to_single(system);
   bands_.emplace(system, std::get<GridPatch>(system.topology), *job.integrator, job.dt_s, kernel_.lanes,
@@ -88,6 +87,53 @@ ClothPiece::ClothPiece(const Session& session, const RankJob& job)
   messages_.emplace(session, *bands_);
   if (ranks_ > 1) bands_->messages = &*messages_;
   bands_->set_state(system.start);
+}
+
+std::size_t ClothPiece::chosen_steps(const Session& session, const RankJob& job) {
+  const Integrator& integrator = *job.integrator;
+  const auto& cloth = std::get<ClothSpec>(job.scene.content);
+  const GridPatch on_host{cloth.rows, static_cast<std::uint32_t>(columns_on_host(session, columns_)),
+                          cloth.spacing_m};
+  const std::size_t found =
+      steps_per_pass_for(BandLayout(on_host, kernel_.lanes), integrator,
+                         static_cast<std::size_t>(session.ranks_on_host() * job.threads));
+  const std::size_t usual = std::stoul(session.share(std::to_string(found)));
+  const std::size_t narrowest = columns_ / static_cast<std::size_t>(ranks_);
+  // Of a larger piece messages are a small part, and making it takes long.
+  constexpr std::size_t largest_tried = 1'000'000;  // nodes
+  const bool tries = ranks_ > 1 && narrowest * cloth.rows <= largest_tried && !session.shares_processors();
+  if (session.share(tries ? "try" : "") != "try") return usual;
+  // Another number must be so much faster: trials are short, and other programs may run.
+  constexpr double clearly_faster = 0.95;
+  std::size_t chosen = usual;
+  make(session, job, usual);
+  double least = clearly_faster * trial_seconds(session);
+  for (std::size_t steps = 1; steps * integrator.stage_count <= stages_under_way; steps *= 2) {
+    if (steps == usual || ghost_columns(integrator, steps) > narrowest) continue;
+    make(session, job, steps);
+    const double seconds = trial_seconds(session);
+    if (seconds >= least) continue;
+    least = seconds;
+    chosen = steps;
+  }
+  return std::stoul(session.share(std::to_string(chosen)));
+}
+
+double ClothPiece::trial_seconds(const Session& session) {
+  constexpr double trial_s = 0.01;
+  constexpr int trials = 3, most_steps = 500, first_steps = 16;
+  const auto seconds_of = [&](int steps) {
+    const auto begin = std::chrono::steady_clock::now();
+    step(steps);
+    session.meet();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / steps;
+  };
+  seconds_of(first_steps);
+  const auto wanted = static_cast<int>(std::min<double>(most_steps, trial_s / seconds_of(first_steps)));
+  const int steps = std::stoi(session.share(std::to_string(std::max(first_steps, wanted))));
+  double least = seconds_of(steps);
+  for (int trial = 1; trial < trials; ++trial) least = std::min(least, seconds_of(steps));
+  return least;
 }
 
 ColumnRange ClothPiece::columns_of(int rank) const {

@@ -30,6 +30,13 @@ class ClothPiece final : public Piece {
   std::string note() const override;
 
  private:
+  /// Makes bands and messages for so many steps between two messages, at the scene's start state.
+  void make(const Session& session, const RankJob& job, std::size_t steps);
+  /// How many steps there had best be between two messages, by trials of all ranks together: fewer messages
+  /// cost more columns that are computed twice. The result has the same bits with any number. Rank 0 decides.
+  std::size_t chosen_steps(const Session& session, const RankJob& job);
+  /// Seconds that a step takes as the piece is made.
+  double trial_seconds(const Session& session);
   /// The columns of the scene that a rank owns.
   ColumnRange columns_of(int rank) const;
   /// Those and its ghosts.

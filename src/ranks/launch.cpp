@@ -24,6 +24,7 @@
 
 #include "platform/descriptor.h"
 #include "platform/find_program.h"
+#include "platform/process_cpus.h"
 #include "ranks/launcher_output.h"
 #include "ranks/requests.h"
 #include "text/shell_word.h"
@@ -63,6 +64,7 @@ class Launcher {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
+    const OnAllProcessCpus inherited;  // OpenMP may have bound this thread, which has nothing to compute
     process_ = ::fork();
     if (process_ == 0) {
       ::dup2(written.get(), STDOUT_FILENO);

@@ -41,6 +41,7 @@ class Session {
   /// Whether waits let other ranks have the processor: where the ranks of a host have more threads than it
   /// has processors.
   void share_processors(bool share) { shares_ = share; }
+  bool shares_processors() const { return shares_; }
 
   /// Ends all ranks, with a sentence about this one on stderr.
   [[noreturn]] void give_up(const std::string& sentence) const;

@@ -57,6 +57,10 @@ same_bits() {  # same_bits SCENE RANKS THREADS INTEGRATORS COUNT
     fail "$1 with $2 ranks of $3 threads: $(cat bits/timings.csv)"
   [ "$(hashes bits | wc -l)" -eq "$5" ] || fail "$1 with $2 ranks of $3 threads has other bits"
 }
+if [ "$(nproc)" -ge 2 ]; then
+  OMP_PROC_BIND=true same_bits cloth4900 2 1 semi-euler 1
+  ! grep 'not timed' bits/timings.csv || fail "ranks share a processor where mssim binds its threads"
+fi
 for ranks in 1 3 4 5 6 7 8; do same_bits cloth4900 "$ranks" 1 semi-euler,rk4 2; done
 same_bits cloth4900 2 2 semi-euler,rk4 2
 grep ',mpi,' bits/timings.csv | grep -q 'not timed: 2 ranks of 2 threads on [1-3] processor' || [ "$(nproc)" -ge 4 ] ||

@@ -82,7 +82,7 @@ row fails 'failed: fails failed at ""step 1"": a spring has snapped'
 row closes 'failed: closes closed its connection before it answered ""step 1""'
 row connects-twice 'failed: connects-twice connected a second time before it answered ""step 1""'
 # The second answer may come when more steps are asked for: then it is that request's, which is answered twice.
-row done-twice 'failed: done-twice sent ""done"" after its answer to ""step 1'
+row done-twice 'failed: done-twice sent ""done"" after its answer to ""step '
 row nan 'failed: blew up at step 1 (t = 5e-05 s): node 7 is not finite'
 row writes-nothing 'failed: writes-nothing wrote 0 of the 5000 positions and velocities of the state file'
 row too-few 'failed: too-few wrote 4999 of the 5000 positions and velocities of the state file'

@@ -89,6 +89,7 @@ Table list_backends(const ListOptions& options) {
   Table table;
   BackendChoice choice(table_backends(), options.own_backends);
   std::vector<const BackendInfo*> all = table_backends();
+  std::ranges::copy(choice.shipped(), std::back_inserter(all));
   std::ranges::copy(choice.described(), std::back_inserter(all));
   for (const BackendInfo* backend : all) {
     const std::string reason = unavailable_reason(*backend, options.execution);

@@ -32,6 +32,9 @@ std::optional<fs::path> user_folder() {
   return std::nullopt;
 }
 
+/// The folder of those that come with mssim.
+fs::path shipped_folder() { return data_folder() / "backends"; }
+
 bool is_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
@@ -99,7 +102,6 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
     folders_.emplace_back(folder);
   }
   if (const auto folder = user_folder()) folders_.push_back(*folder);
-  folders_.push_back(data_folder() / "backends");
   for (const std::string& scene : scenes) {
     const fs::path folder = fs::path(scene).parent_path();
     if (is_path_of_scene(scene)) scene_folders_.push_back(folder.empty() ? fs::path(".") : folder);
@@ -115,6 +117,7 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   std::vector<std::string_view> names;
   for (const BackendInfo* info : known_) names.push_back(info->name);
   for (const BackendInfo* info : described()) names.push_back(info->name);
+  for (const BackendInfo* info : shipped()) names.push_back(info->name);
   throw UsageError(unknown_name("backend", name, names));
 }
 
@@ -127,9 +130,11 @@ std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std
   return rows;
 }
 
-std::vector<const BackendInfo*> BackendChoice::described() {
+std::vector<const BackendInfo*> BackendChoice::shipped() { return described_in({shipped_folder()}); }
+
+std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs::path>& folders) {
   std::vector<fs::path> files;
-  for (const fs::path& folder : folders_) {
+  for (const fs::path& folder : folders) {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
       if (entry.path().extension() == description_extension && is_file(entry.path()))
@@ -162,6 +167,7 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
     throw UsageError(shown(found.front()) + " is called like the backend " + name + " of mssim; rename it");
   // A scene may be called as anything.
   if (!in_table) std::ranges::for_each(scene_folders_, look);
+  look(shipped_folder());
   if (found.size() > 1)
     throw UsageError("there are two backends called " + escaped(name) + ", " + shown(found[0]) + " and " +
                      shown(found[1]) + "; rename one of them");

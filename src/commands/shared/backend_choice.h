@@ -50,7 +50,10 @@ class BackendChoice {
   std::vector<const BackendInfo*> require_all(const std::vector<std::string>& names);
 
   /// All that are described in --backend-folder and the user's own folder. Throws like require().
-  std::vector<const BackendInfo*> described();
+  std::vector<const BackendInfo*> described() { return described_in(folders_); }
+
+  /// Those that come with mssim as programs of their own. Throws like require().
+  std::vector<const BackendInfo*> shipped();
 
   /// Those that have been asked for and are no rows of the table.
   std::vector<const BackendInfo*> own() const;
@@ -62,6 +65,7 @@ class BackendChoice {
     BackendInfo info;
   };
 
+  std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders);
   const BackendInfo& add(BackendProgram program);
   const BackendInfo& add_file(const std::filesystem::path& file);
   std::optional<std::filesystem::path> description_of(const std::string& name) const;
