@@ -7,24 +7,13 @@ mssim=$1
 . "$2/tests/support/command_line.sh"
 # shellcheck source=scripts/lib/mpi.sh
 . "$2/scripts/lib/mpi.sh"
-[ -x "${mssim%/*}/../libexec/mssim/mssim-mpi" ] || { echo "mssim was built without MPI"; exit 77; }
-command -v mpirun >/dev/null || { echo "there is no mpirun"; exit 77; }
+# shellcheck source=tests/support/mpi_ranks.sh
+. "$2/tests/support/mpi_ranks.sh"
+need_mpi
 cd "$work"
 export TMPDIR=$work/tmp
 mkdir -p tmp one two
 let_ranks_share
-
-# rank_of NUMBER RUN: the process of that rank of the bench with the folder tmpRUN, once it is there
-rank_of() {
-  local pid i
-  for ((i = 0; i < 100; ++i)); do
-    for pid in $(pgrep -f "^[^ ]*/mssim-mpi rank$"); do
-      grep -qz "^TMPDIR=$work/tmp$2/" "/proc/$pid/environ" 2>/dev/null || continue
-      grep -qzx "OMPI_COMM_WORLD_RANK=$1" "/proc/$pid/environ" 2>/dev/null && echo "$pid" && return
-    done
-    sleep 0.1
-  done
-}
 
 # nothing_left WHAT: no rank, and no folder of mssim's for one
 nothing_left() {
@@ -35,9 +24,6 @@ nothing_left() {
   done
   ! pgrep -af "^[^ ]*/mssim-mpi rank$" || fail "$1 leaves a rank"
 }
-
-# hashes FOLDER: of the states of all integrators, each once; notes before them hold commas
-hashes() { sed -nE 's/^([^,]*,){7}([^,]*),.*,([0-9a-f]{16}),.*/\2 \3/p' "$1/timings.csv" | sort -u; }
 
 # fails_with PATTERN FOLDER: the row of mpi has failed with that sentence, and the one of openmp is verified
 fails_with() {
@@ -143,10 +129,10 @@ TMPDIR=$work/tmp2 "$mssim" "${long[@]}" --out stopped >/dev/null 2>&1 &
 stopped=$!
 TMPDIR=$work/tmp3 OMPI_MCA_plm_rsh_agent=$work/two/ssh "$mssim" "${long[@]}" --launcher "mpirun --host node9" --out silent >/dev/null 2>&1 &
 silent=$!
-victim=$(rank_of 1 1)
+victim=$(rank_of 1 "^TMPDIR=$work/tmp1/")
 sleep 2
 kill -KILL "$victim" || fail "there is no rank to kill"
-frozen=$(rank_of 1 2)
+frozen=$(rank_of 1 "^TMPDIR=$work/tmp2/")
 for ((i = 0; i < 2500; ++i)); do  # mssim continues all ranks before each sample
   kill -STOP "$frozen" 2>/dev/null || break
   sleep 0.01

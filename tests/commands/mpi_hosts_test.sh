@@ -8,8 +8,9 @@ mssim=$1
 . "$2/tests/support/command_line.sh"
 # shellcheck source=scripts/lib/mpi.sh
 . "$2/scripts/lib/mpi.sh"
-[ -x "${mssim%/*}/../libexec/mssim/mssim-mpi" ] || { echo "mssim was built without MPI"; exit 77; }
-command -v mpirun >/dev/null || { echo "there is no mpirun"; exit 77; }
+# shellcheck source=tests/support/mpi_ranks.sh
+. "$2/tests/support/mpi_ranks.sh"
+need_mpi
 command -v ip >/dev/null || { echo "there is no ip"; exit 77; }
 space=mssim$$ near=msa$$ far=msb$$ network=10.$((64 + $$ % 64)).$(($$ / 64 % 256))
 ip netns add "$space" 2>/dev/null || { echo "namespaces need root"; exit 77; }
@@ -35,23 +36,10 @@ let_ranks_share
 export OMPI_MCA_plm_rsh_agent=$work/agent OMPI_MCA_oob_tcp_if_include=$network.0/24 OMPI_MCA_btl_tcp_if_include=$network.0/24
 hosts="mpirun --host localhost:1,$network.2:1"
 
-# rank_of NUMBER: the process of that rank, once it is there
-rank_of() {
-  local pid i
-  for ((i = 0; i < 100; ++i)); do
-    for pid in $(pgrep -f "^[^ ]*/mssim-mpi rank$"); do
-      grep -qzx "OMPI_MCA_plm_rsh_agent=$work/agent" "/proc/$pid/environ" 2>/dev/null || continue
-      grep -qzx "OMPI_COMM_WORLD_RANK=$1" "/proc/$pid/environ" 2>/dev/null && echo "$pid" && return
-    done
-    sleep 0.1
-  done
-}
-
 succeed bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler,rk4 --ranks 2 --threads 1 --rounds 2 --launcher "$hosts" --out two
 [ "$(column_of two/timings.csv device | sort | uniq -c | xargs)" = "2 2 hosts 2 $(column_of two/timings.csv device | head -n 1)" ] ||
   fail "mpi did not run on two hosts: $(cat two/timings.csv)"
-hashes=$(sed -nE 's/^([^,]*,){7}([^,]*),.*,true,ok,.*,([0-9a-f]{16}),.*/\2 \3/p' two/timings.csv | sort -u)
-[ "$(wc -l <<<"$hashes")" -eq 2 ] || fail "two hosts have other bits: $(cat two/timings.csv)"
+[ "$(hashes two | wc -l)" -eq 2 ] || fail "two hosts have other bits: $(cat two/timings.csv)"
 
 # broken kill|cut PATTERN: while a bench runs, a rank of the other machine is killed, or its network is cut; within 30 s the row of
 # mpi says so
@@ -61,7 +49,7 @@ broken() {
   "$mssim" bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds 60 --launcher "$hosts" --out broken \
     >/dev/null 2>err &
   bench=$!
-  rank=$(rank_of 1)
+  rank=$(rank_of 1 "^OMPI_MCA_plm_rsh_agent=$work/agent")
   sleep 3
   if [ "$1" = kill ]; then kill -KILL "$rank"; else ip link set "$near" down; fi
   seconds=$SECONDS
