@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -25,9 +24,9 @@
 #include "platform/descriptor.h"
 #include "platform/find_program.h"
 #include "platform/process_cpus.h"
+#include "ranks/environment.h"
 #include "ranks/launcher_output.h"
 #include "ranks/requests.h"
-#include "text/shell_word.h"
 
 namespace mssim {
 namespace {
@@ -39,11 +38,6 @@ using namespace std::chrono_literals;
 constexpr std::chrono::seconds start_limit = 25s;
 /// How long a launcher that is to end gets to end the ranks.
 constexpr std::chrono::seconds patience = 3s;
-
-std::string variable(const char* name, const char* otherwise) {
-  const char* value = std::getenv(name);
-  return value && *value ? value : otherwise;
-}
 
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream in(text);
@@ -76,7 +70,8 @@ class Launcher {
   }
 
   /// Passes on what is printed until the launcher ends. False where it does not: it has not started the ranks
-  /// in time, or a rank has failed, and it does not hear from other machines that theirs have ended.
+  /// in time, or a rank has failed, and it does not hear from other machines that theirs have ended. What
+  /// ranks print that outlive it is passed on for some seconds.
   bool watch(LauncherOutput& printed) {
     Clock::time_point limit = Clock::now() + start_limit;
     bool failed = false;
@@ -90,13 +85,12 @@ class Launcher {
         if (count == 0) break;
       }
       if (printed.rank_has_failed() && !std::exchange(failed, true)) limit = Clock::now() + patience;
-      if ((failed || !printed.ranks_started()) && Clock::now() > limit) return false;
+      if (!status_ && has_ended(WNOHANG)) limit = Clock::now() + patience;
+      if (Clock::now() <= limit) continue;
+      if (status_) break;
+      if (failed || !printed.ranks_started()) return false;
     }
-    if (!status_) {
-      int status = 0;
-      ::waitpid(process_, &status, 0);
-      status_ = status;
-    }
+    if (!status_) has_ended(0);
     return true;
   }
 
@@ -104,17 +98,27 @@ class Launcher {
   void end() {
     ::kill(process_, SIGTERM);
     const Clock::time_point limit = Clock::now() + patience;
-    int status = 0;
-    while (::waitpid(process_, &status, WNOHANG) == 0) {
+    while (!has_ended(WNOHANG)) {
       if (Clock::now() > limit) ::kill(process_, SIGKILL);
       std::this_thread::sleep_for(10ms);
     }
-    status_ = status;
   }
 
   bool succeeded() const { return status_ && WIFEXITED(*status_) && WEXITSTATUS(*status_) == 0; }
+  /// The signal that has ended it, or nothing.
+  std::optional<int> signal() const {
+    return status_ && WIFSIGNALED(*status_) ? std::optional(WTERMSIG(*status_)) : std::nullopt;
+  }
 
  private:
+  /// Whether it has ended, and then its status. Waits for that unless `options` say WNOHANG.
+  bool has_ended(int options) {
+    int status = 0;
+    if (::waitpid(process_, &status, options) != process_) return false;
+    status_ = status;
+    return true;
+  }
+
   Descriptor output_;
   pid_t process_ = -1;
   std::optional<int> status_;
@@ -161,6 +165,10 @@ int launch_ranks() {
       return 1;
     }
     if (running.succeeded()) return 0;
+    if (const auto signal = running.signal(); ended && signal) {
+      std::cerr << launcher << " was ended by signal " << *signal << '\n';
+      return 1;
+    }
     std::cerr << (printed.ranks_started() ? "" : launcher + " has not started " + ranks + " ranks: ")
               << printed.reason() << '\n';
   } catch (const std::exception& error) {

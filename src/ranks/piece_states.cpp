@@ -98,19 +98,27 @@ void for_each_run(const std::vector<NodeRun>& runs, const Take& take) {
   }
 }
 
-void send(const Session& session, Message& message, int rank) {
-  MPI_Request request = MPI_REQUEST_NULL;
-  check_mpi(MPI_Isend(message.vectors.data(), static_cast<int>(3 * message.vectors.size()), MPI_DOUBLE, rank,
-                      state_tag, MPI_COMM_WORLD, &request),
-            "sending a state");
-  session.wait({&request, 1}, std::array{rank});
+/// Calls `pass` for every message between rank 0 and a rank in which this process has a part: the rank, the
+/// runs and the message.
+template <class RunsOf, class Pass>
+void for_each_message(const Session& session, const RunsOf& runs_of, const Pass& pass) {
+  for (int rank = 0; rank < session.ranks(); ++rank) {
+    if (session.rank() != 0 && session.rank() != rank) continue;
+    NodeWalk walk(runs_of(rank));
+    for (std::vector<NodeRun> runs = walk.next(); !runs.empty(); runs = walk.next()) {
+      Message message(runs);
+      pass(rank, runs, message);
+    }
+  }
 }
 
-void receive(const Session& session, Message& message, int rank) {
+/// Sends a message to a rank, or receives it from there: `start` is MPI_Isend or MPI_Irecv.
+template <class Start>
+void exchange(const Session& session, Message& message, int rank, const Start& start) {
   MPI_Request request = MPI_REQUEST_NULL;
-  check_mpi(MPI_Irecv(message.vectors.data(), static_cast<int>(3 * message.vectors.size()), MPI_DOUBLE, rank,
-                      state_tag, MPI_COMM_WORLD, &request),
-            "receiving a state");
+  check_mpi(start(message.vectors.data(), static_cast<int>(3 * message.vectors.size()), MPI_DOUBLE, rank,
+                  state_tag, MPI_COMM_WORLD, &request),
+            "exchanging a state");
   session.wait({&request, 1}, std::array{rank});
 }
 
@@ -124,24 +132,20 @@ void scatter_state(const Session& session, const std::filesystem::path& file, Pi
   };
   std::optional<MappedState> all;
   if (session.rank() == 0) all.emplace(file, piece.scene_nodes());
-  for (int rank = 0; rank < session.ranks(); ++rank) {
-    if (session.rank() != 0 && session.rank() != rank) continue;
-    NodeWalk walk(piece.taken_by(rank));
-    for (std::vector<NodeRun> runs = walk.next(); !runs.empty(); runs = walk.next()) {
-      Message message(runs);
-      if (all)
-        for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
-          std::copy_n(all->position(run.first), run.count, message.positions() + place);
-          std::copy_n(all->velocity(run.first), run.count, message.velocities() + place);
-        });
-      else
-        receive(session, message, 0);
-      if (session.rank() == rank)
-        keep(message);
-      else
-        send(session, message, rank);
-    }
-  }
+  const auto runs_of = [&](int rank) { return piece.taken_by(rank); };
+  for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
+    if (all)
+      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+        std::copy_n(all->position(run.first), run.count, message.positions() + place);
+        std::copy_n(all->velocity(run.first), run.count, message.velocities() + place);
+      });
+    else
+      exchange(session, message, 0, MPI_Irecv);
+    if (session.rank() == rank)
+      keep(message);
+    else
+      exchange(session, message, rank, MPI_Isend);
+  });
   piece.set_state(own);
 }
 
@@ -155,24 +159,20 @@ void gather_state(const Session& session, const std::filesystem::path& file, con
   };
   std::optional<MappedState> all;
   if (session.rank() == 0) all.emplace(file, piece.scene_nodes());
-  for (int rank = 0; rank < session.ranks(); ++rank) {
-    if (session.rank() != 0 && session.rank() != rank) continue;
-    NodeWalk walk(piece.owned_by(rank));
-    for (std::vector<NodeRun> runs = walk.next(); !runs.empty(); runs = walk.next()) {
-      Message message(runs);
-      if (session.rank() == rank)
-        fill(message);
-      else
-        receive(session, message, rank);
-      if (all)
-        for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
-          std::copy_n(message.positions() + place, run.count, all->position(run.first));
-          std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
-        });
-      else
-        send(session, message, 0);
-    }
-  }
+  const auto runs_of = [&](int rank) { return piece.owned_by(rank); };
+  for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
+    if (session.rank() == rank)
+      fill(message);
+    else
+      exchange(session, message, rank, MPI_Irecv);
+    if (all)
+      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+        std::copy_n(message.positions() + place, run.count, all->position(run.first));
+        std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
+      });
+    else
+      exchange(session, message, 0, MPI_Isend);
+  });
 }
 
 }  // namespace mssim

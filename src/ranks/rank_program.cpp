@@ -17,6 +17,7 @@
 
 #include "integrators/all_integrators.h"
 #include "platform/process_cpus.h"
+#include "ranks/environment.h"
 #include "ranks/launch_words.h"
 #include "ranks/piece.h"
 #include "ranks/piece_states.h"
@@ -35,11 +36,6 @@ struct Wish {
   int kind = end;
   int count = 0;  ///< of steps
 };
-
-std::string variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value ? value : "";
-}
 
 /// What mssim has told rank 0, as a text for the other ranks. Only rank 0 needs the scene's file and the
 /// environment that mssim has set.

@@ -23,8 +23,7 @@ inline constexpr double longest_silence_s = 20;
 /// thread at a time calls it. Every wait has an end: a rank that no longer answers becomes a RankFailure.
 class Session {
  public:
-  /// Starts MPI. Throws RankFailure where the ranks are not as many as were `asked` for, as they are where
-  /// mpirun is that of another MPI.
+  /// Starts MPI. Throws RankFailure where that fails, or where a thread other than this one may not call it.
   Session(int* argc, char*** argv);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

@@ -119,9 +119,10 @@ fails_with 'mpirun --host node7,node8 has not started 2 ranks: ssh: connect to h
 "$mssim" "${bench[@]}" --ranks 2 --launcher "$work/one/other-mpirun" --out other >/dev/null 2>&1 && fail "an MPI of another kind does"
 fails_with 'started 1 rank instead of 2' other
 
-# Ranks that end or fall silent on the way: within 30 seconds, and the other rows are measured. All three at once.
+# Ranks or launchers that end or fall silent on the way: within 30 seconds, and the other rows are measured. All at
+# once.
 long=(bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds 40)
-mkdir -p tmp1 tmp2 tmp3
+mkdir -p tmp1 tmp2 tmp3 tmp4
 seconds=$SECONDS
 TMPDIR=$work/tmp1 "$mssim" "${long[@]}" --out killed >/dev/null 2>&1 &
 killed=$!
@@ -129,21 +130,26 @@ TMPDIR=$work/tmp2 "$mssim" "${long[@]}" --out stopped >/dev/null 2>&1 &
 stopped=$!
 TMPDIR=$work/tmp3 OMPI_MCA_plm_rsh_agent=$work/two/ssh "$mssim" "${long[@]}" --launcher "mpirun --host node9" --out silent >/dev/null 2>&1 &
 silent=$!
+TMPDIR=$work/tmp4 "$mssim" "${long[@]}" --out orphaned >/dev/null 2>&1 &
+orphaned=$!
 victim=$(rank_of 1 "^TMPDIR=$work/tmp1/")
+launcher=$(ps -o ppid= -p "$(rank_of 1 "^TMPDIR=$work/tmp4/")")
 sleep 2
 kill -KILL "$victim" || fail "there is no rank to kill"
+kill -KILL "${launcher// /}" || fail "there is no launcher to kill"
 frozen=$(rank_of 1 "^TMPDIR=$work/tmp2/")
 for ((i = 0; i < 2500; ++i)); do  # mssim continues all ranks before each sample
   kill -STOP "$frozen" 2>/dev/null || break
   sleep 0.01
 done
 [ "$i" -gt 500 ] || fail "there is no rank to stop"
-for process in "$killed" "$stopped" "$silent"; do
+for process in "$killed" "$stopped" "$silent" "$orphaned"; do
   wait "$process" && fail "a bench with a row that failed is content"
 done
 echo "failures took $((SECONDS - seconds)) s"
 fails_with 'rank 1 .*exited on signal 9' killed
 fails_with "has heard nothing for 20 seconds from rank 1 on $(uname -n)" stopped
+fails_with 'mpirun was ended by signal 9' orphaned
 fails_with 'mpirun --host node9 has not started 2 ranks within 25 s' silent
 
 # What was measured beside a row that failed is kept, and the row is measured when the bench goes on.
@@ -152,5 +158,5 @@ measured=$(column_of killed/timings.csv rounds | head -n 1)
 succeed bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds $((measured + 3)) --resume --out killed
 [ "$(grep -c 'true,ok' killed/timings.csv)" -eq 2 ] || fail "--resume does not measure mpi: $(cat killed/timings.csv)"
 nothing_left "the end of all"
-[ -z "$(ls tmp tmp1 tmp2 tmp3 | grep -v :)" ] || fail "folders stay behind: $(ls tmp tmp1 tmp2 tmp3)"
+[ -z "$(ls tmp tmp1 tmp2 tmp3 tmp4 | grep -v :)" ] || fail "folders stay behind: $(ls tmp tmp1 tmp2 tmp3 tmp4)"
 exit $((failures > 0))

@@ -1,5 +1,6 @@
-# Functions of the tests of the backend mpi. Sourced after command_line.sh.
+# Functions of the tests of the backend mpi. Sourced after command_line.sh, which sets `mssim`.
 # shellcheck shell=bash
+: "${mssim:?}"
 
 # need_mpi: skips the test where mssim has been built without MPI, or nothing starts its ranks
 need_mpi() {
