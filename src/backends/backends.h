@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "backends/interface/backend.h"
+#include "backends/interface/window_backend.h"
 #include "backends/process/backend_program.h"
 #include "garment/stepping/dressing_backend.h"
 
@@ -55,6 +55,19 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
 std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& system,
                                       const Integrator& integrator, double dt_s,
                                       const ExecutionOptions& options);
+
+/// Makes the program of `backend` for a cloth of which there is an outline alone (outline_of_cloth).
+/// `window_nodes`: of every window that it will be asked for. Throws Unavailable, Unsupported or
+/// BackendFailure.
+std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, const System& outline,
+                                                   const Integrator& integrator, double dt_s,
+                                                   const ExecutionOptions& options,
+                                                   std::size_t window_nodes);
+
+/// Whether it can be asked for windows of a cloth that no process has the whole of.
+inline bool has_windows(const BackendInfo& backend) {
+  return backend.program != nullptr && backend.program->has_windows;
+}
 
 /// Makes it for a garment. Throws Unavailable or Unsupported, the latter also where it cannot dress.
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,

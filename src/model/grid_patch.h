@@ -20,6 +20,14 @@ struct GridPatch {
   float rest_length(GridSpringKind kind) const;
 };
 
+/// The nodes of some rows and columns of a grid that follow each other.
+struct GridWindow {
+  std::uint32_t row = 0, column = 0;  ///< the first ones
+  std::uint32_t rows = 0, columns = 0;
+
+  std::size_t nodes() const { return std::size_t{rows} * columns; }
+};
+
 /// Number of unique springs of a rows x columns grid, without building them:
 /// structural 2rc - r - c, shear 2(r-1)(c-1), bending 2rc - 2r - 2c (for grids of at least 2 x 2).
 std::uint64_t count_springs(std::uint64_t rows, std::uint64_t columns);

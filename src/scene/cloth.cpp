@@ -161,17 +161,24 @@ SceneParts read_cloth(const SceneSpec& spec) {
   return {counts, counts, [](const SceneSpec& of) { return BuiltScene{build_cloth(of)}; }};
 }
 
-System build_cloth_window(const SceneSpec& spec, const ClothWindow& window) {
+System outline_of_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   System system;
-  const GridPatch grid{window.rows, window.columns, cloth.spacing_m};
-  system.topology = grid;
+  system.topology = GridPatch{cloth.rows, cloth.columns, cloth.spacing_m};
   system.materials.assign(cloth.springs.begin(), cloth.springs.end());
-  system.node_mass.assign(grid.nodes(), cloth.areal_density_kg_per_m2 * cloth.spacing_m * cloth.spacing_m);
   system.gravity = spec.gravity_m_per_s2;
   system.viscous_damping = spec.viscous_damping_per_s;
   system.floor = spec.floor;
   system.solver = spec.solver;
+  return system;
+}
+
+System build_cloth_window(const SceneSpec& spec, const GridWindow& window) {
+  const ClothSpec& cloth = cloth_of(spec);
+  System system = outline_of_cloth(spec);
+  const GridPatch grid{window.rows, window.columns, cloth.spacing_m};
+  system.topology = grid;
+  system.node_mass.assign(grid.nodes(), cloth.areal_density_kg_per_m2 * cloth.spacing_m * cloth.spacing_m);
 
   const Ripple ripple(cloth);
   const double height = cloth.ripple.height_m, speed = cloth.ripple.speed_m_per_s;

@@ -25,15 +25,13 @@ std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec);
 /// There is nothing to read: a cloth names no files.
 SceneParts read_cloth(const SceneSpec& spec);
 
-/// The nodes of some rows and columns of a cloth that follow each other.
-struct ClothWindow {
-  std::uint32_t row = 0, column = 0;  ///< the first ones
-  std::uint32_t rows = 0, columns = 0;
-};
+/// The nodes of a window as a cloth of their own, with the numbers that they have in the whole: what lies
+/// outside is not built. Its springs are left out: springs_of (model/grid_patch.h) gives them. Throws
+/// std::bad_alloc.
+System build_cloth_window(const SceneSpec& spec, const GridWindow& window);
 
-/// Those nodes as a cloth of their own, with the numbers that they have in the whole: what lies outside is
-/// not built. Its springs are left out: springs_of (model/grid_patch.h) gives them. Throws std::bad_alloc.
-System build_cloth_window(const SceneSpec& spec, const ClothWindow& window);
+/// What can be known of the cloth without any of its nodes: all but their masses, pins, springs and start.
+System outline_of_cloth(const SceneSpec& spec);
 
 /// The cloth as spec describes it: node (r, c) has the index r * columns + c and starts at
 /// (c spacing, ceiling height, r spacing) plus the ripple, a standing wave of given amplitude in position and

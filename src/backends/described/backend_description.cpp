@@ -28,6 +28,8 @@ constexpr std::size_t most_words = 64;
 constexpr std::string_view cloth = "cloth", bodies = "bodies";
 constexpr std::string_view ranks = "ranks";
 constexpr std::array<std::string_view, 2> process_words{"one", ranks};
+constexpr std::string_view windows = "windows";
+constexpr std::array<std::string_view, 2> state_words{"whole", windows};
 constexpr std::string_view remedy = "give the description of a backend, NAME.json";
 
 /// What a description says, field by field.
@@ -38,6 +40,7 @@ struct Description {
   std::optional<double> time_limit_s;
   std::string install;
   std::uint32_t processes = 0;  ///< of process_words
+  std::uint32_t states = 0;     ///< of state_words
 };
 
 void visit(FieldVisitor& fields, Description& description) {
@@ -59,6 +62,10 @@ void visit(FieldVisitor& fields, Description& description) {
                  "ranks: it runs in MSSIM_RANKS processes, and builds cloths from the file MSSIM_SCENE_FILE "
                  "(default: one)."},
                 Presence::optional, process_words, description.processes);
+  fields.choice({"states",
+                 "windows: of a cloth it can also restart by itself and give the states of some rows and "
+                 "columns; with ranks only (default: whole)."},
+                Presence::optional, state_words, description.states);
 }
 
 void require_known(const fs::path& file, const std::string& list, const std::vector<std::string>& words,
@@ -119,6 +126,9 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   }
   if (description.time_limit_s) program.time_limit_s = *description.time_limit_s;
   program.in_ranks = process_words.at(description.processes) == ranks;
+  program.has_windows = state_words.at(description.states) == windows;
+  if (program.has_windows && !program.in_ranks)
+    refuse(file, "/states", "is \"windows\", which goes with \"processes\": \"ranks\": add that, or leave it out");
   find_file(program, file);
   if (!program.missing.empty() && !description.install.empty())
     program.missing += "; " + printable(description.install);

@@ -19,13 +19,7 @@ class AheadBackend final : public Backend {
   }
   State state() const override {
     State state = backend_->state();
-    const double floor = system_.floor.height;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-      Vec3d& x = state.position[i];
-      const bool was_above = x.y >= floor;
-      x -= seconds_ * state.velocity[i];
-      if (was_above) x.y = std::max(x.y, floor);
-    }
+    move_back(state, seconds_, system_.floor.height);
     return state;
   }
   void step(int count) override { backend_->step(count); }
@@ -47,6 +41,15 @@ class AheadBackend final : public Backend {
 };
 
 }  // namespace
+
+void move_back(State& state, double seconds, double floor) {
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    Vec3d& x = state.position[i];
+    const bool was_above = x.y >= floor;
+    x -= seconds * state.velocity[i];
+    if (was_above) x.y = std::max(x.y, floor);
+  }
+}
 
 std::unique_ptr<Backend> step_ahead(std::unique_ptr<Backend> backend, const System& system,
                                     const Integrator& integrator, double dt_s) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <iomanip>
 #include <limits>
@@ -18,13 +17,13 @@
 #include <utility>
 #include <vector>
 
+#include "backends/interface/ahead.h"
 #include "backends/process/conversation.h"
 #include "backends/process/method_text.h"
+#include "backends/process/program_start.h"
 #include "backends/process/state_file.h"
 #include "backends/process/system_file.h"
-#include "platform/data_folder.h"
 #include "platform/ending_signals.h"
-#include "platform/process_cpus.h"
 #include "platform/supervised_process.h"
 #include "platform/temporary_folder.h"
 #include "text/note.h"
@@ -60,31 +59,6 @@ std::string last_line(std::string_view output) {
   return printable(output.substr(output.find_last_of('\n') + 1), longest_shown);
 }
 
-std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
-                                        const ExecutionOptions& options) {
-  const char* path = std::getenv("PYTHONPATH");
-  const std::string count = std::to_string(processors_of(program, options));
-  std::vector<std::string> all{
-      "MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count, "OMP_NUM_THREADS=" + count,
-      "PYTHONPATH=" + (data_folder() / "python").string() + (path && *path ? std::string(":") + path : "")};
-  if (program.in_ranks) {
-    all.push_back("MSSIM_RANKS=" + std::to_string(options.ranks));
-    all.push_back("MSSIM_LAUNCHER=" + options.launcher);
-    all.push_back("MSSIM_SCENE_FILE=" + std::filesystem::absolute(options.scene_file).string());
-    all.push_back(std::string("MSSIM_ROOTS=") + (options.roots == Roots::exact ? "exact" : "fast"));
-  }
-  all.insert(all.end(), program.environment.begin(), program.environment.end());
-  return all;
-}
-
-/// The first of the processors that mssim may use; none where the program may use all of them.
-std::vector<int> first_cpus(int threads) {
-  std::vector<int> cpus = process_cpus();
-  if (cpus.size() <= static_cast<std::size_t>(threads)) return {};
-  cpus.resize(static_cast<std::size_t>(threads));
-  return cpus;
-}
-
 /// Throws Unsupported for what the program is known not to have.
 void require_support(const BackendProgram& program, const System& system, const Integrator& integrator) {
   refuse_garment(system);
@@ -105,11 +79,16 @@ struct Introduction {
   std::string untimed;
 };
 
-class ProcessBackend final : public Backend {
+class ProcessBackend final : public WindowBackend {
  public:
+  /// `nodes`: of the states that are exchanged.
   ProcessBackend(const BackendProgram& program, const System& system, const Integrator& integrator,
-                 double dt_s, const ExecutionOptions& options)
-      : program_(program), conversation_(folder_.path()), state_file_(system.nodes(), folder_.path()) {
+                 double dt_s, const ExecutionOptions& options, std::size_t nodes)
+      : program_(program),
+        ahead_s_(integrator.ahead * dt_s),
+        floor_height_(system.floor.height),
+        conversation_(folder_.path()),
+        state_file_(nodes, folder_.path()) {
     const std::filesystem::path system_file = folder_.path() / "system.h5";
     // A cloth of a program in several processes is built by each for itself, and may be large.
     if (!program.in_ranks || !std::holds_alternative<GridPatch>(system.topology))
@@ -149,14 +128,20 @@ class ProcessBackend final : public Backend {
 
   void step(int count) override { request("step " + std::to_string(count), true); }
 
-  State state() const override {
-    state_file_.clear();
-    request("get");
-    try {
-      return state_file_.read();
-    } catch (const StateFileFailure& failure) {
-      fail(std::string(failure.what()) + " when it was asked \"get\"");
-    }
+  State state() const override { return get("get"); }
+
+  void restart() override {
+    std::ostringstream line;
+    line << std::setprecision(std::numeric_limits<double>::max_digits10) << "restart " << ahead_s_;
+    request(line.str());
+  }
+
+  State window(const GridWindow& window) const override {
+    std::ostringstream line;
+    line << "get " << window.row << ' ' << window.column << ' ' << window.rows << ' ' << window.columns;
+    State state = get(line.str());
+    if (ahead_s_ != 0) move_back(state, ahead_s_, floor_height_);
+    return state;
   }
 
   std::string device() const override { return introduction_.device; }
@@ -242,6 +227,17 @@ class ProcessBackend final : public Backend {
     return *count;
   }
 
+  /// Asks for states and reads them.
+  State get(const std::string& line) const {
+    state_file_.clear();
+    request(line);
+    try {
+      return state_file_.read();
+    } catch (const StateFileFailure& failure) {
+      fail(std::string(failure.what()) + " when it was asked \"" + line + '"');
+    }
+  }
+
   /// Asks for something and waits until it is done. `timed`: the program may say how long it took.
   void request(const std::string& request, bool timed = false) const {
     if (std::exchange(paused_, false)) process_->resume();
@@ -265,6 +261,8 @@ class ProcessBackend final : public Backend {
   }
 
   const BackendProgram& program_;
+  const double ahead_s_;  ///< which the program's positions are ahead of the state's
+  const double floor_height_;
   TemporaryFolder folder_;
   // Asking is part of what does not change the simulation.
   mutable Conversation conversation_;
@@ -273,6 +271,16 @@ class ProcessBackend final : public Backend {
   Introduction introduction_;
   mutable std::optional<SupervisedProcess> process_;
 };
+
+std::unique_ptr<ProcessBackend> start(const BackendProgram& program, const System& system,
+                                      const Integrator& integrator, double dt_s,
+                                      const ExecutionOptions& options, std::size_t nodes) {
+  if (!program.missing.empty()) throw Unavailable(program.missing);
+  require_support(program, system, integrator);
+  // Whether or not somebody waits for these signals already: folders of this backend must not stay behind.
+  const EndingSignals during_preparation(note_ending_signal, 0);
+  return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options, nodes);
+}
 
 }  // namespace
 
@@ -283,11 +291,16 @@ int processors_of(const BackendProgram& program, const ExecutionOptions& options
 std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
                                               const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options) {
-  if (!program.missing.empty()) throw Unavailable(program.missing);
-  require_support(program, system, integrator);
-  // Whether or not somebody waits for these signals already: folders of this backend must not stay behind.
-  const EndingSignals during_preparation(note_ending_signal, 0);
-  return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options);
+  return start(program, system, integrator, dt_s, options, system.nodes());
+}
+
+std::unique_ptr<WindowBackend> make_process_window_backend(const BackendProgram& program,
+                                                           const System& outline,
+                                                           const Integrator& integrator, double dt_s,
+                                                           const ExecutionOptions& options,
+                                                           std::size_t window_nodes) {
+  if (!program.has_windows) throw Unsupported("it cannot restart and give windows of a cloth");
+  return start(program, outline, integrator, dt_s, options, window_nodes);
 }
 
 }  // namespace mssim

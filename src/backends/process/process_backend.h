@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "backends/interface/backend.h"
+#include "backends/interface/window_backend.h"
 #include "backends/process/backend_program.h"
 
 namespace mssim {
@@ -17,5 +17,14 @@ int processors_of(const BackendProgram& program, const ExecutionOptions& options
 std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
                                               const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options);
+
+/// The same for a cloth of which this process has an outline alone, and a program that has windows (Unsupported
+/// where it has not). `window_nodes`: of every window that it will be asked for. The backend moves the states
+/// of an integrator that is ahead.
+std::unique_ptr<WindowBackend> make_process_window_backend(const BackendProgram& program,
+                                                           const System& outline,
+                                                           const Integrator& integrator, double dt_s,
+                                                           const ExecutionOptions& options,
+                                                           std::size_t window_nodes);
 
 }  // namespace mssim

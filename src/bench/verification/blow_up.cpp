@@ -10,14 +10,19 @@ std::optional<std::size_t> first_bad_node(const State& state) {
 }
 
 std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps) {
+  return find_blow_up(
+      [&](int count) {
+        backend.set_state(from);
+        backend.step(count);
+        return first_bad_node(backend.state());
+      },
+      steps);
+}
+
+std::optional<BlowUp> find_blow_up(
+    const std::function<std::optional<std::size_t>(int steps)>& bad_node_after, int steps) {
   int good = 0, bad = steps;
-  std::optional<std::size_t> node;
-  const auto bad_node_after = [&](int count) {
-    backend.set_state(from);
-    backend.step(count);
-    return first_bad_node(backend.state());
-  };
-  node = bad_node_after(bad);
+  std::optional<std::size_t> node = bad_node_after(bad);
   if (!node) return std::nullopt;
   while (bad - good > 1) {
     const int middle = good + (bad - good) / 2;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,10 @@ std::optional<std::size_t> first_bad_node(const State& state);
 /// number that is not finite stays so. Leaves the backend in any state. Empty if the simulation is good after
 /// all.
 std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps);
+
+/// The same by any way to find the first bad node so many steps after the start.
+std::optional<BlowUp> find_blow_up(
+    const std::function<std::optional<std::size_t>(int steps)>& bad_node_after, int steps);
 
 /// "blew up at step 12 (t = 0.0012 s): node 34 is not finite; ..." with the remedy. `steps_before` were taken
 /// before.
