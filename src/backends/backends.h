@@ -61,8 +61,7 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
 /// BackendFailure.
 std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, const System& outline,
                                                    const Integrator& integrator, double dt_s,
-                                                   const ExecutionOptions& options,
-                                                   std::size_t window_nodes);
+                                                   const ExecutionOptions& options, std::size_t window_nodes);
 
 /// Whether it can be asked for windows of a cloth that no process has the whole of.
 inline bool has_windows(const BackendInfo& backend) {

@@ -17,12 +17,14 @@
 #include "bench/job/combination.h"
 #include "bench/roofline/machine_peak.h"
 #include "bench/roofline/step_cost.h"
+#include "bench/windows/window_verification.h"
 #include "garment/bench/dressing_record.h"
 #include "garment/bench/garment_verification.h"
 #include "garment/stepping/dressing_backend.h"
 #include "platform/process_cpus.h"
 #include "statistics/statistics.h"
 #include "text/counted.h"
+#include "text/note.h"
 
 namespace mssim {
 namespace {
@@ -33,12 +35,12 @@ using Clock = std::chrono::steady_clock;
 using Peaks = std::map<std::pair<const Integrator*, int>, MachinePeak>;
 
 /// Measures the peaks that the combinations are held against, now. None for a garment: what a step of it has
-/// to do depends on what touches and what is sewn; none for implicit integrators, whose solvers go on for as
-/// long as it takes; and none where only samples are wanted.
+/// to do depends on what touches and what is sewn; none of a cloth that does not fit here; none for implicit
+/// integrators, whose solvers go on for as long as it takes; and none where only samples are wanted.
 Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combinations, const StepSize& size,
                     const BenchWatch& watch) {
   Peaks peaks;
-  if (job.garment || job.verified) return peaks;
+  if (job.garment || job.verified || job.windowed) return peaks;
   for (const Combination& combination : combinations) {
     const int threads = combination.row.threads;
     const auto key = std::pair(combination.integrator, threads);
@@ -64,7 +66,7 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
 }
 
 /// Compares a backend with the reference.
-using Verifier = std::function<Verification(Backend& backend)>;
+using Verifier = std::function<Verification(Combination& combination)>;
 
 /// Runs the reference. `draped`: the garment, settled; none where the scene is no garment or cannot be
 /// dressed. The verifier is empty where no backend has the scene with this integrator.
@@ -73,9 +75,21 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
   if (job.garment && !dresses(integrator)) return {};
   if (job.garment)
     return [&job, reference = run_garment_reference(*job.system, integrator, job.dt_s, *draped)](
-               Backend& backend) { return verify_garment(backend, *job.system, reference, job.dt_s); };
-  return [&job, reference = run_reference(*job.system, integrator, job.dt_s)](Backend& backend) {
-    return verify(backend, *job.system, reference, job.dt_s);
+               Combination& combination) {
+      return verify_garment(*combination.backend, *job.system, reference, job.dt_s);
+    };
+  if (job.windowed)
+    return [&job, &integrator,
+            reference = run_window_references(*job.windowed, integrator, job.dt_s,
+                                              static_cast<std::size_t>(job.execution.threads))](
+               Combination& combination) {
+      Verification found =
+          verify_windows(*combination.windows, *job.windowed, integrator, reference, job.dt_s);
+      if (!found.failure) add_to_note(combination.row.note, share_seen(*job.windowed));
+      return found;
+    };
+  return [&job, reference = run_reference(*job.system, integrator, job.dt_s)](Combination& combination) {
+    return verify(*combination.backend, *job.system, reference, job.dt_s);
   };
 }
 
@@ -86,7 +100,7 @@ Combination make_verified(const SceneJob& job, const BackendInfo& info, const In
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)
-    attempt(combination, [&] { take_verification(combination, verifier(*combination.backend)); });
+    attempt(combination, [&] { take_verification(combination, verifier(combination)); });
   return combination;
 }
 
@@ -116,7 +130,7 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   std::atomic<std::size_t> next = 0;
   const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
   std::vector<std::future<void>> threads;
-  for (std::size_t thread = 0; thread < references_at_once(job); ++thread)
+  for (std::size_t thread = 0; thread < (job.windowed ? 1 : references_at_once(job)); ++thread)
     threads.push_back(std::async(std::launch::async, [&] {
       for (std::size_t i = next++; i < order.size(); i = next++)
         run(*job.integrators[order[i]], results[order[i]]);
@@ -244,7 +258,9 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       if (combination.backend) calibrate(combination, job);
     }
   }
-  const StepSize size = step_size(*job.system);
+  const StepSize size = job.windowed ? StepSize{job.windowed->nodes(), job.windowed->springs,
+                                                bytes_per_spring(job.system->topology)}
+                                     : step_size(*job.system);
   const Peaks peaks = measure_peaks(job, all, size, watch);
 
   std::vector<std::size_t> order(all.size());

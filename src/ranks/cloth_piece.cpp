@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backends/vectors/instruction_sets.h"
+#include "platform/available_memory.h"
 #include "scene/cloth.h"
 #include "text/counted.h"
 
@@ -58,9 +59,11 @@ std::size_t columns_on_host(const Session& session, std::size_t columns) {
 }  // namespace
 
 ClothPiece::ClothPiece(const Session& session, const RankJob& job)
-    : ranks_(session.ranks()),
+    : scene_(job.scene),
+      ranks_(session.ranks()),
       rank_(session.rank()),
       columns_(std::get<ClothSpec>(job.scene.content).columns),
+      integrator_(job.integrator),
       kernel_(common_kernel(session, *job.integrator, job.roots)) {
   const std::size_t least = ghost_columns(*job.integrator, 1);
   if (ranks_ > 1 && columns_ / static_cast<std::size_t>(ranks_) < least)
@@ -76,17 +79,40 @@ void ClothPiece::make(const Session& session, const RankJob& job, std::size_t st
   messages_.reset();
   bands_.reset();
   ghosts_ = ghost_columns(*job.integrator, steps);
+  require_memory(session, steps);
   const ColumnRange own = columns_of(rank_), all = with_ghosts(rank_);
-  System system = build_cloth_window(job.scene, {.row = 0,
-                                                 .column = static_cast<std::uint32_t>(all.first),
-                                                 .rows = std::get<ClothSpec>(job.scene.content).rows,
-                                                 .columns = static_cast<std::uint32_t>(all.count)});
-  round_start_to_single(system);
+  const System system = nodes_at_start();
   bands_.emplace(system, std::get<GridPatch>(system.topology), *job.integrator, job.dt_s, kernel_.lanes,
                  static_cast<std::size_t>(job.threads), steps, ColumnRange{own.first - all.first, own.count});
   messages_.emplace(session, *bands_);
   if (ranks_ > 1) bands_->messages = &*messages_;
   bands_->set_state(system.start);
+}
+
+System ClothPiece::nodes_at_start() const {
+  const ColumnRange all = with_ghosts(rank_);
+  System system = build_cloth_window(scene_, {.row = 0,
+                                              .column = static_cast<std::uint32_t>(all.first),
+                                              .rows = std::get<ClothSpec>(scene_.content).rows,
+                                              .columns = static_cast<std::uint32_t>(all.count)});
+  round_start_to_single(system);
+  return system;
+}
+
+void ClothPiece::require_memory(const Session& session, std::size_t steps) const {
+  // A node's start with its mass, while the piece is filled, and its state in the bands.
+  constexpr std::uint64_t node_bytes =
+      2 * sizeof(Vec3d) + sizeof(double) + BandLayout::components * sizeof(float);
+  const std::size_t ghosts = 2 * ghost_columns(*integrator_, steps);
+  const std::uint64_t columns = columns_ / static_cast<std::size_t>(ranks_) + ghosts;
+  const std::uint64_t bytes = node_bytes * columns * std::get<ClothSpec>(scene_.content).rows;
+  const auto here = static_cast<std::uint64_t>(session.ranks_on_host());
+  std::string sentence;
+  if (const auto shortage = memory_shortage(here * bytes))
+    sentence = session.name_of(rank_) + (here > 1 ? " with the others there " : " ") + *shortage +
+               ": take more machines, or make the scene smaller";
+  for (const std::string& other : session.gather(sentence))
+    if (!other.empty()) throw Unavailable(other);
 }
 
 std::size_t ClothPiece::chosen_steps(const Session& session, const RankJob& job) {
@@ -164,6 +190,36 @@ State ClothPiece::state() const {
     copy(with_ghosts.velocity, own.velocity);
   }
   return own;
+}
+
+void ClothPiece::restart(double seconds) {
+  State start = nodes_at_start().start;
+  if (seconds != 0)
+    for (std::size_t i = 0; i < start.position.size(); ++i) start.position[i] += seconds * start.velocity[i];
+  bands_->set_state(start);
+}
+
+GridWindow ClothPiece::part_of_window(int rank, const GridWindow& window) const {
+  const ColumnRange own = columns_of(rank);
+  const std::size_t begin = std::max<std::size_t>(own.first, window.column);
+  const std::size_t end = std::min<std::size_t>(own.end(), window.column + window.columns);
+  return {window.row, static_cast<std::uint32_t>(begin), window.rows,
+          static_cast<std::uint32_t>(end - std::min(begin, end))};
+}
+
+std::vector<NodeRun> ClothPiece::owned_by(int rank, const GridWindow& window) const {
+  const GridWindow part = part_of_window(rank, window);
+  std::vector<NodeRun> runs;
+  for (std::size_t row = 0; row < part.rows && part.columns > 0; ++row)
+    runs.push_back({row * window.columns + part.column - window.column, part.columns});
+  return runs;
+}
+
+State ClothPiece::state(const GridWindow& window) const {
+  GridWindow part = part_of_window(rank_, window);
+  if (part.columns == 0) return {};
+  part.column -= static_cast<std::uint32_t>(with_ghosts(rank_).first);
+  return bands_->state(part);
 }
 
 std::string ClothPiece::note() const {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/step_bands.h"
@@ -25,6 +26,9 @@ class ClothPiece final : public Piece {
   std::size_t scene_nodes() const override { return bands_->layout.rows * columns_; }
   void set_state(const State& state) override { bands_->set_state(state); }
   State state() const override;
+  void restart(double seconds) override;
+  std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const override;
+  State state(const GridWindow& window) const override;
   void step(int count) override { kernel_.step(*bands_, count); }
   int threads() const override { return static_cast<int>(bands_->inner_count); }
   std::string note() const override;
@@ -43,10 +47,19 @@ class ClothPiece final : public Piece {
   ColumnRange with_ghosts(int rank) const;
   std::vector<NodeRun> runs_of(ColumnRange columns) const;
 
+  /// The nodes that this rank has, at the scene's start state.
+  System nodes_at_start() const;
+  /// The part of a window that a rank owns.
+  GridWindow part_of_window(int rank, const GridWindow& window) const;
+  /// Throws Unavailable, on all ranks alike, where a host has not the memory for its ranks.
+  void require_memory(const Session& session, std::size_t steps) const;
+
+  SceneSpec scene_;
   int ranks_;
   int rank_;
   std::size_t columns_;  ///< of the scene
   std::size_t ghosts_ = 0;
+  const Integrator* integrator_;
   BandKernel kernel_;
   std::optional<BandGrid> bands_;
   std::optional<NeighbourMessages> messages_;

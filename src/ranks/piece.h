@@ -44,6 +44,13 @@ class Piece {
   virtual void set_state(const State& state) = 0;
   /// The present state of the nodes of owned_by(this rank).
   virtual State state() const = 0;
+  /// Goes back to the scene's start state, its positions moved by so many seconds of their velocities. Throws
+  /// RankFailure where it cannot.
+  virtual void restart(double seconds);
+  /// The nodes of a window of a cloth that a rank owns, as the window numbers them. Throws RankFailure.
+  virtual std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const;
+  /// The present state of those of this rank. Throws RankFailure.
+  virtual State state(const GridWindow& window) const;
   /// Takes so many steps, as all ranks do at the same time.
   virtual void step(int count) = 0;
 

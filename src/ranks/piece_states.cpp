@@ -122,6 +122,34 @@ void exchange(const Session& session, Message& message, int rank, const Start& s
   session.wait({&request, 1}, std::array{rank});
 }
 
+/// Writes what the ranks own of the nodes of a file into it: runs_of(rank), whose state on this rank is
+/// `own`.
+template <class RunsOf>
+void gather(const Session& session, const std::filesystem::path& file, std::size_t nodes,
+            const RunsOf& runs_of, const State& own) {
+  std::size_t given = 0;
+  const auto fill = [&](Message& message) {
+    std::copy_n(own.position.data() + given, message.nodes, message.positions());
+    std::copy_n(own.velocity.data() + given, message.nodes, message.velocities());
+    given += message.nodes;
+  };
+  std::optional<MappedState> all;
+  if (session.rank() == 0) all.emplace(file, nodes);
+  for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
+    if (session.rank() == rank)
+      fill(message);
+    else
+      exchange(session, message, rank, MPI_Irecv);
+    if (all)
+      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+        std::copy_n(message.positions() + place, run.count, all->position(run.first));
+        std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
+      });
+    else
+      exchange(session, message, 0, MPI_Isend);
+  });
+}
+
 }  // namespace
 
 void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece) {
@@ -150,29 +178,15 @@ void scatter_state(const Session& session, const std::filesystem::path& file, Pi
 }
 
 void gather_state(const Session& session, const std::filesystem::path& file, const Piece& piece) {
-  const State own = piece.state();
-  std::size_t given = 0;
-  const auto fill = [&](Message& message) {
-    std::copy_n(own.position.data() + given, message.nodes, message.positions());
-    std::copy_n(own.velocity.data() + given, message.nodes, message.velocities());
-    given += message.nodes;
-  };
-  std::optional<MappedState> all;
-  if (session.rank() == 0) all.emplace(file, piece.scene_nodes());
-  const auto runs_of = [&](int rank) { return piece.owned_by(rank); };
-  for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
-    if (session.rank() == rank)
-      fill(message);
-    else
-      exchange(session, message, rank, MPI_Irecv);
-    if (all)
-      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
-        std::copy_n(message.positions() + place, run.count, all->position(run.first));
-        std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
-      });
-    else
-      exchange(session, message, 0, MPI_Isend);
-  });
+  gather(
+      session, file, piece.scene_nodes(), [&](int rank) { return piece.owned_by(rank); }, piece.state());
+}
+
+void gather_window(const Session& session, const std::filesystem::path& file, const Piece& piece,
+                   const GridWindow& window) {
+  gather(
+      session, file, window.nodes(), [&](int rank) { return piece.owned_by(rank, window); },
+      piece.state(window));
 }
 
 }  // namespace mssim

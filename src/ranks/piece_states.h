@@ -17,4 +17,8 @@ void scatter_state(const Session& session, const std::filesystem::path& file, Pi
 /// Writes what every rank owns into the file.
 void gather_state(const Session& session, const std::filesystem::path& file, const Piece& piece);
 
+/// The same of a window of a cloth: the file has its nodes alone.
+void gather_window(const Session& session, const std::filesystem::path& file, const Piece& piece,
+                   const GridWindow& window);
+
 }  // namespace mssim

@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,9 +33,11 @@ namespace {
 
 /// What rank 0 asks of all ranks, itself included.
 struct Wish {
-  enum Kind : int { set, step, get, end };
+  enum Kind : int { set, restart, step, get, window, end };
   int kind = end;
-  int count = 0;  ///< of steps
+  int count = 0;          ///< of steps
+  double seconds = 0;     ///< that positions are ahead of the start
+  GridWindow nodes = {};  ///< of a window
 };
 
 /// What mssim has told rank 0, as a text for the other ranks. Only rank 0 needs the scene's file and the
@@ -124,6 +127,16 @@ Wish wish_of(const std::string& line) {
   if (line == "set") return {Wish::set};
   if (line == "get") return {Wish::get};
   if (line == "end") return {Wish::end};
+  std::istringstream words(line);
+  std::string word, rest;
+  words >> word;
+  if (Wish wish{.kind = Wish::restart}; word == "restart" && words >> wish.seconds && !(words >> rest))
+    return wish;
+  if (Wish wish{.kind = Wish::window};
+      word == "get" &&
+      words >> wish.nodes.row >> wish.nodes.column >> wish.nodes.rows >> wish.nodes.columns &&
+      !(words >> rest))
+    return wish;
   if (line.starts_with("step "))
     if (const auto count = number_in<int>(std::string_view(line).substr(5))) return {Wish::step, *count};
   throw RankFailure("mssim asks for \"" + line + "\", which this program does not know");
@@ -135,12 +148,14 @@ void serve(const Session& session, Piece& piece, std::optional<Requests>& reques
   for (;;) {
     Wish wish = requests ? wish_of(requests->next()) : Wish{};
     MPI_Request request = MPI_REQUEST_NULL;
-    check_mpi(MPI_Ibcast(&wish, 2, MPI_INT, 0, MPI_COMM_WORLD, &request), "sharing a request");
+    check_mpi(MPI_Ibcast(&wish, sizeof wish, MPI_BYTE, 0, MPI_COMM_WORLD, &request), "sharing a request");
     Session::wait_idle(request);
     if (wish.kind == Wish::end) return;
     if (wish.kind == Wish::set) scatter_state(session, state_file, piece);
     if (wish.kind == Wish::step) piece.step(wish.count);
     if (wish.kind == Wish::get) gather_state(session, state_file, piece);
+    if (wish.kind == Wish::restart) piece.restart(wish.seconds);
+    if (wish.kind == Wish::window) gather_window(session, state_file, piece, wish.nodes);
     session.meet();
     if (requests) requests->answer("done");
   }
@@ -166,6 +181,8 @@ void work(Session& session) {
     serve(session, *piece, requests, introduction["state"]);
   } catch (const Unsupported& unsupported) {  // by all ranks alike
     if (requests) requests->answer(in_one_line(std::string("unsupported ") + unsupported.what()));
+  } catch (const Unavailable& unavailable) {
+    if (requests) requests->answer(in_one_line(std::string("unavailable ") + unavailable.what()));
   }
 }
 

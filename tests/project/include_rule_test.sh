@@ -60,9 +60,10 @@ bench/machine         mssim text platform
 bench/results         text statistics bench/machine
 bench/roofline        integrators model
 bench/verification    text integrators model backends/interface backends
-bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification
+bench/windows         text platform integrators model backends/interface backends/layouts backends bench/verification
+bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification bench/windows
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
-bench                 text platform statistics backends garment/stepping bench/roofline bench/verification bench/job garment/bench
+bench                 text platform statistics backends garment/stepping bench/roofline bench/verification bench/windows bench/job garment/bench
 guide                 text statistics platform laws integrators model backends/interface bench/verification backends
 
 output/tables         text statistics platform bench/machine bench/results
@@ -80,7 +81,7 @@ commands/run          platform model scene garment/stepping garment/fitting back
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/export       text platform output/exports output/traces commands/arguments commands/shared
 commands/guide        text platform integrators scene/spec scene backends/interface backends bench/machine guide output/tables output/guide output/folders commands/arguments commands/shared
-commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared commands/guide
+commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/windows bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared commands/guide
 commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/arguments commands/shared commands/bench
 commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench
 commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/arguments commands/shared commands/run commands/bench

@@ -128,7 +128,8 @@ BackendProgram parse_description(const fs::path& file, const std::string& text) 
   program.in_ranks = process_words.at(description.processes) == ranks;
   program.has_windows = state_words.at(description.states) == windows;
   if (program.has_windows && !program.in_ranks)
-    refuse(file, "/states", "is \"windows\", which goes with \"processes\": \"ranks\": add that, or leave it out");
+    refuse(file, "/states",
+           "is \"windows\", which goes with \"processes\": \"ranks\": add that, or leave it out");
   find_file(program, file);
   if (!program.missing.empty() && !description.install.empty())
     program.missing += "; " + printable(description.install);

@@ -133,20 +133,27 @@ void BandGrid::set_state(const State& state) {
 }
 
 State BandGrid::state() const {
+  return state({0, 0, static_cast<std::uint32_t>(layout.rows), static_cast<std::uint32_t>(layout.columns)});
+}
+
+State BandGrid::state(const GridWindow& window) const {
   State state;
-  const std::size_t nodes = layout.rows * layout.columns;
-  state.position.resize(nodes);
-  state.velocity.resize(nodes);
-  for (const BandPartition& partition : partitions)
-    for (std::size_t c = partition.first; c < partition.first + partition.count; ++c) {
+  state.position.resize(window.nodes());
+  state.velocity.resize(window.nodes());
+  for (const BandPartition& partition : partitions) {
+    const std::size_t begin = std::max<std::size_t>(partition.first, window.column);
+    const std::size_t end =
+        std::min<std::size_t>(partition.first + partition.count, window.column + window.columns);
+    for (std::size_t c = begin; c < end; ++c) {
       const float* column = partition.column(layout, Pair::state, c);
-      for (std::size_t row = 0; row < layout.rows; ++row) {
-        const float* in = column + layout.offset(row);
-        const std::size_t node = row * layout.columns + c, step = layout.lanes;
+      for (std::size_t row = 0; row < window.rows; ++row) {
+        const float* in = column + layout.offset(window.row + row);
+        const std::size_t node = row * window.columns + c - window.column, step = layout.lanes;
         state.position[node] = vec3_cast<double>(Vec3<float>{in[0], in[step], in[2 * step]});
         state.velocity[node] = vec3_cast<double>(Vec3<float>{in[3 * step], in[4 * step], in[5 * step]});
       }
     }
+  }
   return state;
 }
 

@@ -130,6 +130,8 @@ struct BandGrid {
   /// Spreads the state over the partitions, each by a thread of its own, ghosts, halos and dummies included.
   void set_state(const State& state);
   State state() const;
+  /// That of the nodes of a window, whose columns it owns.
+  State state(const GridWindow& window) const;
 
  private:
   double spacing_ = 0;  ///< m, places the dummies

@@ -8,7 +8,8 @@
 
 namespace mssim {
 
-/// NAME=VALUE: what the program finds in its environment beside this process's. `socket`: where mssim listens.
+/// NAME=VALUE: what the program finds in its environment beside this process's. `socket`: where mssim
+/// listens.
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
                                         const ExecutionOptions& options);
 

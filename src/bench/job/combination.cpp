@@ -9,6 +9,7 @@
 
 #include "bench/job/sample_length.h"
 #include "bench/verification/blow_up.h"
+#include "bench/windows/window_verification.h"
 #include "integrators/all_integrators.h"
 #include "statistics/outliers.h"
 #include "statistics/statistics.h"
@@ -27,14 +28,22 @@ struct SampleTime {
   double processor_s = 0;
 };
 
+/// Goes back to what samples start from.
+void restart(Combination& combination) {
+  if (combination.windows)
+    combination.windows->restart();
+  else
+    combination.backend->set_state(*combination.start);
+}
+
 /// Runs the steps of one sample.
 SampleTime time_sample(Combination& combination, int steps) {
   using Clock = std::chrono::steady_clock;
   Backend& backend = *combination.backend;
-  backend.set_state(*combination.start);
+  restart(combination);
   if (combination.step_seconds < long_step_s) {
     backend.step(1);  // wakes threads and caches up
-    backend.set_state(*combination.start);
+    restart(combination);
   }
   const double processor_before = backend.processor_seconds();
   const auto before = Clock::now();
@@ -67,6 +76,7 @@ void fail(Combination& combination, const std::string& status) {
   end(combination);
   combination.backend.reset();
   combination.dressing = nullptr;
+  combination.windows = nullptr;
 }
 
 void leave_untimed(Combination& combination) {
@@ -75,6 +85,7 @@ void leave_untimed(Combination& combination) {
   combination.row.status = "not timed: " + reason;
   end(combination);
   combination.backend.reset();
+  combination.windows = nullptr;
 }
 
 void attempt(Combination& combination, const std::function<void()>& work) {
@@ -93,8 +104,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
   combination.start = &start;
   ResultRow& row = combination.row;
   row.scene = job.name;
-  row.nodes = job.system->nodes();
-  row.springs_unique = job.system->springs.size();
+  row.nodes = job.windowed ? job.windowed->nodes() : job.system->nodes();
+  row.springs_unique = job.windowed ? job.windowed->springs : job.system->springs.size();
   row.springs_published = job.springs_published;
   row.note = job.note;
   row.backend = info.name;
@@ -105,6 +116,11 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
       auto dressing = make_dressing_backend(info, *job.system, integrator, job.dt_s, job.execution);
       combination.dressing = dressing.get();
       combination.backend = std::move(dressing);
+    } else if (job.windowed) {
+      auto windows = make_window_backend(info, *job.system, integrator, job.dt_s, job.execution,
+                                         job.windowed->windows.front().nodes());
+      combination.windows = windows.get();
+      combination.backend = std::move(windows);
     } else {
       combination.backend = make_backend(info, *job.system, integrator, job.dt_s, job.execution);
     }
@@ -188,14 +204,26 @@ void calibrate(Combination& combination, const SceneJob& job) {
   });
 }
 
+namespace {
+
+bool has_blown_up(const Combination& combination, const SceneJob& job) {
+  return (combination.windows ? first_bad_node(*combination.windows, *job.windowed)
+                              : first_bad_node(combination.backend->state()))
+      .has_value();
+}
+
+}  // namespace
+
 std::optional<double> sample_ms(Combination& combination, const SceneJob& job) {
   std::optional<double> ms;
   attempt(combination, [&] {
     const SampleTime time = time_sample(combination, combination.steps);
-    if (first_bad_node(combination.backend->state())) {
-      const auto blow_up = find_blow_up(*combination.backend, *combination.start, combination.steps);
-      fail(combination, "failed: " + (blow_up ? describe(*blow_up, job.dt_s)
-                                              : "not finite in one run, finite in the next: a data race"));
+    if (has_blown_up(combination, job)) {
+      const std::optional<BlowUp> blow_up =
+          combination.windows ? find_blow_up(*combination.windows, *job.windowed, combination.steps)
+                              : find_blow_up(*combination.backend, *combination.start, combination.steps);
+      fail(combination,
+           "failed: " + (blow_up ? describe(*blow_up, job.dt_s) : std::string(finite_in_the_next)));
     } else {
       combination.backend->rest();
     }

@@ -22,6 +22,7 @@ struct Combination {
   const State* start = nullptr;         ///< of every sample
   std::unique_ptr<Backend> backend;     ///< null where the row has no times: it cannot run, or has failed
   DressingBackend* dressing = nullptr;  ///< the same, of a garment
+  WindowBackend* windows = nullptr;     ///< the same, of a cloth that is seen in windows
   int steps = 1;                        ///< in a sample
   std::vector<double> processors;       ///< that each sample of this run took: processor seconds a second
   double step_seconds = 0;              ///< what calibrate has found; 0 before

@@ -19,8 +19,8 @@ std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int step
       steps);
 }
 
-std::optional<BlowUp> find_blow_up(
-    const std::function<std::optional<std::size_t>(int steps)>& bad_node_after, int steps) {
+std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t>(int steps)>& bad_node_after,
+                                   int steps) {
   int good = 0, bad = steps;
   std::optional<std::size_t> node = bad_node_after(bad);
   if (!node) return std::nullopt;

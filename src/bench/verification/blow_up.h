@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "backends/interface/backend.h"
 
@@ -15,6 +16,10 @@ struct BlowUp {
   std::size_t node = 0;
 };
 
+/// What is said where steps blow up, and do not when they are taken again.
+inline constexpr std::string_view finite_in_the_next =
+    "not finite in one run, finite in the next: a data race";
+
 /// The first node whose position or velocity is not finite.
 std::optional<std::size_t> first_bad_node(const State& state);
 
@@ -24,8 +29,8 @@ std::optional<std::size_t> first_bad_node(const State& state);
 std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps);
 
 /// The same by any way to find the first bad node so many steps after the start.
-std::optional<BlowUp> find_blow_up(
-    const std::function<std::optional<std::size_t>(int steps)>& bad_node_after, int steps);
+std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t>(int steps)>& bad_node_after,
+                                   int steps);
 
 /// "blew up at step 12 (t = 0.0012 s): node 34 is not finite; ..." with the remedy. `steps_before` were taken
 /// before.

@@ -36,6 +36,11 @@ double position_tolerance(const System& system, const Integrator& integrator, in
          largest_coordinate(system.start) / mean_rest_length(system);
 }
 
+std::string touches_at_once(int steps) {
+  return "a node touches the floor within the first " + std::to_string(steps) +
+         " steps, so nothing can be verified before contact; start the scene higher";
+}
+
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s) {
   constexpr int stride = 10;
   Reference reference;
@@ -66,8 +71,7 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
     before = std::move(state);
   }
   if (reference.steps == 0) {
-    reference.failure = "a node touches the floor within the first " + std::to_string(stride) +
-                        " steps, so nothing can be verified before contact; start the scene higher";
+    reference.failure = touches_at_once(stride);
     return reference;
   }
   reference.energy = energy_of(system, reference.state);
@@ -86,8 +90,7 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   const State state = backend.state();
   if (first_bad_node(state)) {
     const auto blow_up = find_blow_up(backend, system.start, reference.steps);
-    result.failure =
-        blow_up ? describe(*blow_up, dt_s) : "not finite in one run, finite in the next: a data race";
+    result.failure = blow_up ? describe(*blow_up, dt_s) : std::string(finite_in_the_next);
     return result;
   }
   result.state_hash = state_hash(state);

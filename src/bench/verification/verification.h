@@ -35,6 +35,9 @@ inline constexpr double energy_tolerance = 0.01;
 /// 1 % too stiff, exceeds it.
 double position_tolerance(const System& system, const Integrator& integrator, int steps);
 
+/// Why there is no reference where a node touches the floor within the first steps.
+std::string touches_at_once(int steps);
+
 /// Runs the reference. Its state is taken, at a multiple of ten steps, before any node touches the floor:
 /// after a bounce, results differ by a step's worth of landing time, and a tolerance would mean nothing.
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s);

@@ -86,6 +86,7 @@ int run_guide_suite(const BenchOptions& options) {
   refuse(options.output.resume, "--resume");
   refuse(options.output.trace, "--trace");
   refuse(options.rounds.has_value(), "--rounds");
+  refuse(options.windows.has_value(), "--windows");
   refuse(!options.verified.empty(), "--verified");
   refuse(options.output.format != SummaryFormat::table, "--format");
   refuse(!options.own_backends.folders.empty(), "--backend-folder");
@@ -174,6 +175,13 @@ std::function<int()> declare_bench(Arguments& arguments) {
                   "Time for the measurement, in as many rounds as fit; traces take extra time",
                   positive_number())
       .value_name("SECONDS");
+  arguments
+      .add_number(
+          "--windows", options->windows,
+          "Verify cloths in N windows, without building the whole (default: only where the whole does "
+          "not fit into the memory, in --ranks + 8); with backends in ranks alone",
+          whole_number(2, 100'000))
+      .value_name("N");
   arguments.add_flag("--dry-run", options->dry_run,
                      "Print what would be measured and about how long it would take, then exit");
   arguments.add("--out", options->output.folder, "Folder for the results: tables, samples, provenance")

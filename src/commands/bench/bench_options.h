@@ -29,6 +29,7 @@ struct BenchOptions {
   ExecutionOptions execution;
   std::optional<int> rounds;  ///< none: the usual number, or as many as the budget allows
   std::optional<double> time_budget_s;
+  std::optional<int> windows;  ///< none: only cloths that do not fit are verified in windows
   bool dry_run = false;
   BenchOutput output;
   std::string verified;  ///< a folder whose rows need not be verified again; empty: none

@@ -47,6 +47,7 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   settings.backends = backends_of(options, comparison, choice);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.execution = complete(options.execution);
+  settings.windows = options.windows;
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
   return settings;
 }
@@ -146,6 +147,9 @@ BenchPlan plan_of(const BenchOptions& options) {
   for (SceneSpec& spec : timed) {
     SceneParts parts = scenes.parts_of(spec);
     plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, plan.settings));
+    if (options.output.trace && !plan.timed.back().windows.empty())
+      throw UsageError("--trace needs the whole of " + plan.timed.back().spec.name +
+                       ", which is verified in windows: leave it out");
   }
   return plan;
 }

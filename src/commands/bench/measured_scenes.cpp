@@ -47,9 +47,13 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
       planned.parts = {};
       continue;
     }
-    const PreparedScene scene = planned.prepare();
+    const PreparedScene scene = planned.windows.empty() ? planned.prepare() : outline_of(planned);
     warn_of_note(scene);
     add_scene(job, scene);
+    if (!planned.windows.empty())
+      job.windowed = WindowedCloth{
+          std::get<GridPatch>(scene.system.topology), scene.counts.springs_unique, planned.windows,
+          [&](const GridWindow& window) { return build_window(scene.spec, window); }};
     job.preparation = planned.time.preparation / (planned.time.preparation + rounds * planned.time.round);
     bool first_round = true;
     const BenchWatch watch{

@@ -31,11 +31,19 @@ struct PlannedScene : UnbuiltScene {
   SceneSize size;
   std::uint64_t memory_bytes = 0;  ///< bench_memory_needed
   ExpectedTime time;
+  std::vector<GridWindow> windows;  ///< in which it is verified and nobody here builds the whole; or none
 };
 
-/// Throws SceneError where the scene needs more memory than there is: a user shall not wait for a scene only
-/// to see the program killed.
+/// A cloth whose backends all have windows gets some where they are asked for, or where the whole does not
+/// fit. Throws UsageError where they are asked for and cannot be had. Throws SceneError where the scene needs
+/// more memory than there is: a user shall not wait for a scene only to see the program killed.
 PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings);
+
+/// What is prepared of a scene that is verified in windows: no node of it.
+PreparedScene outline_of(const PlannedScene& planned);
+
+/// A window of a cloth with its springs.
+System build_window(const SceneSpec& spec, const GridWindow& window);
 
 /// The times of the scenes alone.
 std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes);

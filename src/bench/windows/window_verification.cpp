@@ -1,0 +1,78 @@
+#include "bench/windows/window_verification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "bench/verification/blow_up.h"
+#include "bench/verification/deviation.h"
+#include "model/energy.h"
+#include "text/counted.h"
+
+namespace mssim {
+
+std::optional<std::size_t> first_bad_node(const WindowBackend& backend, const WindowedCloth& cloth) {
+  for (const GridWindow& window : cloth.windows)
+    if (const auto node = first_bad_node(backend.window(window)))
+      return node_of_cloth(window, *node, cloth.grid);
+  return std::nullopt;
+}
+
+std::optional<BlowUp> find_blow_up(WindowBackend& backend, const WindowedCloth& cloth, int steps) {
+  return find_blow_up(
+      [&](int count) {
+        backend.restart();
+        backend.step(count);
+        return first_bad_node(backend, cloth);
+      },
+      steps);
+}
+
+Verification verify_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
+                            const WindowReferences& reference, double dt_s) {
+  Verification result;
+  result.failure = reference.failure;
+  if (result.failure) return result;
+  backend.restart();
+  backend.step(reference.steps);
+  const std::string after = " after " + counted(static_cast<std::uint64_t>(reference.steps), "step");
+  double energy_off = 0, energy_in_motion = 0, worst = 0;  // worst: in tolerances
+  std::ostringstream why;
+  for (const WindowReference& one : reference.windows) {
+    const State state = backend.window(one.window);
+    if (first_bad_node(state)) {
+      const auto blow_up = find_blow_up(backend, cloth, reference.steps);
+      result.failure = blow_up ? describe(*blow_up, dt_s) : std::string(finite_in_the_next);
+      return result;
+    }
+    const State& right = one.after(reference.steps);
+    const Energy expected = energy_of(one.system, right);
+    energy_off += energy_of(one.system, state).total() - expected.total();
+    energy_in_motion += expected.kinetic + expected.elastic;
+    const double error = position_deviation(one.system, right, state);
+    const double tolerance = position_tolerance(one.system, integrator, reference.steps);
+    result.position_error = std::max(result.position_error, error);
+    if (error <= tolerance || error / tolerance <= worst) continue;
+    worst = error / tolerance;
+    why.str("");
+    why << "position error " << error << " of a rest length exceeds " << tolerance << after
+        << " in the window from row " << one.window.row << " and column " << one.window.column << " on";
+  }
+  result.energy_drift = energy_off / energy_in_motion;
+  if (why.str().empty() && !(std::abs(result.energy_drift) <= energy_tolerance))
+    why << "energy in the windows is off by " << result.energy_drift
+        << " of kinetic plus elastic energy, more than " << energy_tolerance << ',' << after;
+  if (!why.str().empty()) result.failure = why.str();
+  return result;
+}
+
+std::string share_seen(const WindowedCloth& cloth) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "verified in " << counted(static_cast<std::uint64_t>(cloth.windows.size()), "window") << ", "
+       << 100 * static_cast<double>(cloth.nodes_in_windows()) / static_cast<double>(cloth.nodes())
+       << " % of the nodes";
+  return text.str();
+}
+
+}  // namespace mssim
