@@ -45,12 +45,17 @@ TEST_F(BackendDescriptionTest, NeedsACommandAlone) {
   EXPECT_THAT(program.integrators, IsEmpty());
   EXPECT_EQ(program.time_limit_s, 120);
   EXPECT_FALSE(program.in_ranks);
+  EXPECT_FALSE(program.has_windows);
+}
+
+TEST_F(BackendDescriptionTest, HasWindowsInRanksAlone) {
+  EXPECT_THROW(parse(R"({"command": ["sh"], "states": "windows"})"), SceneError);
 }
 
 TEST_F(BackendDescriptionTest, TakesEveryField) {
   const BackendProgram program = parse(R"({"command": ["sh"], "description": "a shell", "scenes": ["bodies"],
       "integrators": ["rk4", "semi-euler"], "environment": {"A": "1", "B": ""}, "time_limit_s": 2.5, "processes": "ranks",
-      "install": "nothing to install"})");
+      "states": "windows", "install": "nothing to install"})");
   EXPECT_EQ(program.description, "a shell");
   EXPECT_FALSE(program.steps_cloths);
   EXPECT_TRUE(program.steps_bodies);
@@ -58,6 +63,7 @@ TEST_F(BackendDescriptionTest, TakesEveryField) {
   EXPECT_THAT(program.environment, ElementsAre("A=1", "B="));
   EXPECT_EQ(program.time_limit_s, 2.5);
   EXPECT_TRUE(program.in_ranks);
+  EXPECT_TRUE(program.has_windows);
   EXPECT_EQ(program.missing, "");
 }
 

@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "backends/layouts/column_range.h"
+#include "backends/reference.h"
+#include "bench/verification/verification.h"
+#include "bench/windows/window_choice.h"
+#include "bench/windows/window_reference.h"
+#include "bench/windows/window_verification.h"
+#include "integrators/all_integrators.h"
+#include "scene/cloth.h"
+#include "scene/scene_kinds.h"
+#include "tests/support/cloth_system.h"
+
+namespace mssim {
+namespace {
+
+WindowedCloth windowed(const SceneSpec& spec, std::vector<GridWindow> windows) {
+  const auto& cloth = std::get<ClothSpec>(spec.content);
+  return {{cloth.rows, cloth.columns, cloth.spacing_m},
+          count_springs(cloth.rows, cloth.columns),
+          std::move(windows),
+          [spec](const GridWindow& window) {
+            System system = build_cloth_window(spec, window);
+            system.springs = springs_of(std::get<GridPatch>(system.topology));
+            round_start_to_single(system);
+            return system;
+          }};
+}
+
+/// The whole in double precision, as a backend that gives windows; `wrong` is added to a coordinate of a
+/// node.
+class WholeInWindows final : public WindowBackend {
+ public:
+  WholeInWindows(const System& system, const Integrator& integrator, double dt_s)
+      : system_(system),
+        columns_(std::get<GridPatch>(system.topology).columns),
+        backend_(make_reference(system, integrator, dt_s)) {}
+  void set_state(const State&) override { FAIL() << "the whole is set"; }
+  State state() const override {
+    ADD_FAILURE() << "the whole is asked for";
+    return {};
+  }
+  void restart() override { backend_->set_state(system_.start); }
+  void step(int count) override { backend_->step(count); }
+  State window(const GridWindow& window) const override {
+    const State all = backend_->state();
+    State some;
+    for (std::size_t row = window.row; row < window.row + window.rows; ++row)
+      for (std::size_t column = window.column; column < window.column + window.columns; ++column) {
+        some.position.push_back(all.position[row * columns_ + column]);
+        some.velocity.push_back(all.velocity[row * columns_ + column]);
+        if (row * columns_ + column == wrong_node) some.position.back().z += wrong;
+      }
+    return some;
+  }
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return 1; }
+
+  std::size_t wrong_node = SIZE_MAX;
+  double wrong = 0;
+
+ private:
+  const System& system_;
+  std::size_t columns_;
+  std::unique_ptr<Backend> backend_;
+};
+
+class WindowOfEachIntegrator : public testing::TestWithParam<std::string> {};
+
+TEST_P(WindowOfEachIntegrator, HasTheReferenceOfTheWhole) {
+  const Integrator& integrator = *find_integrator(GetParam());
+  constexpr double dt_s = 1e-4;
+  // Long enough that the domain of a window in the middle is cut at both sides, for every integrator.
+  constexpr std::uint32_t length = 1700, width = 12;
+  for (const bool turned : {false, true}) {
+    SceneSpec spec = turned ? cloth_spec(length, width) : cloth_spec(width, length);
+    std::get<ClothSpec>(spec.content).pins = ClothPins{turned ? length / 2 : 0, 10};
+    const System system = build_system(spec);
+    const auto at = [&](std::uint32_t along, std::uint32_t across) {
+      return turned ? GridWindow{along, across, 10, 6} : GridWindow{across, along, 6, 10};
+    };
+    const WindowedCloth cloth = windowed(spec, {at(0, 0), at(845, 2), at(length - 10, 6), at(1000, 0)});
+    const WindowReferences found = run_window_references(cloth, integrator, dt_s, 2);
+    ASSERT_FALSE(found.failure) << *found.failure;
+    EXPECT_EQ(found.steps, verification_steps);
+    WholeInWindows whole(system, integrator, dt_s);
+    whole.step(found.steps);
+    const double tolerance = integrator.ahead == 0 ? 0 : 1e-14;
+    for (const WindowReference& reference : found.windows) {
+      const State expected = whole.window(reference.window), &state = reference.after(found.steps);
+      ASSERT_EQ(state.position.size(), 60U);
+      double largest = 0;
+      for (std::size_t i = 0; i < state.position.size(); ++i) {
+        const Vec3d x = state.position[i] - expected.position[i],
+                    v = state.velocity[i] - expected.velocity[i];
+        largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+        if (integrator.ahead == 0) EXPECT_EQ(dot(v, v), 0);
+      }
+      EXPECT_LE(largest, tolerance) << "row " << reference.window.row << ", column "
+                                    << reference.window.column;
+      EXPECT_NE(state.position, reference.system.start.position);
+    }
+    EXPECT_FALSE(verify_windows(whole, cloth, integrator, found, dt_s).failure);
+  }
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> all;
+  for (const Integrator& integrator : integrators) all.emplace_back(integrator.name);
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, WindowOfEachIntegrator, testing::ValuesIn(names()), [](const auto& instance) {
+  std::string name = instance.param;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
+
+TEST(WindowVerification, NoticesOneNodeAndOneThatIsNotFinite) {
+  const SceneSpec spec = cloth_spec(40, 50);
+  const System system = build_system(spec);
+  const Integrator& integrator = *find_integrator("semi-euler");
+  const WindowedCloth cloth = windowed(spec, {{0, 0, 10, 10}, {20, 30, 10, 10}});
+  const WindowReferences reference = run_window_references(cloth, integrator, 1e-4, 1);
+  WholeInWindows whole(system, integrator, 1e-4);
+  const Verification right = verify_windows(whole, cloth, integrator, reference, 1e-4);
+  EXPECT_FALSE(right.failure);
+  EXPECT_EQ(right.position_error, 0);
+  EXPECT_FALSE(right.state_hash);
+  whole.wrong_node = 25 * 50 + 35;
+  whole.wrong = 1e-5;
+  const Verification off = verify_windows(whole, cloth, integrator, reference, 1e-4);
+  ASSERT_TRUE(off.failure);
+  EXPECT_NE(off.failure->find("in the window from row 20 and column 30 on"), std::string::npos)
+      << *off.failure;
+  whole.wrong = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(first_bad_node(whole, cloth), whole.wrong_node);
+  const Verification bad = verify_windows(whole, cloth, integrator, reference, 1e-4);
+  ASSERT_TRUE(bad.failure);
+  EXPECT_NE(bad.failure->find("blew up at step 1 (t = 0.0001 s): node 1285 is"), std::string::npos)
+      << *bad.failure;
+}
+
+TEST(WindowReference, EndsWhereANodeMeetsTheFloor) {
+  const SceneSpec spec = sheet_spec(20, 20, 0.0002);
+  const Integrator& integrator = *find_integrator("semi-euler");
+  const WindowReferences found =
+      run_window_references(windowed(spec, {{0, 0, 8, 8}, {12, 12, 8, 8}}), integrator, 1e-4, 1);
+  EXPECT_FALSE(found.failure);
+  EXPECT_EQ(found.steps, 60);  // it falls for 6.4 ms
+}
+
+TEST(WindowChoice, IsApartWithinTheClothAndInEveryPart) {
+  for (const auto& [rows, columns] : {std::pair{200U, 200U}, {1000U, 3000U}, {31623U, 31623U}, {9U, 400U}})
+    for (const std::size_t parts : {1U, 2U, 3U, 8U}) {
+      const GridPatch grid{rows, columns, 0.01};
+      const std::vector<GridWindow> windows = choose_windows(grid, parts, 0, usual_windows(parts));
+      EXPECT_LE(windows.size(), usual_windows(parts));
+      EXPECT_GE(windows.size(), 2U);
+      for (auto a = windows.begin(); a != windows.end(); ++a) {
+        EXPECT_LE(a->row + a->rows, rows);
+        EXPECT_LE(a->column + a->columns, columns);
+        EXPECT_EQ(a->nodes(), windows.front().nodes());
+        for (auto b = windows.begin(); b != a; ++b)
+          EXPECT_TRUE(a->row + a->rows <= b->row || b->row + b->rows <= a->row ||
+                      a->column + a->columns <= b->column || b->column + b->columns <= a->column);
+      }
+      for (std::size_t part = 0; part < parts; ++part) {
+        const ColumnRange own = part_of({0, columns}, part, parts);
+        EXPECT_TRUE(std::ranges::any_of(windows,
+                                        [&](const GridWindow& window) {
+                                          return window.column < own.end() &&
+                                                 window.column + window.columns > own.first;
+                                        }))
+            << "part " << part << " of " << parts;
+      }
+    }
+  EXPECT_EQ(choose_windows({4000, 4000, 0.01}, 3, 0, 20).size(), 20U);
+  EXPECT_EQ(choose_windows({4000, 4000, 0.01}, 3, 0, 20).front().rows, 128U);
+}
+
+TEST(WindowVerification, SaysWhatItHasSeen) {
+  EXPECT_EQ(share_seen(windowed(cloth_spec(100, 100), {{0, 0, 8, 5}, {50, 50, 8, 5}})),
+            "verified in 2 windows, 0.8 % of the nodes");
+}
+
+}  // namespace
+}  // namespace mssim
