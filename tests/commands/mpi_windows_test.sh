@@ -47,7 +47,7 @@ grep -q 'needs at least .*; a cloth with --backend mpi alone can be verified in 
 (ulimit -v "$kilobytes" && "$mssim" bench --scene ./large.json --backend mpi --integrator semi-euler --ranks 2 --threads 1 --rounds 1 --out large >out 2>err) ||
   fail "windows do not do: $(cat err)"
 grep -q ',mpi,.*,true,.*verified in 10 windows, 4.1 % of the nodes' large/timings.csv || fail "windows: $(cat large/timings.csv)"
-printf '#!/bin/sh\nulimit -v 600000\nexec mpirun "$@"\n' >limited
+printf '#!/bin/sh\nulimit -v 450000\nexec mpirun "$@"\n' >limited
 chmod +x limited
 "$mssim" bench --scene ./large.json --backend mpi --integrator semi-euler --ranks 2 --threads 1 --rounds 1 --windows 4 --launcher "$work/limited" --out small >/dev/null 2>&1 &&
   fail "ranks without memory do"

@@ -103,7 +103,9 @@ TEST_P(WindowOfEachIntegrator, HasTheReferenceOfTheWhole) {
         const Vec3d x = state.position[i] - expected.position[i],
                     v = state.velocity[i] - expected.velocity[i];
         largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-        if (integrator.ahead == 0) EXPECT_EQ(dot(v, v), 0);
+        if (integrator.ahead == 0) {
+          EXPECT_EQ(dot(v, v), 0);
+        }
       }
       EXPECT_LE(largest, tolerance) << "row " << reference.window.row << ", column "
                                     << reference.window.column;
@@ -115,7 +117,8 @@ TEST_P(WindowOfEachIntegrator, HasTheReferenceOfTheWhole) {
 
 std::vector<std::string> names() {
   std::vector<std::string> all;
-  for (const Integrator& integrator : integrators) all.emplace_back(integrator.name);
+  for (const Integrator* integrator : all_integrators)
+    if (!is_implicit(*integrator)) all.emplace_back(integrator->name);
   return all;
 }
 
@@ -151,7 +154,8 @@ TEST(WindowVerification, NoticesOneNodeAndOneThatIsNotFinite) {
 }
 
 TEST(WindowReference, EndsWhereANodeMeetsTheFloor) {
-  const SceneSpec spec = sheet_spec(20, 20, 0.0002);
+  SceneSpec spec = sheet_spec(20, 20, 0.0002);
+  spec.floor.restitution = 0;
   const Integrator& integrator = *find_integrator("semi-euler");
   const WindowReferences found =
       run_window_references(windowed(spec, {{0, 0, 8, 8}, {12, 12, 8, 8}}), integrator, 1e-4, 1);
