@@ -25,9 +25,9 @@ struct BenchSettings {
   std::vector<const BackendInfo*> backends;
   std::vector<const Integrator*> integrators;
   ExecutionOptions execution;
-  int rounds = 0;               ///< at most, with a deadline
+  int rounds = 0;                   ///< at most, with a deadline
   std::optional<int> windows = {};  ///< a cloth is verified in so many, and nobody builds the whole
-  double sample_seconds = 0.1;  ///< what a sample's steps should add up to
+  double sample_seconds = 0.1;      ///< what a sample's steps should add up to
   /// Where an earlier process of the same program has verified every combination: its rows, which tell which
   /// are right. Then samples are taken and nothing else is done.
   std::optional<std::vector<ResultRow>> verified = {};
