@@ -79,6 +79,18 @@ grep -q 'unsupported: 50 columns cannot be cut for 8 ranks: .* at most --ranks 6
   fail "a backend that was asked for has no row, and the bench is content"
 grep -q 'unsupported: it has no xpbd' implicit/timings.csv || fail "xpbd: $(cat implicit/timings.csv)"
 expect 2 '"0" is' bench --scene cloth2500 --backend mpi --ranks 0
+
+# Names that say how many ranks: rows of their own.
+succeed bench --scene cloth2500 --backend openmp,mpi:3,mpi:1 --integrator semi-euler --threads 1 --ranks 7 --rounds 1 --out counts
+[ "$(column_of counts/timings.csv backend | xargs)" = 'openmp mpi:3 mpi:1' ] || fail "rows: $(cat counts/timings.csv)"
+[ "$(column_of counts/timings.csv threads | xargs)" = '1 3 1' ] || fail "ranks: $(cat counts/timings.csv)"
+[ "$(hashes counts | wc -l)" -eq 1 ] || fail "mpi:3 has other bits: $(cat counts/timings.csv)"
+sed -n '/"mpi:3": {/,/^    }/p' counts/provenance.json | grep -q '"ranks": 3,' ||
+  fail "the provenance does not say in how many processes: $(cat counts/provenance.json)"
+expect 2 'mpi:0 says a number of ranks that cannot be: give one from 1 to 65536' bench --scene cloth2500 --backend mpi:0
+expect 2 'mpi:two says a number of ranks' bench --scene cloth2500 --backend mpi:two
+expect 2 'openmp:2 says a number of ranks, and openmp runs in one process' bench --scene cloth2500 --backend openmp:2
+expect 2 'unknown backend "mpl:2"' bench --scene cloth2500 --backend mpl:2
 succeed list backends
 grep -q '^mpi .*on one machine or several' out || fail "mssim list backends does not show mpi"
 "$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler --launcher no-mpirun --rounds 1 --out missing >/dev/null 2>&1 &&

@@ -42,9 +42,9 @@ struct ExecutionOptions {
   Roots roots = Roots::fast;
   std::string scene = {};                 ///< its name, which a program that is a backend is told
   std::filesystem::path scene_file = {};  ///< the file that it comes from, the same
-  int ranks = 0;                          ///< processes of a program that runs in several
-  int rank_threads = 1;                   ///< of each of them
-  std::string launcher = {};              ///< command that starts them; empty: the program's usual one
+  int ranks = 0;               ///< processes of a program that runs in several; 0: as many as threads
+  bool threads_given = false;  ///< `threads` are those of each rank, and else of all together
+  std::string launcher = {};   ///< command that starts them; empty: the program's usual one
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.

@@ -21,6 +21,7 @@ struct BackendProgram {
   double time_limit_s = 120;             ///< of every answer
   /// It runs in several processes (--ranks), and builds its parts of a cloth from the scene's file.
   bool in_ranks = false;
+  int ranks = 0;  ///< processes that its name asks for, as mpi:4 does; 0: --ranks
   /// It knows the requests `restart` and `get ROW COLUMN ROWS COLUMNS` of docs/own-backends.md; in ranks
   /// alone.
   bool has_windows = false;

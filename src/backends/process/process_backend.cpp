@@ -284,8 +284,16 @@ std::unique_ptr<ProcessBackend> start(const BackendProgram& program, const Syste
 
 }  // namespace
 
+RankCount ranks_of(const BackendProgram& program, const ExecutionOptions& options) {
+  const int asked = program.ranks > 0 ? program.ranks : options.ranks;
+  if (asked == 0) return {options.threads, 1};
+  return {asked, options.threads_given ? options.threads : std::max(1, options.threads / asked)};
+}
+
 int processors_of(const BackendProgram& program, const ExecutionOptions& options) {
-  return program.in_ranks ? options.ranks * options.rank_threads : options.threads;
+  if (!program.in_ranks) return options.threads;
+  const RankCount count = ranks_of(program, options);
+  return count.ranks * count.threads;
 }
 
 std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,

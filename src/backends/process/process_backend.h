@@ -7,6 +7,16 @@
 
 namespace mssim {
 
+/// Processes that a program runs in.
+struct RankCount {
+  int ranks = 1;
+  int threads = 1;  ///< of each
+};
+
+/// Those of a program in ranks: as many as its name says, or --ranks, each of the threads given or of its
+/// share of all; where nobody says how many, as many as threads, of one thread each.
+RankCount ranks_of(const BackendProgram& program, const ExecutionOptions& options);
+
 /// Processors that the program may use.
 int processors_of(const BackendProgram& program, const ExecutionOptions& options);
 

@@ -16,7 +16,7 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
       "MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count, "OMP_NUM_THREADS=" + count,
       "PYTHONPATH=" + (data_folder() / "python").string() + (path && *path ? std::string(":") + path : "")};
   if (program.in_ranks) {
-    all.push_back("MSSIM_RANKS=" + std::to_string(options.ranks));
+    all.push_back("MSSIM_RANKS=" + std::to_string(ranks_of(program, options).ranks));
     all.push_back("MSSIM_LAUNCHER=" + options.launcher);
     all.push_back("MSSIM_SCENE_FILE=" + std::filesystem::absolute(options.scene_file).string());
     all.push_back(std::string("MSSIM_ROOTS=") + (options.roots == Roots::exact ? "exact" : "fast"));

@@ -8,6 +8,7 @@
 
 #include "bench/windows/window_choice.h"
 #include "bench/windows/window_reference.h"
+#include "commands/shared/backend_choice.h"
 #include "commands/shared/exit_code.h"
 #include "integrators/stability.h"
 #include "platform/available_memory.h"
@@ -49,7 +50,7 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
   if (can && (settings.windows || memory_shortage(memory_bytes))) {
     const auto& cloth = std::get<ClothSpec>(scene.spec.content);
     const GridPatch grid{cloth.rows, cloth.columns, cloth.spacing_m};
-    const auto ranks = static_cast<std::size_t>(settings.execution.ranks);
+    const auto ranks = static_cast<std::size_t>(most_ranks_of(settings.backends, settings.execution));
     const std::size_t count =
         settings.windows ? static_cast<std::size_t>(*settings.windows) : usual_windows(ranks);
     if (count < fewest_windows(ranks))

@@ -9,11 +9,14 @@
 #include <utility>
 
 #include "backends/described/backend_description.h"
+#include "backends/process/process_backend.h"
+#include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
 #include "platform/data_folder.h"
 #include "platform/missing_program.h"
 #include "scene/scene_file.h"
 #include "text/nearest_name.h"
+#include "text/number_in.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -111,6 +114,8 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
 const BackendInfo& BackendChoice::require(const std::string& name) {
   if (is_path(name)) return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
   const std::optional<fs::path> file = description_of(name);
+  if (!file)
+    if (const auto in_ranks = in_ranks_of(name)) return add(*in_ranks);
   const auto row = std::ranges::find(known_, name, &BackendInfo::name);
   if (row != known_.end()) return **row;
   if (file) return add_file(*file);
@@ -119,6 +124,26 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   for (const BackendInfo* info : described()) names.push_back(info->name);
   for (const BackendInfo* info : shipped()) names.push_back(info->name);
   throw UsageError(unknown_name("backend", name, names));
+}
+
+std::optional<BackendProgram> BackendChoice::in_ranks_of(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const std::string its_name = name.substr(0, colon), count = name.substr(colon + 1);
+  const auto row = std::ranges::find(known_, its_name, &BackendInfo::name);
+  const std::optional<fs::path> file = row == known_.end() ? description_of(its_name) : std::nullopt;
+  if (row == known_.end() && !file) return std::nullopt;
+  BackendProgram program = file ? read_description(*file) : BackendProgram{};
+  if (!program.in_ranks)
+    throw UsageError(printable(name) + " says a number of ranks, and " + its_name +
+                     " runs in one process: leave \":" + printable(count) + "\" out");
+  const std::optional<int> ranks = number_in<int>(count);
+  if (!ranks || *ranks < 1 || *ranks > most_ranks)
+    throw UsageError(printable(name) + " says a number of ranks that cannot be: give one from 1 to " +
+                     std::to_string(most_ranks) + ", as in " + its_name + ":4");
+  program.ranks = *ranks;
+  program.name = its_name + ':' + std::to_string(*ranks);
+  return program;
 }
 
 std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std::string>& names) {
@@ -202,12 +227,21 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
     if (!program) continue;
     BackendProgramRecord record{.name = program->name, .command = program->command};
     if (program->in_ranks) {
-      record.ranks = execution.ranks;
-      record.rank_threads = execution.rank_threads;
+      const RankCount count = ranks_of(*program, execution);
+      record.ranks = count.ranks;
+      record.rank_threads = count.threads;
       record.launcher = execution.launcher;
     }
     add_program(provenance, std::move(record), program->program, program->folder);
   }
+}
+
+int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution) {
+  int most = 1;
+  for (const BackendInfo* info : rows)
+    if (info->program && info->program->in_ranks)
+      most = std::max(most, ranks_of(*info->program, execution).ranks);
+  return most;
 }
 
 }  // namespace mssim

@@ -41,8 +41,9 @@ class BackendChoice {
                 const std::vector<std::string>& scenes = {});
 
   /// The row of that name: of the table, the file of that path (which has a slash), or the one described as
-  /// NAME.json. Throws UsageError naming the nearest or listing the known, and where a name stands for two;
-  /// MissingProgram for a path at which nothing can be run; SceneError for a description that is wrong.
+  /// NAME.json; of one that runs in ranks, NAME:COUNT says in how many. Throws UsageError naming the nearest
+  /// or listing the known, and where a name stands for two; MissingProgram for a path at which nothing can be
+  /// run; SceneError for a description that is wrong.
   const BackendInfo& require(const std::string& name);
 
   /// The rows of these names in the order of the table, and behind them those that are none of it. Throws
@@ -68,6 +69,8 @@ class BackendChoice {
   std::vector<const BackendInfo*> described_in(const std::vector<std::filesystem::path>& folders);
   const BackendInfo& add(BackendProgram program);
   const BackendInfo& add_file(const std::filesystem::path& file);
+  /// What a name with a number of ranks stands for; none for any other name. Throws UsageError.
+  std::optional<BackendProgram> in_ranks_of(const std::string& name);
   std::optional<std::filesystem::path> description_of(const std::string& name) const;
 
   std::vector<const BackendInfo*> known_;
@@ -80,5 +83,8 @@ class BackendChoice {
 /// Adds the programs of those rows that have one.
 void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
                   const ExecutionOptions& execution);
+
+/// Processes of the one among them that runs in most.
+int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution);
 
 }  // namespace mssim

@@ -65,11 +65,11 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options) {
           whole_number(1, most_threads))
       .value_name("N");
   arguments
-      .add_number(
-          "--ranks", options.ranks,
-          "Processes of the backend mpi, of --threads threads each (default: as many as --threads, of "
-          "one thread each)",
-          whole_number(1, most_ranks))
+      .add_number("--ranks", options.ranks,
+                  "Processes of the backend mpi, of --threads threads each; mpi:N says it of one row "
+                  "(default: as many "
+                  "as --threads, of one thread each)",
+                  whole_number(1, most_ranks))
       .value_name("N");
   arguments
       .add("--launcher", options.launcher,
@@ -97,18 +97,13 @@ std::string name_of(DeviceMemory memory) {
 }
 
 ExecutionOptions complete(ExecutionOptions options) {
-  const int limit = omp_get_thread_limit(), asked_threads = options.threads;
-  if (options.threads == 0) options.threads = std::min(omp_get_num_procs(), limit);
+  const int limit = omp_get_thread_limit();
+  options.threads_given = options.threads > 0;
+  if (!options.threads_given) options.threads = std::min(omp_get_num_procs(), limit);
   if (options.threads > limit)
     throw UsageError("--threads " + std::to_string(options.threads) +
                      " is more than OMP_THREAD_LIMIT allows, " + std::to_string(limit) +
                      "; ask for fewer, or unset it");
-  if (options.ranks == 0) {
-    options.ranks = options.threads;
-    options.rank_threads = 1;
-  } else {
-    options.rank_threads = asked_threads > 0 ? asked_threads : std::max(1, options.threads / options.ranks);
-  }
   omp_set_dynamic(0);
   return options;
 }

@@ -41,8 +41,7 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options);
 std::string name_of(DeviceMemory memory);
 
 /// `threads` as given or, for 0, one for every processor that this process may use; OpenMP then gives as
-/// many, whatever OMP_DYNAMIC says. `ranks` as given, each of the threads given or of its share of all; for 0
-/// as many as threads, of one thread each. Throws UsageError where OMP_THREAD_LIMIT is lower.
+/// many, whatever OMP_DYNAMIC says. Throws UsageError where OMP_THREAD_LIMIT is lower.
 ExecutionOptions complete(ExecutionOptions options);
 
 }  // namespace mssim
