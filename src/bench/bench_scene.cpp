@@ -149,7 +149,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
     });
     ResultRow& row = rows.emplace_back(combination.row);
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);
-    if (!combination.processors.empty()) row.processors_used = median(combination.processors);
+    summarise_costs(combination, row);
     compare_with_peaks(combination, size, peaks, row);
   }
   return rows;
@@ -165,7 +165,7 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
     if (row != earlier.end()) {
       combination.row.samples_ms = row->samples_ms;
       combination.row.sample_steps = row->sample_steps;
-      combination.row.processors_used = row->processors_used;
+      take_costs(combination.row, *row);
     }
     complete = std::min(complete, combination.row.samples_ms.size());
   }

@@ -30,6 +30,7 @@ class ClothPiece final : public Piece {
   std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const override;
   State state(const GridWindow& window) const override;
   void step(int count) override { kernel_.step(*bands_, count); }
+  RankCosts costs() const override { return messages_->costs(); }
   int threads() const override { return static_cast<int>(bands_->inner_count); }
   std::string note() const override;
 

@@ -25,6 +25,7 @@
 #include "platform/find_program.h"
 #include "platform/process_cpus.h"
 #include "ranks/environment.h"
+#include "ranks/launch_words.h"
 #include "ranks/launcher_output.h"
 #include "ranks/requests.h"
 
@@ -137,7 +138,7 @@ void set_defaults() {
 
 }  // namespace
 
-int launch_ranks() {
+int launch_ranks(bool copies) {
   const std::string launcher = variable("MSSIM_LAUNCHER", "mpirun");
   const std::string ranks = variable("MSSIM_RANKS", "1");
   std::vector<std::string> words = words_of(launcher);
@@ -154,6 +155,7 @@ int launch_ranks() {
     }
     words.insert(words.end(),
                  {"-n", ranks, std::filesystem::read_symlink("/proc/self/exe").string(), "rank"});
+    if (copies) words.emplace_back(copies_word);
     set_defaults();
     LauncherOutput printed(std::cerr);
     Launcher running(*program, words);

@@ -29,7 +29,7 @@ void NeighbourMessages::add(int neighbour, const float* own, float* ghosts, std:
   check_mpi(MPI_Send_init(own, count, MPI_FLOAT, neighbour, tag, MPI_COMM_WORLD, &sends),
             "preparing messages");
   peers_.push_back(neighbour);
-  bytes_ += floats * sizeof(float);
+  bytes_a_pass_ += floats * sizeof(float);
 }
 
 template <class Work>
@@ -49,6 +49,8 @@ void NeighbourMessages::begin() {
   attempt([&] {
     check_mpi(MPI_Startall(static_cast<int>(requests_.size()), requests_.data()), "starting messages");
   });
+  costs_.bytes += bytes_a_pass_;
+  costs_.messages += requests_.size() / 2;
   under_way_ = true;
 }
 
@@ -67,7 +69,7 @@ void NeighbourMessages::finish() {
   if (!std::exchange(under_way_, false)) return;
   const auto begin = std::chrono::steady_clock::now();
   attempt([&] { session_.wait(requests_, peers_); });
-  waited_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  costs_.waited_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 }  // namespace mssim

@@ -8,6 +8,7 @@
 
 #include "backends/layouts/band_grid.h"
 #include "backends/layouts/column_messages.h"
+#include "ranks/piece.h"
 #include "ranks/session.h"
 
 namespace mssim {
@@ -25,9 +26,8 @@ class NeighbourMessages final : public ColumnMessages {
   void advance() override;
   void finish() override;
 
-  std::uint64_t bytes_a_pass() const { return bytes_; }  ///< that this rank sends
-  std::uint64_t messages_a_pass() const { return requests_.size() / 2; }
-  double seconds_waited() const { return waited_; }  ///< in finish(), so far
+  /// What it has cost so far; it waits in finish().
+  const RankCosts& costs() const { return costs_; }
 
  private:
   /// Does what may fail within the threads of a step, which no exception may leave: all ranks end then.
@@ -38,8 +38,8 @@ class NeighbourMessages final : public ColumnMessages {
   const Session& session_;
   std::vector<MPI_Request> requests_;
   std::vector<int> peers_;
-  std::uint64_t bytes_ = 0;
-  double waited_ = 0;
+  std::uint64_t bytes_a_pass_ = 0;
+  RankCosts costs_;
   bool under_way_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include "ranks/bodies_piece.h"
 #include "ranks/cloth_piece.h"
+#include "ranks/copies_piece.h"
 
 namespace mssim {
 
@@ -16,10 +17,12 @@ std::vector<NodeRun> Piece::owned_by(int, const GridWindow&) const { refuse_wind
 State Piece::state(const GridWindow&) const { refuse_windows(); }
 
 std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job) {
-  if (std::holds_alternative<ClothSpec>(job.scene.content)) return std::make_unique<ClothPiece>(session, job);
-  if (std::holds_alternative<BodiesSpec>(job.scene.content))
-    return std::make_unique<BodiesPiece>(session, job);
-  throw Unsupported("it steps cloths and bodies");
+  const bool is_cloth = std::holds_alternative<ClothSpec>(job.scene.content);
+  const bool has_bodies = std::holds_alternative<BodiesSpec>(job.scene.content);
+  if (!is_cloth && !has_bodies) throw Unsupported("it steps cloths and bodies");
+  if (job.copies) return std::make_unique<CopiesPiece>(session, job);
+  if (is_cloth) return std::make_unique<ClothPiece>(session, job);
+  return std::make_unique<BodiesPiece>(session, job);
 }
 
 }  // namespace mssim

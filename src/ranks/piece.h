@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,11 +19,20 @@ struct RankJob {
   double dt_s = 0;
   int threads = 1;  ///< of each rank
   Roots roots = Roots::fast;
+  bool copies = false;  ///< each rank steps the whole scene, and none says anything to another
 };
 
 /// Nodes of a scene that follow each other.
 struct NodeRun {
   std::size_t first = 0, count = 0;
+};
+
+/// What a rank has done for others in all its steps so far.
+struct RankCosts {
+  double waited_s = 0;         ///< for messages that the next columns or nodes needed
+  double packed_s = 0;         ///< bringing together what was sent, and putting in place what came
+  std::uint64_t bytes = 0;     ///< sent
+  std::uint64_t messages = 0;  ///< the same
 };
 
 /// The part of a scene that one rank steps. The rest of the scene is nowhere in this process.
@@ -53,6 +63,8 @@ class Piece {
   virtual State state(const GridWindow& window) const;
   /// Takes so many steps, as all ranks do at the same time.
   virtual void step(int count) = 0;
+
+  virtual RankCosts costs() const { return {}; }
 
   virtual int threads() const = 0;
   /// What a reader of its times should know of how it steps.

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@
 #include "ranks/piece_states.h"
 #include "ranks/requests.h"
 #include "ranks/session.h"
+#include "ranks/step_costs.h"
 #include "scene/scene_file.h"
 #include "text/counted.h"
 #include "text/number_in.h"
@@ -33,7 +35,7 @@ namespace {
 
 /// What rank 0 asks of all ranks, itself included.
 struct Wish {
-  enum Kind : int { set, restart, step, get, window, end };
+  enum Kind : int { set, restart, step, get, window, costs, end };
   int kind = end;
   int count = 0;          ///< of steps
   double seconds = 0;     ///< that positions are ahead of the start
@@ -42,7 +44,7 @@ struct Wish {
 
 /// What mssim has told rank 0, as a text for the other ranks. Only rank 0 needs the scene's file and the
 /// environment that mssim has set.
-std::string job_text(const std::map<std::string, std::string>& introduction, int ranks) {
+std::string job_text(const std::map<std::string, std::string>& introduction, int ranks, bool copies) {
   const std::filesystem::path file = variable("MSSIM_SCENE_FILE");
   const int processors = number_in<int>(introduction.at("threads")).value_or(1);
   return nlohmann::json{{"file", file.string()},
@@ -50,7 +52,8 @@ std::string job_text(const std::map<std::string, std::string>& introduction, int
                         {"integrator", introduction.at("integrator")},
                         {"dt", introduction.at("dt")},
                         {"threads", std::max(1, processors / ranks)},
-                        {"exact_roots", variable("MSSIM_ROOTS") == "exact"}}
+                        {"exact_roots", variable("MSSIM_ROOTS") == "exact"},
+                        {"copies", copies}}
       .dump();
 }
 
@@ -64,6 +67,7 @@ RankJob job_of(const std::string& text) {
   job.dt_s = number_in<double>(json.at("dt").get<std::string>()).value();
   job.threads = json.at("threads").get<int>();
   job.roots = json.at("exact_roots").get<bool>() ? Roots::exact : Roots::fast;
+  job.copies = json.at("copies").get<bool>();
   return job;
 }
 
@@ -115,6 +119,7 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   if (host_count > 1) requests.answer("device " + counted(host_count, "host"));
   requests.answer("threads " + std::to_string(session.ranks() * piece.threads()));
   requests.answer("precision single");
+  requests.answer("tells costs");
   requests.answer(in_one_line(
       "note " + library + ", " + counted(static_cast<std::uint64_t>(session.ranks()), "rank") + " of " +
       counted(static_cast<std::uint64_t>(piece.threads()), "thread") + ", " + piece.note()));
@@ -126,6 +131,7 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
 Wish wish_of(const std::string& line) {
   if (line == "set") return {Wish::set};
   if (line == "get") return {Wish::get};
+  if (line == "costs") return {Wish::costs};
   if (line == "end") return {Wish::end};
   std::istringstream words(line);
   std::string word, rest;
@@ -145,6 +151,7 @@ Wish wish_of(const std::string& line) {
 /// Does what mssim asks for, until it asks for the end.
 void serve(const Session& session, Piece& piece, std::optional<Requests>& requests,
            const std::filesystem::path& state_file) {
+  StepCosts costs(measure_links(session));
   for (;;) {
     Wish wish = requests ? wish_of(requests->next()) : Wish{};
     MPI_Request request = MPI_REQUEST_NULL;
@@ -152,16 +159,19 @@ void serve(const Session& session, Piece& piece, std::optional<Requests>& reques
     Session::wait_idle(request);
     if (wish.kind == Wish::end) return;
     if (wish.kind == Wish::set) scatter_state(session, state_file, piece);
-    if (wish.kind == Wish::step) piece.step(wish.count);
+    if (wish.kind == Wish::step) costs.step(session, piece, wish.count);
     if (wish.kind == Wish::get) gather_state(session, state_file, piece);
     if (wish.kind == Wish::restart) piece.restart(wish.seconds);
     if (wish.kind == Wish::window) gather_window(session, state_file, piece, wish.nodes);
-    session.meet();
+    if (wish.kind == Wish::costs)
+      for (const std::string& line : costs.tell(session, piece))
+        if (requests) requests->answer(line);
+    if (wish.kind != Wish::step) session.meet();
     if (requests) requests->answer("done");
   }
 }
 
-void work(Session& session) {
+void work(Session& session, bool copies) {
   std::optional<Requests> requests;
   std::map<std::string, std::string> introduction;
   std::string text;
@@ -169,7 +179,7 @@ void work(Session& session) {
     std::cout << ranks_have_started << std::endl;
     requests.emplace();
     introduction = requests->read_introduction();
-    text = job_text(introduction, session.ranks());
+    text = job_text(introduction, session.ranks(), copies);
   }
   try {
     const RankJob job = job_of(session.share(text));
@@ -199,7 +209,7 @@ int run_rank(int argc, char** argv) {
                           counted(static_cast<std::uint64_t>(session->ranks()), "rank") + " instead of " +
                           std::to_string(asked) + ": it may be that of another MPI than this program's");
     }
-    work(*session);
+    work(*session, argc > 2 && std::string_view(argv[2]) == copies_word);
     session.reset();
     return 0;
   } catch (const std::exception& error) {

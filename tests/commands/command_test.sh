@@ -18,7 +18,7 @@ OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;'
 expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
 expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
 expect 2 'unknown backend "openpm" (did you mean openmp?)' bench --scene cloth2500 --backend openpm
-expect 2 'known are serial, threads-mutex, openmp, opencl, hybrid and mpi' bench --scene cloth2500 --backend cuda
+expect 2 'known are serial, threads-mutex, openmp, opencl, hybrid, mpi and mpi-copies' bench --scene cloth2500 --backend cuda
 expect 2 'rk4-frozen' bench --scene cloth2500 --integrator euler
 expect 2 'cloth2500' bench --scene cloth2501
 expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json

@@ -52,6 +52,18 @@ same_bits cloth4900 2 2 semi-euler,rk4 2
 grep ',mpi,' bits/timings.csv | grep -q 'not timed: 2 ranks of 2 threads on [1-3] processor' || [ "$(nproc)" -ge 4 ] ||
   fail "ranks that share processors are timed: $(cat bits/timings.csv)"
 
+# What a step spends on messages, and copies that send none.
+succeed bench --scene cloth4900 --backend mpi:1,mpi:2,mpi-copies:2 --integrator semi-euler --threads 1 --rounds 2 --out costs
+sed 's/"[^"]*"//' costs/timings.csv >bare.csv  # notes have commas
+[ "$(column_of costs/timings.csv verified | xargs)" = 'true true true' ] || fail "not every row is verified: $(cat costs/timings.csv)"
+[ "$(hashes costs | wc -l)" -eq 1 ] || fail "copies have other bits: $(cat costs/timings.csv)"
+[ "$(column_of bare.csv messages_per_step | awk '{ printf "%s ", ($1 <= 1) }')" = '1 1 1 ' ] || fail "messages: $(cat costs/timings.csv)"
+if [ "$(nproc)" -ge 2 ]; then
+  column_of bare.csv waiting_share | awk '!($1 >= 0 && $1 < 1) { bad = 1 } END { exit bad }' || fail "waiting: $(cat costs/timings.csv)"
+  [ "$(column_of bare.csv bytes_per_step | awk '{ printf "%s ", ($1 > 0) }')" = '0 1 0 ' ] || fail "bytes: $(cat costs/timings.csv)"
+  column_of bare.csv latency_us | awk 'NR > 1 && !($1 > 0 && $1 < 1e5) { bad = 1 } END { exit bad }' || fail "latency: $(cat costs/timings.csv)"
+fi
+
 # Bodies: whole ones to each rank.
 body='{"shape": "box", "box": {"size_m": [0.1, 0.1, 0.1], "cells_x": 3, "cells_y": 3, "cells_z": 3,
   "interior": {"points": 20, "seed": 1, "jitter": 0.1, "margin": 0.6}}, "velocity_m_per_s": [0.1, 0, 0], "spin_rad_per_s": [1, 2, 0],

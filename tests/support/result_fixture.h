@@ -42,6 +42,12 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
   row.energy_drift = -2e-7;
   row.state_hash = 0x0123456789abcdef;
   row.processors_used = 1.5;
+  row.waiting_share = 0.0625;
+  row.packing_share = 0.03125;
+  row.bytes_per_step = 6000;
+  row.messages_per_step = 0.5;
+  row.latency_us = 1.25;
+  row.link_gigabytes_per_second = 8;
   row.verified = true;
   row.warm_up_trials = 4;
   row.samples_ms = {2 * ms, ms / 2, ms};
@@ -56,7 +62,9 @@ inline ResultRow failed_row(const std::string& backend, const std::string& statu
   row.springs_per_second = row.gigabytes_per_second = row.roofline_fraction = std::nullopt;
   row.paper_ms = row.position_error = row.energy_drift = std::nullopt;
   row.state_hash = std::nullopt;
-  row.processors_used = std::nullopt;
+  row.processors_used = row.waiting_share = row.packing_share = std::nullopt;
+  row.bytes_per_step = row.messages_per_step = std::nullopt;
+  row.latency_us = row.link_gigabytes_per_second = std::nullopt;
   row.samples_ms.clear();
   row.sample_steps.clear();
   row.rounds = 0;

@@ -30,6 +30,7 @@ class AheadBackend final : public Backend {
   std::string note() const override { return backend_->note(); }
   std::string reason_not_to_time() const override { return backend_->reason_not_to_time(); }
   std::string reason_for_excess() const override { return backend_->reason_for_excess(); }
+  std::optional<Communication> communication() override { return backend_->communication(); }
   void rest() override { backend_->rest(); }
   std::string end() override { return backend_->end(); }
   double processor_seconds() const override { return backend_->processor_seconds(); }

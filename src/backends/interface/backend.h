@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "backends/interface/communication.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
 
@@ -112,6 +113,9 @@ class Backend {
   virtual std::string reason_not_to_time() const { return {}; }
   /// Why it takes more processors than it was asked to, where it does.
   virtual std::string reason_for_excess() const { return "the driver of " + device() + " cannot divide it"; }
+  /// What the processes that take the steps have spent on each other since this was last asked; none where
+  /// there is one process, or where a program does not tell.
+  virtual std::optional<Communication> communication() { return std::nullopt; }
   /// Says that nothing will be asked of it for a while: it shall not disturb what is timed meanwhile.
   virtual void rest() {}
   /// Ends the program behind it, where there is one, and returns what that wrote last. Nothing but another

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <exception>
 #include <iomanip>
 #include <limits>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "backends/interface/ahead.h"
+#include "backends/process/answers.h"
 #include "backends/process/conversation.h"
 #include "backends/process/method_text.h"
 #include "backends/process/program_start.h"
@@ -26,8 +26,6 @@
 #include "platform/ending_signals.h"
 #include "platform/supervised_process.h"
 #include "platform/temporary_folder.h"
-#include "text/note.h"
-#include "text/number_in.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -42,14 +40,6 @@ constexpr std::chrono::milliseconds patience = 2s;
 constexpr std::chrono::milliseconds patience_for_reasons = 8s;
 /// Lines that a program may say of itself before it is ready.
 constexpr int most_lines = 100;
-constexpr std::size_t longest_shown = 300;
-constexpr int most_threads = 4096;
-
-/// A line's first word, and what follows it.
-std::pair<std::string_view, std::string_view> split(std::string_view line) {
-  const std::size_t space = line.find(' ');
-  return {line.substr(0, space), space == std::string_view::npos ? "" : line.substr(space + 1)};
-}
 
 /// The last line of a program's output that is not empty.
 std::string last_line(std::string_view output) {
@@ -70,14 +60,6 @@ void require_support(const BackendProgram& program, const System& system, const 
   if (!any && std::ranges::find(program.integrators, integrator.name) == program.integrators.end())
     throw Unsupported("it has no " + std::string(integrator.name));
 }
-
-/// What a program says of itself before it is ready.
-struct Introduction {
-  std::string device = "cpu";
-  int threads = 0;
-  std::string note;
-  std::string untimed;
-};
 
 class ProcessBackend final : public WindowBackend {
  public:
@@ -108,7 +90,7 @@ class ProcessBackend final : public WindowBackend {
     conversing([&] {
       conversation_.begin(std::chrono::duration<double>(program.time_limit_s), process_->end_descriptor());
       conversation_.ask(lines.str(), "prepare");
-      listen();
+      introduce();
     });
     std::error_code ignored;  // it goes with its folder in any case
     std::filesystem::remove(system_file, ignored);
@@ -157,6 +139,18 @@ class ProcessBackend final : public WindowBackend {
   std::string end() override { return end_politely(); }
   double processor_seconds() const override { return process_->processor_seconds(); }
 
+  std::optional<Communication> communication() override {
+    if (!introduction_.tells_costs) return std::nullopt;
+    Communication costs;
+    const auto take = [&](const std::string& line) { return take_cost(costs, line); };
+    resume();
+    conversing([&] {
+      conversation_.ask("costs\n", "costs");
+      take_answers("costs", take);
+    });
+    return costs;
+  }
+
  private:
   /// Calls `converse`, and turns what goes wrong with the program into BackendFailure.
   template <class Converse>
@@ -170,6 +164,8 @@ class ProcessBackend final : public WindowBackend {
       if (::poll(&ended, 1, static_cast<int>(patience_for_reasons.count())) > 0)
         fail(describe(process_->end(patience)) + ' ' + failure.what(), true);
       fail(std::string("closed its connection ") + failure.what(), true);
+    } catch (const AnswerFailure& failure) {
+      fail(failure.what());
     }
   }
 
@@ -183,48 +179,26 @@ class ProcessBackend final : public WindowBackend {
     throw BackendFailure(sentence, output);
   }
 
-  [[noreturn]] void fail_at(std::string_view line, const std::string& asked, const char* expected) const {
-    fail("answered \"" + printable(line) + "\" to \"" + asked + "\", where " + expected + " is expected");
+  /// Takes lines until one of them is the last.
+  template <class Take>
+  void take_answers(const std::string& asked, const Take& take) const {
+    for (int lines = 0; lines < most_lines; ++lines)
+      if (take(conversation_.answer())) return;
+    throw AnswerFailure("answered \"" + asked + "\" with more than " + std::to_string(most_lines) + " lines");
   }
 
   /// Takes the answers to `prepare`. Throws Unsupported and Unavailable.
-  void listen() {
-    for (int lines = 0; lines < most_lines; ++lines)
-      if (takes(conversation_.answer())) return;
-    fail("answered \"prepare\" with more than " + std::to_string(most_lines) + " lines");
-  }
-
-  /// Takes one of them; true where it is the last.
-  bool takes(const std::string& line) {
-    const auto [word, text] = split(line);
-    const std::string shown = printable(text, longest_shown);
-    // It may have to tidy up.
-    if (word == "unsupported" || word == "unavailable") end_politely();
-    if (word == "unsupported") throw Unsupported(shown);
-    if (word == "unavailable") throw Unavailable(shown);
-    if (word == "failed") fail("failed at \"prepare\": " + shown);
-    if (line == "ready 1") return true;
-    if (word == "device" && !text.empty())
-      introduction_.device = shown;
-    else if (word == "threads")
-      introduction_.threads = thread_count(line, text);
-    else if (word == "precision" && !text.empty())
-      add_to_note(introduction_.note, shown + " precision");
-    else if (word == "note" && !text.empty())
-      add_to_note(introduction_.note, shown);
-    else if (word == "untimed" && !text.empty())
-      introduction_.untimed = shown;
-    else
-      fail_at(line, "prepare",
-              "device, threads, precision, note, untimed, ready 1, unsupported, unavailable or failed");
-    return false;
-  }
-
-  int thread_count(const std::string& line, std::string_view text) const {
-    const std::optional<int> count = number_in<int>(text);
-    if (!count || *count < 1 || *count > most_threads)
-      fail_at(line, "prepare", "a number of threads from 1 to 4096");
-    return *count;
+  void introduce() {
+    const auto take = [&](const std::string& line) { return take_introduction(introduction_, line); };
+    try {
+      take_answers("prepare", take);
+    } catch (const Unsupported&) {  // it may have to tidy up
+      end_politely();
+      throw;
+    } catch (const Unavailable&) {
+      end_politely();
+      throw;
+    }
   }
 
   /// Asks for states and reads them.
@@ -240,22 +214,20 @@ class ProcessBackend final : public WindowBackend {
 
   /// Asks for something and waits until it is done. `timed`: the program may say how long it took.
   void request(const std::string& request, bool timed = false) const {
-    if (std::exchange(paused_, false)) process_->resume();
-    const std::string line = conversing([&] {
+    resume();
+    conversing([&] {
       conversation_.ask(request + '\n', request);
-      return conversation_.answer();
+      take_done(request, conversation_.answer(), timed);
     });
-    if (line == "done") return;
-    const auto [word, text] = split(line);
-    if (word == "failed") fail("failed at \"" + request + "\": " + printable(text, longest_shown));
-    const std::optional<double> seconds = number_in<double>(text);
-    if (!(timed && word == "done" && seconds && *seconds >= 0 && std::isfinite(*seconds)))
-      fail_at(line, request, "done or failed");
+  }
+
+  void resume() const {
+    if (std::exchange(paused_, false)) process_->resume();
   }
 
   std::string end_politely() {
     if (!process_) return "";
-    if (std::exchange(paused_, false)) process_->resume();
+    resume();
     conversation_.say_last("end\n");
     return process_->end(patience).output;
   }

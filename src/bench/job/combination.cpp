@@ -217,7 +217,9 @@ bool has_blown_up(const Combination& combination, const SceneJob& job) {
 std::optional<double> sample_ms(Combination& combination, const SceneJob& job) {
   std::optional<double> ms;
   attempt(combination, [&] {
+    combination.backend->communication();  // of what came before
     const SampleTime time = time_sample(combination, combination.steps);
+    if (const auto costs = combination.backend->communication()) combination.communication.push_back(*costs);
     if (has_blown_up(combination, job)) {
       const std::optional<BlowUp> blow_up =
           combination.windows ? find_blow_up(*combination.windows, *job.windowed, combination.steps)
@@ -250,6 +252,34 @@ void summarise(ResultRow& row, const ResultRow* serial) {
   const std::vector<Outlier> labels = outliers(row.samples_ms);
   row.outliers =
       static_cast<int>(labels.size() - static_cast<std::size_t>(std::ranges::count(labels, Outlier::no)));
+}
+
+void take_costs(ResultRow& row, const ResultRow& earlier) {
+  row.processors_used = earlier.processors_used;
+  row.waiting_share = earlier.waiting_share;
+  row.packing_share = earlier.packing_share;
+  row.bytes_per_step = earlier.bytes_per_step;
+  row.messages_per_step = earlier.messages_per_step;
+  row.latency_us = earlier.latency_us;
+  row.link_gigabytes_per_second = earlier.link_gigabytes_per_second;
+}
+
+void summarise_costs(const Combination& combination, ResultRow& row) {
+  if (!combination.processors.empty()) row.processors_used = median(combination.processors);
+  const std::vector<Communication>& samples = combination.communication;
+  if (samples.empty()) return;
+  const auto median_of = [&](const auto& cost) {
+    std::vector<double> values;
+    for (const Communication& sample : samples) values.push_back(cost(sample));
+    return median(values);
+  };
+  row.waiting_share = median_of([](const Communication& sample) { return sample.waiting; });
+  row.packing_share = median_of([](const Communication& sample) { return sample.packing; });
+  row.bytes_per_step = median_of([](const Communication& sample) { return sample.bytes; });
+  row.messages_per_step = median_of([](const Communication& sample) { return sample.messages; });
+  const Communication& last = samples.back();
+  if (last.latency_s) row.latency_us = 1e6 * *last.latency_s;
+  if (last.bytes_per_second) row.link_gigabytes_per_second = 1e-9 * *last.bytes_per_second;
 }
 
 }  // namespace mssim

@@ -25,7 +25,8 @@ struct Combination {
   WindowBackend* windows = nullptr;     ///< the same, of a cloth that is seen in windows
   int steps = 1;                        ///< in a sample
   std::vector<double> processors;       ///< that each sample of this run took: processor seconds a second
-  double step_seconds = 0;              ///< what calibrate has found; 0 before
+  std::vector<Communication> communication;  ///< in each sample of this run, where the backend tells it
+  double step_seconds = 0;                   ///< what calibrate has found; 0 before
 };
 
 /// Makes the backend; a reason not to becomes the row's status. `start`: of its samples; must
@@ -67,5 +68,11 @@ std::optional<double> sample_ms(Combination& combination, const SceneJob& job);
 /// Computes all that follows from the row's samples. `serial`: the baseline's row of the same integrator, or
 /// null.
 void summarise(ResultRow& row, const ResultRow* serial);
+
+/// Takes over what an earlier run found of the same.
+void take_costs(ResultRow& row, const ResultRow& earlier);
+
+/// Adds to the row what the samples of this run took beside time: processors, and communication.
+void summarise_costs(const Combination& combination, ResultRow& row);
 
 }  // namespace mssim

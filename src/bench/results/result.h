@@ -60,6 +60,13 @@ struct ResultRow {
   int warm_up_trials = 0;     ///< before the samples, until the backend was warm
   int outliers = 0;           ///< samples that lie far from the rest (statistics/outliers.h); they count too
   std::optional<double> processors_used;  ///< processor seconds a second of the samples, median
+  // Of processes that take the steps together, medians of the samples (Communication).
+  std::optional<double> waiting_share;   ///< of a step, in which a process waits for others; mean of all
+  std::optional<double> packing_share;   ///< of a step, in which it packs and unpacks messages
+  std::optional<double> bytes_per_step;  ///< that the process with most sends
+  std::optional<double> messages_per_step;
+  std::optional<double> latency_us;  ///< of a message to a neighbour
+  std::optional<double> link_gigabytes_per_second;
   std::string program_output;      ///< what the program behind the backend wrote last, where there is one
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample

@@ -165,7 +165,7 @@ std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs
       if (entry.path().extension() == description_extension && is_file(entry.path()))
         files.push_back(entry.path());
   }
-  std::ranges::sort(files, {}, [](const fs::path& file) { return file.filename(); });
+  std::ranges::sort(files, {}, [](const fs::path& file) { return file.stem(); });
   std::vector<const BackendInfo*> infos;
   for (const fs::path& file : files) infos.push_back(&require(file.stem().string()));
   return infos;

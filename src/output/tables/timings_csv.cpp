@@ -94,6 +94,12 @@ const std::vector<TimingsColumn>& columns() {
       field("outliers", &Row::outliers),
       hash("state_hash", &Row::state_hash),
       field("processors_used", &Row::processors_used),
+      field("waiting_share", &Row::waiting_share),
+      field("packing_share", &Row::packing_share),
+      field("bytes_per_step", &Row::bytes_per_step),
+      field("messages_per_step", &Row::messages_per_step),
+      field("latency_us", &Row::latency_us),
+      field("link_gigabytes_per_second", &Row::link_gigabytes_per_second),
   };
   return table;
 }

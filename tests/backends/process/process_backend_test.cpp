@@ -61,6 +61,26 @@ BackendFailure failure_of(const std::string& mistake) {
   return {"none", ""};
 }
 
+TEST(ProcessBackend, SaysWhatProcessesSpendOnEachOtherWhereTheProgramTells) {
+  const System system = cloth_system(4, 5);
+  const BackendProgram silent = program_that(""), telling = program_that("tells-costs"),
+                       excessive = program_that("many-costs");
+  EXPECT_EQ(make(silent, system)->communication(), std::nullopt);
+  const auto backend = make(telling, system);
+  backend->step(3);
+  backend->rest();
+  const std::optional<Communication> costs = backend->communication();
+  ASSERT_TRUE(costs);
+  EXPECT_EQ(costs->waiting, 0.25);
+  EXPECT_EQ(costs->bytes, 96);
+  EXPECT_EQ(costs->messages, 2);
+  EXPECT_EQ(costs->latency_s, std::nullopt);
+  backend->step(1);
+  EXPECT_TRUE(backend->communication());
+  const auto other = make(excessive, system);
+  EXPECT_THROW(other->communication(), BackendFailure);
+}
+
 /// Every row of the table, by name, which the program is told as stages and assignments.
 class OwnProgram : public testing::TestWithParam<std::string_view> {};
 std::vector<std::string_view> integrator_names() {

@@ -43,11 +43,14 @@ TEST_F(ResultFiles, TimingsHaveTheDocumentedColumnsAndQuoteWhatNeedsIt) {
       "scene,nodes,springs_unique,springs_published,backend,device,threads,integrator,dt_s,rounds,"
       "ms_per_step,ms_per_step_low,ms_per_step_high,ms_per_step_min,springs_per_second,"
       "gigabytes_per_second,roofline_fraction,speedup_vs_serial,paper_ms,position_error,energy_drift,"
-      "verified,status,note,warm_up_trials,outliers,state_hash,processors_used\n"
+      "verified,status,note,warm_up_trials,outliers,state_hash,processors_used,waiting_share,packing_share,"
+      "bytes_per_step,messages_per_step,latency_us,"
+      "link_gigabytes_per_second\n"
       "cloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,116016000,1.5,"
-      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0,0123456789abcdef,1.5\n"
+      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0,0123456789abcdef,1.5,"
+      "0.0625,0.03125,6000,0.5,1.25,8\n"
       "cloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
-      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0,,\n");
+      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0,,,,,,,,\n");
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
@@ -97,7 +100,7 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
   std::istringstream lines(timings_csv(rows));
   std::string text;
   for (std::string line; std::getline(lines, line);) {
-    for (int columns = 0; columns < 4; ++columns) line.resize(line.rfind(','));
+    for (int columns = 0; columns < 10; ++columns) line.resize(line.rfind(','));
     text += line + '\n';
   }
   EXPECT_THAT(text, HasSubstr("status,note\n"));
@@ -128,7 +131,7 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(complaint(with("19.475", "nan")), HasSubstr("column paper_ms: \"nan\""));
   EXPECT_THAT(complaint(with("2500,14502", "-1,14502")), HasSubstr("column nodes: \"-1\""));
   EXPECT_THAT(complaint(with("true", "yes")), HasSubstr("column verified: \"yes\""));
-  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 27 fields where the header has 28"));
+  EXPECT_THAT(complaint(with(",ok", "")), HasSubstr("line 2: has 33 fields where the header has 34"));
   EXPECT_THAT(complaint(with("0123456789abcdef", "0123")),
               HasSubstr("is not a hash of 16 hexadecimal digits"));
   EXPECT_THAT(complaint(with("ok", "\"ok")), HasSubstr("line 2: a quoted field does not end"));

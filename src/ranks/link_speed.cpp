@@ -1,0 +1,113 @@
+#include "ranks/link_speed.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "statistics/statistics.h"
+
+namespace mssim {
+namespace {
+
+constexpr int link_tag = 3;
+constexpr std::size_t few_bytes = 8;
+/// As large as the columns beside a part of a large cloth.
+constexpr std::size_t many_bytes = std::size_t{1} << 20;
+constexpr int trials_with_few = 100, trials_with_many = 10;
+
+/// A message to another rank and one from there, both on their way at the same time; the median of the
+/// trials, s. The ranks wait for each other before each: `first` sends first where only one does.
+class Partner {
+ public:
+  Partner(const Session& session, int rank) : session_(session), rank_(rank) {}
+
+  /// Half of there and back: one sends when the other has received.
+  double one_way_s() {
+    std::array<char, few_bytes> bytes{};
+    return median_seconds(trials_with_few,
+                          [&] {
+                            if (session_.rank() < rank_) send(bytes);
+                            receive(bytes);
+                            if (session_.rank() > rank_) send(bytes);
+                          }) /
+           2;
+  }
+
+  /// Both send at the same time.
+  double both_ways_s() {
+    std::vector<char> sent(many_bytes), received(many_bytes);
+    return median_seconds(trials_with_many, [&] {
+      std::array<MPI_Request, 2> requests{MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+      check_mpi(MPI_Irecv(received.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
+                          MPI_COMM_WORLD, &requests[0]),
+                "measuring a link");
+      check_mpi(MPI_Isend(sent.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
+                          MPI_COMM_WORLD, &requests[1]),
+                "measuring a link");
+      session_.wait(requests, std::array{rank_});
+    });
+  }
+
+ private:
+  template <class Exchange>
+  double median_seconds(int trials, const Exchange& exchange) {
+    exchange();  // connects the two
+    std::vector<double> seconds;
+    for (int trial = 0; trial < trials; ++trial) {
+      const auto begin = std::chrono::steady_clock::now();
+      exchange();
+      seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return median(seconds);
+  }
+
+  void send(std::array<char, few_bytes>& bytes) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    check_mpi(MPI_Isend(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
+              "measuring a link");
+    session_.wait({&request, 1}, std::array{rank_});
+  }
+  void receive(std::array<char, few_bytes>& bytes) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    check_mpi(MPI_Irecv(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
+              "measuring a link");
+    session_.wait({&request, 1}, std::array{rank_});
+  }
+
+  const Session& session_;
+  int rank_;
+};
+
+}  // namespace
+
+LinkSpeed measure_links(const Session& session) {
+  if (session.ranks() == 1) return {};
+  double latency_s = 0, both_ways_s = 0;
+  for (int first = 0; first < 2; ++first) {
+    session.meet();
+    const bool is_left = (session.rank() - first) % 2 == 0;
+    const int rank = session.rank() + (is_left ? 1 : -1);
+    if (rank < 0 || rank >= session.ranks()) continue;
+    Partner partner(session, rank);
+    latency_s = std::max(latency_s, partner.one_way_s());
+    both_ways_s = std::max(both_ways_s, partner.both_ways_s());
+  }
+  std::ostringstream text;
+  text << std::setprecision(std::numeric_limits<double>::max_digits10) << latency_s << ' ' << both_ways_s;
+  for (const std::string& other : session.gather(text.str())) {
+    std::istringstream of_rank(other);
+    double latency = 0, seconds = 0;
+    of_rank >> latency >> seconds;
+    latency_s = std::max(latency_s, latency);
+    both_ways_s = std::max(both_ways_s, seconds);
+  }
+  return {latency_s, static_cast<double>(many_bytes) / both_ways_s};
+}
+
+}  // namespace mssim
