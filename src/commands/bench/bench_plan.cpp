@@ -30,9 +30,11 @@ std::vector<std::string> timed_names(const BenchOptions& options) {
 
 /// Those asked for, or else all of the table and, where the suite compares them, all that are described.
 std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const Comparison& comparison,
-                                            BackendChoice& choice) {
+                                            const ExecutionOptions& execution, BackendChoice& choice) {
   if (!options.backends.empty()) return choice.require_all(options.backends);
   std::vector<const BackendInfo*> all = comparison.backends();
+  if (comparison.programs)
+    for (const std::string& name : comparison.programs(execution)) all.push_back(&choice.require(name));
   if (!comparison.described_too) return all;
   if (choice.described().empty())
     throw UsageError("--suite " + options.suite +
@@ -44,9 +46,11 @@ std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const C
 
 BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison, BackendChoice& choice) {
   BenchSettings settings;
-  settings.backends = backends_of(options, comparison, choice);
+  ExecutionOptions execution = options.execution;
+  if (execution.threads == 0) execution.threads = comparison.threads;
+  settings.execution = complete(execution);
+  settings.backends = backends_of(options, comparison, settings.execution, choice);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
-  settings.execution = complete(options.execution);
   settings.windows = options.windows;
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
   return settings;
@@ -83,6 +87,16 @@ class SceneReader {
   std::map<std::string, SceneSpec> known_;
   std::map<std::filesystem::path, SceneParts> parts_;
 };
+
+/// The same, with the backends that the suite has for this scene.
+BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
+                                const std::string& scene) {
+  BenchSettings settings = all;
+  if (comparison.is_compared)
+    std::erase_if(settings.backends,
+                  [&](const BackendInfo* backend) { return !comparison.is_compared(scene, backend->name); });
+  return settings;
+}
 
 /// Rows and results are told apart by their scene's name.
 void require_distinct_names(const std::vector<SceneSpec>& scenes) {
@@ -132,6 +146,9 @@ BenchPlan plan_of(const BenchOptions& options) {
     plan.described.push_back({std::move(spec), std::move(parts)});
   }
   std::vector<SceneSpec> timed = scenes.read(timed_ones);
+  std::erase_if(timed, [&](const SceneSpec& spec) {
+    return settings_of_scene(plan.settings, comparison, spec.name).backends.empty();
+  });
   if (options.output.trace) std::ranges::for_each(timed, require_traceable);
   require_distinct_names(timed);
 
@@ -146,7 +163,8 @@ BenchPlan plan_of(const BenchOptions& options) {
     plan.settings.verified = verified_rows(options.verified, plan.provenance, plan.settings, timed);
   for (SceneSpec& spec : timed) {
     SceneParts parts = scenes.parts_of(spec);
-    plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, plan.settings));
+    const BenchSettings settings = settings_of_scene(plan.settings, comparison, spec.name);
+    plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
     if (options.output.trace && !plan.timed.back().windows.empty())
       throw UsageError("--trace needs the whole of " + plan.timed.back().spec.name +
                        ", which is verified in windows: leave it out");

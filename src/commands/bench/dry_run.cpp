@@ -18,7 +18,7 @@ void tell_plan(const BenchPlan& plan) {
     table.add({{"scene", scene.spec.name},
                {"nodes", scene.size.nodes},
                {"springs_unique", scene.size.springs},
-               {"combinations", combinations(plan.settings)},
+               {"combinations", scene.backends.size() * plan.settings.integrators.size()},
                {"rounds", std::lround(rounds)},
                {"expected_s", seconds(scene.time)}});
   for (const UnbuiltScene& scene : plan.described)

@@ -35,6 +35,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
   ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
   for (PlannedScene& planned : plan.timed) {
     SceneJob job{plan.settings};
+    job.backends = planned.backends;
     job.name = planned.spec.name;
     job.execution.scene = job.name;
     job.execution.scene_file = planned.spec.file;

@@ -63,7 +63,8 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
   std::string remedy = "name fewer with --backend or --integrator, or make the scene smaller";
   if (size.grid && windows.empty()) remedy += "; a cloth with --backend mpi alone can be verified in windows";
   require_memory(scene.spec, counts, memory_bytes, remedy);
-  return {std::move(scene), size, memory_bytes, expected_time(settings, size), std::move(windows)};
+  return {std::move(scene),  settings.backends, size, memory_bytes, expected_time(settings, size),
+          std::move(windows)};
 }
 
 PreparedScene outline_of(const PlannedScene& planned) {

@@ -28,6 +28,7 @@ struct UnbuiltScene {
 
 /// A scene that a bench is to time.
 struct PlannedScene : UnbuiltScene {
+  std::vector<const BackendInfo*> backends;  ///< that are measured on it
   SceneSize size;
   std::uint64_t memory_bytes = 0;  ///< bench_memory_needed
   ExpectedTime time;

@@ -6,10 +6,12 @@
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
+#include "commands/bench/cluster_suite.h"
 #include "commands/guide/guide_run.h"
 #include "commands/shared/backend_choice.h"
 #include "garment/output/garment_table.h"
 #include "integrators/all_integrators.h"
+#include "output/tables/cluster_table.h"
 #include "output/tables/paper_table.h"
 #include "output/tables/peer_table.h"
 #include "output/tables/race_table.h"
@@ -58,7 +60,7 @@ std::vector<const BackendInfo*> all_methods() {
   return rows;
 }
 
-/// What the peers are held against: the plain list and the fastest of the host's.
+/// What peers and ranks are held against: the plain list and the fastest of the host's.
 std::vector<const BackendInfo*> baseline_and_best() {
   return {find_backend("serial"), find_backend("openmp")};
 }
@@ -91,11 +93,18 @@ TableMaker table_of_races() {
   return race_tables(std::move(legend));
 }
 
+TableMaker table_of_cluster() {
+  StageCounts stages;
+  for (const Integrator* integrator : all_integrators)
+    stages.emplace(integrator->name, static_cast<int>(integrator->stage_count));
+  return cluster_tables(std::move(stages));
+}
+
 TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
 
 constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
 
-constexpr std::array<Suite, 8> table{{
+constexpr std::array<Suite, 9> table{{
     {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
     {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
@@ -117,6 +126,12 @@ constexpr std::array<Suite, 8> table{{
      true,
      scenes_of_peers,
      {baseline_and_best, cheapest_method, peer_tables, true}},
+    {"cluster",
+     "in several processes, on this machine or several: what messages cost, and what larger ones would do",
+     false,
+     true,
+     cluster_scenes,
+     {baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1}},
     {"garment",
      "jeans on a body, draped and dressed: Figure 6 of Vassilev",
      false,

@@ -17,6 +17,11 @@ struct Comparison {
   std::span<const std::string_view> integrators;  ///< by default
   TableMaker (*tables)();                         ///< reads what it needs at once, so before any measurement
   bool described_too = false;                     ///< by default, all backends that are described, too
+  /// The names of further backends that come with mssim as programs; null: none.
+  std::vector<std::string> (*programs)(const ExecutionOptions& execution) = nullptr;
+  /// Whether a backend is measured on a scene; null: each on all.
+  bool (*is_compared)(std::string_view scene, std::string_view backend) = nullptr;
+  int threads = 0;  ///< by default; 0: one for every processor
 };
 
 /// A row of the TABLE of suites: scenes, and what is compared on them.

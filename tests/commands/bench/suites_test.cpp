@@ -61,6 +61,23 @@ TEST(Suites, OfPeersMeasuresClothsAndBodiesWithWhatIsDescribed) {
   for (const Suite& suite : suites()) EXPECT_EQ(suite.comparison.described_too, suite.name == "peers");
 }
 
+TEST(Suites, OfClustersMeasureRanksInPowersOfTwoAndWideClothsWithOneNumberOfThem) {
+  const Comparison& cluster = comparison_of_suite("cluster");
+  EXPECT_THAT(backends_of("cluster"), testing::ElementsAre("serial", "openmp"));
+  EXPECT_THAT(cluster.programs({.threads = 1, .ranks = 6}),
+              testing::ElementsAre("mpi:1", "mpi:2", "mpi:4", "mpi:6", "mpi-copies:2", "mpi-copies:4",
+                                   "mpi-copies:6"));
+  EXPECT_THAT(cluster.programs({.threads = 1, .ranks = 1}), testing::ElementsAre("mpi:1"));
+  EXPECT_GE(cluster.programs({.threads = 1}).size(), 5U) << "one, two and four at least";
+  for (const std::string_view backend : {"serial", "mpi:1", "mpi:4", "mpi-copies:2"})
+    EXPECT_TRUE(cluster.is_compared("cloth350k", backend)) << backend;
+  EXPECT_TRUE(cluster.is_compared("cloth10k-x4", "mpi:4"));
+  for (const std::string_view backend : {"serial", "mpi:1", "mpi:2", "mpi-copies:4", "openmp"})
+    EXPECT_FALSE(cluster.is_compared("cloth10k-x4", backend)) << backend;
+  for (const Suite& suite : suites())
+    EXPECT_EQ(suite.comparison.is_compared == nullptr, suite.name != "cluster") << suite.name;
+}
+
 TEST(Suites, OfGarmentsAreTheJeansOfTheFigureWithTheOneMethodThatDresses) {
   EXPECT_THAT(scenes_of_suite("garment", true),
               testing::ElementsAre("jeans1k", "jeans2k", "jeans4k", "jeans8k", "jeans16k", "jeans64k"));

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# --suite cluster: every row verified, what messages cost, and both tables.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+# shellcheck source=scripts/lib/mpi.sh
+. "$2/scripts/lib/mpi.sh"
+# shellcheck source=tests/support/mpi_ranks.sh
+. "$2/tests/support/mpi_ranks.sh"
+need_mpi
+cd "$work"
+let_ranks_share
+
+succeed bench --suite cluster --ranks 2 --backend openmp,mpi:1,mpi:2,mpi-copies:2 --rounds 1 --out two
+[ "$(column_of two/cluster.csv scaling | sort | uniq -c | xargs)" = '4 copies 4 one process 8 strong 2 weak' ] || fail "rows: $(cat two/cluster.csv)"
+[ "$(column_of two/cluster.csv verified | sort -u)" = true ] || fail "not every row is verified: $(cat two/cluster.csv)"
+grep -q '^weak,cloth350k-x2,700000,semi-euler,mpi:2,2,2,' two/cluster.csv || fail "there is no weak scaling: $(cat two/cluster.csv)"
+! grep -q 'x4' two/timings.csv || fail "a cloth for four processes is measured with two"
+if [ "$(nproc)" -ge 2 ]; then
+  grep -q '^| `mpi:2` on `cloth10k-x2` | \*\*[0-9.]*\*\* |' two/cluster.md || fail "the page says: $(cat two/cluster.md)"
+  grep -q '^The model is within .* % of the measured time in all 5 rows' two/cluster.md || fail "the page says: $(cat two/cluster.md)"
+  grep -q '^InfiniBand.*,10000,10000,10,' two/cluster-estimates.csv || fail "estimates: $(cat two/cluster-estimates.csv)"
+  grep -q 'steps an exchange pay' two/cluster-estimates.md || fail "the page says: $(cat two/cluster-estimates.md)"
+fi
+"$mssim" bench --suite cluster --dry-run >plan
+[ "$(grep -c '^cloth.*-x[24] ' plan)" -ge 4 ] || fail "four processes are not planned: $(cat plan)"
+exit $((failures > 0))
