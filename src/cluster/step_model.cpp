@@ -28,8 +28,8 @@ double exchange_seconds(const ExchangeWork& work, const ClusterRates& rates) {
   const double inner = work.inner_node_stages * rates.node_stage_s;
   const double latency = work.rounds_of_messages * rates.latency_s;
   const double volume = work.bytes > 0 ? work.bytes / rates.bytes_per_second : 0;
-  return computing + (rates.processor_copies ? std::max(0.0, latency - inner) + volume
-                                             : std::max(0.0, latency + volume - inner));
+  const double hidden = rates.processor_copies ? 0 : inner;
+  return computing + std::max(0.0, latency + volume - hidden);
 }
 
 double ghost_nodes(const ClothStep& step, const ClothCut& cut) {

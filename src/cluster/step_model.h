@@ -12,8 +12,8 @@ struct ClusterRates {
   double node_stage_s = 0;      ///< of a process for a stage of a node
   double latency_s = 0;         ///< of a message of a few bytes
   double bytes_per_second = 0;  ///< that a process sends, while as much comes
-  /// Whether its processor brings them across (shared memory, TCP): it cannot compute meanwhile. Else the
-  /// network does, while the processor computes what waits for no message.
+  /// Whether its processor brings them across (shared memory, TCP on one machine): it cannot compute
+  /// meanwhile. Else the network does, while the processor computes what waits for no message.
   bool processor_copies = false;
 };
 
@@ -25,8 +25,8 @@ struct ExchangeWork {
   int rounds_of_messages = 0;    ///< of which one waits for the other
 };
 
-/// Seconds of that: the model is max(0, latency - inner) + volume where the processor copies, and else
-/// max(0, latency + volume - inner), behind what is computed.
+/// Seconds of that: what is computed, and latency + volume where the processor copies, else
+/// max(0, latency + volume - inner).
 double exchange_seconds(const ExchangeWork& work, const ClusterRates& rates);
 
 /// A cloth, and an integrator of so many stages.

@@ -47,9 +47,9 @@ TEST(StepModel, HidesWhatTheNetworkDoesBehindInnerNodesAndNotWhatTheProcessorCop
   ClusterRates rates = slow_network;  // 1 ms to compute, 0.9 of it inner, 1 ms latency, 0.2 ms volume
   EXPECT_DOUBLE_EQ(exchange_seconds(work, rates), 1e-3 + 0.3e-3);
   rates.processor_copies = true;
-  EXPECT_DOUBLE_EQ(exchange_seconds(work, rates), 1e-3 + 0.1e-3 + 0.2e-3);
+  EXPECT_DOUBLE_EQ(exchange_seconds(work, rates), 1e-3 + 1e-3 + 0.2e-3);
   rates.latency_s = 1e-6;
-  EXPECT_DOUBLE_EQ(exchange_seconds(work, rates), 1e-3 + 0.2e-3);
+  EXPECT_DOUBLE_EQ(exchange_seconds(work, rates), 1e-3 + 1e-6 + 0.2e-3);
   rates.processor_copies = false;
   EXPECT_DOUBLE_EQ(exchange_seconds(work, rates), 1e-3);
 }
