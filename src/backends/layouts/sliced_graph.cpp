@@ -25,44 +25,98 @@ std::vector<std::uint32_t> kind_of_nodes(const System& system) {
 }
 
 struct Neighbour {
-  std::uint32_t slot;
+  std::uint32_t node;
   float rest_length;
 };
 
-}  // namespace
-
-SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
-    : lanes(slice_lanes), slot(system.nodes()) {
-  if (system.springs.size() > no_node / 2)
-    throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
-                      " springs; a sliced graph holds at most 2147483647");
-  const std::vector<std::uint32_t> kinds = kind_of_nodes(system);
-  std::vector<std::uint32_t> degree(system.nodes(), 0);
-  for (const Spring& spring : system.springs) {
+std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs) {
+  std::vector<std::uint32_t> degree(nodes, 0);
+  for (const Spring& spring : springs) {
     ++degree[spring.first];
     ++degree[spring.second];
   }
+  return degree;
+}
 
-  scene_node = reverse_cuthill_mckee(system.nodes(), system.springs);
-  for (std::size_t begin = 0; begin < nodes(); begin += window)
-    std::stable_sort(scene_node.begin() + static_cast<std::ptrdiff_t>(begin),
-                     scene_node.begin() + static_cast<std::ptrdiff_t>(std::min(begin + window, nodes())),
+/// Sorts nodes by degree, the largest first, within windows, the first of which has begun `skipped` nodes
+/// before.
+void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint32_t>& degree,
+                     std::size_t skipped) {
+  for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
+    end = std::min(
+        (begin + skipped) / SlicedGraph::window * SlicedGraph::window + SlicedGraph::window - skipped,
+        nodes.size());
+    const std::span<std::uint32_t> some = nodes.subspan(begin, end - begin);
+    std::stable_sort(some.begin(), some.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return degree[a] > degree[b]; });
-  for (std::uint32_t i = 0; i < nodes(); ++i) slot[scene_node[i]] = i;
-  scene_node.resize((nodes() + lanes - 1) / lanes * lanes, no_node);
+  }
+}
+
+/// A whole as the part that has all of it.
+GraphPart whole_of(const System& system) {
+  if (system.springs.size() > SlicedGraph::no_node / 2)
+    throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
+                      " springs; a sliced graph holds at most 2147483647");
+  GraphPart all{std::vector<std::uint32_t>(system.nodes()), system.nodes()};
+  const std::vector<std::uint32_t> order = slice_order(system.nodes(), system.springs);
+  for (std::uint32_t i = 0; i < order.size(); ++i) all.place[order[i]] = i;
+  return all;
+}
+
+/// Whether each own node of a part has a ghost for a neighbour.
+std::vector<bool> edge_nodes(const System& system, std::size_t own) {
+  std::vector<bool> edge(own, false);
+  for (const Spring& spring : system.springs) {
+    if (spring.first < own && spring.second >= own) edge[spring.first] = true;
+    if (spring.second < own && spring.first >= own) edge[spring.second] = true;
+  }
+  return edge;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> slice_order(std::size_t nodes, std::span<const Spring> springs,
+                                       std::size_t first_place) {
+  std::vector<std::uint32_t> order = reverse_cuthill_mckee(nodes, springs);
+  sort_in_windows(order, degrees_of(nodes, springs), first_place % SlicedGraph::window);
+  return order;
+}
+
+SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
+    : SlicedGraph(system, slice_lanes, whole_of(system)) {}
+
+SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const GraphPart& part)
+    : lanes(slice_lanes), slot(system.nodes()), ghosts(system.nodes() - part.own) {
+  const std::vector<std::uint32_t> kinds = kind_of_nodes(system);
+  const std::vector<std::uint32_t> degree = degrees_of(system.nodes(), system.springs);
+  std::vector<std::uint32_t> inner, at_edge;
+  const std::vector<bool> edge = edge_nodes(system, part.own);
+  for (std::uint32_t node = 0; node < part.own; ++node) (edge[node] ? at_edge : inner).push_back(node);
+  const auto append = [&](std::vector<std::uint32_t>& group) {
+    std::ranges::sort(group, {}, [&](std::uint32_t node) { return part.place[node]; });
+    sort_in_windows(group, degree, 0);
+    scene_node.insert(scene_node.end(), group.begin(), group.end());
+    scene_node.resize((scene_node.size() + lanes - 1) / lanes * lanes, no_node);
+  };
+  append(inner);
+  first_edge_slice = slots() / lanes;
+  append(at_edge);
+  for (std::uint32_t i = 0; i < slots(); ++i)
+    if (scene_node[i] != no_node) slot[scene_node[i]] = i;
+  for (std::size_t ghost = 0; ghost < ghosts; ++ghost)
+    slot[part.own + ghost] = static_cast<std::uint32_t>(slots() + ghost);
 
   std::vector<std::vector<Neighbour>> springs(slots());
-  for (std::uint32_t node = 0; node < nodes(); ++node) springs[slot[node]].reserve(degree[node]);
+  for (std::uint32_t node = 0; node < part.own; ++node) springs[slot[node]].reserve(degree[node]);
   for (const Spring& spring : system.springs) {
-    springs[slot[spring.first]].push_back({slot[spring.second], spring.rest_length});
-    springs[slot[spring.second]].push_back({slot[spring.first], spring.rest_length});
+    if (spring.first < part.own) springs[slot[spring.first]].push_back({spring.second, spring.rest_length});
+    if (spring.second < part.own) springs[slot[spring.second]].push_back({spring.first, spring.rest_length});
   }
   first_entry.assign(1, 0);
   for (std::size_t begin = 0; begin < slots(); begin += lanes) {
     std::size_t largest = 0;
     for (std::size_t i = begin; i < begin + lanes; ++i) {
-      std::sort(springs[i].begin(), springs[i].end(),
-                [](const Neighbour& a, const Neighbour& b) { return a.slot < b.slot; });
+      std::ranges::sort(springs[i], {}, [&](const Neighbour& other) { return part.place[other.node]; });
       largest = std::max(largest, springs[i].size());
     }
     first_entry.push_back(first_entry.back() + static_cast<std::uint32_t>(largest));
@@ -86,12 +140,13 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
       const SpringConstants spring(material, static_cast<double>(other.rest_length), mass);
       stiffness[i] = spring.stiffness;
       damping[i] = spring.damping;
-      neighbour[element] = other.slot;
+      neighbour[element] = slot[other.node];
       stiffness_rest[element] = spring.stiffness_rest;
       element += lanes;
     }
   }
-  for (const std::uint32_t pin : system.pins) held[slot[pin]] = 1;
+  for (const std::uint32_t pin : system.pins)
+    if (pin < part.own) held[slot[pin]] = 1;
 }
 
 }  // namespace mssim

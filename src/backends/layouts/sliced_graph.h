@@ -3,11 +3,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "model/system.h"
 
 namespace mssim {
+
+/// What a system that is a part of another one (the whole) must know of that, so that its steps have the same
+/// bits.
+struct GraphPart {
+  /// [nodes] where the node stands in the whole's order of slots (slice_order): a node's springs are added in
+  /// this order of its neighbours.
+  std::vector<std::uint32_t> place;
+  /// Nodes from this one on are ghosts: neighbours of the part's own nodes that are stepped elsewhere.
+  std::size_t own = 0;
+};
+
+/// The nodes of bodies in the order of a SlicedGraph's slots. `first_place`: where the first of them stands
+/// in the order of a whole that has other bodies before these.
+std::vector<std::uint32_t> slice_order(std::size_t nodes, std::span<const Spring> springs,
+                                       std::size_t first_place = 0);
 
 /// The springs of a system as every node sees them, for code that gathers: the nodes renumbered so that
 /// neighbours stand near each other (reverse Cuthill-McKee), then sorted by degree within windows, then cut
@@ -22,6 +38,9 @@ namespace mssim {
 /// mask them).
 ///
 /// Places after the last node fill up the last slice: held, with empty entries only.
+///
+/// A graph may be a part of that of a whole: then its nodes that are neighbours of ghosts (edge nodes) lie in
+/// slices of their own after the others, and the ghosts, which no slice has, behind them.
 struct SlicedGraph {
   static constexpr std::size_t window = 256;  ///< nodes; more saves few empty entries and costs locality
   static constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
@@ -29,7 +48,10 @@ struct SlicedGraph {
 
   std::size_t lanes = 0;                  ///< nodes in a slice
   std::vector<std::uint32_t> scene_node;  ///< [slots] the scene's number of the node, or no_node
-  std::vector<std::uint32_t> slot;        ///< [nodes] where the scene's node stands
+  /// [nodes] where the scene's node stands; of a part, ghost g stands at slots() + g.
+  std::vector<std::uint32_t> slot;
+  std::size_t ghosts = 0;            ///< nodes that no slice has
+  std::size_t first_edge_slice = 0;  ///< slices from here on have edge nodes; slices() where there are none
   std::vector<std::uint32_t>
       first_entry;                       ///< [slices + 1] of the slice; the last one is the number of entries
   std::vector<std::uint32_t> neighbour;  ///< [entries][lanes] slots
@@ -41,6 +63,9 @@ struct SlicedGraph {
   /// Throws Unsupported where springs of unlike materials meet in a node, and for more springs than 32 bits
   /// number from both ends.
   SlicedGraph(const System& system, std::size_t slice_lanes);
+  /// The same of a part: its nodes have the entries of the whole's graph, in the same order, with the same
+  /// constants. Springs between ghosts are left out.
+  SlicedGraph(const System& system, std::size_t slice_lanes, const GraphPart& part);
 
   std::size_t nodes() const { return slot.size(); }
   std::size_t slots() const { return scene_node.size(); }  ///< slices() * lanes

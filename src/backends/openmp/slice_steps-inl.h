@@ -64,24 +64,29 @@ HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, Slic
     step_slice<method, stage>(bodies, base, slice);
 }
 
-/// Works on a chunk in the stage that the ticket's phase stands for.
+/// The pairs in a stage, counted from the first one of a call: `state` and `next` change places every step.
 template <std::size_t method>
-HWY_INLINE void work_on(const SlicedBodies& bodies, const ChunkTickets::Ticket& ticket) {
-  constexpr std::size_t stages = integrators[method].stage_count;
+HWY_INLINE Pairs pairs_in(const SlicedBodies& bodies, std::uint32_t stage) {
   Pairs base = bodies.base;
-  if (ticket.phase / stages % 2 != 0) std::swap(base[index(Pair::state)], base[index(Pair::next)]);
+  if (stage / integrators[method].stage_count % 2 != 0)
+    std::swap(base[index(Pair::state)], base[index(Pair::next)]);
+  return base;
+}
+
+/// Works on a chunk in a stage, counted from the first one of the call.
+template <std::size_t method>
+HWY_INLINE void work_on(const SlicedBodies& bodies, std::uint32_t number, SlicedBodies::Chunk chunk) {
+  const Pairs base = pairs_in<method>(bodies, number);
   for_each_stage<method>([&](auto stage) HWY_ATTR {
-    if (ticket.phase % stages == stage) step_chunk<method, stage>(bodies, base, bodies.chunks[ticket.chunk]);
+    if (number % integrators[method].stage_count == stage) step_chunk<method, stage>(bodies, base, chunk);
   });
 }
 
-template <std::size_t method>
-HWY_INLINE void take_steps(SlicedBodies& bodies, int count) {
-  // A node's sums have the order of its entries, whichever thread computes them: the result is the same to
-  // the last bit for any number of threads.
-  constexpr std::size_t stages = integrators[method].stage_count;
-  const auto phases = static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(stages);
-  if (phases == 0 || bodies.chunks.empty()) return;
+/// Calls act(thread, ticket) for every chunk of so many phases, one phase after the other. Whoever has
+/// finished the n-th one calls between(n), while all others wait.
+template <class Act, class Between>
+HWY_INLINE void work_in_phases(const SlicedBodies& bodies, std::uint32_t phases, const Act& act,
+                               const Between& between) {
   ChunkTickets tickets(static_cast<std::uint32_t>(bodies.chunks.size()),
                        static_cast<std::uint32_t>(bodies.threads));
   std::uint32_t opened = 1;  // only whoever has finished a phase touches it
@@ -90,20 +95,64 @@ HWY_INLINE void take_steps(SlicedBodies& bodies, int count) {
   {
     const auto thread = static_cast<std::uint32_t>(omp_get_thread_num());
     tickets.work_until_closed(
-        thread, spins, [&](const ChunkTickets::Ticket& ticket) HWY_ATTR { work_on<method>(bodies, ticket); },
+        thread, spins, [&](const ChunkTickets::Ticket& ticket) HWY_ATTR { act(thread, ticket); },
         [&] {
+          between(opened);
           if (opened == phases) return tickets.close();
           ++opened;
           tickets.open();
         });
   }
+}
+
+/// Stages of a part. Each is two phases: nodes without ghosts for neighbours are stepped while messages bring
+/// the ghosts; then the edge nodes, which are sent as soon as they are complete.
+template <std::size_t method>
+HWY_INLINE void take_stages_of_part(const SlicedBodies& bodies, std::uint32_t count) {
+  NodeMessages& messages = *bodies.messages;
+  const auto gathered_in = [&](std::uint32_t number) {
+    const Stage& stage = integrators[method].stages[number % integrators[method].stage_count];
+    return pairs_in<method>(bodies, number)[index(stage.gather)];
+  };
+  messages.begin(gathered_in(0));
+  work_in_phases(
+      bodies, 2 * count,
+      [&](std::uint32_t thread, const ChunkTickets::Ticket& ticket) HWY_ATTR {
+        const bool at_edge = ticket.phase % 2 != 0;
+        if (!at_edge && thread == 0) messages.advance();  // every few microseconds
+        work_on<method>(bodies, ticket.phase / 2,
+                        (at_edge ? bodies.edge_chunks : bodies.chunks)[ticket.chunk]);
+      },
+      [&](std::uint32_t finished) {
+        if (finished % 2 != 0)
+          messages.finish(gathered_in(finished / 2));
+        else if (finished < 2 * count)
+          messages.begin(gathered_in(finished / 2));
+      });
+}
+
+template <std::size_t method>
+HWY_INLINE void take_steps(SlicedBodies& bodies, int count) {
+  // A node's sums have the order of its entries, whichever thread computes them: the result is the same to
+  // the last bit for any number of threads.
+  const auto stages =
+      static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(integrators[method].stage_count);
+  if (stages == 0 || bodies.chunks.empty()) return;
+  if (bodies.messages)
+    take_stages_of_part<method>(bodies, stages);
+  else
+    work_in_phases(
+        bodies, stages,
+        [&](std::uint32_t, const ChunkTickets::Ticket& ticket)
+            HWY_ATTR { work_on<method>(bodies, ticket.phase, bodies.chunks[ticket.chunk]); },
+        [](std::uint32_t) {});
   if (count % 2 != 0) std::swap(bodies.base[index(Pair::state)], bodies.base[index(Pair::next)]);
 }
 
 template <std::size_t method>
 HWY_INLINE void step_method(SlicedBodies& bodies, int count) {
   constexpr int most = 1 << 20;  // a ticket numbers a call's phases
-  static_assert(most * integrators[method].stage_count <= ChunkTickets::most_phases);
+  static_assert(2 * most * integrators[method].stage_count <= ChunkTickets::most_phases);
   for (; count > most; count -= most) take_steps<method>(bodies, most);
   take_steps<method>(bodies, count);
 }

@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 SliceKernel slice_kernel_of_one_stage() {
-  return {vector_nodes, hwy::TargetName(HWY_TARGET), exact_roots, &step_slices<1, 1>};
+  return {vector_nodes, hwy::TargetName(HWY_TARGET), exact_roots, fuses, &step_slices<1, 1>};
 }
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

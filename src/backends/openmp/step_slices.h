@@ -13,6 +13,7 @@ struct SliceKernel {
   std::size_t lanes;                              ///< floats in a vector: SlicedGraph::lanes must equal it
   const char* instruction_set;                    ///< Highway's name for it
   bool exact_roots;                               ///< as inverse_length (backends/vectors/lanes-inl.h) says
+  bool fuses;                                     ///< the same of multiplications and additions
   void (*step)(SlicedBodies& bodies, int count);  ///< takes `count` steps
 };
 

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 SliceKernel slice_kernel_of_many_stages() {
-  return {vector_nodes, hwy::TargetName(HWY_TARGET), exact_roots, &step_slices<2, max_stages>};
+  return {vector_nodes, hwy::TargetName(HWY_TARGET), exact_roots, fuses, &step_slices<2, max_stages>};
 }
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,11 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -20,30 +17,10 @@
 #include "scene/scene_kinds.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
+#include "tests/support/mail.h"
 
 namespace mssim {
 namespace {
-
-/// Columns on their way from one piece to the one beside it.
-class Mail {
- public:
-  void send(const float* columns, std::size_t floats) {
-    const std::scoped_lock lock(mutex_);
-    letters_.emplace_back(columns, columns + floats);
-    changed_.notify_one();
-  }
-  void receive(float* columns) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return !letters_.empty(); });
-    std::ranges::copy(letters_.front(), columns);
-    letters_.pop_front();
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<std::vector<float>> letters_;
-};
 
 /// What MPI is between processes, between threads.
 class MailMessages final : public ColumnMessages {

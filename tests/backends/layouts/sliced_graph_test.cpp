@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <string>
@@ -180,6 +181,63 @@ TEST_P(SlicedGraphOfLanes, FillsUpSlicesWithWhatFeelsNothingAndDoesNotMove) {
   }
 }
 
+TEST(SliceOrder, OfABodyIsThatWhichItHasBehindOthers) {
+  const System two = two_solid_blocks(), second = solid_block(3, 3, 7), large = solid_block(9, 9, 9);
+  const std::size_t first_nodes = 4 * 5 * 3;
+  const std::vector<std::uint32_t> all = slice_order(two.nodes(), two.springs);
+  std::vector<std::uint32_t> alone = slice_order(second.nodes(), second.springs, first_nodes);
+  for (std::uint32_t& node : alone) node += static_cast<std::uint32_t>(first_nodes);
+  // In a window that both have nodes in, they stand between each other.
+  std::vector<std::uint32_t> of_second;
+  std::ranges::copy_if(all, std::back_inserter(of_second),
+                       [&](std::uint32_t node) { return node >= first_nodes; });
+  EXPECT_EQ(alone, of_second);
+  EXPECT_NE(slice_order(large.nodes(), large.springs, 100), slice_order(large.nodes(), large.springs));
+  EXPECT_EQ(slice_order(large.nodes(), large.springs, 512), slice_order(large.nodes(), large.springs));
+}
+
+/// The part of a block that has its nodes below `own`, the neighbours of these behind them.
+std::pair<System, GraphPart> lower_part(const System& block, std::uint32_t own) {
+  System part = block;
+  const std::vector<std::uint32_t> order = slice_order(block.nodes(), block.springs);
+  GraphPart graph{std::vector<std::uint32_t>(block.nodes()), own};
+  for (std::uint32_t i = 0; i < order.size(); ++i) graph.place[order[i]] = i;
+  std::erase_if(part.springs,
+                [&](const Spring& spring) { return spring.first >= own && spring.second >= own; });
+  return {part, graph};
+}
+
+TEST_P(SlicedGraphOfLanes, OfAPartGivesItsNodesWhatTheyHaveInTheWhole) {
+  const System block = solid_block(9, 9, 9);
+  constexpr std::uint32_t own = 300;
+  const auto [system, part] = lower_part(block, own);
+  const SlicedGraph whole(block, GetParam()), graph(system, GetParam(), part);
+  EXPECT_EQ(graph.ghosts, block.nodes() - own);
+  EXPECT_GT(graph.first_edge_slice, 0U);
+  EXPECT_LT(graph.first_edge_slice, graph.slices());
+  // Of a node: its neighbours in the order of the entries, with their constants.
+  const auto entries_of = [](const SlicedGraph& of, std::uint32_t node) {
+    std::vector<std::uint32_t> node_at(of.slots() + of.ghosts);
+    for (std::uint32_t i = 0; i < of.nodes(); ++i) node_at[of.slot[i]] = i;
+    const std::size_t slice = of.slot[node] / of.lanes, lane = of.slot[node] % of.lanes;
+    std::vector<std::pair<std::uint32_t, float>> found;
+    for (std::size_t e = of.first_entry[slice]; e < of.first_entry[slice + 1]; ++e)
+      if (const std::size_t element = e * of.lanes + lane; of.stiffness_rest[element] >= 0)
+        found.emplace_back(node_at[of.neighbour[element]], of.stiffness_rest[element]);
+    return found;
+  };
+  for (std::uint32_t node = 0; node < own; ++node) {
+    const auto entries = entries_of(graph, node);
+    EXPECT_EQ(entries, entries_of(whole, node));
+    EXPECT_EQ(graph.stiffness[graph.slot[node]], whole.stiffness[whole.slot[node]]);
+    EXPECT_EQ(graph.damping[graph.slot[node]], whole.damping[whole.slot[node]]);
+    const bool edge = std::ranges::any_of(entries, [&](const auto& entry) { return entry.first >= own; });
+    EXPECT_EQ(graph.slot[node] / graph.lanes >= graph.first_edge_slice, edge);
+  }
+  for (std::uint32_t node = own; node < graph.nodes(); ++node)
+    EXPECT_EQ(graph.slot[node], graph.slots() + node - own);
+}
+
 TEST(SlicedGraph, HasFewEmptyEntriesInABody) {
   const System system = solid_block(9, 9, 9);
   const SlicedGraph graph(system, 16);
@@ -217,6 +275,24 @@ TEST(SlicedBodies, GiveEverySliceToOneLotInFairShares) {
                   1, 0.25);
     }
     EXPECT_EQ(next, bodies.slices());
+  }
+}
+
+TEST(SlicedBodies, OfAPartGiveEverySliceToOneLotOfItsKind) {
+  const auto [system, part] = lower_part(solid_block(9, 9, 9), 300);
+  const SlicedGraph graph(system, 16, part);
+  for (const std::size_t threads : {1U, 2U, 3U, 1000U}) {
+    const SlicedBodies bodies(system, graph, integrators[0], 1e-4, threads);
+    ASSERT_EQ(bodies.chunks.size(), bodies.edge_chunks.size());
+    ASSERT_EQ(bodies.slot.size(), 300U);
+    std::size_t next = 0;
+    for (const auto* chunks : {&bodies.chunks, &bodies.edge_chunks}) {
+      for (const SlicedBodies::Chunk& chunk : *chunks) {
+        EXPECT_EQ(chunk.begin, next);
+        next = chunk.end;
+      }
+      EXPECT_EQ(next, chunks == &bodies.chunks ? graph.first_edge_slice : bodies.slices());
+    }
   }
 }
 
