@@ -2,53 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "backends/vectors/instruction_sets.h"
 #include "platform/available_memory.h"
+#include "ranks/common_kernel.h"
 #include "scene/cloth.h"
 #include "text/counted.h"
 
 namespace mssim {
 namespace {
-
-/// The kernels of this processor: of those the ones that one with the instruction set of the variable
-/// MSSIM_INSTRUCTION_SET would have, by which different processors can be tried on one machine.
-std::vector<BandKernel> kernels_of_rank(const Integrator& integrator) {
-  std::vector<BandKernel> kernels = band_kernels(integrator);
-  const char* name = std::getenv("MSSIM_INSTRUCTION_SET");
-  const auto first = std::ranges::find_if(kernels, [&](const BandKernel& kernel) {
-    return name && kernel.instruction_set == std::string_view(name);
-  });
-  if (first != kernels.end()) kernels.erase(kernels.begin(), first);
-  return kernels;
-}
-
-bool all_equal(const std::vector<std::string>& texts) {
-  return std::ranges::all_of(texts, [&](const std::string& text) { return text == texts.front(); });
-}
-
-/// A kernel with which all ranks give the same bits: the best of each where that is the same one, and else
-/// the best that finds roots exactly. Throws Unsupported, on all ranks, where their bits would differ.
-BandKernel common_kernel(const Session& session, const Integrator& integrator, Roots roots) {
-  const std::vector<BandKernel> kernels = kernels_of_rank(integrator);
-  const BandKernel best = best_kernel(kernels, roots);
-  const std::vector<std::string> sets = session.gather(best.instruction_set);
-  if (all_equal(sets)) return best;
-  const BandKernel exact = best_kernel(kernels, Roots::exact);
-  const std::vector<std::string> roundings = session.gather(exact.fuses ? "once" : "twice");
-  if (all_equal(roundings)) return exact;
-  const auto other = static_cast<int>(
-      std::ranges::find_if(roundings,
-                           [&](const std::string& rounding) { return rounding != roundings.front(); }) -
-      roundings.begin());
-  throw Unsupported(session.name_of(0) + " has " + sets.front() + " and " + session.name_of(other) + " " +
-                    sets[static_cast<std::size_t>(other)] +
-                    ", which round differently: take machines of one kind");
-}
 
 /// Columns of a cloth that one host of this run steps, about: what shares its last-level cache.
 std::size_t columns_on_host(const Session& session, std::size_t columns) {
@@ -64,7 +27,7 @@ ClothPiece::ClothPiece(const Session& session, const RankJob& job)
       rank_(session.rank()),
       columns_(std::get<ClothSpec>(job.scene.content).columns),
       integrator_(job.integrator),
-      kernel_(common_kernel(session, *job.integrator, job.roots)) {
+      kernel_(common_kernel(session, band_kernels(*job.integrator), job.roots)) {
   const std::size_t least = ghost_columns(*job.integrator, 1);
   if (ranks_ > 1 && columns_ / static_cast<std::size_t>(ranks_) < least)
     throw Unsupported(counted(columns_, "column") + " cannot be cut for " +

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "backends/interface/backend.h"
+#include "ranks/rank_costs.h"
 #include "ranks/session.h"
 #include "scene/spec/scene_spec.h"
 
@@ -25,14 +25,6 @@ struct RankJob {
 /// Nodes of a scene that follow each other.
 struct NodeRun {
   std::size_t first = 0, count = 0;
-};
-
-/// What a rank has done for others in all its steps so far.
-struct RankCosts {
-  double waited_s = 0;         ///< for messages that the next columns or nodes needed
-  double packed_s = 0;         ///< bringing together what was sent, and putting in place what came
-  std::uint64_t bytes = 0;     ///< sent
-  std::uint64_t messages = 0;  ///< the same
 };
 
 /// The part of a scene that one rank steps. The rest of the scene is nowhere in this process.

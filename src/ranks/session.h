@@ -3,17 +3,12 @@
 #include <mpi.h>
 
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-namespace mssim {
+#include "ranks/rank_failure.h"
 
-/// Why this run over several processes cannot go on; what() is a sentence that
-/// names other ranks with their hosts, and calls this one "it".
-struct RankFailure : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+namespace mssim {
 
 /// Longest wait for a message of another rank, s. All ranks do the same work at the same time: one that is
 /// silent for so long has ended, or its host has.
