@@ -1,14 +1,23 @@
 #include "ranks/bodies_piece.h"
 
+#include <algorithm>
+#include <cstring>
+#include <span>
 #include <string>
+#include <utility>
 
-#include "backends/openmp/openmp.h"
-#include "ranks/ranks_by_weight.h"
+#include "ranks/bodies_part.h"
+#include "ranks/common_kernel.h"
+#include "ranks/graph_partition.h"
 #include "scene/scene_kinds.h"
 #include "text/counted.h"
 
 namespace mssim {
 namespace {
+
+const std::vector<BodySpec>& list_of(const SceneSpec& scene) {
+  return std::get<BodiesSpec>(scene.content).list;
+}
 
 /// The scene with some of its bodies.
 SceneSpec with_bodies(const SceneSpec& scene, const std::vector<BodySpec>& bodies) {
@@ -17,37 +26,170 @@ SceneSpec with_bodies(const SceneSpec& scene, const std::vector<BodySpec>& bodie
   return some;
 }
 
+/// [bodies] what each has. Every shape is meshed once.
+std::vector<SceneCounts> counts_of_bodies(const SceneSpec& scene) {
+  const std::vector<BodySpec>& list = list_of(scene);
+  std::vector<SceneCounts> counts;
+  for (std::size_t body = 0; body < list.size(); ++body) {
+    const auto first =
+        static_cast<std::size_t>(std::ranges::find(list, list[body].shape, &BodySpec::shape) - list.begin());
+    counts.push_back(first < body ? counts[first] : counts_of(with_bodies(scene, {list[body]})));
+  }
+  return counts;
+}
+
+/// Throws Unavailable, on all ranks alike, where they have not the same meshes, as with another TetGen.
+void require_same_meshes(const Session& session, const std::vector<SceneCounts>& bodies) {
+  std::string own;
+  for (const SceneCounts& body : bodies)
+    own += std::to_string(body.nodes) + ' ' + std::to_string(body.springs_unique) + ' ';
+  const std::vector<std::string> all = session.gather(own);
+  for (int rank = 1; rank < session.ranks(); ++rank)
+    if (all[static_cast<std::size_t>(rank)] != all.front())
+      throw Unavailable(session.name_of(rank) + " meshes these bodies in another way than " +
+                        session.name_of(0) + ": install the same TetGen on both");
+}
+
+std::vector<std::vector<BodyShare>> shares_for(const Session& session,
+                                               const std::vector<std::size_t>& nodes) {
+  if (auto shares = body_shares(nodes, session.ranks())) return std::move(*shares);
+  throw Unsupported((nodes.size() == 1 ? "1 body" : std::to_string(nodes.size()) + " bodies") +
+                    " cannot be cut for " + counted(static_cast<std::uint64_t>(session.ranks()), "rank") +
+                    ": a part of a body has at least " + std::to_string(least_share) +
+                    " nodes, so give at most --ranks " + std::to_string(most_ranks(nodes, session.ranks())));
+}
+
+/// A body of which this rank has something, in the system of all such bodies.
+struct BodyHere {
+  std::size_t number;      ///< in the scene
+  std::size_t scene_node;  ///< its first node in the scene
+  std::size_t first_node, nodes;
+  std::vector<Spring> springs;  ///< between its nodes, from 0
+};
+
+/// Those bodies. `system`: theirs, one after the other.
+std::vector<BodyHere> bodies_here(const System& system, const std::vector<std::size_t>& numbers,
+                                  const std::vector<std::size_t>& nodes) {
+  std::vector<BodyHere> here;
+  std::size_t first = 0;
+  auto spring = system.springs.begin();
+  for (std::size_t number = 0, scene_node = 0; number < nodes.size(); scene_node += nodes[number++]) {
+    if (!std::ranges::binary_search(numbers, number)) continue;
+    BodyHere& body = here.emplace_back(BodyHere{number, scene_node, first, nodes[number], {}});
+    const auto offset = static_cast<std::uint32_t>(first);
+    first += body.nodes;
+    for (; spring != system.springs.end() && spring->first < first; ++spring)
+      body.springs.push_back(
+          {spring->first - offset, spring->second - offset, spring->rest_length, spring->kind});
+  }
+  return here;
+}
+
+/// [bodies][nodes] the rank of each node of the divided bodies; nothing of whole ones. The first rank of a
+/// divided body cuts it, and tells all: whatever METIS does on their machines, they agree.
+std::vector<std::vector<int>> ranks_of_nodes(const Session& session, const std::vector<BodyHere>& here,
+                                             const std::vector<std::vector<BodyShare>>& shares,
+                                             const std::vector<std::size_t>& nodes) {
+  std::string own;
+  for (const BodyHere& body : here) {
+    const std::vector<BodyShare>& share = shares[body.number];
+    if (share.size() == 1 || share.front().rank != session.rank()) continue;
+    std::vector<std::size_t> wanted;
+    for (const BodyShare& part : share) wanted.push_back(part.nodes);
+    std::vector<int> ranks;
+    for (const std::uint32_t part : graph_partition(body.nodes, body.springs, wanted))
+      ranks.push_back(share[part].rank);
+    own.append(reinterpret_cast<const char*>(ranks.data()), ranks.size() * sizeof(int));
+  }
+  const std::vector<std::string> all = session.gather(own);
+  std::vector<std::size_t> taken(all.size(), 0);  // of each rank's text
+  std::vector<std::vector<int>> rank_of(shares.size());
+  for (std::size_t body = 0; body < shares.size(); ++body) {
+    if (shares[body].size() == 1) continue;
+    const auto cutter = static_cast<std::size_t>(shares[body].front().rank);
+    rank_of[body].resize(nodes[body]);
+    std::memcpy(rank_of[body].data(), all[cutter].data() + taken[cutter], nodes[body] * sizeof(int));
+    taken[cutter] += nodes[body] * sizeof(int);
+  }
+  return rank_of;
+}
+
+/// [ranks] the nodes of the scene that each steps.
+std::vector<std::vector<NodeRun>> runs_of_ranks(int ranks, const std::vector<std::vector<BodyShare>>& shares,
+                                                const std::vector<std::vector<int>>& rank_of,
+                                                const std::vector<std::size_t>& nodes) {
+  std::vector<std::vector<NodeRun>> all(static_cast<std::size_t>(ranks));
+  std::size_t first = 0;
+  const auto add = [&](int rank, std::size_t node, std::size_t count) {
+    std::vector<NodeRun>& runs = all[static_cast<std::size_t>(rank)];
+    if (!runs.empty() && runs.back().first + runs.back().count == node)
+      runs.back().count += count;
+    else
+      runs.push_back({node, count});
+  };
+  for (std::size_t body = 0; body < shares.size(); first += nodes[body++]) {
+    if (shares[body].size() == 1) add(shares[body].front().rank, first, nodes[body]);
+    for (std::size_t node = 0; node < rank_of[body].size(); ++node) add(rank_of[body][node], first + node, 1);
+  }
+  return all;
+}
+
+/// The part of this rank. `system`: all of the bodies of which it has something.
+BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHere>& here,
+                        const std::vector<std::vector<int>>& rank_of) {
+  std::vector<std::uint32_t> place(system.nodes());
+  std::vector<int> owner(system.nodes(), rank);
+  for (const BodyHere& body : here) {
+    const std::vector<std::uint32_t> order = slice_order(body.nodes, body.springs, body.scene_node);
+    for (std::size_t i = 0; i < order.size(); ++i)
+      place[body.first_node + order[i]] = static_cast<std::uint32_t>(body.scene_node + i);
+    std::ranges::copy(rank_of[body.number], owner.begin() + static_cast<std::ptrdiff_t>(body.first_node));
+  }
+  return part_of_bodies(system, place, owner, rank);
+}
+
 }  // namespace
 
-BodiesPiece::BodiesPiece(const Session& session, const RankJob& job) {
-  const std::vector<BodySpec>& list = std::get<BodiesSpec>(job.scene.content).list;
-  if (list.size() < static_cast<std::size_t>(session.ranks()))
-    throw Unsupported((list.size() == 1 ? "1 body" : std::to_string(list.size()) + " bodies") +
-                      " cannot be given to " + counted(static_cast<std::uint64_t>(session.ranks()), "rank") +
-                      ": each needs one, so give at most --ranks " + std::to_string(list.size()));
-  std::vector<std::size_t> weights;
-  for (const BodySpec& body : list) weights.push_back(counts_of(with_bodies(job.scene, {body})).nodes);
-  rank_of_ = ranks_by_weight(weights, session.ranks());
-  std::size_t first = 0;
-  std::vector<BodySpec> own;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    bodies_.push_back({first, weights[i]});
-    first += weights[i];
-    if (rank_of_[i] == session.rank()) own.push_back(list[i]);
-  }
-  system_ = build_system(with_bodies(job.scene, own));
-  backend_ = make_openmp(system_, *job.integrator, job.dt_s, {.threads = job.threads, .roots = job.roots});
+BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
+    : kernel_(common_kernel(session, slice_kernels(*job.integrator), job.roots)) {
+  const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
+  require_same_meshes(session, counts);
+  std::vector<std::size_t> nodes;
+  for (const SceneCounts& body : counts) nodes.push_back(body.nodes);
+  for (const std::size_t body : nodes) scene_nodes_ += body;
+  shares_ = shares_for(session, nodes);
+  std::vector<std::size_t> numbers;
+  std::vector<BodySpec> specs;
+  for (std::size_t body = 0; body < shares_.size(); ++body)
+    if (std::ranges::find(shares_[body], session.rank(), &BodyShare::rank) != shares_[body].end()) {
+      numbers.push_back(body);
+      specs.push_back(list_of(job.scene)[body]);
+    }
+  const System system = build_system(with_bodies(job.scene, specs));
+  const std::vector<BodyHere> here = bodies_here(system, numbers, nodes);
+  const std::vector<std::vector<int>> rank_of = ranks_of_nodes(session, here, shares_, nodes);
+  runs_ = runs_of_ranks(session.ranks(), shares_, rank_of, nodes);
+  for (std::size_t rank = 0; rank < runs_.size() && session.rank() != 0; ++rank)
+    if (static_cast<int>(rank) != session.rank()) runs_[rank] = {};
+
+  const BodiesPart part = part_of_rank(session.rank(), system, here, rank_of);
+  bodies_.emplace(part.system, SlicedGraph(part.system, kernel_.lanes, part.graph), *job.integrator, job.dt_s,
+                  static_cast<std::size_t>(job.threads));
+  if (!part.neighbours.empty()) bodies_->messages = &messages_.emplace(session, part, *bodies_);
+  bodies_->set_state(part.system.start);
 }
 
-std::vector<NodeRun> BodiesPiece::taken_by(int rank) const {
-  std::vector<NodeRun> runs;
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
-    if (rank_of_[i] == rank) runs.push_back(bodies_[i]);
-  return runs;
+std::string BodiesPiece::note() const {
+  const auto divided = static_cast<std::size_t>(
+      std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
+  std::string text = std::string(kernel_.instruction_set) + ", ";
+  if (divided == 0) return text + "whole bodies";
+  const auto bodies = [](std::size_t count) {
+    return std::to_string(count) + (count == 1 ? " body" : " bodies");
+  };
+  const std::size_t whole = shares_.size() - divided;
+  return text + (whole == 0 ? bodies(divided) : bodies(whole) + " whole, " + std::to_string(divided)) +
+         " divided";
 }
-
-std::size_t BodiesPiece::scene_nodes() const { return bodies_.back().first + bodies_.back().count; }
-
-std::string BodiesPiece::note() const { return backend_->device() + ", whole bodies"; }
 
 }  // namespace mssim

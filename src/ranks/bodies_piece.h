@@ -1,33 +1,43 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
+#include "backends/openmp/sliced_bodies.h"
+#include "backends/openmp/step_slices.h"
+#include "ranks/body_shares.h"
+#include "ranks/ghost_messages.h"
 #include "ranks/piece.h"
 
 namespace mssim {
 
-/// Some whole bodies of a scene, stepped as openmp steps them. Bodies do not touch each other: ranks have
-/// nothing to say to each other while they step.
+/// The bodies of a scene that one rank steps, whole ones and parts of divided ones, by openmp's own vector
+/// code: the same bits as there. Bodies do not touch each other: only the ranks of a divided one have
+/// something to say to each other while they step.
 class BodiesPiece final : public Piece {
  public:
-  /// Throws Unsupported for more ranks than bodies.
+  /// Throws Unsupported for more ranks than the bodies can be given to, and where the processors of the ranks
+  /// cannot give the same bits; Unavailable where the ranks have not the same meshes. All ranks do so alike.
   BodiesPiece(const Session& session, const RankJob& job);
 
-  std::vector<NodeRun> taken_by(int rank) const override;
+  /// Without ghosts: messages bring those before the first stage.
+  std::vector<NodeRun> taken_by(int rank) const override { return runs_[static_cast<std::size_t>(rank)]; }
   std::vector<NodeRun> owned_by(int rank) const override { return taken_by(rank); }
-  std::size_t scene_nodes() const override;
-  void set_state(const State& state) override { backend_->set_state(state); }
-  State state() const override { return backend_->state(); }
-  void step(int count) override { backend_->step(count); }
-  int threads() const override { return backend_->threads(); }
+  std::size_t scene_nodes() const override { return scene_nodes_; }
+  void set_state(const State& state) override { bodies_->set_state(state); }
+  State state() const override { return bodies_->state(); }
+  void step(int count) override { kernel_.step(*bodies_, count); }
+  RankCosts costs() const override { return messages_ ? messages_->costs() : RankCosts{}; }
+  int threads() const override { return static_cast<int>(bodies_->threads); }
   std::string note() const override;
 
  private:
-  std::vector<NodeRun> bodies_;  ///< [bodies of the scene] its nodes
-  std::vector<int> rank_of_;     ///< [bodies of the scene]
-  System system_;
-  std::unique_ptr<Backend> backend_;
+  SliceKernel kernel_;
+  std::vector<std::vector<BodyShare>> shares_;  ///< [bodies of the scene]
+  std::vector<std::vector<NodeRun>> runs_;      ///< [ranks] on rank 0; elsewhere only its own
+  std::size_t scene_nodes_ = 0;
+  std::optional<SlicedBodies> bodies_;
+  std::optional<GhostMessages> messages_;
 };
 
 }  // namespace mssim

@@ -35,8 +35,8 @@ class Piece {
   Piece& operator=(const Piece&) = delete;
   virtual ~Piece() = default;
 
-  /// The nodes of the scene whose states a rank takes, ghosts included, in the order in which its states have
-  /// them.
+  /// The nodes of the scene whose states a rank takes, with the ghosts that no message brings before they are
+  /// needed, in the order in which its states have them. Rank 0 asks it of all ranks, others of themselves.
   virtual std::vector<NodeRun> taken_by(int rank) const = 0;
   /// The same of those that it steps: every node of the scene is one rank's.
   virtual std::vector<NodeRun> owned_by(int rank) const = 0;

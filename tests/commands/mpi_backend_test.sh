@@ -25,24 +25,10 @@ nothing_left() {
   ! pgrep -af "^[^ ]*/mssim-mpi rank$" || fail "$1 leaves a rank"
 }
 
-# fails_with PATTERN FOLDER: the row of mpi has failed with that sentence, and the one of openmp is verified
-fails_with() {
-  grep -q ',openmp,.*,true,ok,' "$2/timings.csv" || fail "the row of openmp is missing: $(cat "$2/timings.csv")"
-  grep ',mpi,' "$2/timings.csv" | grep -q -- "$1" || fail "the row of mpi does not say \"$1\": $(grep ',mpi,' "$2/timings.csv")"
-}
-
 # Every explicit integrator; the last bit is openmp's, for 1 to 8 ranks, parts of different widths and several threads.
-explicit=semi-euler,midpoint,rk4,midpoint-frozen,rk4-frozen,explicit-euler,verlet
 succeed bench --scene cloth4900 --backend openmp,mpi --integrator "$explicit" --ranks 2 --threads 1 --rounds 1 --out all
 [ "$(column_of all/timings.csv verified | sort | uniq -c | xargs)" = '14 true' ] || fail "not every row is verified: $(cat all/timings.csv)"
 [ "$(hashes all | wc -l)" -eq 7 ] || fail "mpi and openmp differ: $(cat all/timings.csv)"
-same_bits() {  # same_bits SCENE RANKS THREADS INTEGRATORS COUNT
-  rm -rf bits
-  succeed bench --scene "$1" --backend openmp,mpi --integrator "$4" --ranks "$2" --threads "$3" --rounds 1 --out bits
-  [ "$(column_of bits/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * $5)) true" ] ||
-    fail "$1 with $2 ranks of $3 threads: $(cat bits/timings.csv)"
-  [ "$(hashes bits | wc -l)" -eq "$5" ] || fail "$1 with $2 ranks of $3 threads has other bits"
-}
 if [ "$(nproc)" -ge 2 ]; then
   OMP_PROC_BIND=true same_bits cloth4900 2 1 semi-euler 1
   ! grep 'not timed' bits/timings.csv || fail "ranks share a processor where mssim binds its threads"
@@ -63,25 +49,6 @@ if [ "$(nproc)" -ge 2 ]; then
   [ "$(column_of bare.csv bytes_per_step | awk '{ printf "%s ", ($1 > 0) }')" = '0 1 0 ' ] || fail "bytes: $(cat costs/timings.csv)"
   column_of bare.csv latency_us | awk 'NR > 1 && !($1 > 0 && $1 < 1e5) { bad = 1 } END { exit bad }' || fail "latency: $(cat costs/timings.csv)"
 fi
-
-# Bodies: whole ones to each rank.
-body='{"shape": "box", "box": {"size_m": [0.1, 0.1, 0.1], "cells_x": 3, "cells_y": 3, "cells_z": 3,
-  "interior": {"points": 20, "seed": 1, "jitter": 0.1, "margin": 0.6}}, "velocity_m_per_s": [0.1, 0, 0], "spin_rad_per_s": [1, 2, 0],
-  "swell_per_s": 1, "centre_m"'
-cat >boxes.json <<END
-{"kind": "bodies", "description": "of a test", "dt_s": 5e-5, "gravity_m_per_s2": 9.81, "viscous_damping_per_s": 0.1,
- "floor": {"height_m": 0, "restitution": 0.5, "friction": 0.4},
- "bodies": {"density_kg_per_m3": 1000, "springs": {"stiffness_n_per_m": 10000, "damping_n_s_per_m": 0.5}, "list": [
-   $body: [0, 0.3, 0]}, $body: [0.3, 0.3, 0]}, $body: [0.6, 0.3, 0]}]}}
-END
-for ranks in 1 2 3; do
-  rm -rf bodies
-  succeed bench --scene ./boxes.json --backend openmp,mpi --integrator "$explicit" --ranks "$ranks" --threads 1 --rounds 1 --out bodies
-  [ "$(grep -c ',true,' bodies/timings.csv)" -eq 14 ] || fail "bodies on $ranks ranks: $(cat bodies/timings.csv)"
-done
-"$mssim" bench --scene ./boxes.json --backend openmp,mpi --integrator rk4 --ranks 4 --threads 1 --rounds 1 --out four >/dev/null 2>&1 &&
-  fail "three bodies do for four ranks"
-fails_with 'unsupported: 3 bodies cannot be given to 4 ranks: .* at most --ranks 3' four
 
 # What it does not do is said, and what is asked for wrongly.
 "$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator rk4 --ranks 8 --threads 1 --rounds 1 --out narrow >/dev/null 2>&1 &&
@@ -111,10 +78,7 @@ fails_with 'unavailable: there is no no-mpirun in PATH: install Open MPI' missin
 
 # Different processors: the bits of exact roots, or a refusal.
 if [ "$(uname -m)" = x86_64 ]; then
-  # shellcheck disable=SC2016 # they are the inner shell's
-  printf '#!/bin/sh\nn=$2\nshift 2\nexec mpirun -n "$n" sh -c %s sh "$@"\n' \
-    "'[ \"\$OMPI_COMM_WORLD_RANK\" = 0 ] || export MSSIM_INSTRUCTION_SET=\$SET; exec \"\$@\"'" >mixed
-  chmod +x mixed
+  make_mixed_launcher mixed
   succeed bench --scene cloth2500 --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
   SET=AVX2 succeed bench --scene cloth2500 --backend mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
   [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"

@@ -40,6 +40,9 @@ succeed bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler,rk4
 [ "$(column_of two/timings.csv device | sort | uniq -c | xargs)" = "2 2 hosts 2 $(column_of two/timings.csv device | head -n 1)" ] ||
   fail "mpi did not run on two hosts: $(cat two/timings.csv)"
 [ "$(hashes two | wc -l)" -eq 2 ] || fail "two hosts have other bits: $(cat two/timings.csv)"
+succeed bench --scene box-small --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$hosts" --out body
+[ "$(column_of body/timings.csv verified | sort | uniq -c | xargs)" = '2 true' ] || fail "a body on two hosts: $(cat body/timings.csv)"
+[ "$(hashes body | wc -l)" -eq 1 ] || fail "a body has other bits on two hosts: $(cat body/timings.csv)"
 
 # broken kill|cut PATTERN: while a bench runs, a rank of the other machine is killed, or its network is cut; within 30 s the row of
 # mpi says so

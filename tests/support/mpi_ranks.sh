@@ -22,3 +22,31 @@ rank_of() {
 
 # hashes FOLDER: of the states of all integrators, each once; notes before them hold commas
 hashes() { sed -nE 's/^([^,]*,){7}([^,]*),.*,([0-9a-f]{16}),.*/\2 \3/p' "$1/timings.csv" | sort -u; }
+
+# All explicit integrators.
+# shellcheck disable=SC2034 # tests use it
+explicit=semi-euler,midpoint,rk4,midpoint-frozen,rk4-frozen,explicit-euler,verlet
+
+# same_bits SCENE RANKS THREADS INTEGRATORS COUNT: mpi is verified with each of these COUNT integrators, and has the bits of openmp;
+# the results are in the folder bits
+same_bits() {
+  rm -rf bits
+  succeed bench --scene "$1" --backend openmp,mpi --integrator "$4" --ranks "$2" --threads "$3" --rounds 1 --out bits
+  [ "$(column_of bits/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * $5)) true" ] ||
+    fail "$1 with $2 ranks of $3 threads: $(cat bits/timings.csv)"
+  [ "$(hashes bits | wc -l)" -eq "$5" ] || fail "$1 with $2 ranks of $3 threads has other bits"
+}
+
+# fails_with PATTERN FOLDER: the row of mpi has failed with that sentence, and the one of openmp is verified
+fails_with() {
+  grep -q ',openmp,.*,true,ok,' "$2/timings.csv" || fail "the row of openmp is missing: $(cat "$2/timings.csv")"
+  grep ',mpi,' "$2/timings.csv" | grep -q -- "$1" || fail "the row of mpi does not say \"$1\": $(grep ',mpi,' "$2/timings.csv")"
+}
+
+# make_mixed_launcher FILE: makes a launcher whose ranks but the first one have the instruction set of the variable SET
+make_mixed_launcher() {
+  # shellcheck disable=SC2016 # they are the inner shell's
+  printf '#!/bin/sh\nn=$2\nshift 2\nexec mpirun -n "$n" sh -c %s sh "$@"\n' \
+    "'[ \"\$OMPI_COMM_WORLD_RANK\" = 0 ] || export MSSIM_INSTRUCTION_SET=\$SET; exec \"\$@\"'" >"$1"
+  chmod +x "$1"
+}

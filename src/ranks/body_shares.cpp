@@ -1,0 +1,125 @@
+#include "ranks/body_shares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "ranks/ranks_by_weight.h"
+
+namespace mssim {
+namespace {
+
+using Shares = std::vector<std::vector<BodyShare>>;
+
+/// The level up to which so many nodes fill ranks that have these loads.
+double level_of(std::vector<std::size_t> loads, std::size_t nodes) {
+  std::ranges::sort(loads);
+  auto below = static_cast<double>(nodes);  // of the lowest ranks, with what is to be filled in
+  for (std::size_t lowest = 1;; ++lowest) {
+    below += static_cast<double>(loads[lowest - 1]);
+    const double level = below / static_cast<double>(lowest);
+    if (lowest == loads.size() || level <= static_cast<double>(loads[lowest])) return level;
+  }
+}
+
+/// Bodies that are given to ranks one after the other.
+class Filling {
+ public:
+  Filling(std::size_t bodies, int ranks) : shares(bodies), loads(static_cast<std::size_t>(ranks), 0) {}
+
+  void give(std::size_t body, std::size_t rank, std::size_t nodes) {
+    shares[body].push_back({static_cast<int>(rank), nodes});
+    loads[rank] += nodes;
+  }
+  /// Gives whole bodies, the heaviest first.
+  void give_whole(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
+    std::vector<std::size_t> weights;
+    for (const std::size_t body : bodies) weights.push_back(nodes[body]);
+    const std::vector<int> rank_of = ranks_by_weight(weights, static_cast<int>(loads.size()));
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      give(bodies[i], static_cast<std::size_t>(rank_of[i]), weights[i]);
+  }
+  /// Fills the ranks up to one level, those of most room first: a body goes on in the next rank where one is
+  /// full. No part is too small.
+  void divide(const std::vector<std::size_t>& bodies, const std::vector<std::size_t>& nodes) {
+    std::size_t together = 0;
+    for (const std::size_t body : bodies) together += nodes[body];
+    const double level = level_of(loads, together);
+    std::vector<std::size_t> order(loads.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t rank) { return loads[rank]; });
+    auto rank = order.begin();
+    double missing = 0;  // nodes by which the ranks before this one are below the level, by roundings mostly
+    const auto room = [&] { return level - static_cast<double>(loads[*rank]); };
+    const auto leave = [&] {
+      missing += room();
+      ++rank;
+    };
+    for (const std::size_t body : bodies)
+      for (std::size_t rest = nodes[body]; rest > 0;) {
+        const std::size_t least = std::min(rest, least_share);
+        while (rank != order.end() && room() < static_cast<double>(least)) leave();
+        if (rank == order.end()) {
+          give_rest(body, rest);
+          break;
+        }
+        const auto wanted = static_cast<std::size_t>(std::max(0L, std::lround(room() + missing)));
+        std::size_t part = std::clamp(wanted, least, rest);
+        if (rest - part < least_share) part = rest;
+        give(body, *rank, part);
+        rest -= part;
+        if (rest > 0) leave();
+      }
+  }
+  std::size_t most() const { return std::ranges::max(loads); }
+  bool has_idle_rank() const { return std::ranges::min(loads) == 0; }
+
+  Shares shares;                   ///< [bodies]
+  std::vector<std::size_t> loads;  ///< [ranks] nodes
+
+ private:
+  /// Gives what is left of a body to the rank with the least, which may have some of it.
+  void give_rest(std::size_t body, std::size_t nodes) {
+    const auto rank = static_cast<std::size_t>(std::ranges::min_element(loads) - loads.begin());
+    const auto same = std::ranges::find(shares[body], static_cast<int>(rank), &BodyShare::rank);
+    if (same == shares[body].end()) return give(body, rank, nodes);
+    same->nodes += nodes;
+    loads[rank] += nodes;
+  }
+};
+
+}  // namespace
+
+std::optional<Shares> body_shares(const std::vector<std::size_t>& nodes, int ranks) {
+  std::vector<std::size_t> order(nodes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t body) { return nodes[body]; });
+  const auto all = static_cast<double>(std::reduce(nodes.begin(), nodes.end()));
+  const double most_allowed = (1 + most_excess) * all / ranks;
+  std::optional<Filling> best;
+  // More divided bodies than ranks are never needed: together they weigh as much as the largest whole one on
+  // every rank, so that they fill what the whole ones leave.
+  const std::size_t most_divided = std::min(nodes.size(), static_cast<std::size_t>(ranks));
+  for (std::size_t divided = 0; divided <= most_divided; ++divided) {
+    const auto first_whole = order.begin() + static_cast<std::ptrdiff_t>(divided);
+    Filling filling(nodes.size(), ranks);
+    filling.give_whole({first_whole, order.end()}, nodes);
+    filling.divide({order.begin(), first_whole}, nodes);
+    if (filling.has_idle_rank()) continue;
+    if (!best || filling.most() < best->most()) best = filling;
+    if (static_cast<double>(best->most()) <= most_allowed) break;
+  }
+  if (!best) return std::nullopt;
+  return best->shares;
+}
+
+int most_ranks(const std::vector<std::size_t>& nodes, int ranks) {
+  std::size_t parts = 0;
+  for (const std::size_t body : nodes) parts += std::max<std::size_t>(1, body / least_share);
+  ranks = static_cast<int>(std::min(static_cast<std::size_t>(ranks), parts));
+  while (ranks > 1 && !body_shares(nodes, ranks)) --ranks;
+  return ranks;
+}
+
+}  // namespace mssim

@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# The backend mpi on bodies: the same bits as openmp's, with bodies whole or divided among any number of ranks.
+# $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+# shellcheck source=scripts/lib/mpi.sh
+. "$2/scripts/lib/mpi.sh"
+# shellcheck source=tests/support/mpi_ranks.sh
+. "$2/tests/support/mpi_ranks.sh"
+need_mpi
+cd "$work"
+export TMPDIR=$work/tmp
+mkdir -p tmp
+let_ranks_share
+
+# scene FILE FLOOR BODY...: makes a scene of these bodies
+scene() {
+  local file=$1 floor=$2
+  shift 2
+  cat >"$file" <<END
+{"kind": "bodies", "description": "of a test", "dt_s": 5e-5, "gravity_m_per_s2": 9.81, "viscous_damping_per_s": 0.1,
+ "floor": {"height_m": $floor, "restitution": 0.5, "friction": 0.4},
+ "bodies": {"density_kg_per_m3": 1000, "springs": {"stiffness_n_per_m": 10000, "damping_n_s_per_m": 0.5},
+  "list": [$(IFS=,; echo "$*")]}}
+END
+}
+# box CELLS POINTS X Y DOWN: a body of so many cells in each direction and inner points, there, that falls with DOWN m/s
+box() {
+  echo "{\"shape\": \"box\", \"box\": {\"size_m\": [0.1, 0.1, 0.1], \"cells_x\": $1, \"cells_y\": $1, \"cells_z\": $1,
+   \"interior\": {\"points\": $2, \"seed\": 1, \"jitter\": 0.1, \"margin\": 0.6}}, \"velocity_m_per_s\": [0.1, -$5, 0],
+   \"spin_rad_per_s\": [1, 2, 0], \"swell_per_s\": 1, \"centre_m\": [$3, $4, 0]}"
+}
+# notes PATTERN: the rows of mpi say so
+notes() { ! grep ',mpi,' bits/timings.csv | grep -v -- "$1" || fail "the note does not say \"$1\": $(cat bits/timings.csv)"; }
+
+# One body, with every explicit integrator.
+scene one.json 0 "$(box 3 20 0 0.3 0)"
+for ranks in 1 2 3 4; do
+  same_bits ./one.json "$ranks" 1 "$explicit" 7
+  [ "$ranks" -eq 1 ] || notes ', 1 body divided"'
+done
+same_bits ./one.json 2 2 "$explicit" 7
+same_bits sphere-medium 4 2 semi-euler,rk4 2
+same_bits box-large 3 1 semi-euler,rk4 2
+
+# Several: whole ones where that is even, and as few as possible divided elsewhere. The last one is small.
+scene three.json 0 "$(box 3 20 0 0.3 0)" "$(box 3 20 0.3 0.3 0)" "$(box 3 20 0.6 0.3 0)"
+for ranks in 1 3; do
+  same_bits ./three.json "$ranks" 1 "$explicit" 7
+  notes ', whole bodies"'
+done
+same_bits ./three.json 2 1 "$explicit" 7
+notes ', 2 bodies whole, 1 divided"'
+same_bits ./three.json 4 2 semi-euler,rk4 2
+notes ', 3 bodies divided"'
+scene unequal.json 0 "$(box 3 20 0 0.3 0)" "$(box 6 300 0.3 0.3 0)" "$(box 4 60 0.6 0.3 0)" "$(box 2 4 0.9 0.3 0)"
+for ranks in 2 3 6; do same_bits ./unequal.json "$ranks" 1 semi-euler,midpoint,rk4,verlet 4; done
+same_bits bodies7282 3 1 semi-euler,rk4 2
+notes ', 2 bodies whole, 2 divided"'
+
+# On the floor: bodies that bounce within the time have the same positions as openmp's.
+scene bounce.json 0 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
+scene deep.json -9 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
+for integrator in semi-euler rk4; do
+  for of in "openmp bounce" "mpi bounce" "openmp deep"; do
+    succeed run --scene "./${of#* }.json" --backend "${of% *}" --integrator "$integrator" --ranks 3 --threads 1 --duration 0.02 --trace "${of/ /_}.h5"
+  done
+  h5diff -q openmp_bounce.h5 mpi_bounce.h5 "$(h5ls -r mpi_bounce.h5 | awk '/position\/value/ { print $1; exit }')" ||
+    fail "$integrator: mpi has other positions than openmp on the floor"
+  ! h5diff -q openmp_bounce.h5 openmp_deep.h5 "$(h5ls -r mpi_bounce.h5 | awk '/position\/value/ { print $1; exit }')" ||
+    fail "$integrator: nothing bounces"
+  rm ./*.h5
+done
+
+# More ranks than parts.
+"$mssim" bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 9 --threads 1 --rounds 1 --out nine >/dev/null 2>&1 &&
+  fail "a small body does for nine ranks"
+fails_with 'unsupported: 1 body cannot be cut for 9 ranks: a part of a body has at least 16 nodes, so give at most --ranks 4"' nine
+
+# Different processors: the bits of exact roots, or a refusal.
+if [ "$(uname -m)" = x86_64 ]; then
+  make_mixed_launcher mixed
+  succeed bench --scene ./unequal.json --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
+  SET=AVX2 succeed bench --scene ./unequal.json --backend mpi --integrator rk4 --ranks 3 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
+  [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"
+  SET=SSE4 "$mssim" bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out sse >/dev/null 2>&1 &&
+    fail "SSE4 beside other sets does"
+  fails_with "unsupported: rank 0 on .* and rank 1 on $(uname -n) SSE4, which round differently" sse
+fi
+exit $((failures > 0))

@@ -1,0 +1,212 @@
+#include "ranks/bodies_part.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "backends/openmp/openmp.h"
+#include "backends/openmp/sliced_bodies.h"
+#include "backends/openmp/step_slices.h"
+#include "integrators/all_integrators.h"
+#include "tests/support/backend_step.h"
+#include "tests/support/mail.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+/// What MPI is between processes, between threads: whole records.
+class MailOfNodes final : public NodeMessages {
+ public:
+  /// `mail`: [ranks][ranks] from the one to the other.
+  MailOfNodes(int rank, std::vector<std::vector<Mail>>& mail, const BodiesPart& part,
+              const SlicedBodies& bodies)
+      : rank_(static_cast<std::size_t>(rank)), mail_(mail), part_(part), bodies_(bodies) {}
+
+  void begin(const float* records) override {
+    EXPECT_EQ(begun_++, finished_);
+    for (const BodiesPart::Neighbour& neighbour : part_.neighbours) {
+      std::vector<float> letter;
+      for (const std::uint32_t node : neighbour.edge) {
+        const float* record = records + std::size_t{bodies_.slot[node]} * record_floats;
+        letter.insert(letter.end(), record, record + record_floats);
+      }
+      mail_[rank_][static_cast<std::size_t>(neighbour.rank)].send(letter.data(), letter.size());
+    }
+  }
+  void advance() override { EXPECT_GE(begun_, finished_); }
+  void finish(float* records) override {
+    EXPECT_EQ(begun_, ++finished_);
+    float* ghosts = records + bodies_.slices() * bodies_.lanes * record_floats;
+    for (const BodiesPart::Neighbour& neighbour : part_.neighbours) {
+      mail_[static_cast<std::size_t>(neighbour.rank)][rank_].receive(ghosts);
+      ghosts += neighbour.ghosts * record_floats;
+    }
+  }
+  int exchanges() const { return finished_; }
+  bool is_balanced() const { return begun_ == finished_; }
+
+ private:
+  std::size_t rank_;
+  std::vector<std::vector<Mail>>& mail_;
+  const BodiesPart& part_;
+  const SlicedBodies& bodies_;
+  int begun_ = 0, finished_ = 0;
+};
+
+/// Bodies, and who steps which of their nodes.
+struct Divided {
+  std::string name;
+  System bodies;
+  std::vector<int> owner;
+  int ranks;
+};
+
+std::vector<int> owners(const System& bodies, const std::function<int(std::uint32_t)>& rank_of) {
+  std::vector<int> owner;
+  for (std::uint32_t node = 0; node < bodies.nodes(); ++node) owner.push_back(rank_of(node));
+  return owner;
+}
+
+std::vector<Divided> divided_bodies() {
+  // Low enough to meet the floor within the steps.
+  const System block = solid_block(5, 6, 7, 0.002), blocks = two_solid_blocks();
+  std::mt19937 random(5);
+  std::vector<Divided> all;
+  all.push_back({"halves", block, owners(block, [](std::uint32_t node) { return node < 100 ? 1 : 0; }), 2});
+  all.push_back(
+      {"layers", block, owners(block, [](std::uint32_t node) { return static_cast<int>(node / 42); }), 5});
+  all.push_back(
+      {"at random", block, owners(block, [&](std::uint32_t) { return static_cast<int>(random() % 3); }), 3});
+  all.push_back({"one node", block, owners(block, [](std::uint32_t node) { return node == 17 ? 1 : 0; }), 2});
+  all.push_back({"one of two bodies", blocks,
+                 owners(blocks, [](std::uint32_t node) { return node < 60 ? 1 : (node < 90 ? 0 : 2); }), 3});
+  all.push_back(
+      {"whole ones", blocks, owners(blocks, [](std::uint32_t node) { return node < 60 ? 1 : 0; }), 2});
+  return all;
+}
+
+std::vector<std::uint32_t> places_of(const System& system) {
+  const std::vector<std::uint32_t> order = slice_order(system.nodes(), system.springs);
+  std::vector<std::uint32_t> place(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  return place;
+}
+
+BodiesPart part_of(const Divided& divided, int rank) {
+  return part_of_bodies(divided.bodies, places_of(divided.bodies), divided.owner, rank);
+}
+
+/// The state after some steps, each part by threads that know nothing of the others but what the mail brings.
+State state_of_parts(const Divided& divided, const Integrator& integrator, std::size_t threads, int steps) {
+  const auto ranks = static_cast<std::size_t>(divided.ranks);
+  const SliceKernel kernel = slice_kernels(integrator).front();
+  std::vector<std::vector<Mail>> mail(ranks);
+  for (std::vector<Mail>& from : mail) from = std::vector<Mail>(ranks);
+  State all = divided.bodies.start;
+  const auto step_part = [&](int rank) {
+    const BodiesPart part = part_of(divided, rank);
+    SlicedBodies bodies(part.system, SlicedGraph(part.system, kernel.lanes, part.graph), integrator,
+                        backend_dt_of(integrator), threads);
+    MailOfNodes messages(rank, mail, part, bodies);
+    if (!part.neighbours.empty()) bodies.messages = &messages;
+    bodies.set_state(part.system.start);
+    kernel.step(bodies, steps / 2);  // in two calls: messages must not be under way between them
+    EXPECT_TRUE(messages.is_balanced());
+    kernel.step(bodies, steps - steps / 2);
+    EXPECT_EQ(messages.exchanges(),
+              part.neighbours.empty() ? 0 : steps * static_cast<int>(integrator.stage_count));
+    const State state = bodies.state();
+    for (std::size_t node = 0, own = 0; node < divided.owner.size(); ++node)
+      if (divided.owner[node] == rank) {
+        all.position[node] = state.position[own];
+        all.velocity[node] = state.velocity[own++];
+      }
+  };
+  std::vector<std::thread> running;
+  for (int rank = 0; rank < divided.ranks; ++rank) running.emplace_back(step_part, rank);
+  for (std::thread& thread : running) thread.join();
+  return all;
+}
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> all;
+  for (const Integrator& integrator : integrators) all.emplace_back(integrator.name);
+  return all;
+}
+
+class EachIntegratorInBodyPieces : public testing::TestWithParam<std::string> {};
+
+TEST_P(EachIntegratorInBodyPieces, GivesTheBitsOfTheWhole) {
+  const Integrator& integrator = *find_integrator(GetParam());
+  constexpr int steps = 151;
+  for (const Divided& divided : divided_bodies()) {
+    const auto whole = make_openmp(divided.bodies, integrator, backend_dt_of(integrator), {1, ""});
+    whole->step(steps);
+    const State expected = whole->state();
+    EXPECT_NE(expected.position, divided.bodies.start.position);
+    for (const std::size_t threads : {1U, 2U, 3U}) {
+      SCOPED_TRACE(divided.name + ", " + std::to_string(threads) + " threads");
+      const State state = state_of_parts(divided, integrator, threads, steps);
+      EXPECT_EQ(state.position, expected.position);
+      EXPECT_EQ(state.velocity, expected.velocity);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorInBodyPieces, testing::ValuesIn(integrator_names()),
+                         [](const auto& instance) {
+                           std::string name = instance.param;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST(BodiesPieces, MeetTheFloorWithinTheStepsOfTheseTests) {
+  const System block = solid_block(5, 6, 7, 0.002);
+  for (const Integrator& integrator : integrators) {
+    const auto whole = make_openmp(block, integrator, backend_dt_of(integrator), {1, ""});
+    const auto falling = make_openmp(without_floor(block), integrator, backend_dt_of(integrator), {1, ""});
+    whole->step(151);
+    falling->step(151);
+    EXPECT_NE(whole->state().position, falling->state().position) << integrator.name;
+  }
+}
+
+TEST(BodiesPieces, AgreeOnWhoSendsWhat) {
+  for (const Divided& divided : divided_bodies()) {
+    std::vector<BodiesPart> parts;
+    for (int rank = 0; rank < divided.ranks; ++rank) parts.push_back(part_of(divided, rank));
+    std::size_t own = 0, springs = 0;
+    for (int rank = 0; rank < divided.ranks; ++rank) {
+      const BodiesPart& part = parts[static_cast<std::size_t>(rank)];
+      own += part.graph.own;
+      std::size_t ghost = part.graph.own;
+      for (const BodiesPart::Neighbour& here : part.neighbours) {
+        const BodiesPart& other = parts[static_cast<std::size_t>(here.rank)];
+        const auto there = std::ranges::find(other.neighbours, rank, &BodiesPart::Neighbour::rank);
+        ASSERT_NE(there, other.neighbours.end()) << divided.name;
+        ASSERT_EQ(there->edge.size(), here.ghosts);
+        for (std::size_t i = 0; i < here.ghosts; ++i, ++ghost)
+          EXPECT_EQ(part.system.start.position[ghost], other.system.start.position[there->edge[i]]);
+      }
+      EXPECT_EQ(ghost, part.system.nodes());
+      for (const Spring& spring : part.system.springs) {
+        EXPECT_LT(std::min(spring.first, spring.second), part.graph.own) << "between ghosts";
+        springs += (spring.first < part.graph.own ? 1U : 0U) + (spring.second < part.graph.own ? 1U : 0U);
+      }
+    }
+    EXPECT_EQ(own, divided.bodies.nodes());
+    EXPECT_EQ(springs, 2 * divided.bodies.springs.size()) << "each is felt at both ends, once";
+  }
+}
+
+}  // namespace
+}  // namespace mssim
