@@ -10,6 +10,7 @@ make_other_host() {
   local command network=10.$((64 + $$ % 64)).$(($$ / 64 % 256)) last=$(($(nproc) - 1))
   other_space=mssim$$ other_near=msa$$
   local far=msb$$
+  command -v ip >/dev/null || { echo "there is no ip: install iproute2" >&2; return 1; }
   ip netns add "$other_space" 2>/dev/null || { echo "namespaces need root" >&2; return 1; }
   ip link add "$other_near" type veth peer name "$far" netns "$other_space" 2>/dev/null ||
     { echo "there are no virtual networks" >&2; return 1; }
@@ -20,9 +21,10 @@ make_other_host() {
     ip netns exec "$other_space" ip $command
   done
   if ((${2-0} > 0)); then
-    tc qdisc add dev "$other_near" root netem delay "$2us" 2>/dev/null &&
-      ip netns exec "$other_space" tc qdisc add dev "$far" root netem delay "$2us" ||
-      { echo "this kernel delays no messages: it has no netem" >&2; return 1; }
+    for command in "tc qdisc add dev $other_near" "ip netns exec $other_space tc qdisc add dev $far"; do
+      # shellcheck disable=SC2086 # they are words
+      $command root netem delay "$2us" 2>/dev/null || { echo "this kernel delays no messages: it has no netem" >&2; return 1; }
+    done
   fi
   # Runs a command there. ssh's options and the host's name come before it.
   cat >"$1/agent" <<END

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/available_memory.h"
 #include "ranks/common_kernel.h"
+#include "ranks/host_memory.h"
 #include "scene/cloth.h"
 #include "text/counted.h"
 
@@ -42,7 +42,7 @@ void ClothPiece::make(const Session& session, const RankJob& job, std::size_t st
   messages_.reset();
   bands_.reset();
   ghosts_ = ghost_columns(*job.integrator, steps);
-  require_memory(session, steps);
+  require_memory(session, memory_bytes(steps));
   const ColumnRange own = columns_of(rank_), all = with_ghosts(rank_);
   const System system = nodes_at_start();
   bands_.emplace(system, std::get<GridPatch>(system.topology), *job.integrator, job.dt_s, kernel_.lanes,
@@ -62,20 +62,13 @@ System ClothPiece::nodes_at_start() const {
   return system;
 }
 
-void ClothPiece::require_memory(const Session& session, std::size_t steps) const {
+std::uint64_t ClothPiece::memory_bytes(std::size_t steps) const {
   // A node's start with its mass, while the piece is filled, and its state in the bands.
   constexpr std::uint64_t node_bytes =
       2 * sizeof(Vec3d) + sizeof(double) + BandLayout::components * sizeof(float);
   const std::size_t ghosts = 2 * ghost_columns(*integrator_, steps);
   const std::uint64_t columns = columns_ / static_cast<std::size_t>(ranks_) + ghosts;
-  const std::uint64_t bytes = node_bytes * columns * std::get<ClothSpec>(scene_.content).rows;
-  const auto here = static_cast<std::uint64_t>(session.ranks_on_host());
-  std::string sentence;
-  if (const auto shortage = memory_shortage(here * bytes))
-    sentence = session.name_of(rank_) + (here > 1 ? " with the others there " : " ") + *shortage +
-               ": take more machines, or make the scene smaller";
-  for (const std::string& other : session.gather(sentence))
-    if (!other.empty()) throw Unavailable(other);
+  return node_bytes * columns * std::get<ClothSpec>(scene_.content).rows;
 }
 
 std::size_t ClothPiece::chosen_steps(const Session& session, const RankJob& job) {

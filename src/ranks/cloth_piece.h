@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,8 +53,8 @@ class ClothPiece final : public Piece {
   System nodes_at_start() const;
   /// The part of a window that a rank owns.
   GridWindow part_of_window(int rank, const GridWindow& window) const;
-  /// Throws Unavailable, on all ranks alike, where a host has not the memory for its ranks.
-  void require_memory(const Session& session, std::size_t steps) const;
+  /// That this rank needs for so many steps between two messages.
+  std::uint64_t memory_bytes(std::size_t steps) const;
 
   SceneSpec scene_;
   int ranks_;

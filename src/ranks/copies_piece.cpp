@@ -1,15 +1,21 @@
 #include "ranks/copies_piece.h"
 
+#include <cstdint>
 #include <string>
 
 #include "backends/openmp/openmp.h"
 #include "model/state_hash.h"
+#include "ranks/host_memory.h"
 #include "scene/scene_kinds.h"
 
 namespace mssim {
 
-CopiesPiece::CopiesPiece(const Session& session, const RankJob& job)
-    : session_(session), system_(build_system(job.scene)) {
+CopiesPiece::CopiesPiece(const Session& session, const RankJob& job) : session_(session) {
+  // Its start with masses, springs, and what openmp makes of them while it is made.
+  constexpr std::uint64_t node_bytes = 200, spring_bytes = 70;
+  const SceneCounts counts = counts_of(job.scene);
+  require_memory(session, node_bytes * counts.nodes + spring_bytes * counts.springs_unique);
+  system_ = build_system(job.scene);
   round_start_to_single(system_);
   backend_ = make_openmp(system_, *job.integrator, job.dt_s, {.threads = job.threads, .roots = job.roots});
 }
