@@ -70,6 +70,8 @@ expect 2 'mpi:0 says a number of ranks that cannot be: give one from 1 to 65536'
 expect 2 'mpi:two says a number of ranks' bench --scene cloth2500 --backend mpi:two
 expect 2 'openmp:2 says a number of ranks, and openmp runs in one process' bench --scene cloth2500 --backend openmp:2
 expect 2 'unknown backend "mpl:2"' bench --scene cloth2500 --backend mpl:2
+expect 2 'ranks is for backends that run in several processes, and none of these does' bench --scene cloth2500 --backend openmp --ranks 2
+expect 2 'launcher is for backends that run in several processes' run --scene cloth2500 --duration 0.01 --launcher srun
 succeed list backends
 grep -q '^mpi .*on one machine or several' out || fail "mssim list backends does not show mpi"
 "$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler --launcher no-mpirun --rounds 1 --out missing >/dev/null 2>&1 &&

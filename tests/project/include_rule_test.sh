@@ -55,7 +55,7 @@ backends              integrators backends/interface backends/devices backends/s
 backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 
-ranks                 text statistics platform integrators model scene/spec scene backends/interface backends/vectors backends/layouts backends/openmp
+ranks                 text platform integrators model scene/spec scene backends/interface backends/vectors backends/layouts backends/openmp
 
 bench/machine         mssim text platform
 bench/results         text statistics bench/machine

@@ -188,6 +188,7 @@ int run_scene(const RunOptions& options) {
   const Integrator& integrator = require_integrator(options.integrator);
   BackendChoice choice(table_backends(), options.own_backends, {options.scene});
   const BackendInfo& info = choice.require(options.backend);
+  require_use_of_ranks(options.execution, {&info});
   PreparedScene scene = prepare_scene(find_scene(options.scene));
   warn_of_note(scene);
   require_distinct(options.files, scene.spec);

@@ -236,6 +236,16 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
   }
 }
 
+void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
+  const std::string option = given.ranks > 0 ? "--ranks" : "--launcher";
+  if (given.ranks == 0 && given.launcher.empty()) return;
+  const auto in_ranks = [](const BackendInfo* info) { return info->program && info->program->in_ranks; };
+  if (std::ranges::none_of(rows, in_ranks))
+    throw UsageError(option +
+                     " is for backends that run in several processes, and none of these does: add --backend "
+                     "mpi, or leave it out");
+}
+
 int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution) {
   int most = 1;
   for (const BackendInfo* info : rows)

@@ -84,6 +84,10 @@ class BackendChoice {
 void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
                   const ExecutionOptions& execution);
 
+/// Throws UsageError where --ranks or --launcher is given and none of these runs in processes: it would be
+/// ignored.
+void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
+
 /// Processes of the one among them that runs in most.
 int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution);
 

@@ -143,7 +143,7 @@ std::string links_of(const ClusterRows& rows) {
     const std::string first = three_digits(low), last = three_digits(high);
     return first == last ? first : first + " to " + last;
   };
-  return "A message of 8 bytes to a neighbour took " + range(latencies) + " µs, one of 1 MiB went with " +
+  return "A message of 8 bytes to a neighbour took " + range(latencies) + " µs, one of 64 KiB went with " +
          range(bandwidths) + " GB/s while another one came";
 }
 
