@@ -1,13 +1,10 @@
 #include "ranks/ghost_messages.h"
 
 #include <algorithm>
-#include <chrono>
 #include <span>
 
 namespace mssim {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Of a node in a message.
 constexpr std::size_t node_floats = 6;
@@ -34,31 +31,37 @@ GhostMessages::GhostMessages(const Session& session, const BodiesPart& part, con
 
 RankCosts GhostMessages::costs() const {
   RankCosts costs = messages_.costs();
-  costs.packed_s = packed_s_;
+  costs.packed_s += packed_s_;
   return costs;
 }
 
 void GhostMessages::begin(const float* records) {
-  const auto begin = Clock::now();
+  pack(records);
+  messages_.begin();
+}
+
+void GhostMessages::finish(float* records) {
+  messages_.finish();
+  unpack(records);
+}
+
+void GhostMessages::pack(const float* records) {
+  const SecondsAdded timed(packed_s_);
   float* to = sent_.data();
   for (const std::uint32_t slot : edge_slots_) {
     const float* record = records + std::size_t{slot} * record_floats;
     to = std::copy_n(record, 3, to);
     to = std::copy_n(record + velocity, 3, to);
   }
-  packed_s_ += std::chrono::duration<double>(Clock::now() - begin).count();
-  messages_.begin();
 }
 
-void GhostMessages::finish(float* records) {
-  messages_.finish();
-  const auto begin = Clock::now();
+void GhostMessages::unpack(float* records) {
+  const SecondsAdded timed(packed_s_);
   float* record = records + first_ghost_slot_ * record_floats;
   for (std::size_t i = 0; i < received_.size(); i += node_floats, record += record_floats) {
     std::copy_n(received_.data() + i, 3, record);
     std::copy_n(received_.data() + i + 3, 3, record + velocity);
   }
-  packed_s_ += std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
 }  // namespace mssim

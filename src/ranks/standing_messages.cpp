@@ -1,6 +1,5 @@
 #include "ranks/standing_messages.h"
 
-#include <chrono>
 #include <utility>
 
 namespace mssim {
@@ -33,6 +32,7 @@ void StandingMessages::attempt(const Work& work) const {
 }
 
 void StandingMessages::begin() {
+  const SecondsAdded timed(costs_.packed_s);
   attempt([&] {
     check_mpi(MPI_Startall(static_cast<int>(requests_.size()), requests_.data()), "starting messages");
   });
@@ -43,6 +43,7 @@ void StandingMessages::begin() {
 
 void StandingMessages::advance() {
   if (!under_way_) return;
+  const SecondsAdded timed(costs_.packed_s);
   int complete = 0;
   attempt([&] {
     check_mpi(
@@ -54,9 +55,8 @@ void StandingMessages::advance() {
 
 void StandingMessages::finish() {
   if (!std::exchange(under_way_, false)) return;
-  const auto begin = std::chrono::steady_clock::now();
+  const SecondsAdded timed(costs_.waited_s);
   attempt([&] { session_.wait(requests_, peers_); });
-  costs_.waited_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 }  // namespace mssim

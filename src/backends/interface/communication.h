@@ -6,8 +6,10 @@ namespace mssim {
 
 /// What processes that take steps together spend on each other.
 struct Communication {
-  double waiting = 0;   ///< share of the time of a step that a process waits for others; mean of all
-  double packing = 0;   ///< the same for bringing together what is sent, and putting in place what has come
+  double waiting = 0;  ///< share of the time of a step that a process waits for others; mean of all
+  /// The same for bringing together what is sent, bringing it across where the processor does that, and
+  /// putting in place what has come.
+  double packing = 0;
   double bytes = 0;     ///< that the process with most sends in a step
   double messages = 0;  ///< the same
   /// Half of the time that a message of a few bytes takes to a neighbour and back, s, where it takes longest;

@@ -21,6 +21,14 @@ int ranks_of(std::string_view backend, const Provenance& provenance) {
   return program == provenance.backend_programs.end() ? 0 : program->ranks;
 }
 
+/// Steps between two messages of a cloth in ranks, which say so in their note: "2 steps an exchange".
+std::optional<int> steps_an_exchange(const ResultRow& row) {
+  const std::size_t end = row.note.find(" an exchange");
+  if (end == std::string::npos) return std::nullopt;
+  const std::string_view steps = split_at_last(std::string_view(row.note).substr(0, end), ", ").second;
+  return number_in<int>(steps.substr(0, steps.find(' ')));
+}
+
 /// Nodes a second.
 double rate(const ResultRow& row) { return static_cast<double>(row.nodes) / *row.ms_per_step; }
 
@@ -68,18 +76,16 @@ std::optional<double> ClusterRows::efficiency_of_copies(const ClusterRow& row) c
 std::optional<double> ClusterRows::modelled_ms(const ClusterRow& row) const {
   const ResultRow& measured = *row.row;
   const ResultRow* copies = counted(row, copies_backend, row.ranks);
-  // Cloths send their columns as they lie; what packs messages is cut in another way.
-  const bool in_columns = measured.messages_per_step.value_or(0) > 0 && measured.packing_share == 0.0;
-  if (!copies || row.program == copies_backend || !in_columns || !measured.latency_us ||
-      !measured.link_gigabytes_per_second)
+  const std::optional<int> steps = steps_an_exchange(measured);
+  if (!copies || row.program == copies_backend || row.ranks < 2 || !steps || !measured.latency_us ||
+      !measured.link_gigabytes_per_second || measured.bytes_per_step.value_or(0) <= 0)
     return std::nullopt;
   const int stages = stages_of(measured);
-  const double neighbours = std::min(row.ranks - 1, 2);
-  const double steps = std::max(1.0, std::round(neighbours / *measured.messages_per_step));
-  ClothCut cut{1, row.ranks, static_cast<int>(steps)};
+  const ClothCut cut{1, row.ranks, *steps};
   ClothStep cloth{1, 0, stages};
   const double ghosts = ghost_nodes(cloth, cut);
-  const double message_bytes = *measured.bytes_per_step / *measured.messages_per_step;
+  const double neighbours = std::min(row.ranks - 1, 2);
+  const double message_bytes = *measured.bytes_per_step * *steps / neighbours;
   cloth.rows = std::round(message_bytes / (ghosts * message_node_bytes));
   cloth.columns = static_cast<double>(measured.nodes) / cloth.rows;
   const std::optional<ExchangeWork> work = work_of(cloth, cut);
@@ -89,7 +95,7 @@ std::optional<double> ClusterRows::modelled_ms(const ClusterRow& row) const {
       .latency_s = *measured.latency_us * 1e-6,
       .bytes_per_second = *measured.link_gigabytes_per_second * 1e9,
       .processor_copies = true};
-  return 1000 * exchange_seconds(*work, rates) / steps;
+  return 1000 * exchange_seconds(*work, rates) / *steps;
 }
 
 std::optional<ClusterRows::MachineRate> ClusterRows::machine_rate() const {

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::string_view how_to_read_clusters =
     "Times are medians. *Computing*, *packing* and *waiting*: how the processes share the time of a step, on "
-    "average. *Bytes* and *messages*: what the process with most sends in a step. *Efficiency*: nodes a "
+    "average; packing is all that the processor does for messages but wait for them. *Bytes* and *messages*: "
+    "what the process with most sends in a step. *Efficiency*: nodes a "
     "second over those of one process, and over the number of processes. *Against copies*: nodes a second "
     "over those of as many processes that each step the whole scene for themselves (`mpi-copies`), which "
     "share the memory as well and send nothing. *Model*: what computing as fast as these copies, and the "
