@@ -8,11 +8,16 @@ allow_root_ranks() {
   fi
 }
 
-# More ranks than processors, as tests have them: mpirun starts them, and they let each other run while they wait. Messages are
-# copied through shared memory, because containers forbid reading the memory of another process.
-let_ranks_share() {
+# The same, and mpirun starts more ranks than there are processors: mssim verifies such rows, and gives them no time.
+allow_ranks() {
   allow_root_ranks
   export OMPI_MCA_rmaps_base_oversubscribe=${OMPI_MCA_rmaps_base_oversubscribe-1}
+}
+
+# The same, as tests have it: ranks let each other run while they wait. Messages are copied through shared memory, because
+# containers forbid reading the memory of another process.
+let_ranks_share() {
+  allow_ranks
   export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle-1}
   export OMPI_MCA_btl_vader_single_copy_mechanism=${OMPI_MCA_btl_vader_single_copy_mechanism-none}
 }
