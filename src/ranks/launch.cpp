@@ -125,13 +125,15 @@ class Launcher {
   std::optional<int> status_;
 };
 
-/// What Open MPI is told unless the user has told it something else. Other launchers do not read it.
+/// What Open MPI and Slurm are told unless the user has told them something else.
 void set_defaults() {
   const auto set = [](const char* name, const char* value) { ::setenv(name, value, 0); };
   // Ranks bind themselves, whatever launcher has started them.
   set("OMPI_MCA_hwloc_base_binding_policy", "none");
   // Columns and ghosts in one go: from 4 KB on, ranks of a machine would first agree on each message.
   set("OMPI_MCA_btl_vader_eager_limit", "65536");
+  // Slurm: the ranks of several rows and integrators are there at the same time, in one allocation.
+  set("SLURM_OVERLAP", "1");
   // Open MPI leaves files behind; mssim removes what is in the folder of its socket.
   ::setenv("TMPDIR", std::filesystem::path(variable("MSSIM_SOCKET", "/tmp/")).parent_path().c_str(), 1);
   // These are for mssim's own threads: with them all ranks would begin on the same processor.
