@@ -3,10 +3,6 @@
 # $1: mssim, $2: the source folder
 set -euo pipefail
 mssim=$1
-# shellcheck source=tests/support/command_line.sh
-. "$2/tests/support/command_line.sh"
-# shellcheck source=scripts/lib/mpi.sh
-. "$2/scripts/lib/mpi.sh"
 # shellcheck source=tests/support/mpi_ranks.sh
 . "$2/tests/support/mpi_ranks.sh"
 need_mpi
@@ -58,6 +54,13 @@ grep -q 'unsupported: 50 columns cannot be cut for 8 ranks: .* at most --ranks 6
   fail "a backend that was asked for has no row, and the bench is content"
 grep -q 'unsupported: it has no xpbd' implicit/timings.csv || fail "xpbd: $(cat implicit/timings.csv)"
 expect 2 '"0" is' bench --scene cloth2500 --backend mpi --ranks 0
+
+# What launchers and ranks are told, unless the user has told them something else.
+printf '#!/bin/sh\nenv >"%s"\nexec mpirun "$@"\n' "$work/told" >one/telling
+chmod +x one/telling
+SLURM_OVERLAP=0 succeed bench --scene cloth2500 --backend mpi:1 --integrator semi-euler --threads 1 --rounds 1 --launcher "$work/one/telling"
+grep -qx 'OMPI_MCA_btl_vader_eager_limit=65536' told || fail "short messages are not told from long ones: $(cat told)"
+grep -qx 'SLURM_OVERLAP=0' told || fail "what the user has told Slurm does not go before: $(cat told)"
 
 # Names that say how many ranks: rows of their own.
 succeed bench --scene cloth2500 --backend openmp,mpi:3,mpi:1 --integrator semi-euler --threads 1 --ranks 7 --rounds 1 --out counts

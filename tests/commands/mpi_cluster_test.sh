@@ -3,10 +3,6 @@
 # $1: mssim, $2: the source folder
 set -euo pipefail
 mssim=$1
-# shellcheck source=tests/support/command_line.sh
-. "$2/tests/support/command_line.sh"
-# shellcheck source=scripts/lib/mpi.sh
-. "$2/scripts/lib/mpi.sh"
 # shellcheck source=tests/support/mpi_ranks.sh
 . "$2/tests/support/mpi_ranks.sh"
 need_mpi

@@ -4,10 +4,6 @@
 # $1: mssim, $2: the source folder
 set -euo pipefail
 mssim=$1
-# shellcheck source=tests/support/command_line.sh
-. "$2/tests/support/command_line.sh"
-# shellcheck source=scripts/lib/mpi.sh
-. "$2/scripts/lib/mpi.sh"
 # shellcheck source=scripts/lib/other_host.sh
 . "$2/scripts/lib/other_host.sh"
 # shellcheck source=tests/support/mpi_ranks.sh

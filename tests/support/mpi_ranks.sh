@@ -1,6 +1,11 @@
-# Functions of the tests of the backend mpi. Sourced after command_line.sh, which sets `mssim`.
+# Functions of the tests of the backend mpi, with those that all tests of the command line have. `mssim` is the program.
 # shellcheck shell=bash
 : "${mssim:?}"
+support=$(dirname -- "${BASH_SOURCE[0]}")
+# shellcheck source=tests/support/command_line.sh
+. "$support/command_line.sh"
+# shellcheck source=scripts/lib/mpi.sh
+. "$support/../../scripts/lib/mpi.sh"
 
 # need_mpi: skips the test where mssim has been built without MPI, or nothing starts its ranks
 need_mpi() {
