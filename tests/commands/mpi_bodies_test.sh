@@ -60,8 +60,8 @@ notes ', 2 bodies whole, 2 divided"'
 scene bounce.json 0 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
 scene deep.json -9 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
 for integrator in semi-euler rk4; do
-  for of in "openmp bounce" "mpi bounce" "openmp deep"; do
-    succeed run --scene "./${of#* }.json" --backend "${of% *}" --integrator "$integrator" --ranks 3 --threads 1 --duration 0.02 --trace "${of/ /_}.h5"
+  for of in openmp_bounce mpi:3_bounce openmp_deep; do
+    succeed run --scene "./${of#*_}.json" --backend "${of%_*}" --integrator "$integrator" --threads 1 --duration 0.02 --trace "${of/:3/}.h5"
   done
   h5diff -q openmp_bounce.h5 mpi_bounce.h5 "$(h5ls -r mpi_bounce.h5 | awk '/position\/value/ { print $1; exit }')" ||
     fail "$integrator: mpi has other positions than openmp on the floor"

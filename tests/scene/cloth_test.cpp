@@ -52,6 +52,13 @@ std::vector<SceneSpec> cloth_scenes() {
   return scenes;
 }
 
+/// Those that are not another one, so many times as wide (cloth10k-x4).
+std::vector<SceneSpec> cloths_of_their_own() {
+  std::vector<SceneSpec> scenes = cloth_scenes();
+  std::erase_if(scenes, [](const SceneSpec& spec) { return spec.name.find("-x") != std::string::npos; });
+  return scenes;
+}
+
 /// Those that a test may build: the others take gigabytes, and differ in rows and columns alone.
 std::vector<SceneSpec> cloth_scenes_to_build() {
   constexpr std::uint64_t most_nodes = 1'000'000;
@@ -62,7 +69,7 @@ std::vector<SceneSpec> cloth_scenes_to_build() {
 
 TEST(ClothScenes, HaveExactlyTheNodesAndSpringsOfTheSixPublishedOnesAndThreeAreLarger) {
   std::set<Size> ours, larger;
-  for (const SceneSpec& spec : cloth_scenes()) {
+  for (const SceneSpec& spec : cloths_of_their_own()) {
     const SceneCounts counts = counts_of(spec);
     EXPECT_EQ(counts.springs_published, 2 * counts.springs_unique);
     (counts.nodes < 1'000'000 ? ours : larger).emplace(counts.nodes, counts.springs_published.value());
@@ -73,27 +80,48 @@ TEST(ClothScenes, HaveExactlyTheNodesAndSpringsOfTheSixPublishedOnesAndThreeAreL
             (std::set<Size>{{1'000'000, 11'980'004}, {4'000'000, 47'960'004}, {16'000'000, 191'920'004}}));
 }
 
+/// Expects two cloths to be the same but for their rows and columns.
+void expect_the_same_cloth(const SceneSpec& spec, const SceneSpec& published) {
+  const ClothSpec& cloth = std::get<ClothSpec>(spec.content);
+  const ClothSpec& smaller = std::get<ClothSpec>(published.content);
+  EXPECT_EQ(spec.dt_s, published.dt_s) << spec.name;
+  EXPECT_EQ(cloth.spacing_m, smaller.spacing_m) << spec.name;
+  EXPECT_EQ(cloth.areal_density_kg_per_m2, smaller.areal_density_kg_per_m2) << spec.name;
+  EXPECT_EQ(cloth.ceiling_height_m, smaller.ceiling_height_m) << spec.name;
+  EXPECT_EQ(cloth.ripple.speed_m_per_s, smaller.ripple.speed_m_per_s) << spec.name;
+  EXPECT_EQ(cloth.ripple.height_m, smaller.ripple.height_m) << spec.name;
+  EXPECT_EQ(cloth.ripple.wavelength_m, smaller.ripple.wavelength_m) << spec.name;
+  for (std::size_t kind = 0; kind < cloth.springs.size(); ++kind) {
+    EXPECT_EQ(cloth.springs[kind].stiffness, smaller.springs[kind].stiffness) << spec.name;
+    EXPECT_EQ(cloth.springs[kind].damping, smaller.springs[kind].damping) << spec.name;
+  }
+}
+
 TEST(ClothScenes, ThatAreLargerThanTheLargestPublishedOneDifferFromItInRowsAndColumnsAlone) {
   const SceneSpec published = find_scene("cloth350k");
   int larger = 0;
-  for (SceneSpec spec : cloth_scenes()) {
+  for (const SceneSpec& spec : cloths_of_their_own()) {
     if (counts_of(spec).nodes <= counts_of(published).nodes) continue;
     ++larger;
-    ClothSpec& cloth = std::get<ClothSpec>(spec.content);
-    const ClothSpec& smaller = std::get<ClothSpec>(published.content);
-    EXPECT_EQ(spec.dt_s, published.dt_s) << spec.name;
-    EXPECT_EQ(cloth.spacing_m, smaller.spacing_m) << spec.name;
-    EXPECT_EQ(cloth.areal_density_kg_per_m2, smaller.areal_density_kg_per_m2) << spec.name;
-    EXPECT_EQ(cloth.ceiling_height_m, smaller.ceiling_height_m) << spec.name;
-    EXPECT_EQ(cloth.ripple.speed_m_per_s, smaller.ripple.speed_m_per_s) << spec.name;
-    EXPECT_EQ(cloth.ripple.height_m, smaller.ripple.height_m) << spec.name;
-    EXPECT_EQ(cloth.ripple.wavelength_m, smaller.ripple.wavelength_m) << spec.name;
-    for (std::size_t kind = 0; kind < cloth.springs.size(); ++kind) {
-      EXPECT_EQ(cloth.springs[kind].stiffness, smaller.springs[kind].stiffness) << spec.name;
-      EXPECT_EQ(cloth.springs[kind].damping, smaller.springs[kind].damping) << spec.name;
-    }
+    expect_the_same_cloth(spec, published);
   }
   EXPECT_EQ(larger, 3);
+}
+
+TEST(ClothScenes, ThatAreSoManyTimesAsWideDifferInColumnsAlone) {
+  int wide = 0;
+  for (const SceneSpec& spec : cloth_scenes()) {
+    const std::size_t mark = spec.name.find("-x");
+    if (mark == std::string::npos) continue;
+    ++wide;
+    const SceneSpec base = find_scene(spec.name.substr(0, mark));
+    const auto times = static_cast<std::uint32_t>(std::stoul(spec.name.substr(mark + 2)));
+    const ClothSpec &cloth = std::get<ClothSpec>(spec.content), &narrow = std::get<ClothSpec>(base.content);
+    EXPECT_EQ(cloth.rows, narrow.rows) << spec.name;
+    EXPECT_EQ(cloth.columns, times * narrow.columns) << spec.name;
+    expect_the_same_cloth(spec, base);
+  }
+  EXPECT_EQ(wide, 6);
 }
 
 TEST(ClothScenes, AreBuiltWithAsManyNodesAndSpringsAsCounted) {

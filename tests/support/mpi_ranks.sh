@@ -13,6 +13,15 @@ need_mpi() {
   command -v mpirun >/dev/null || { echo "there is no mpirun"; exit 77; }
 }
 
+# ranks_here: the processes of all ranks that this test has started, which have folders in $work
+ranks_here() {
+  local pid
+  for pid in $(pgrep -f "^[^ ]*/mssim-mpi rank"); do
+    grep -qz -- "^TMPDIR=$work/" "/proc/$pid/environ" 2>/dev/null && echo "$pid"
+  done
+  return 0
+}
+
 # rank_of NUMBER PATTERN: the process of that rank, once it is there, of the ranks with a variable that matches
 rank_of() {
   local pid i
