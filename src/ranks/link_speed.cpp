@@ -4,11 +4,12 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
-#include <iomanip>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {
@@ -95,9 +96,7 @@ LinkSpeed measure_links(const Session& session) {
     latency_s = std::max(latency_s, partner.one_way_s());
     both_ways_s = std::max(both_ways_s, partner.both_ways_s());
   }
-  std::ostringstream text;
-  text << std::setprecision(std::numeric_limits<double>::max_digits10) << latency_s << ' ' << both_ways_s;
-  for (const std::string& other : session.gather(text.str())) {
+  for (const std::string& other : session.gather(decimal(latency_s) + ' ' + decimal(both_ways_s))) {
     std::istringstream of_rank(other);
     double latency = 0, seconds = 0;
     of_rank >> latency >> seconds;

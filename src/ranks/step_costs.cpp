@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iomanip>
-#include <limits>
 #include <sstream>
 #include <utility>
+
+#include "text/decimal.h"
 
 namespace mssim {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-/// These numbers as a text that keeps every bit.
-std::string exact_text(std::initializer_list<double> numbers) {
-  std::ostringstream text;
-  text << std::setprecision(std::numeric_limits<double>::max_digits10);
-  for (const double number : numbers) text << number << ' ';
-  return text.str();
 }
 
 }  // namespace
@@ -40,8 +32,7 @@ std::vector<std::string> StepCosts::tell(const Session& session, const Piece& pi
                steps = std::exchange(steps_, 0);
   std::vector<std::string> lines;
   const auto say = [&](const char* name, double value) {
-    lines.push_back(std::string("cost ") + name + ' ' + exact_text({value}));
-    lines.back().pop_back();
+    lines.push_back(std::string("cost ") + name + ' ' + decimal(value));
   };
   double waiting = 0, packing = 0, bytes = 0, messages = 0;
   if (seconds > 0) {
@@ -51,7 +42,9 @@ std::vector<std::string> StepCosts::tell(const Session& session, const Piece& pi
     messages = static_cast<double>(now.messages - before.messages) / steps;
   }
   double waiting_sum = 0, packing_sum = 0, most_bytes = 0, most_messages = 0;
-  for (const std::string& text : session.gather(exact_text({waiting, packing, bytes, messages}))) {
+  const std::string own =
+      decimal(waiting) + ' ' + decimal(packing) + ' ' + decimal(bytes) + ' ' + decimal(messages);
+  for (const std::string& text : session.gather(own)) {
     std::istringstream of_rank(text);
     of_rank >> waiting >> packing >> bytes >> messages;
     waiting_sum += waiting;

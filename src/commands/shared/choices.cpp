@@ -67,8 +67,7 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options) {
   arguments
       .add_number("--ranks", options.ranks,
                   "Processes of the backend mpi, of --threads threads each; mpi:N says it of one row "
-                  "(default: as many "
-                  "as --threads, of one thread each)",
+                  "(default: as many as --threads, of one thread each)",
                   whole_number(1, most_ranks))
       .value_name("N");
   arguments
