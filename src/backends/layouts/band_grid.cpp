@@ -9,8 +9,11 @@ namespace {
 
 constexpr std::size_t halo = BandLayout::halo;
 
-/// Threads recompute two columns a stage and side; a partition narrower than this would be mostly that.
-std::size_t narrowest_part(const Integrator& integrator) { return 2 * halo * integrator.stage_count; }
+/// Threads recompute two columns a stage and side; a partition narrower than this would be mostly that. Its
+/// ghosts belong to the partitions beside it.
+std::size_t narrowest_part(const Integrator& integrator, std::size_t steps_per_pass) {
+  return std::max(2 * halo * integrator.stage_count, ghost_columns(integrator, steps_per_pass));
+}
 
 }  // namespace
 
@@ -49,7 +52,7 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
       own(piece.value_or(ColumnRange{0, layout.columns})),
       spacing_(grid.spacing) {
   const std::size_t most_partitions =
-      std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, own.count / narrowest_part(method)));
+      std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, own.count / narrowest_part(method, 1)));
   steps_per_pass = steps_in_a_pass.value_or(steps_per_pass_for(layout, method, most_partitions));
   cut(most_partitions);
   for (BandPartition& partition : partitions) {
@@ -60,6 +63,10 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
     partition.forces = AlignedArray(stages_under_way * 3 * layout.force_floats());
     partition.pins.resize(columns);
   }
+  for (std::size_t p = 0; p + 1 < partitions.size(); ++p)
+    for (EdgeColumns* edge : {&partitions[p].right, &partitions[p + 1].left})
+      for (AlignedArray& set : edge->sets)
+        set = AlignedArray(partitions[p].ghosts * EdgeColumns::column_floats(layout));
   for (const std::uint32_t node : system.pins) {
     const std::size_t row = node / layout.columns, column = node % layout.columns;
     for (BandPartition& partition : partitions) {
@@ -74,6 +81,7 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
 
 void BandGrid::cut(std::size_t threads) {
   const std::size_t ghosts = ghost_columns(*integrator, steps_per_pass);
+  const std::size_t narrowest = narrowest_part(*integrator, steps_per_pass);
   const auto add = [&](ColumnRange columns) {
     BandPartition& partition = partitions.emplace_back();
     partition.first = columns.first;
@@ -82,7 +90,7 @@ void BandGrid::cut(std::size_t threads) {
   };
   const bool left = own.first > 0, right = own.end() < layout.columns;
   const std::size_t edge_columns = ghosts * (std::size_t{left} + std::size_t{right});
-  const bool has_edges = own.count >= edge_columns + narrowest_part(*integrator);
+  const bool has_edges = own.count >= edge_columns + narrowest;
   ColumnRange inner = own;
   if (has_edges && left) {
     add({own.first, ghosts});
@@ -93,8 +101,7 @@ void BandGrid::cut(std::size_t threads) {
   // Without edges one partition has them all: messages bring the ghosts of the first and the last alone.
   inner_count = (left || right) && !has_edges
                     ? 1
-                    : std::clamp<std::size_t>(
-                          threads, 1, std::max<std::size_t>(1, inner.count / narrowest_part(*integrator)));
+                    : std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, inner.count / narrowest));
   for (std::size_t p = 0; p < inner_count; ++p) add(part_of(inner, p, inner_count));
   if (has_edges && right) add({inner.end(), ghosts});
 }
@@ -129,7 +136,22 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
 
 void BandGrid::set_state(const State& state) {
 #pragma omp parallel for num_threads(static_cast <int>(partitions.size())) schedule(static, 1)
-  for (std::size_t p = 0; p < partitions.size(); ++p) fill_partition(partitions[p], state);
+  for (std::size_t p = 0; p < partitions.size(); ++p) {
+    fill_partition(partitions[p], state);
+    fill_edges(p);
+  }
+}
+
+void BandGrid::fill_edges(std::size_t p) {
+  BandPartition& partition = partitions[p];
+  const auto fill = [&](EdgeColumns& edge, std::size_t first) {
+    for (std::size_t i = 0; i < partition.ghosts; ++i)
+      std::copy_n(partition.column(layout, Pair::state, first + i) + halo * layout.row_floats(),
+                  EdgeColumns::column_floats(layout), edge.column(layout, passes, i));
+    edge.pass.reach(passes);
+  };
+  if (p > 0) fill(partition.left, partition.first);
+  if (p + 1 < partitions.size()) fill(partition.right, partition.first + partition.count - partition.ghosts);
 }
 
 State BandGrid::state() const {

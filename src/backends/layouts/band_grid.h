@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "backends/layouts/column_messages.h"
 #include "backends/layouts/column_range.h"
 #include "backends/layouts/spring_constants.h"
+#include "backends/threads/progress.h"
 #include "backends/threads/team_gain.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
@@ -73,6 +75,22 @@ inline std::size_t ghost_columns(const Integrator& integrator, std::size_t steps
 std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integrator,
                                std::size_t partitions);
 
+/// The columns at one end of a partition, as the partition beside it reads them: copies, because the walk
+/// writes over the state. Two sets, used in turn, so that a thread that is a pass behind still finds those of
+/// its pass: threads need not meet.
+struct EdgeColumns {
+  /// [pass % 2][ghosts][height][x y z u v w][lane]: without halo rows, which the reader makes anew, for less
+  /// to move between caches.
+  std::array<AlignedArray, 2> sets;
+  Progress pass;  ///< the next pass that may read its set
+
+  bool exists() const { return sets[0].size() > 0; }  ///< whether there is a partition to read them
+  static std::size_t column_floats(const BandLayout& layout) { return layout.height * layout.row_floats(); }
+  float* column(const BandLayout& layout, std::uint64_t of_pass, std::size_t number) {
+    return sets[of_pass % 2].data() + number * column_floats(layout);
+  }
+};
+
 /// The columns of one thread, and on each side ghost columns that repeat the neighbours': two for each stage
 /// under way. The thread computes what stages but the last do there a second time, and so needs nobody until
 /// the last is through.
@@ -85,6 +103,9 @@ struct BandPartition {
   std::array<AlignedArray, pair_kinds> pairs;
   std::vector<std::vector<BandPin>> pins;  ///< [ghosts + count + ghosts] by column
   AlignedArray forces;                     ///< [stages_under_way][3][force_floats], columns under way
+  /// Its first `ghosts` columns for the partition before it and its last ones for the one behind; empty where
+  /// there is none.
+  EdgeColumns left, right;
 
   /// Place of a column of the cloth in `pins` and in the state; first - ghosts <= column.
   std::size_t local(std::size_t column) const { return column + ghosts - first; }
@@ -112,13 +133,14 @@ struct BandGrid {
   Coefficients<float> coefficients{};
   std::vector<SpringConstants> springs;  ///< [kinds]
   Surroundings surroundings{};
-  std::size_t steps_per_pass = 1;         ///< steps under way at once
-  std::vector<BandPartition> partitions;  ///< in the order of their columns
-  ColumnRange own;                        ///< what the partitions cover: all columns, or those of the piece
-  std::size_t first_inner = 0;            ///< partitions before this one are an edge
-  std::size_t inner_count = 0;            ///< partitions from there on that have a thread each; then an edge
-  ColumnMessages* messages = nullptr;     ///< of a piece; outlives the steps
-  TeamGain team_gain;                     ///< of a thread for each inner partition
+  std::size_t steps_per_pass = 1;        ///< steps under way at once
+  std::deque<BandPartition> partitions;  ///< in the order of their columns; of two or more, each has `ghosts`
+  ColumnRange own;                       ///< what the partitions cover: all columns, or those of the piece
+  std::size_t first_inner = 0;           ///< partitions before this one are an edge
+  std::size_t inner_count = 0;           ///< partitions from there on that have a thread each; then an edge
+  std::uint64_t passes = 0;              ///< taken so far
+  ColumnMessages* messages = nullptr;    ///< of a piece; outlives the steps
+  TeamGain team_gain;                    ///< of a thread for each inner partition
 
   /// Cuts the cloth for `lanes` lanes and at most `threads` partitions. Arrays stay untouched until
   /// set_state. `steps_in_a_pass`: chosen by the size of the cloth unless given; their stages must not be
@@ -136,6 +158,8 @@ struct BandGrid {
  private:
   double spacing_ = 0;  ///< m, places the dummies
   void cut(std::size_t threads);
+  /// Copies the state's columns to those that others read.
+  void fill_edges(std::size_t p);
   void fill_partition(BandPartition& partition, const State& state) const;
 };
 

@@ -19,17 +19,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Puts the pins of a freshly written column of a pair back and renews its halo rows. Row -1 of a lane is the
-/// last row of the lane before it, so a halo row is an unaligned load one float away. The first or last lane
-/// gets a stray number from the neighbouring component, which every spring there masks.
-HWY_NOINLINE inline void finish_column(const BandLayout& layout, const std::vector<BandPin>& pins,
-                                       float* start) {
+/// Renews the halo rows of a column of a pair. Row -1 of a lane is the last row of the lane before it, so a
+/// halo row is an unaligned load one float away. The first or last lane gets a stray number from the
+/// neighbouring component, which every spring there masks.
+HWY_INLINE void renew_halo(const BandLayout& layout, float* start) {
   const std::size_t lanes = lane_count(), row_floats = layout.row_floats();
-  for (const BandPin& pin : pins)
-    for (std::size_t k = 0; k < 3; ++k) {
-      start[pin.offset + k * lanes] = pin.position[k];
-      start[pin.offset + (3 + k) * lanes] = 0;
-    }
   float* above = start;
   const float* last = start + layout.height * row_floats;
   float* under = start + (layout.height + BandLayout::halo) * row_floats;
@@ -38,6 +32,17 @@ HWY_NOINLINE inline void finish_column(const BandLayout& layout, const std::vect
     hn::Store(hn::LoadU(FloatTag(), last + i - 1), FloatTag(), above + i);
     hn::Store(hn::LoadU(FloatTag(), first + i + 1), FloatTag(), under + i);
   }
+}
+
+/// Puts the pins of a freshly written column of a pair back and renews its halo rows.
+HWY_NOINLINE inline void finish_column(const BandLayout& layout, const std::vector<BandPin>& pins,
+                                       float* start) {
+  for (const BandPin& pin : pins)
+    for (std::size_t k = 0; k < 3; ++k) {
+      start[pin.offset + k * lane_count()] = pin.position[k];
+      start[pin.offset + (3 + k) * lane_count()] = 0;
+    }
+  renew_halo(layout, start);
 }
 
 /// Finishes a column of every pair that the stage has written and that a later stage, or the next step's
@@ -108,13 +113,47 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
   std::rotate(under_way.forces.begin(), under_way.forces.begin() + 1, under_way.forces.end());
 }
 
+/// Copies the ghost columns of a pass at one side of a partition from the partition beside it, as soon as
+/// they are there. Adds to `waited` how long that took if it was long.
+HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& partition, EdgeColumns& edge,
+                                     std::size_t first, std::uint64_t pass, TeamGain::Duration& waited) {
+  edge.pass.wait_for(pass, waited);
+  for (std::size_t i = 0; i < partition.ghosts; ++i) {
+    float* column = partition.column(layout, Pair::state, first + i);
+    std::memcpy(column + BandLayout::halo * layout.row_floats(), edge.column(layout, pass, i),
+                EdgeColumns::column_floats(layout) * sizeof(float));
+    renew_halo(layout, column);
+  }
+}
+
+/// Copies a column of a partition that is complete in a pass, if it is a ghost of another one in the next
+/// pass.
+HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition, std::size_t column,
+                             std::uint64_t pass) {
+  const auto leave = [&](EdgeColumns& edge, std::size_t number) HWY_ATTR {
+    std::memcpy(edge.column(layout, pass + 1, number),
+                partition.column(layout, Pair::state, column) + BandLayout::halo * layout.row_floats(),
+                EdgeColumns::column_floats(layout) * sizeof(float));
+    if (number + 1 == partition.ghosts) edge.pass.reach(pass + 1);
+  };
+  const std::size_t number = column - partition.first, behind = partition.first + partition.count - column;
+  if (number < partition.ghosts && partition.left.exists()) leave(partition.left, number);
+  if (behind <= partition.ghosts && partition.right.exists())
+    leave(partition.right, partition.ghosts - behind);
+}
+
 /// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other. Messages
-/// that are under way meanwhile go on (null: there are none).
+/// that are under way meanwhile go on (null: there are none). `waited`: as take_ghosts.
+///
+/// The columns of other partitions in the pass before are read as late as possible, and the own ones left for
+/// them as soon as they are complete. No set is written that is still read: who leaves columns for a pass has
+/// seen those that the reader left in the pass before, after it had read the same set.
 template <std::size_t method>
-HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, std::size_t steps,
-                               ColumnMessages* messages) {
+HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps, std::uint64_t pass,
+                               ColumnMessages* messages, TeamGain::Duration& waited) {
   constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
   const std::size_t count = steps * stages, columns = bands.layout.columns;
+  BandPartition& partition = bands.partitions[p];
   std::array<StageUnderWay, stages_under_way> under_way;
   for (std::size_t i = 0; i < count; ++i) {
     // What the stages behind need of the neighbours' columns is computed here too.
@@ -128,9 +167,16 @@ HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, 
   }
   const std::size_t start = under_way[0].begin - std::min(under_way[0].begin, distance);
   const std::size_t end = under_way[count - 1].end + distance * (count - 1);
+  const std::size_t own_end = partition.first + partition.count;
   constexpr std::size_t columns_an_advance = 8;  // some microseconds
+  if (p > 0)
+    take_ghosts(bands.layout, partition, bands.partitions[p - 1].right, partition.first - partition.ghosts,
+                pass, waited);
   for (std::size_t head = start; head < end; ++head) {
     if (messages && head % columns_an_advance == 0) messages->advance();
+    // Before any of the own last columns is left for others.
+    if (head + partition.ghosts == own_end && p + 1 < bands.partitions.size())
+      take_ghosts(bands.layout, partition, bands.partitions[p + 1].left, own_end, pass, waited);
     for (std::size_t step = 0; step < steps; ++step)
       for_each_stage<method>([&](auto stage) HWY_ATTR {
         const std::size_t i = step * stages + stage, behind = distance * i;
@@ -139,30 +185,19 @@ HWY_INLINE void walk_partition(const BandGrid& bands, BandPartition& partition, 
           return;
         walk_stage<method, stage>(bands, partition, under_way[i], head - behind);
       });
+    const std::size_t behind = distance * (count - 1);
+    if (head >= behind + partition.first && head < behind + own_end)
+      leave_column(bands.layout, partition, head - behind, pass);
   }
 }
 
-/// Copies the ghost columns of the state from the partitions that own them, where that is one of this
-/// process.
-HWY_NOINLINE inline void fetch_ghosts(BandGrid& bands, std::size_t p) {
-  BandPartition& partition = bands.partitions[p];
-  const std::size_t bytes = bands.layout.column_floats() * sizeof(float);
-  const auto fetch = [&](std::size_t owner, std::size_t column) HWY_ATTR {
-    std::memcpy(partition.column(bands.layout, Pair::state, column),
-                bands.partitions[owner].column(bands.layout, Pair::state, column), bytes);
-  };
-  const std::size_t begin =
-      std::max(partition.first - std::min(partition.first, partition.ghosts), bands.own.first);
-  for (std::size_t column = partition.first, owner = p; column-- > begin;) {
-    while (column < bands.partitions[owner].first) --owner;
-    fetch(owner, column);
-  }
-  const std::size_t first_right = partition.first + partition.count;
-  const std::size_t end = std::min(first_right + partition.ghosts, bands.own.end());
-  for (std::size_t column = first_right, owner = p; column < end; ++column) {
-    while (column >= bands.partitions[owner].first + bands.partitions[owner].count) ++owner;
-    fetch(owner, column);
-  }
+/// Passes after which the threads of a cloth meet, to see whether they gain by being several: so many that
+/// this is a small part of their time.
+HWY_INLINE std::size_t passes_between_meetings(const BandGrid& bands) {
+  constexpr std::size_t updates = 100'000;  // of nodes: some tenth of a millisecond
+  const std::size_t of_a_pass =
+      bands.layout.rows * bands.own.count * bands.steps_per_pass * bands.integrator->stage_count;
+  return std::max<std::size_t>(1, updates / std::max<std::size_t>(1, of_a_pass));
 }
 
 template <std::size_t method>
@@ -173,34 +208,31 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   const bool has_edges = bands.inner_count < partitions;
   const std::size_t passes = (count + bands.steps_per_pass - 1) / bands.steps_per_pass;
   // Of every stride-th inner partition from `first` on; the first thread before that of the edges.
-  const auto walk = [&](std::size_t first, std::size_t stride, std::size_t pass) HWY_ATTR {
+  const auto walk = [&](std::size_t first, std::size_t stride, std::size_t pass,
+                        TeamGain::Duration& waited) HWY_ATTR {
     const std::size_t steps = std::min(bands.steps_per_pass, count - pass * bands.steps_per_pass);
-    if (bands.messages && first == 0) {
-      if (pass > 0) bands.messages->finish();
-      if (has_edges) {
-        if (bands.first_inner > 0) walk_partition<method>(bands, bands.partitions.front(), steps, nullptr);
-        if (bands.first_inner + bands.inner_count < partitions)
-          walk_partition<method>(bands, bands.partitions.back(), steps, nullptr);
-        bands.messages->begin();
-      }
+    const auto walk_one = [&](std::size_t p, ColumnMessages* messages) HWY_ATTR {
+      walk_partition<method>(bands, p, steps, bands.passes + pass, messages, waited);
+    };
+    ColumnMessages* const messages = first == 0 ? bands.messages : nullptr;
+    if (messages && pass > 0) messages->finish();
+    if (messages && has_edges) {
+      if (bands.first_inner > 0) walk_one(0, nullptr);
+      if (bands.first_inner + bands.inner_count < partitions) walk_one(partitions - 1, nullptr);
+      messages->begin();
     }
-    for (std::size_t p = first; p < bands.inner_count; p += stride)
-      walk_partition<method>(bands, bands.partitions[bands.first_inner + p], steps,
-                             first == 0 ? bands.messages : nullptr);
-  };
-  // Of every stride-th partition from `first` on.
-  const auto fetch = [&](std::size_t first, std::size_t stride) HWY_ATTR {
-    if (bands.messages && first == 0 && !has_edges) bands.messages->begin();
-    for (std::size_t p = first; p < partitions; p += stride) fetch_ghosts(bands, p);
+    for (std::size_t p = first; p < bands.inner_count; p += stride) walk_one(bands.first_inner + p, messages);
+    if (messages && !has_edges) messages->begin();
   };
   const auto pass_alone = [&](std::size_t pass) HWY_ATTR {
     if (pass >= passes) return false;
-    walk(0, 1, pass);
-    fetch(0, 1);
+    TeamGain::Duration waited{};
+    walk(0, 1, pass, waited);
     return true;
   };
   const std::size_t begin = bands.team_gain.take_rounds(pass_alone);
   std::optional<SpinBarrier> barrier;
+  const std::size_t between_meetings = passes_between_meetings(bands);
   if (begin < passes)
 #pragma omp parallel num_threads(static_cast <int>(bands.inner_count))
   {
@@ -208,15 +240,19 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
     const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
 #pragma omp single
     barrier.emplace(threads, bands.team_gain);
+    TeamGain::Duration waited{};
+    std::size_t before_meeting = between_meetings;
     for (std::size_t pass = begin; pass < passes; ++pass) {
-      walk(thread, threads, pass);
-      if (partitions == 1 && !bands.messages) continue;
-      barrier->wait();
-      fetch(thread, threads);
-      pass += barrier->end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); });
+      walk(thread, threads, pass, waited);
+      if (threads == 1 || --before_meeting > 0) continue;
+      pass += barrier->end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); },
+                                 waited);
+      waited = {};
+      before_meeting = between_meetings;
     }
   }
   if (bands.messages && passes > 0) bands.messages->finish();
+  bands.passes += passes;
 }
 
 /// Takes `count` steps of an integrator of `fewest` to `most` stages.

@@ -30,12 +30,15 @@ class SpinBarrier {
 
   /// The same at the end of a round. Meanwhile one thread may take rounds for all: take_round(n), n = 0, 1,
   /// ..., does the work of all threads in the (n + 1)th round after this one, or returns false where none is
-  /// left. Returns to every thread how many rounds that were.
+  /// left. Returns to every thread how many rounds that were. `waited`: how long this thread has waited for
+  /// others since the last such meeting, apart from here.
   template <class TakeRound>
-  std::size_t end_round(TakeRound&& take_round) {
+  std::size_t end_round(TakeRound&& take_round, TeamGain::Duration waited = {}) {
+    note_wait(waited);
     const Arrival mine = arrive();
     if (mine.is_last) {
       rounds_alone_ = 0;
+      if (gain_) gain_->add_wait(TeamGain::Duration(longest_wait_.exchange(0, std::memory_order_relaxed)));
       if (threads_ == 1 || !gain_ ||
           !gain_->begins_alone(static_cast<TeamGain::Duration::rep>(threads_), &Clock::now)) {
         release(mine.phase);
@@ -68,6 +71,13 @@ class SpinBarrier {
     bool is_first, is_last;
   };
 
+  void note_wait(TeamGain::Duration waited) {
+    TeamGain::Duration::rep longest = longest_wait_.load(std::memory_order_relaxed);
+    while (waited.count() > longest &&
+           !longest_wait_.compare_exchange_weak(longest, waited.count(), std::memory_order_relaxed)) {
+    }
+  }
+
   Arrival arrive() {
     const unsigned phase = phase_.load(std::memory_order_acquire);
     const std::size_t before = arrived_.fetch_add(1, std::memory_order_acq_rel);
@@ -95,6 +105,7 @@ class SpinBarrier {
   const std::size_t threads_;
   TeamGain* const gain_ = nullptr;  // of who is last, of the first in a wait, or of who works alone
   std::atomic<std::size_t> arrived_{0};
+  std::atomic<TeamGain::Duration::rep> longest_wait_{0};  // of the threads' own since the last end_round()
   std::atomic<unsigned> phase_{0};  // two more after every meeting; one more while a thread is alone
   std::size_t rounds_alone_ = 0;
 };

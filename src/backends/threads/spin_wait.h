@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #if defined(__x86_64__)
@@ -9,17 +10,21 @@
 
 namespace mssim {
 
+/// Between two looks at what another thread writes: leaves the core's resources to its other thread.
+inline void pause_spinning() {
+#if defined(__x86_64__)
+  _mm_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
 /// Spins `spins` times, or until an atomic has another value than `old`. Returns its value.
 template <class T>
 T spin_for_change(const std::atomic<T>& value, T old, int spins) {
   T now = value.load(std::memory_order_acquire);
   for (int tries = 0; tries < spins && now == old; ++tries) {
-    // Leaves the core's resources to its other thread.
-#if defined(__x86_64__)
-    _mm_pause();
-#elif defined(__aarch64__)
-    asm volatile("yield");
-#endif
+    pause_spinning();
     now = value.load(std::memory_order_acquire);
   }
   return now;
@@ -42,6 +47,19 @@ T wait_for_change(const std::atomic<T>& value, T old, int spins) {
   }
   value.wait(old, std::memory_order_seq_cst);
   return value.load(std::memory_order_acquire);
+}
+
+/// Waits until an atomic that only grows is at least `goal`. For values that are stored with a mere release
+/// and notify nobody, so that storing them costs nothing: who has waited long asks again every 50
+/// microseconds.
+template <class T>
+void wait_until_at_least(const std::atomic<T>& value, T goal) {
+  constexpr int yields = 100;
+  for (int tries = 0; value.load(std::memory_order_acquire) < goal; ++tries)
+    if (tries < yields)
+      std::this_thread::yield();
+    else
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
 }
 
 /// Stores a value and wakes who waits for a change. What this thread wrote before is visible to them. In the

@@ -113,6 +113,25 @@ TEST(SpinBarrier, LetsOneThreadWorkAloneWhereAnotherIsLate) {
   EXPECT_GT(rounds.alone(), 0U);
 }
 
+TEST(SpinBarrier, LetsOneThreadWorkAloneWhereThreadsSayThatTheyHaveWaited) {
+  // Both arrive at the same time, but one has waited before for most of it.
+  TeamGain gain;
+  SpinBarrier barrier(2, gain);
+  std::atomic<int> alone{0};
+  const auto run = [&](TeamGain::Duration waited) {
+    for (int round = 0; round < 40; ++round) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      const auto take = [&](std::size_t) { return ++alone, false; };
+      barrier.end_round(take, waited);
+    }
+  };
+  {
+    const std::jthread other([&] { run(std::chrono::milliseconds(1)); });
+    run({});
+  }
+  EXPECT_GT(alone.load(), 0);
+}
+
 TEST(SpinBarrier, KeepsThreadsTogetherWithoutATeamGain) {
   Rounds rounds(3, 200);
   SpinBarrier barrier(3);
