@@ -89,24 +89,25 @@ fail_build() {
 
 # build PRESET [TARGET...]: brings build/PRESET up to date. Of several at the same time one builds and the others wait.
 build() {
-  local preset=$1 folder=$root/build/$1 lock
+  # Not a name that a script may have for a folder that it removes at its end: its trap sees this one if the build fails.
+  local preset=$1 build_folder=$root/build/$1 lock
   shift
-  mkdir -p "$folder"
-  exec {lock}>"$folder/.lock"
+  mkdir -p "$build_folder"
+  exec {lock}>"$build_folder/.lock"
   if ! flock --nonblock "$lock"; then
-    say "waiting for another build of $folder"
+    say "waiting for another build of $build_folder"
     flock "$lock"
   fi
   # CMake reconfigures by itself when a CMakeLists.txt changed, but not for a new preset, and a build folder that was
   # copied along with its repository would go on building the original.
-  if [[ ! -e $folder/build.ninja || $root/CMakePresets.json -nt $folder/build.ninja ]] ||
-    ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
-    (cd -- "$root" && cmake --preset "$preset" --fresh) </dev/null >"$folder/configure.log" 2>&1 ||
-      fail_build "$folder/configure.log"
+  if [[ ! -e $build_folder/build.ninja || $root/CMakePresets.json -nt $build_folder/build.ninja ]] ||
+    ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build_folder/CMakeCache.txt"; then
+    (cd -- "$root" && cmake --preset "$preset" --fresh) </dev/null >"$build_folder/configure.log" 2>&1 ||
+      fail_build "$build_folder/configure.log"
   fi
   local start=$SECONDS
-  NINJA_STATUS='[%f/%t] ' ninja -C "$folder" "$@" </dev/null 2>&1 |
-    follow_build "mssim, $preset" "$folder/build.log" || fail_build "$folder/build.log"
+  NINJA_STATUS='[%f/%t] ' ninja -C "$build_folder" "$@" </dev/null 2>&1 |
+    follow_build "mssim, $preset" "$build_folder/build.log" || fail_build "$build_folder/build.log"
   ((SECONDS - start < 10)) || say "built mssim, $preset, in $((SECONDS - start)) s"
   exec {lock}>&-
 }

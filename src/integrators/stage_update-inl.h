@@ -5,21 +5,22 @@
 ///   mul_add(Real, Vector, Vector), Vector + Vector, Real * Vector,
 /// and has included integrators/coefficients.h.
 
-/// One line: the sum of its terms, the last first, so that the large first term is added last.
+/// One line: the sum of its terms, the last first, so that the large first term is added last. Of two terms
+/// it is rounded once where mul_add is.
 template <std::size_t row, std::size_t stage, std::size_t assignment, class Vector, class Real>
 MSSIM_INLINE Vector sum_terms(const Vector* value, const Coefficients<Real>& coefficients) {
   constexpr Assignment terms = integrators[row].stages[stage].assignments[assignment];
   constexpr std::size_t count = term_count(terms);
   const auto& factor = coefficients[stage][assignment];
+  static_assert(count == 1 || (terms.terms[0].coefficient == 1 && terms.terms[0].dt_power == 0),
+                "the large term is a plain one");
+  if constexpr (count == 2)
+    return mul_add(factor[1], value[index(terms.terms[1].slot)], value[index(terms.terms[0].slot)]);
   Vector sum = factor[count - 1] * value[index(terms.terms[count - 1].slot)];
   if constexpr (count > 4) sum = mul_add(factor[3], value[index(terms.terms[3].slot)], sum);
   if constexpr (count > 3) sum = mul_add(factor[2], value[index(terms.terms[2].slot)], sum);
   if constexpr (count > 2) sum = mul_add(factor[1], value[index(terms.terms[1].slot)], sum);
-  if constexpr (count > 1) {
-    static_assert(terms.terms[0].coefficient == 1 && terms.terms[0].dt_power == 0,
-                  "the large term is a plain one");
-    sum = value[index(terms.terms[0].slot)] + sum;
-  }
+  if constexpr (count > 1) sum = value[index(terms.terms[0].slot)] + sum;
   return sum;
 }
 

@@ -12,7 +12,8 @@ namespace mssim {
 struct GridPatch {
   std::uint32_t rows = 0;
   std::uint32_t columns = 0;
-  double spacing = 0;  ///< m, between neighbours of a row or a column at rest
+  double spacing = 0;              ///< m, between neighbours of a row or a column at rest
+  std::uint32_t first_column = 0;  ///< its place in the whole cloth, where this is a window of it
 
   std::uint32_t nodes() const { return rows * columns; }
   std::uint32_t node(std::uint32_t row, std::uint32_t column) const { return row * columns + column; }

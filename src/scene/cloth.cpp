@@ -176,7 +176,7 @@ System outline_of_cloth(const SceneSpec& spec) {
 System build_cloth_window(const SceneSpec& spec, const GridWindow& window) {
   const ClothSpec& cloth = cloth_of(spec);
   System system = outline_of_cloth(spec);
-  const GridPatch grid{window.rows, window.columns, cloth.spacing_m};
+  const GridPatch grid{window.rows, window.columns, cloth.spacing_m, window.column};
   system.topology = grid;
   system.node_mass.assign(grid.nodes(), cloth.areal_density_kg_per_m2 * cloth.spacing_m * cloth.spacing_m);
 

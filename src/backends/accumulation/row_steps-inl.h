@@ -94,7 +94,8 @@ HWY_INLINE void step_vector(const ClothConstants& constants, const Place& place,
     return arrays[slot / 2] + offset + (slot % 2 == 0 ? 0 : 3 * pitch);
   };
   update_lanes<method, stage>(
-      node, pull, place.has(0, 0), constants.coefficients, constants.surroundings,
+      node, pull, place.has(0, 0), Lanes(constants.surroundings.gravity), constants.coefficients,
+      constants.surroundings,
       [&](auto slot)
           MSSIM_INLINE_LAMBDA { return load_components(address(index(decltype(slot)::value)), pitch); },
       [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA {

@@ -35,22 +35,17 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
   return fits || narrow ? 1 : steps;
 }
 
-BandLayout::BandLayout(const GridPatch& grid, std::size_t lane_count)
-    : lanes(lane_count),
-      rows(grid.rows),
-      columns(grid.columns),
-      height(std::max(halo, (rows + lanes - 1) / lanes)) {}
-
 BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
                    std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass,
                    std::optional<ColumnRange> piece)
     : layout(grid, lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
-      springs(spring_constants_of(system, grid)),
       surroundings(surroundings_of(system)),
+      band_rows(layout, spring_constants_of(system, grid), surroundings.gravity),
       own(piece.value_or(ColumnRange{0, layout.columns})),
-      spacing_(grid.spacing) {
+      spacing_(grid.spacing),
+      first_column_(grid.first_column) {
   const std::size_t most_partitions =
       std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(1, own.count / narrowest_part(method, 1)));
   steps_per_pass = steps_in_a_pass.value_or(steps_per_pass_for(layout, method, most_partitions));
@@ -117,10 +112,10 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
     for (std::ptrdiff_t r = -reach; r < height + reach; ++r, out += layout.row_floats())
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {
         const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lane) * height + r;
-        // Dummies keep the spacing of a cloth at rest, above the floor: their springs give small finite
-        // numbers.
-        Vec3d x{static_cast<double>(column) * spacing_, static_cast<double>(surroundings.floor_height) + 1,
-                static_cast<double>(row) * spacing_};
+        // Dummies keep the spacing of a cloth at rest, above the floor, also from those of other pieces: no
+        // spring between them may have length zero, though none has stiffness.
+        Vec3d x{static_cast<double>(first_column_ + column) * spacing_,
+                static_cast<double>(surroundings.floor_height) + 1, static_cast<double>(row) * spacing_};
         Vec3d v{};
         if (row >= 0 && row < rows) {
           const std::size_t node = static_cast<std::size_t>(row) * layout.columns + column;

@@ -10,43 +10,16 @@
 
 #include "backends/interface/surroundings.h"
 #include "backends/layouts/aligned_array.h"
+#include "backends/layouts/band_layout.h"
+#include "backends/layouts/band_rows.h"
 #include "backends/layouts/column_messages.h"
 #include "backends/layouts/column_range.h"
-#include "backends/layouts/spring_constants.h"
 #include "backends/threads/progress.h"
 #include "backends/threads/team_gain.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
 namespace mssim {
-
-/// A cloth laid out for vectors of `lanes` floats: the rows are cut into `lanes` bands of `height` rows, and
-/// lane b holds band b. A row of the layout is thus `lanes` nodes that lie `height` rows apart, and every
-/// neighbour of a node is an aligned load of the same lane, without a shuffle or a gather.
-///
-/// Measured on two Zen 4 cores at 500 x 700 against the plain spring list: gathering 12 neighbours from a
-/// structure of arrays 17 times as fast, this layout, which computes each spring once, 29 times.
-///
-///     [column][row -2 .. height + 1][x y z u v w][lane]       (u v w: velocity)
-///
-/// Two halo rows above and below repeat the neighbouring band's rows. Rows that the last bands have too many
-/// are dummies: they stay at rest and no force from them reaches a node of the cloth.
-struct BandLayout {
-  std::size_t lanes;
-  std::size_t rows, columns;  ///< of the cloth
-  std::size_t height;         ///< rows in a band
-
-  BandLayout(const GridPatch& grid, std::size_t lane_count);
-
-  static constexpr std::size_t halo = 2;        ///< longest spring, in rows or columns
-  static constexpr std::size_t components = 6;  ///< position and velocity
-  std::size_t row_floats() const { return components * lanes; }
-  std::size_t column_floats() const { return (height + 2 * halo) * row_floats(); }
-  /// Floats from a column's start to the x of the node in a row of the cloth.
-  std::size_t offset(std::size_t row) const { return (row % height + halo) * row_floats() + row / height; }
-  /// Floats of one column of forces: rows 0 .. height, three components. The last row is scratch.
-  std::size_t force_floats() const { return (height + 1) * 3 * lanes; }
-};
 
 /// A node that must be put back after every update.
 struct BandPin {
@@ -131,8 +104,8 @@ struct BandGrid {
   BandLayout layout;
   const Integrator* integrator = nullptr;
   Coefficients<float> coefficients{};
-  std::vector<SpringConstants> springs;  ///< [kinds]
   Surroundings surroundings{};
+  BandRows band_rows;
   std::size_t steps_per_pass = 1;        ///< steps under way at once
   std::deque<BandPartition> partitions;  ///< in the order of their columns; of two or more, each has `ghosts`
   ColumnRange own;                       ///< what the partitions cover: all columns, or those of the piece
@@ -156,7 +129,8 @@ struct BandGrid {
   State state(const GridWindow& window) const;
 
  private:
-  double spacing_ = 0;  ///< m, places the dummies
+  double spacing_ = 0;  ///< m, places the dummies, with the next
+  std::size_t first_column_ = 0;
   void cut(std::size_t threads);
   /// Copies the state's columns to those that others read.
   void fill_edges(std::size_t p);

@@ -14,15 +14,14 @@ HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
 /// One stage at the nodes of one vector. `pull`: the acceleration that the springs give them; `node`: what
-/// they are in the gathered pair; those not `free` (a Mask or EveryLane) stay as they are. `load` and `store`
-/// are update_stage's.
+/// they are in the gathered pair; those not `free` (a Mask or EveryLane) stay as they are. `gravity`, m/s^2,
+/// in place of that of `surroundings`. `load` and `store` are update_stage's.
 template <std::size_t method, std::size_t stage, class Free, class Load, class Store>
-HWY_INLINE void update_lanes(const NodeLanes& node, const Lanes3& pull, Free free,
+HWY_INLINE void update_lanes(const NodeLanes& node, const Lanes3& pull, Free free, Lanes gravity,
                              const Coefficients<float>& coefficients, const Surroundings& surroundings,
                              Load load, Store store) {
   // What is held is at rest; without acceleration every assignment gives it back as it was.
-  const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping),
-                                                Lanes(surroundings.gravity)));
+  const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping), gravity));
   update_stage<method, stage>(
       coefficients, node.x, node.v, a, load, store, [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
         const Lanes height(surroundings.floor_height);

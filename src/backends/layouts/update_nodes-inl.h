@@ -54,7 +54,7 @@ HWY_INLINE void update_nodes(const Pairs& pairs, std::size_t offset, const NodeL
                   (reads(table, position_slot(pair)) || reads(table, velocity_slot(pair))))
       loaded[i] = load_nodes(pairs[i] + offset);
   });
-  update_lanes<method, stage>(node, pull, free, coefficients, surroundings, half,
+  update_lanes<method, stage>(node, pull, free, Lanes(surroundings.gravity), coefficients, surroundings, half,
                               [&](auto slot, const Lanes3& value)
                                   MSSIM_INLINE_LAMBDA { half(slot) = value; });
   for_each_pair([&](auto i) MSSIM_INLINE_LAMBDA {

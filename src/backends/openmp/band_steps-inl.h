@@ -19,18 +19,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Renews the halo rows of a column of a pair. Row -1 of a lane is the last row of the lane before it, so a
-/// halo row is an unaligned load one float away. The first or last lane gets a stray number from the
-/// neighbouring component, which every spring there masks.
+/// Renews the halo rows of a column of a pair. Row -1 of a lane is the last row of the lane before it. The
+/// first or last lane has nobody there: it gets a number far from all nodes, because springs without
+/// stiffness reach it, which must not have length zero. Lanes change places in registers: a load from one
+/// float away would have to wait until the stores before it are in the cache.
 HWY_INLINE void renew_halo(const BandLayout& layout, float* start) {
+  const FloatTag d;
+  const Lanes far(1e9F);
   const std::size_t lanes = lane_count(), row_floats = layout.row_floats();
   float* above = start;
   const float* last = start + layout.height * row_floats;
   float* under = start + (layout.height + BandLayout::halo) * row_floats;
   const float* first = start + BandLayout::halo * row_floats;
   for (std::size_t i = 0; i < BandLayout::halo * row_floats; i += lanes) {
-    hn::Store(hn::LoadU(FloatTag(), last + i - 1), FloatTag(), above + i);
-    hn::Store(hn::LoadU(FloatTag(), first + i + 1), FloatTag(), under + i);
+    hn::Store(from_lane_before(hn::Load(d, last + i), far).v, d, above + i);
+    hn::Store(from_lane_behind(hn::Load(d, first + i), far).v, d, under + i);
   }
 }
 

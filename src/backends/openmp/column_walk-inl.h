@@ -57,20 +57,28 @@ struct ColumnView {
 /// anything that has an address elsewhere, as far as the compiler knows, which then reads all of it again in
 /// every row. Measured on two Zen 5 cores at 500 x 700: copies 1.04 to 1.16 times as fast.
 struct RowConstants {
-  std::array<SpringLanes, 3> spring;
   Coefficients<float> coefficients;
   Surroundings surroundings;
-  std::uint32_t rows;  ///< of the cloth
-  Index band_start;    ///< row of the cloth at row 0 of each lane
+  const float* values;                 ///< BandRows::values
+  const std::uint32_t* offset_of_row;  ///< the same
+  std::ptrdiff_t height;               ///< of the bands
   HWY_INLINE explicit RowConstants(const BandGrid& bands)
-      : spring{SpringLanes(bands.springs[structural]), SpringLanes(bands.springs[shear]),
-               SpringLanes(bands.springs[bending])},
-        coefficients(bands.coefficients),
+      : coefficients(bands.coefficients),
         surroundings(bands.surroundings),
-        rows(static_cast<std::uint32_t>(bands.layout.rows)),
-        band_start(hn::Mul(hn::Iota(IndexTag(), 0),
-                           hn::Set(IndexTag(), static_cast<std::uint32_t>(bands.layout.height)))) {}
+        values(bands.band_rows.values()),
+        offset_of_row(bands.band_rows.offset_of_row()),
+        height(static_cast<std::ptrdiff_t>(bands.layout.height)) {}
+  /// The vectors of a row (BandRows).
+  HWY_INLINE const float* of_row(std::ptrdiff_t row) const { return values + offset_of_row[row]; }
 };
+
+/// The constants of the springs that a row's nodes own, by their number in grid_stencil.
+HWY_INLINE SpringLanes spring_of_row(const float* of_row, std::size_t spring) {
+  const FloatTag d;
+  const float* of_spring = of_row + spring * BandRows::spring_vectors * lane_count();
+  return {hn::Load(d, of_spring), hn::Load(d, of_spring + lane_count()),
+          hn::Load(d, of_spring + 2 * lane_count())};
+}
 
 /// Forces that wait for the rows below while the walk goes down.
 struct Carry {
@@ -105,13 +113,6 @@ HWY_INLINE Lanes3 force_of(const BegunSpring& begun, const SpringLanes& spring) 
          begun.d;
 }
 
-/// The same in the lanes that have the spring.
-HWY_INLINE Lanes3 force_of(const BegunSpring& begun, const SpringLanes& spring, Mask exists) {
-  return keep(exists, spring_pull_at(begun.inverse_length, begun.closing, spring.stiffness,
-                                     spring.stiffness_rest, spring.damping)) *
-         begun.d;
-}
-
 /// Asks for the row of a column of states that the walk comes to next but so many. Measured on Zen 5 at 500 x
 /// 700, whose state lies in the last-level cache: 1.04 to 1.1 times as fast with two threads, up to twice
 /// with one.
@@ -129,50 +130,51 @@ HWY_INLINE NodeLanes nodes_of(const ColumnView& column, std::ptrdiff_t row) {
   return {load3(nodes), load3(nodes + 3 * lane_count())};
 }
 
-/// Row of the cloth in each lane; a halo row above the cloth wraps to a huge number, which is below no limit.
-HWY_INLINE Index cloth_row(const RowConstants& constants, std::ptrdiff_t row) {
-  return hn::Add(constants.band_start, hn::Set(IndexTag(), static_cast<std::uint32_t>(row)));
-}
+/// Forces of springs that are known before their row is walked, on their other ends.
+struct KnownForces {
+  unsigned set = 0;  ///< of which springs
+  Lanes3 down, down_2, right_down;
+};
 
 /// Takes the springs of `set` that a row owns one step further. The force of springs of this and earlier rows
 /// on its nodes, with `received` those of earlier columns too. `prefetch`: the state is gathered.
 template <bool prefetch>
 HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& column, const NodeLanes& node,
-                           unsigned set, bool received, Carry& carry, std::ptrdiff_t row) {
+                           unsigned set, const KnownForces& known, bool received, Carry& carry,
+                           std::ptrdiff_t row) {
+  const unsigned to_find = set & ~known.set;
   const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
   const std::ptrdiff_t row_floats = 6 * lanes, force_floats = 3 * lanes;
-  const auto& spring = constants.spring;
-  const std::uint32_t rows = constants.rows;
-  const Index in_cloth = cloth_row(constants, row);
-  const Mask has_below = below(in_cloth, rows - 1);
+  const float* const of_row = constants.of_row(row);
 
   BegunSpring to_below{}, to_below_2{}, to_right_above{}, to_right{}, to_right_below{}, to_right_2{};
-  if ((set & down) != 0) to_below = begin_spring(node, column.here + (row + 1) * row_floats);
-  if ((set & down_2) != 0) to_below_2 = begin_spring(node, column.here + (row + 2) * row_floats);
+  if ((to_find & down) != 0) to_below = begin_spring(node, column.here + (row + 1) * row_floats);
+  if ((to_find & down_2) != 0) to_below_2 = begin_spring(node, column.here + (row + 2) * row_floats);
   Lanes3 force = carry.below;
   if (received) force = force + load3(column.forces_here + row * force_floats);
   carry.below = carry.below_2;
   if ((set & down) != 0) {
-    const Lanes3 pull = force_of(to_below, spring[structural], has_below);
+    const Lanes3 pull = (to_find & down) != 0 ? force_of(to_below, spring_of_row(of_row, 0)) : known.down;
     force = force - pull;
     carry.below = carry.below + pull;
   }
   if ((set & right_up) != 0) to_right_above = begin_spring(node, column.next + (row - 1) * row_floats);
   if ((set & down_2) != 0) {
-    carry.below_2 = force_of(to_below_2, spring[bending], below(in_cloth, rows < 2 ? 0 : rows - 2));
+    carry.below_2 = (to_find & down_2) != 0 ? force_of(to_below_2, spring_of_row(of_row, 4)) : known.down_2;
     force = force - carry.below_2;
   }
-  // No force on a dummy matters: a spring along a row needs no mask.
   if ((set & right) != 0) to_right = begin_spring(node, column.next + row * row_floats);
   if ((set & right_up) != 0) {
-    const Mask has_above = below(hn::Sub(in_cloth, hn::Set(IndexTag(), 1)), rows - 1);
-    const Lanes3 pull = force_of(to_right_above, spring[shear], has_above);
+    const Lanes3 pull = force_of(to_right_above, spring_of_row(of_row, 3));
     force = force - pull;
-    if (row > 0) store3(column.forces_next + (row - 1) * force_floats, carry.right_above + pull);
+    if (row > 0)
+      store3(column.forces_next + (row - 1) * force_floats, carry.right_above + pull);
+    else
+      store3(column.forces_next + constants.height * force_floats, pull);
   }
-  if ((set & right_down) != 0) to_right_below = begin_spring(node, column.next + (row + 1) * row_floats);
+  if ((to_find & right_down) != 0) to_right_below = begin_spring(node, column.next + (row + 1) * row_floats);
   if ((set & right) != 0) {
-    const Lanes3 pull = force_of(to_right, spring[structural]);
+    const Lanes3 pull = force_of(to_right, spring_of_row(of_row, 1));
     force = force - pull;
     carry.right_above = carry.right_below + load3(column.forces_next + row * force_floats) + pull;
   }
@@ -182,11 +184,12 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
     to_right_2 = begin_spring(node, other);
   }
   if ((set & right_down) != 0) {
-    carry.right_below = force_of(to_right_below, spring[shear], has_below);
+    carry.right_below =
+        (to_find & right_down) != 0 ? force_of(to_right_below, spring_of_row(of_row, 2)) : known.right_down;
     force = force - carry.right_below;
   }
   if ((set & right_2) != 0) {
-    const Lanes3 pull = force_of(to_right_2, spring[bending]);
+    const Lanes3 pull = force_of(to_right_2, spring_of_row(of_row, 5));
     force = force - pull;
     store3(column.forces_next_2 + row * force_floats, pull);
   }
@@ -202,10 +205,9 @@ HWY_INLINE void update_row(const RowConstants& constants, const ColumnView& colu
   const auto address = [&](Pair pair, std::size_t slot) MSSIM_INLINE_LAMBDA {
     return column.pairs[index(pair)] + row * 6 * lanes + static_cast<std::ptrdiff_t>(slot % 2) * 3 * lanes;
   };
-  // Dummies stay where they are.
-  const Mask in_cloth = below(cloth_row(constants, row), constants.rows);
+  const Lanes gravity = hn::Load(FloatTag(), constants.of_row(row) + BandRows::gravity_vector * lane_count());
   update_lanes<method, stage>(
-      node, force, in_cloth, constants.coefficients, constants.surroundings,
+      node, force, EveryLane{}, gravity, constants.coefficients, constants.surroundings,
       [&](auto slot) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t i = index(decltype(slot)::value);
         return load3(
@@ -236,9 +238,35 @@ HWY_NOINLINE inline void pull_rows(const BandGrid& bands, const ColumnView& view
   for (std::ptrdiff_t row = -2; row <= height; ++row) {
     const bool inside = complete && row >= 0 && row < height;
     const Lanes3 force = pull_row<false>(constants, column, nodes_of(column, row),
-                                         set & springs_of_row(row, height), inside, carry, row);
+                                         set & springs_of_row(row, height), {}, inside, carry, row);
     if (inside) store3(column.forces_here + row * static_cast<std::ptrdiff_t>(3 * lane_count()), force);
   }
+}
+
+/// Forces of springs that reach across the end of a band, of its last two rows.
+struct EndForces {
+  KnownForces last_but_one, last;
+};
+
+/// A lane's last rows are the halo rows above the next lane's band: their forces are found once, here, for
+/// the rows that own the springs and, a lane further, for those at the top. The halo rows' own springs would
+/// give the same.
+HWY_INLINE EndForces forces_across_ends(const RowConstants& constants, const ColumnView& column) {
+  const auto row_floats = static_cast<std::ptrdiff_t>(6 * lane_count());
+  const auto force = [&](const NodeLanes& node, const float* other, std::ptrdiff_t row,
+                         std::size_t spring) MSSIM_INLINE_LAMBDA {
+    return force_of(begin_spring(node, other), spring_of_row(constants.of_row(row), spring));
+  };
+  const std::ptrdiff_t height = constants.height, last = height - 1, last_but_one = height - 2;
+  EndForces ends;
+  const NodeLanes above = nodes_of(column, last_but_one), end = nodes_of(column, last);
+  ends.last_but_one.set = down_2;
+  ends.last_but_one.down_2 = force(above, column.here + height * row_floats, last_but_one, 4);
+  ends.last.set = down | down_2 | right_down;
+  ends.last.down = force(end, column.here + height * row_floats, last, 0);
+  ends.last.down_2 = force(end, column.here + (height + 1) * row_floats, last, 4);
+  ends.last.right_down = force(end, column.next + height * row_floats, last, 2);
+  return ends;
 }
 
 /// A column whose nodes own all springs and are updated: all but a few.
@@ -247,19 +275,24 @@ HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& vie
   constexpr bool gathers_state = integrators[method].stages[stage].gather == Pair::state;
   const RowConstants constants(bands);
   const ColumnView column = view;
-  const auto height = static_cast<std::ptrdiff_t>(bands.layout.height);
-  Carry carry = nothing_carried();
-  const auto pull_halo_row = [&](std::ptrdiff_t row) MSSIM_INLINE_LAMBDA {
-    pull_row<false>(constants, column, nodes_of(column, row), springs_of_row(row, height), false, carry, row);
-  };
-  pull_halo_row(-2);
-  pull_halo_row(-1);
-  for (std::ptrdiff_t row = 0; row < height; ++row) {
+  const auto height = constants.height, force_floats = static_cast<std::ptrdiff_t>(3 * lane_count());
+  const EndForces ends = forces_across_ends(constants, column);
+  Carry carry{.below = from_lane_before(ends.last_but_one.down_2) + from_lane_before(ends.last.down),
+              .below_2 = from_lane_before(ends.last.down_2),
+              .right_below = from_lane_before(ends.last.right_down),
+              .right_above = zero3()};
+  const auto walk_row = [&](std::ptrdiff_t row, const KnownForces& known) MSSIM_INLINE_LAMBDA {
     const NodeLanes node = nodes_of(column, row);
-    const Lanes3 force = pull_row<gathers_state>(constants, column, node, every_spring, true, carry, row);
+    const Lanes3 force =
+        pull_row<gathers_state>(constants, column, node, every_spring, known, true, carry, row);
     update_row<method, stage>(constants, column, node, force, row);
-  }
-  pull_halo_row(height);
+  };
+  for (std::ptrdiff_t row = 0; row < height - 2; ++row) walk_row(row, {});
+  walk_row(height - 2, ends.last_but_one);
+  walk_row(height - 1, ends.last);
+  // The spring from a band's first row up to the right reaches the last row of the lane before.
+  store3(column.forces_next + (height - 1) * force_floats,
+         carry.right_above + from_lane_behind(load3(column.forces_next + height * force_floats)));
 }
 
 /// A column near the end of the cloth or of the partition. `set`: springs of its nodes that exist and matter.

@@ -39,8 +39,16 @@ HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v, b.v); }
 HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
 HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
 HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
-HWY_INLINE Lanes operator-(Lanes a) { return hn::Neg(a.v); }
+/// -a, not computed where a multiplication and an addition can take it: they negate for nothing, and can read
+/// `a` from memory then.
+struct NegatedLanes {
+  hn::Vec<FloatTag> v;
+  HWY_INLINE operator Lanes() const { return hn::Neg(v); }
+};
+HWY_INLINE NegatedLanes operator-(Lanes a) { return {a.v}; }
 HWY_INLINE Lanes mul_add(Lanes a, Lanes b, Lanes c) { return hn::MulAdd(a.v, b.v, c.v); }
+HWY_INLINE Lanes mul_add(Lanes a, Lanes b, NegatedLanes c) { return hn::MulSub(a.v, b.v, c.v); }
+HWY_INLINE Lanes mul_add(NegatedLanes a, Lanes b, Lanes c) { return hn::NegMulAdd(a.v, b.v, c.v); }
 HWY_INLINE Lanes square_root(Lanes a) { return hn::Sqrt(a.v); }
 HWY_INLINE Lanes inverse_sqrt(Lanes a) { return hn::Div(hn::Set(FloatTag(), 1.0F), hn::Sqrt(a.v)); }
 
@@ -93,6 +101,25 @@ HWY_INLINE Mask below(Index index, std::uint32_t limit) {
   return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
 }
 
+/// Each lane has what the lane before it has in `a`; the first one has that of `first`.
+HWY_INLINE Lanes from_lane_before(Lanes a, Lanes first) {
+  const FloatTag d;
+  const auto lane = hn::Iota(IndexTag(), 0), one = hn::Set(IndexTag(), 1);
+  const auto last = hn::Set(IndexTag(), static_cast<std::uint32_t>(hn::Lanes(d) - 1));
+  const auto source = hn::IndicesFromVec(d, hn::And(hn::Sub(lane, one), last));
+  return hn::IfThenElse(hn::RebindMask(d, hn::Ne(lane, hn::Zero(IndexTag()))),
+                        hn::TableLookupLanes(a.v, source), first.v);
+}
+/// Each lane has what the lane behind it has in `a`; the last one has that of `last`.
+HWY_INLINE Lanes from_lane_behind(Lanes a, Lanes last) {
+  const FloatTag d;
+  const auto lane = hn::Iota(IndexTag(), 0), one = hn::Set(IndexTag(), 1);
+  const auto last_lane = hn::Set(IndexTag(), static_cast<std::uint32_t>(hn::Lanes(d) - 1));
+  const auto source = hn::IndicesFromVec(d, hn::And(hn::Add(lane, one), last_lane));
+  return hn::IfThenElse(hn::RebindMask(d, hn::Ne(lane, last_lane)), hn::TableLookupLanes(a.v, source),
+                        last.v);
+}
+
 /// Three components of a vector in space, of one node a lane.
 struct Lanes3 {
   Lanes x, y, z;
@@ -124,6 +151,15 @@ HWY_INLINE Lanes3 keep(Mask mask, const Lanes3& a) {
 HWY_INLINE Lanes3 keep(EveryLane, const Lanes3& a) { return a; }
 HWY_INLINE Lanes3 select(Mask mask, const Lanes3& yes, const Lanes3& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
+}
+/// The same of components, zero in the lane that has no other.
+HWY_INLINE Lanes3 from_lane_before(const Lanes3& a) {
+  const Lanes none(0.0F);
+  return {from_lane_before(a.x, none), from_lane_before(a.y, none), from_lane_before(a.z, none)};
+}
+HWY_INLINE Lanes3 from_lane_behind(const Lanes3& a) {
+  const Lanes none(0.0F);
+  return {from_lane_behind(a.x, none), from_lane_behind(a.y, none), from_lane_behind(a.z, none)};
 }
 HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
   return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));

@@ -1,0 +1,62 @@
+#include "backends/layouts/band_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "model/grid_patch.h"
+
+namespace mssim {
+namespace {
+
+constexpr float gravity = 9.81F;
+
+std::vector<SpringConstants> constants() {
+  std::vector<SpringConstants> all;
+  for (const double stiffness : {200, 60, 8}) all.emplace_back(SpringMaterial{stiffness, 0.01}, 0.1, 0.002);
+  return all;
+}
+
+TEST(BandRows, HaveConstantsWhereThereIsASpring) {
+  const std::vector<SpringConstants> springs = constants();
+  for (const std::uint32_t rows : {1U, 2U, 9U, 50U, 100U, 500U})
+    for (const std::size_t lanes : {1U, 4U, 8U, 16U}) {
+      SCOPED_TRACE(std::to_string(rows) + " rows, " + std::to_string(lanes) + " lanes");
+      const BandLayout layout(GridPatch{rows, 3, 0.1}, lanes);
+      const BandRows band_rows(layout, springs, gravity);
+      const auto halo = static_cast<std::ptrdiff_t>(BandLayout::halo);
+      const auto height = static_cast<std::ptrdiff_t>(layout.height);
+      const auto is_there = [&](std::ptrdiff_t row) {
+        return row >= 0 && row < static_cast<std::ptrdiff_t>(rows);
+      };
+      for (std::ptrdiff_t row = -halo; row < height + halo; ++row) {
+        const float* of_row = band_rows.values() + band_rows.offset_of_row()[row];
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          const std::ptrdiff_t of_cloth = static_cast<std::ptrdiff_t>(lane) * height + row;
+          EXPECT_EQ(of_row[BandRows::gravity_vector * lanes + lane], is_there(of_cloth) ? gravity : 0);
+          for (std::size_t i = 0; i < grid_stencil.size(); ++i) {
+            const bool exists = is_there(of_cloth) && is_there(of_cloth + grid_stencil[i].rows);
+            const SpringConstants& spring = springs[grid_stencil[i].kind];
+            const float* found = of_row + i * BandRows::spring_vectors * lanes + lane;
+            EXPECT_EQ(found[0], exists ? spring.stiffness : 0) << "row " << row << ", spring " << i;
+            EXPECT_EQ(found[lanes], exists ? spring.stiffness_rest : 0) << "row " << row << ", spring " << i;
+            EXPECT_EQ(found[2 * lanes], exists ? spring.damping : 0) << "row " << row << ", spring " << i;
+          }
+        }
+      }
+    }
+}
+
+TEST(BandRows, ShareTheirValues) {
+  const BandLayout layout(GridPatch{2000, 3, 0.1}, 16);
+  const BandRows band_rows(layout, constants(), gravity);
+  const std::uint32_t* offsets = band_rows.offset_of_row();
+  const std::set<std::uint32_t> different(offsets, offsets + layout.height);
+  EXPECT_LE(different.size(), 4U) << "a few at the top, where a lane has no springs upwards, and at the end";
+}
+
+}  // namespace
+}  // namespace mssim
