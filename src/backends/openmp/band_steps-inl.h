@@ -129,6 +129,28 @@ HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& pa
   }
 }
 
+/// Asks for the memory that a column of an edge is going to be written to. It is in the cache of the thread
+/// that read it, and stores that must wait for it hold up all that follow.
+HWY_INLINE void prefetch_to_leave(const BandLayout& layout, EdgeColumns& edge, std::size_t number,
+                                  std::uint64_t pass) {
+  constexpr std::size_t line_floats = 16;
+  const float* column = edge.column(layout, pass + 1, number);
+  for (std::size_t i = 0; i < EdgeColumns::column_floats(layout); i += line_floats)
+#if HWY_ARCH_X86
+    asm volatile("prefetchw %0" : : "m"(column[i]));
+#else
+    __builtin_prefetch(column + i, 1);
+#endif
+}
+
+/// The same for those that a thread is going to read.
+HWY_INLINE void prefetch_to_take(const BandLayout& layout, EdgeColumns& edge, std::size_t number,
+                                 std::uint64_t pass) {
+  constexpr std::size_t line_floats = 16;
+  const float* column = edge.column(layout, pass, number);
+  for (std::size_t i = 0; i < EdgeColumns::column_floats(layout); i += line_floats) hwy::Prefetch(column + i);
+}
+
 /// Copies a column of a partition that is complete in a pass, if it is a ghost of another one in the next
 /// pass.
 HWY_INLINE void leave_column(const BandLayout& layout, BandPartition& partition, std::size_t column,
@@ -172,13 +194,22 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
   const std::size_t end = under_way[count - 1].end + distance * (count - 1);
   const std::size_t own_end = partition.first + partition.count;
   constexpr std::size_t columns_an_advance = 8;  // some microseconds
-  if (p > 0)
+  const bool has_next = p + 1 < bands.partitions.size();
+  if (p > 0) {
+    for (std::size_t i = 0; i < partition.ghosts; ++i)
+      prefetch_to_leave(bands.layout, partition.left, i, pass);
     take_ghosts(bands.layout, partition, bands.partitions[p - 1].right, partition.first - partition.ghosts,
                 pass, waited);
+  }
   for (std::size_t head = start; head < end; ++head) {
     if (messages && head % columns_an_advance == 0) messages->advance();
+    if (has_next && head + 2 * partition.ghosts + 2 >= own_end && head + partition.ghosts + 2 < own_end) {
+      const std::size_t number = head + 2 * partition.ghosts + 2 - own_end;
+      prefetch_to_leave(bands.layout, partition.right, number, pass);
+      prefetch_to_take(bands.layout, bands.partitions[p + 1].left, number, pass);
+    }
     // Before any of the own last columns is left for others.
-    if (head + partition.ghosts == own_end && p + 1 < bands.partitions.size())
+    if (has_next && head + partition.ghosts == own_end)
       take_ghosts(bands.layout, partition, bands.partitions[p + 1].left, own_end, pass, waited);
     for (std::size_t step = 0; step < steps; ++step)
       for_each_stage<method>([&](auto stage) HWY_ATTR {
