@@ -90,12 +90,14 @@ class Hybrid final : public Backend {
   void take_steps(int count) {
     const std::size_t stages = integrator_.stage_count;
     ChunkTickets tickets(
-        static_cast<std::uint32_t>((nodes_.packed.slices() + chunk_slices() - 1) / chunk_slices()));
+        static_cast<std::uint32_t>((nodes_.packed.slices() + chunk_slices() - 1) / chunk_slices()),
+        static_cast<std::uint32_t>(threads_));
     const auto act = [&](const ChunkTickets::Ticket& ticket) { work_on(ticket); };
     std::exception_ptr failure;  // of thread 0; none may leave the region
 #pragma omp parallel num_threads(threads_)
     {
-      if (omp_get_thread_num() == 0) {
+      const auto thread = static_cast<std::uint32_t>(omp_get_thread_num());
+      if (thread == 0) {
         try {
           for (std::size_t phase = 0; phase < static_cast<std::size_t>(count) * stages; ++phase) {
             device_.compute_forces(
@@ -109,7 +111,7 @@ class Hybrid final : public Backend {
         }
         tickets.close();
       } else {
-        tickets.work_until_closed(0, 0, act, [] {});  // a device on the same cores: no spinning
+        tickets.work_until_closed(thread, 0, act, [] {});  // a device on the same cores: no spinning
       }
     }
     present_ = present_at(static_cast<std::size_t>(count));
