@@ -34,7 +34,7 @@ class Progress {
   }
 
  private:
-  static constexpr int first_spins = 30, spins = 270;  // as SpinBarrier
+  static constexpr int first_spins = 10, spins = 290;  // together as many as SpinBarrier has
 
   alignas(64) std::atomic<std::uint64_t> reached_{0};  // a cache line
 };
