@@ -14,8 +14,8 @@
 #include "backends/layouts/band_rows.h"
 #include "backends/layouts/column_messages.h"
 #include "backends/layouts/column_range.h"
-#include "backends/threads/progress.h"
 #include "backends/threads/team_gain.h"
+#include "backends/threads/thread_progress.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
@@ -55,7 +55,7 @@ struct EdgeColumns {
   /// [pass % 2][ghosts][height][x y z u v w][lane]: without halo rows, which the reader makes anew, for less
   /// to move between caches.
   std::array<AlignedArray, 2> sets;
-  Progress pass;  ///< the next pass that may read its set
+  ThreadProgress pass;  ///< the next pass that may read its set
 
   bool exists() const { return sets[0].size() > 0; }  ///< whether there is a partition to read them
   static std::size_t column_floats(const BandLayout& layout) { return layout.height * layout.row_floats(); }

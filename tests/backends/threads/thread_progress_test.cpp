@@ -1,4 +1,4 @@
-#include "backends/threads/progress.h"
+#include "backends/threads/thread_progress.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 namespace mssim {
 namespace {
 
-TEST(Progress, LetsTwoThreadsFollowEachOther) {
-  Progress first, second;
+TEST(ThreadProgress, LetsTwoThreadsFollowEachOther) {
+  ThreadProgress first, second;
   // No atomics: progress makes writes visible, and the thread sanitizer checks that.
   std::uint64_t written = 0;
   int wrong = 0;
@@ -34,8 +34,8 @@ TEST(Progress, LetsTwoThreadsFollowEachOther) {
   EXPECT_EQ(first.reached(), passes);
 }
 
-TEST(Progress, SaysHowLongALongWaitWas) {
-  Progress progress;
+TEST(ThreadProgress, SaysHowLongALongWaitWas) {
+  ThreadProgress progress;
   constexpr std::chrono::milliseconds late(20);
   std::thread other([&] {
     std::this_thread::sleep_for(late);
@@ -48,8 +48,8 @@ TEST(Progress, SaysHowLongALongWaitWas) {
   EXPECT_GT(waited, std::chrono::seconds(1) + late / 4);
 }
 
-TEST(Progress, DoesNotCountWhatIsThereAlready) {
-  Progress progress;
+TEST(ThreadProgress, DoesNotCountWhatIsThereAlready) {
+  ThreadProgress progress;
   progress.reach(5);
   TeamGain::Duration waited{};
   progress.wait_for(4, waited);

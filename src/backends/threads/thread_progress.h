@@ -11,7 +11,7 @@ namespace mssim {
 /// How far somebody has come in work that others build on: they wait for no more than they need, of no more
 /// threads than they need, where a barrier is for all threads and all of their work. One thread writes it at
 /// a time.
-class Progress {
+class ThreadProgress {
  public:
   std::uint64_t reached() const { return reached_.load(std::memory_order_relaxed); }
   /// What was written before is visible to who has waited for `number`, which is not less than before.
