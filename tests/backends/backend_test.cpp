@@ -311,11 +311,7 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverManyStepsAPassTakes) {
   }
 }
 
-TEST(OpenMpOnASheetThroughTheOrigin, KeepsWhatIsNotThereFromTheNodes) {
-  // Nodes whose coordinates are zero or like each other's, beside places that no node has.
-  SceneSpec spec = sheet_spec(37, 23, 0);
-  spec.floor.height = -1;
-  const System system = build_system(spec);
+void expect_openmp_near_serial(const System& system) {
   const Integrator& euler = *find_integrator("semi-euler");
   const auto serial = make_serial(system, euler, backend_dt_s, {1, ""});
   serial->step(50);
@@ -327,6 +323,19 @@ TEST(OpenMpOnASheetThroughTheOrigin, KeepsWhatIsNotThereFromTheNodes) {
     for (std::size_t i = 0; i < state.position.size(); ++i)
       ASSERT_LT(length(state.position[i] - expected.position[i]), 1e-6) << set << ", node " << i;
   }
+}
+
+TEST(OpenMpOnASheetThroughTheOrigin, KeepsWhatIsNotThereFromTheNodes) {
+  // Nodes whose coordinates are zero or like each other's, beside places that no node has.
+  SceneSpec spec = sheet_spec(37, 23, 0);
+  spec.floor.height = -1;
+  expect_openmp_near_serial(build_system(spec));
+}
+
+TEST(OpenMpOnAClothWithoutAFloor, KeepsWhatIsNotThereFromTheNodes) {
+  System system = without_floor(cloth_system(37, 23));
+  round_start_to_single(system);
+  expect_openmp_near_serial(system);
 }
 
 TEST(OpenMpOnAnUncommonlyLargeCloth, TakesSeveralStepsInAPass) {
