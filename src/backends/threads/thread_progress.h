@@ -13,7 +13,6 @@ namespace mssim {
 /// a time.
 class ThreadProgress {
  public:
-  std::uint64_t reached() const { return reached_.load(std::memory_order_relaxed); }
   /// What was written before is visible to who has waited for `number`, which is not less than before.
   void reach(std::uint64_t number) { reached_.store(number, std::memory_order_release); }
 
