@@ -311,33 +311,6 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverManyStepsAPassTakes) {
   }
 }
 
-void expect_openmp_near_serial(const System& system) {
-  const Integrator& euler = *find_integrator("semi-euler");
-  const auto serial = make_serial(system, euler, backend_dt_s, {1, ""});
-  serial->step(50);
-  const State expected = serial->state();
-  for (const std::string_view set : openmp_instruction_sets()) {
-    const auto openmp = make_openmp(system, euler, backend_dt_s, {2, ""}, set);
-    openmp->step(50);
-    const State state = openmp->state();
-    for (std::size_t i = 0; i < state.position.size(); ++i)
-      ASSERT_LT(length(state.position[i] - expected.position[i]), 1e-6) << set << ", node " << i;
-  }
-}
-
-TEST(OpenMpOnASheetThroughTheOrigin, KeepsWhatIsNotThereFromTheNodes) {
-  // Nodes whose coordinates are zero or like each other's, beside places that no node has.
-  SceneSpec spec = sheet_spec(37, 23, 0);
-  spec.floor.height = -1;
-  expect_openmp_near_serial(build_system(spec));
-}
-
-TEST(OpenMpOnAClothWithoutAFloor, KeepsWhatIsNotThereFromTheNodes) {
-  System system = without_floor(cloth_system(37, 23));
-  round_start_to_single(system);
-  expect_openmp_near_serial(system);
-}
-
 TEST(OpenMpOnAnUncommonlyLargeCloth, TakesSeveralStepsInAPass) {
   // Half a last-level cache is exceeded by a cloth's state, 24 bytes a node, on all but a few machines.
   const System small = cloth_system(50, 50), large = cloth_system(1000, 2000);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <thread>
 
 #if defined(__x86_64__)
@@ -47,19 +46,6 @@ T wait_for_change(const std::atomic<T>& value, T old, int spins) {
   }
   value.wait(old, std::memory_order_seq_cst);
   return value.load(std::memory_order_acquire);
-}
-
-/// Waits until an atomic that only grows is at least `goal`. For values that are stored with a mere release
-/// and notify nobody, so that storing them costs nothing: who has waited long asks again every 50
-/// microseconds.
-template <class T>
-void wait_until_at_least(const std::atomic<T>& value, T goal) {
-  constexpr int yields = 100;
-  for (int tries = 0; value.load(std::memory_order_acquire) < goal; ++tries)
-    if (tries < yields)
-      std::this_thread::yield();
-    else
-      std::this_thread::sleep_for(std::chrono::microseconds(50));
 }
 
 /// Stores a value and wakes who waits for a change. What this thread wrote before is visible to them. In the

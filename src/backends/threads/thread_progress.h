@@ -1,7 +1,9 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
+#include <thread>
 
 #include "backends/threads/spin_wait.h"
 #include "backends/threads/team_gain.h"
@@ -19,21 +21,34 @@ class ThreadProgress {
   /// Returns when `number` is reached. Adds the time to `waited` if that was so long that other programs may
   /// be the reason (TeamGain): to read the clock takes as long as a short wait.
   void wait_for(std::uint64_t number, TeamGain::Duration& waited) const {
-    for (int tries = 0; tries < first_spins; ++tries) {
-      if (reached_.load(std::memory_order_acquire) >= number) return;
-      pause_spinning();
-    }
+    if (spins_until(number, first_spins)) return;
     const TeamGain::Clock::time_point begin = TeamGain::Clock::now();
-    for (int tries = 0; tries < spins; ++tries) {
-      if (reached_.load(std::memory_order_acquire) >= number) break;
-      pause_spinning();
-    }
-    wait_until_at_least(reached_, number);
+    if (!spins_until(number, spins)) yield_until(number);
     waited += TeamGain::Clock::now() - begin;
   }
 
  private:
   static constexpr int first_spins = 10, spins = 290;  // together as many as SpinBarrier has
+
+  bool is_reached(std::uint64_t number) const { return reached_.load(std::memory_order_acquire) >= number; }
+
+  bool spins_until(std::uint64_t number, int most) const {
+    for (int tries = 0; tries < most; ++tries) {
+      if (is_reached(number)) return true;
+      pause_spinning();
+    }
+    return false;
+  }
+
+  /// Nobody is notified, so that reach() costs nothing: who has waited long asks again from time to time.
+  void yield_until(std::uint64_t number) const {
+    constexpr int yields = 100;
+    for (int tries = 0; !is_reached(number); ++tries)
+      if (tries < yields)
+        std::this_thread::yield();
+      else
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+  }
 
   alignas(64) std::atomic<std::uint64_t> reached_{0};  // a cache line
 };

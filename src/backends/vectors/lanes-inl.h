@@ -101,23 +101,22 @@ HWY_INLINE Mask below(Index index, std::uint32_t limit) {
   return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
 }
 
-/// Each lane has what the lane before it has in `a`; the first one has that of `first`.
-HWY_INLINE Lanes from_lane_before(Lanes a, Lanes first) {
+/// Each lane has what the lane `before` places before it has in `a`, counted around; lane `outside` has that
+/// of `other`.
+HWY_INLINE Lanes from_lane(Lanes a, std::uint32_t before, std::uint32_t outside, Lanes other) {
   const FloatTag d;
-  const auto lane = hn::Iota(IndexTag(), 0), one = hn::Set(IndexTag(), 1);
+  const auto lane = hn::Iota(IndexTag(), 0);
   const auto last = hn::Set(IndexTag(), static_cast<std::uint32_t>(hn::Lanes(d) - 1));
-  const auto source = hn::IndicesFromVec(d, hn::And(hn::Sub(lane, one), last));
-  return hn::IfThenElse(hn::RebindMask(d, hn::Ne(lane, hn::Zero(IndexTag()))),
-                        hn::TableLookupLanes(a.v, source), first.v);
+  const auto source = hn::IndicesFromVec(d, hn::And(hn::Sub(lane, hn::Set(IndexTag(), before)), last));
+  return hn::IfThenElse(hn::RebindMask(d, hn::Ne(lane, hn::Set(IndexTag(), outside))),
+                        hn::TableLookupLanes(a.v, source), other.v);
 }
+/// Each lane has what the lane before it has in `a`; the first one has that of `first`.
+HWY_INLINE Lanes from_lane_before(Lanes a, Lanes first) { return from_lane(a, 1, 0, first); }
 /// Each lane has what the lane behind it has in `a`; the last one has that of `last`.
 HWY_INLINE Lanes from_lane_behind(Lanes a, Lanes last) {
-  const FloatTag d;
-  const auto lane = hn::Iota(IndexTag(), 0), one = hn::Set(IndexTag(), 1);
-  const auto last_lane = hn::Set(IndexTag(), static_cast<std::uint32_t>(hn::Lanes(d) - 1));
-  const auto source = hn::IndicesFromVec(d, hn::And(hn::Add(lane, one), last_lane));
-  return hn::IfThenElse(hn::RebindMask(d, hn::Ne(lane, last_lane)), hn::TableLookupLanes(a.v, source),
-                        last.v);
+  const auto lanes = static_cast<std::uint32_t>(lane_count());
+  return from_lane(a, lanes - 1, lanes - 1, last);
 }
 
 /// Three components of a vector in space, of one node a lane.
