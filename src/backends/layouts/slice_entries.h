@@ -17,11 +17,12 @@ inline constexpr std::size_t slice_offset_floats = 2;
 void require_nameable_records(const System& system, std::size_t floats_of_record);
 
 /// [entries][2][lanes] in one stream: where the neighbours' records start, in units of slice_offset_floats
-/// and as std::uint32_t, then SlicedGraph::stiffness_rest. record_of(slot): the number of a slot's record.
+/// and as std::uint32_t, then SlicedGraph::stiffness_rest. Behind them one that names the first record only,
+/// for code that loads records an entry ahead. record_of(slot): the number of a slot's record.
 template <class RecordOf>
 AlignedArray slice_entries(const SlicedGraph& graph, std::size_t floats_of_record, RecordOf record_of) {
   const std::size_t lanes = graph.lanes;
-  AlignedArray entries(graph.entries() * 2 * lanes);
+  AlignedArray entries((graph.entries() + 1) * 2 * lanes);
   for (std::size_t entry = 0; entry < graph.entries(); ++entry)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       float* row = entries.data() + entry * 2 * lanes;
