@@ -102,26 +102,23 @@ void BandGrid::cut(std::size_t threads) {
 }
 
 void BandGrid::fill_partition(BandPartition& partition, const State& state) const {
-  const auto reach = static_cast<std::ptrdiff_t>(halo);
-  const auto rows = static_cast<std::ptrdiff_t>(layout.rows);
-  const auto height = static_cast<std::ptrdiff_t>(layout.height);
   // Above the floor, of which there may be none (without_floor): what springs reach must be finite.
   constexpr double lowest_floor = -1e6;
   const double dummy_height = std::max(static_cast<double>(surroundings.floor_height), lowest_floor) + 1;
   const ColumnRange filled =
       with_ghosts({partition.first, partition.count}, partition.ghosts, layout.columns);
   for (std::size_t column = filled.first; column < filled.end(); ++column) {
-    float* out = partition.column(layout, Pair::state, column);
-    for (std::ptrdiff_t r = -reach; r < height + reach; ++r, out += layout.row_floats())
+    float* out = partition.column(layout, Pair::state, column) + halo * layout.row_floats();
+    for (std::size_t r = 0; r < layout.height; ++r, out += layout.row_floats())
       for (std::size_t lane = 0; lane < layout.lanes; ++lane) {
-        const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(lane) * height + r;
+        const std::size_t row = lane * layout.height + r;
         // Dummies keep the spacing of a cloth at rest, also from those of other pieces: no spring between
         // them may have length zero, though none has stiffness.
         Vec3d x{static_cast<double>(first_column_ + column) * spacing_, dummy_height,
                 static_cast<double>(row) * spacing_};
         Vec3d v{};
-        if (row >= 0 && row < rows) {
-          const std::size_t node = static_cast<std::size_t>(row) * layout.columns + column;
+        if (row < layout.rows) {
+          const std::size_t node = row * layout.columns + column;
           x = state.position[node];
           v = state.velocity[node];
         }

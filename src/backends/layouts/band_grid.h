@@ -52,8 +52,8 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
 /// writes over the state. Two sets, used in turn, so that a thread that is a pass behind still finds those of
 /// its pass: threads need not meet.
 struct EdgeColumns {
-  /// [pass % 2][ghosts][height][x y z u v w][lane]: without halo rows, which the reader makes anew, for less
-  /// to move between caches.
+  /// [pass % 2][ghosts][height][x y z u v w][lane]: without room for halo rows, for less to move between
+  /// caches.
   std::array<AlignedArray, 2> sets;
   ThreadProgress pass;  ///< the next pass that may read its set
 
@@ -122,7 +122,7 @@ struct BandGrid {
   BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
            std::size_t lanes, std::size_t threads, std::optional<std::size_t> steps_in_a_pass = {},
            std::optional<ColumnRange> piece = {});
-  /// Spreads the state over the partitions, each by a thread of its own, ghosts, halos and dummies included.
+  /// Spreads the state over the partitions, each by a thread of its own, ghosts and dummies included.
   void set_state(const State& state);
   State state() const;
   /// That of the nodes of a window, whose columns it owns.

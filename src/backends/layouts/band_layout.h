@@ -15,8 +15,9 @@ namespace mssim {
 ///
 ///     [column][row -2 .. height + 1][x y z u v w][lane]       (u v w: velocity)
 ///
-/// Two halo rows above and below repeat the neighbouring band's rows. Rows that the last bands have too many
-/// are dummies: they stay at rest and no force from them reaches a node of the cloth (BandRows).
+/// Two halo rows above and below are room for the neighbouring bands' rows: opencl keeps them there, openmp
+/// puts them there only where it reads them. Rows that the last bands have too many are dummies: they stay at
+/// rest and no force from them reaches a node of the cloth (BandRows).
 struct BandLayout {
   std::size_t lanes;
   std::size_t rows, columns;  ///< of the cloth

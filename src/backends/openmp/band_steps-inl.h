@@ -20,29 +20,22 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Puts the pins of a freshly written column of a pair back and renews its halo rows.
-HWY_NOINLINE inline void finish_column(const BandLayout& layout, const std::vector<BandPin>& pins,
-                                       float* start) {
-  for (const BandPin& pin : pins)
-    for (std::size_t k = 0; k < 3; ++k) {
-      start[pin.offset + k * lane_count()] = pin.position[k];
-      start[pin.offset + (3 + k) * lane_count()] = 0;
-    }
-  renew_halo(layout, start);
-}
-
-/// Finishes a column of every pair that the stage has written and that a later stage, or the next step's
-/// first, gathers from.
+/// Puts the pins of a freshly written column back in every pair that the stage has written and that a later
+/// stage, or the next step's first, gathers from.
 template <std::size_t method, std::size_t stage>
-HWY_INLINE void finish_written(const BandLayout& layout, BandPartition& partition, std::size_t column) {
-  const auto finish = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
+HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition, std::size_t column) {
+  const auto put_back = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
     constexpr Pair pair = static_cast<Pair>(i), stored = walk_writes_to(integrators[method], stage, pair);
     if constexpr (writes_to_gather(integrators[method], stage, pair))
-      finish_column(layout, partition.pins[partition.local(column)],
-                    partition.column(layout, stored, column));
+      for (const BandPin& pin : partition.pins[partition.local(column)])
+        for (std::size_t k = 0; k < 3; ++k) {
+          float* component = partition.column(layout, stored, column) + pin.offset + k * lane_count();
+          component[0] = pin.position[k];
+          component[3 * lane_count()] = 0;
+        }
   };
   [&]<std::size_t... i>(std::index_sequence<i...>) MSSIM_INLINE_LAMBDA {
-    (finish(std::integral_constant<std::size_t, i>{}), ...);
+    (put_back(std::integral_constant<std::size_t, i>{}), ...);
   }
   (std::make_index_sequence<pair_kinds>{});
 }
@@ -95,7 +88,7 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
     walk_inner_column<method, stage>(bands, view);
   else
     walk_edge_column<method, stage>(bands, view, set, update);
-  if (update) finish_written<method, stage>(layout, partition, column);
+  if (update) put_pins_back<method, stage>(layout, partition, column);
   std::rotate(under_way.forces.begin(), under_way.forces.begin() + 1, under_way.forces.end());
 }
 

@@ -54,10 +54,16 @@ HWY_NOINLINE inline void pull_rows(const BandGrid& bands, const ColumnView& view
   const RowConstants constants(bands);
   const ColumnView column = view;
   const auto height = static_cast<std::ptrdiff_t>(bands.layout.height);
+  const auto write_halo_rows = [&](float* of) HWY_ATTR {
+    for (const std::ptrdiff_t row : {-2, -1}) write_row_above(of, height, row);
+    for (const std::ptrdiff_t row : {height, height + 1}) write_row_below(of, height, row);
+  };
+  write_halo_rows(column.here);
+  if ((set & to_next_column) != 0) write_halo_rows(column.next);
   Carry carry = nothing_carried();
   for (std::ptrdiff_t row = -2; row <= height; ++row) {
     const bool inside = complete && row >= 0 && row < height;
-    const Lanes3 force = pull_row<false>(constants, column, nodes_of(column, row),
+    const Lanes3 force = pull_row<false>(constants, column, nodes_of(column.here, row),
                                          set & springs_of_row(row, height), {}, inside, carry, row);
     if (inside) store3(column.forces_here + row * static_cast<std::ptrdiff_t>(3 * lane_count()), force);
   }
@@ -72,20 +78,19 @@ struct EndForces {
 /// the rows that own the springs and, a lane further, for those at the top. The halo rows' own springs would
 /// give the same.
 HWY_INLINE EndForces forces_across_ends(const RowConstants& constants, const ColumnView& column) {
-  const auto row_floats = static_cast<std::ptrdiff_t>(6 * lane_count());
-  const auto force = [&](const NodeLanes& node, const float* other, std::ptrdiff_t row,
+  const auto force = [&](const NodeLanes& node, const NodeLanes& other, std::ptrdiff_t row,
                          SpringSet spring) MSSIM_INLINE_LAMBDA {
     return force_of(begin_spring(node, other), spring_of_row(constants.of_row(row), spring));
   };
-  const std::ptrdiff_t height = constants.height, last = height - 1, last_but_one = height - 2;
+  const std::ptrdiff_t last = constants.height - 1, last_but_one = constants.height - 2;
   EndForces ends;
-  const NodeLanes above = nodes_of(column, last_but_one), end = nodes_of(column, last);
+  const NodeLanes end = nodes_of(column.here, last), below = of_lane_behind(nodes_of(column.here, 0));
   ends.last_but_one.set = down_2;
-  ends.last_but_one.down_2 = force(above, column.here + height * row_floats, last_but_one, down_2);
+  ends.last_but_one.down_2 = force(nodes_of(column.here, last_but_one), below, last_but_one, down_2);
   ends.last.set = down | down_2 | right_down;
-  ends.last.down = force(end, column.here + height * row_floats, last, down);
-  ends.last.down_2 = force(end, column.here + (height + 1) * row_floats, last, down_2);
-  ends.last.right_down = force(end, column.next + height * row_floats, last, right_down);
+  ends.last.down = force(end, below, last, down);
+  ends.last.down_2 = force(end, of_lane_behind(nodes_of(column.here, 1)), last, down_2);
+  ends.last.right_down = force(end, of_lane_behind(nodes_of(column.next, 0)), last, right_down);
   return ends;
 }
 
@@ -96,13 +101,14 @@ HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& vie
   const RowConstants constants(bands);
   const ColumnView column = view;
   const auto height = constants.height, force_floats = static_cast<std::ptrdiff_t>(3 * lane_count());
+  write_row_above(column.next, height, -1);  // for the spring from row 0 up to the right
   const EndForces ends = forces_across_ends(constants, column);
   Carry carry{.below = from_lane_before(ends.last_but_one.down_2) + from_lane_before(ends.last.down),
               .below_2 = from_lane_before(ends.last.down_2),
               .right_below = from_lane_before(ends.last.right_down),
               .right_above = zero3()};
   const auto walk_row = [&](std::ptrdiff_t row, const KnownForces& known) MSSIM_INLINE_LAMBDA {
-    const NodeLanes node = nodes_of(column, row);
+    const NodeLanes node = nodes_of(column.here, row);
     const Lanes3 force =
         pull_row<gathers_state>(constants, column, node, every_spring, known, true, carry, row);
     update_row<method, stage>(constants, column, node, force, row);
@@ -124,7 +130,7 @@ HWY_NOINLINE void walk_edge_column(const BandGrid& bands, const ColumnView& view
   const ColumnView column = view;
   const auto height = static_cast<std::ptrdiff_t>(bands.layout.height);
   for (std::ptrdiff_t row = 0; row < height; ++row)
-    update_row<method, stage>(constants, column, nodes_of(column, row),
+    update_row<method, stage>(constants, column, nodes_of(column.here, row),
                               load3(column.forces_here + row * static_cast<std::ptrdiff_t>(3 * lane_count())),
                               row);
 }

@@ -17,35 +17,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Renews the halo rows of a column of a pair. Row -1 of a lane is the last row of the lane before it. The
-/// first or last lane has nobody there: it gets a number far from all nodes, because springs without
-/// stiffness reach it, which must not have length zero. Lanes change places in registers: a load from one
-/// float away would have to wait until the stores before it are in the cache.
-HWY_INLINE void renew_halo(const BandLayout& layout, float* start) {
-  const FloatTag d;
-  const Lanes far(1e9F);
-  const std::size_t lanes = lane_count(), row_floats = layout.row_floats();
-  float* above = start;
-  const float* last = start + layout.height * row_floats;
-  float* under = start + (layout.height + BandLayout::halo) * row_floats;
-  const float* first = start + BandLayout::halo * row_floats;
-  for (std::size_t i = 0; i < BandLayout::halo * row_floats; i += lanes) {
-    hn::Store(from_lane_before(hn::Load(d, last + i), far).v, d, above + i);
-    hn::Store(from_lane_behind(hn::Load(d, first + i), far).v, d, under + i);
-  }
-}
-
 /// Copies the ghost columns of a pass at one side of a partition from the partition beside it, as soon as
 /// they are there. Adds to `waited` how long that took if it was long.
 HWY_NOINLINE inline void take_ghosts(const BandLayout& layout, BandPartition& partition, EdgeColumns& edge,
                                      std::size_t first, std::uint64_t pass, TeamGain::Duration& waited) {
   edge.pass.wait_for(pass, waited);
-  for (std::size_t i = 0; i < partition.ghosts; ++i) {
-    float* column = partition.column(layout, Pair::state, first + i);
-    std::memcpy(column + BandLayout::halo * layout.row_floats(), edge.column(layout, pass, i),
-                EdgeColumns::column_floats(layout) * sizeof(float));
-    renew_halo(layout, column);
-  }
+  for (std::size_t i = 0; i < partition.ghosts; ++i)
+    std::memcpy(partition.column(layout, Pair::state, first + i) + BandLayout::halo * layout.row_floats(),
+                edge.column(layout, pass, i), EdgeColumns::column_floats(layout) * sizeof(float));
 }
 
 /// Asks for the memory that a column of an edge is going to be written to. It is in the cache of the thread

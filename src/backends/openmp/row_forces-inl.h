@@ -17,6 +17,7 @@
 
 #include "backends/layouts/band_grid.h"
 #include "backends/layouts/spring_lanes-inl.h"
+#include "backends/openmp/halo_rows-inl.h"
 #include "backends/vectors/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -43,8 +44,8 @@ static_assert(grid_stencil[5].rows == 0 && grid_stencil[5].columns == 2, "right_
 
 /// Where the walk reads and writes. Pointers to columns stand at row 0.
 struct ColumnView {
-  const float* here;                     ///< gathered pair, this column
-  const float* next;                     ///< the column to the right
+  float* here;                           ///< gathered pair, this column; its halo rows may be written
+  float* next;                           ///< the column to the right; the same
   const float* next_2;                   ///< the one after
   std::array<float*, pair_kinds> pairs;  ///< this column of every pair that is stored, for the update
   float* forces_here;                    ///< [row][x y z][lane] from columns already walked
@@ -99,11 +100,9 @@ struct BegunSpring {
   Lanes closing, inverse_length;
 };
 
-HWY_INLINE BegunSpring begin_spring(const NodeLanes& node, const float* other) {
-  // What is subtracted can come straight from memory.
-  const Lanes3 d = node.x - load3(other);
-  const Lanes3 u = node.v - load3(other + 3 * lane_count());
-  return {d, dot(u, d), inverse_length(dot(d, d))};
+HWY_INLINE BegunSpring begin_spring(const NodeLanes& node, const NodeLanes& other) {
+  const Lanes3 d = node.x - other.x;
+  return {d, dot(node.v - other.v, d), inverse_length(dot(d, d))};
 }
 
 /// Its force on the other end; the owner gets the opposite one.
@@ -119,15 +118,8 @@ HWY_INLINE Lanes3 force_of(const BegunSpring& begun, const SpringLanes& spring) 
 HWY_INLINE void prefetch_row(const float* row) {
   constexpr std::ptrdiff_t rows_ahead = 16;  // behind a column's end lies the next one; no address is wrong
   constexpr std::ptrdiff_t line_floats = 16;
-  const std::ptrdiff_t row_floats = 6 * static_cast<std::ptrdiff_t>(lane_count());
-  for (std::ptrdiff_t i = 0; i < row_floats; i += line_floats)
-    hwy::Prefetch(row + rows_ahead * row_floats + i);
-}
-
-/// The nodes of a row in the gathered pair.
-HWY_INLINE NodeLanes nodes_of(const ColumnView& column, std::ptrdiff_t row) {
-  const float* nodes = column.here + row * static_cast<std::ptrdiff_t>(6 * lane_count());
-  return {load3(nodes), load3(nodes + 3 * lane_count())};
+  for (std::ptrdiff_t i = 0; i < row_floats(); i += line_floats)
+    hwy::Prefetch(row + rows_ahead * row_floats() + i);
 }
 
 /// Forces of springs that are known before their row is walked, on their other ends.
@@ -143,13 +135,12 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
                            unsigned set, const KnownForces& known, bool received, Carry& carry,
                            std::ptrdiff_t row) {
   const unsigned to_find = set & ~known.set;
-  const std::ptrdiff_t lanes = static_cast<std::ptrdiff_t>(lane_count());
-  const std::ptrdiff_t row_floats = 6 * lanes, force_floats = 3 * lanes;
+  const std::ptrdiff_t force_floats = 3 * static_cast<std::ptrdiff_t>(lane_count());
   const float* const of_row = constants.of_row(row);
 
   BegunSpring to_below{}, to_below_2{}, to_right_above{}, to_right{}, to_right_below{}, to_right_2{};
-  if ((to_find & down) != 0) to_below = begin_spring(node, column.here + (row + 1) * row_floats);
-  if ((to_find & down_2) != 0) to_below_2 = begin_spring(node, column.here + (row + 2) * row_floats);
+  if ((to_find & down) != 0) to_below = begin_spring(node, nodes_of(column.here, row + 1));
+  if ((to_find & down_2) != 0) to_below_2 = begin_spring(node, nodes_of(column.here, row + 2));
   Lanes3 force = carry.below;
   if (received) force = force + load3(column.forces_here + row * force_floats);
   carry.below = carry.below_2;
@@ -158,13 +149,13 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
     force = force - pull;
     carry.below = carry.below + pull;
   }
-  if ((set & right_up) != 0) to_right_above = begin_spring(node, column.next + (row - 1) * row_floats);
+  if ((set & right_up) != 0) to_right_above = begin_spring(node, nodes_of(column.next, row - 1));
   if ((set & down_2) != 0) {
     carry.below_2 =
         (to_find & down_2) != 0 ? force_of(to_below_2, spring_of_row(of_row, down_2)) : known.down_2;
     force = force - carry.below_2;
   }
-  if ((set & right) != 0) to_right = begin_spring(node, column.next + row * row_floats);
+  if ((set & right) != 0) to_right = begin_spring(node, nodes_of(column.next, row));
   if ((set & right_up) != 0) {
     const Lanes3 pull = force_of(to_right_above, spring_of_row(of_row, right_up));
     force = force - pull;
@@ -173,16 +164,15 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
     else
       store3(column.forces_next + constants.height * force_floats, pull);
   }
-  if ((to_find & right_down) != 0) to_right_below = begin_spring(node, column.next + (row + 1) * row_floats);
+  if ((to_find & right_down) != 0) to_right_below = begin_spring(node, nodes_of(column.next, row + 1));
   if ((set & right) != 0) {
     const Lanes3 pull = force_of(to_right, spring_of_row(of_row, right));
     force = force - pull;
     carry.right_above = carry.right_below + load3(column.forces_next + row * force_floats) + pull;
   }
   if ((set & right_2) != 0) {
-    const float* other = column.next_2 + row * row_floats;
-    if constexpr (prefetch) prefetch_row(other);
-    to_right_2 = begin_spring(node, other);
+    if constexpr (prefetch) prefetch_row(column.next_2 + row * row_floats());
+    to_right_2 = begin_spring(node, nodes_of(column.next_2, row));
   }
   if ((set & right_down) != 0) {
     carry.right_below = (to_find & right_down) != 0
