@@ -23,9 +23,9 @@ namespace mssim::HWY_NAMESPACE {
 /// Some microseconds: about as long as a chunk takes.
 constexpr int spins = 300;
 
-/// Entries one after the other, whatever their slices. The records of the next one are loaded
-/// and transposed before the springs to this one are computed: that takes long, and a processor does not look
-/// far enough ahead. Measured on an Intel Xeon, one thread, bodies3858 and bodies38233: 0.97 and 0.90 of the
+/// Entries one after the other, whatever their slices. The records that the next one names are loaded and
+/// transposed before the springs of this one are computed: that takes long, and a processor does not look far
+/// enough ahead. Measured on an Intel Xeon, one thread, bodies3858 and bodies38233: 0.97 and 0.90 of the
 /// time; with AVX2 or SSE4, bodies3858: 0.95 and 0.93.
 class EntryWalk {
  public:
@@ -67,7 +67,7 @@ class EntryWalk {
 HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, const NodeLanes& node,
                                       Lanes stiffness, Lanes damping) {
   // Added to lengths squared, of which an empty entry's is zero: then its pull is finite, and gives no force.
-  // In a spring's it can only decide a tie.
+  // In a spring's it can only decide a tie; a spring of length zero gives no force, where serial's gives NaN.
   const Lanes least(1e-36F);
   Lanes3 sum = zero3();
   while (entries.is_before(end)) {
