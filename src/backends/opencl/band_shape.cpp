@@ -44,9 +44,10 @@ BandShape BandShape::with(std::size_t steps_in_a_launch, std::size_t most_partit
 double BandShape::step_cost(const Integrator& integrator, std::size_t units) const {
   // In units of 4 ns, which a node and stage takes with PoCL on two cores of Zen 4 or of an Intel Xeon. A
   // launch that wakes both threads of a virtual machine takes 36 to 41 microseconds on the Xeon; on Zen 4 one
-  // of next to nothing, which wakes one, took 4. In between, the steps chosen are at most 2 % from the best
-  // of either. More steps make fewer launches and more ghosts, which are computed twice; more partitions
-  // leave some of the share of a compute unit that was held up to the others.
+  // of next to nothing, which wakes one, took 4. With a number between them the steps chosen were at most 2 %
+  // from the best on the Xeon, and are so where a launch takes 6 microseconds, if these costs hold. More
+  // steps make fewer launches and more ghosts, which are computed twice; more partitions leave some of the
+  // share of a compute unit that was held up to the others.
   constexpr double launch = 6000;
   constexpr double unevenness = 0.05;  // of a partition's time, by which the last one is later
   const auto number = [](std::size_t count) { return static_cast<double>(count); };

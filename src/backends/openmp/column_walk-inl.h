@@ -103,10 +103,12 @@ HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& vie
   const auto height = constants.height, force_floats = static_cast<std::ptrdiff_t>(3 * lane_count());
   write_row_above(column.next, height, -1);  // for the spring from row 0 up to the right
   const EndForces ends = forces_across_ends(constants, column);
-  Carry carry{.below = from_lane_before(ends.last_but_one.down_2) + from_lane_before(ends.last.down),
-              .below_2 = from_lane_before(ends.last.down_2),
-              .right_below = from_lane_before(ends.last.right_down),
-              .right_above = zero3()};
+  const Lanes none(0.0F);
+  Carry carry{
+      .below = from_lane_before(ends.last_but_one.down_2, none) + from_lane_before(ends.last.down, none),
+      .below_2 = from_lane_before(ends.last.down_2, none),
+      .right_below = from_lane_before(ends.last.right_down, none),
+      .right_above = zero3()};
   const auto walk_row = [&](std::ptrdiff_t row, const KnownForces& known) MSSIM_INLINE_LAMBDA {
     const NodeLanes node = nodes_of(column.here, row);
     const Lanes3 force =
@@ -118,7 +120,7 @@ HWY_NOINLINE void walk_inner_column(const BandGrid& bands, const ColumnView& vie
   walk_row(height - 1, ends.last);
   // The spring from a band's first row up to the right reaches the last row of the lane before.
   store3(column.forces_next + (height - 1) * force_floats,
-         carry.right_above + from_lane_behind(load3(column.forces_next + height * force_floats)));
+         carry.right_above + from_lane_behind(load3(column.forces_next + height * force_floats), none));
 }
 
 /// A column near the end of the cloth or of the partition. `set`: springs of its nodes that exist and matter.

@@ -74,10 +74,8 @@ HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, cons
     const Lanes stiffness_rest = entries.stiffness_rest();
     const NodeLanes other = entries.take();
     const Lanes3 to_other = other.x - node.x;
-    const Lanes length_squared = mul_add(
-        to_other.z, to_other.z, mul_add(to_other.y, to_other.y, mul_add(to_other.x, to_other.x, least)));
-    const Lanes pull = spring_pull_at(inverse_length(length_squared), dot(other.v - node.v, to_other),
-                                      stiffness, stiffness_rest, damping);
+    const Lanes pull = spring_pull_at(inverse_length(dot_add(to_other, to_other, least)),
+                                      dot(other.v - node.v, to_other), stiffness, stiffness_rest, damping);
     sum = mul_add(pull, to_other, sum);
   }
   return sum;

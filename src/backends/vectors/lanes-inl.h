@@ -151,17 +151,19 @@ HWY_INLINE Lanes3 keep(EveryLane, const Lanes3& a) { return a; }
 HWY_INLINE Lanes3 select(Mask mask, const Lanes3& yes, const Lanes3& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
-/// The same of components, zero in the lane that has no other.
-HWY_INLINE Lanes3 from_lane_before(const Lanes3& a) {
-  const Lanes none(0.0F);
+/// The same of components: `none` in the lane that has no other.
+HWY_INLINE Lanes3 from_lane_before(const Lanes3& a, Lanes none) {
   return {from_lane_before(a.x, none), from_lane_before(a.y, none), from_lane_before(a.z, none)};
 }
-HWY_INLINE Lanes3 from_lane_behind(const Lanes3& a) {
-  const Lanes none(0.0F);
+HWY_INLINE Lanes3 from_lane_behind(const Lanes3& a, Lanes none) {
   return {from_lane_behind(a.x, none), from_lane_behind(a.y, none), from_lane_behind(a.z, none)};
 }
 HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
   return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
+}
+/// a . b + c, for no more instructions where there are multiply-adds.
+HWY_INLINE Lanes dot_add(const Lanes3& a, const Lanes3& b, Lanes c) {
+  return mul_add(a.z, b.z, mul_add(a.y, b.y, mul_add(a.x, b.x, c)));
 }
 
 #define MSSIM_LAW_INLINE HWY_INLINE
