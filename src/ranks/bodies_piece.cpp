@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "backends/layouts/cuthill_mckee.h"
 #include "ranks/bodies_part.h"
 #include "ranks/common_kernel.h"
 #include "ranks/graph_partition.h"
@@ -140,9 +141,9 @@ BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHe
   std::vector<std::uint32_t> place(system.nodes());
   std::vector<int> owner(system.nodes(), rank);
   for (const BodyHere& body : here) {
-    const std::vector<std::uint32_t> order = slice_order(body.nodes, body.springs, body.scene_node);
-    for (std::size_t i = 0; i < order.size(); ++i)
-      place[body.first_node + order[i]] = static_cast<std::uint32_t>(body.scene_node + i);
+    const std::vector<std::uint32_t> places = places_in(reverse_cuthill_mckee(body.nodes, body.springs));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      place[body.first_node + i] = static_cast<std::uint32_t>(body.scene_node) + places[i];
     std::ranges::copy(rank_of[body.number], owner.begin() + static_cast<std::ptrdiff_t>(body.first_node));
   }
   return part_of_bodies(system, place, owner, rank);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "backends/layouts/cuthill_mckee.h"
 #include "backends/openmp/openmp.h"
 #include "backends/openmp/sliced_bodies.h"
 #include "backends/openmp/step_slices.h"
@@ -94,15 +95,10 @@ std::vector<Divided> divided_bodies() {
   return all;
 }
 
-std::vector<std::uint32_t> places_of(const System& system) {
-  const std::vector<std::uint32_t> order = slice_order(system.nodes(), system.springs);
-  std::vector<std::uint32_t> place(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-  return place;
-}
-
 BodiesPart part_of(const Divided& divided, int rank) {
-  return part_of_bodies(divided.bodies, places_of(divided.bodies), divided.owner, rank);
+  const std::vector<std::uint32_t> places =
+      places_in(reverse_cuthill_mckee(divided.bodies.nodes(), divided.bodies.springs));
+  return part_of_bodies(divided.bodies, places, divided.owner, rank);
 }
 
 /// The state after some steps, each part by threads that know nothing of the others but what the mail brings.

@@ -1,6 +1,7 @@
 #include "backends/layouts/cuthill_mckee.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace mssim {
 namespace {
@@ -73,6 +74,28 @@ std::vector<std::uint32_t> reverse_cuthill_mckee(std::size_t nodes, std::span<co
     std::reverse(order.begin() + static_cast<std::ptrdiff_t>(component), order.end());
   }
   return order;
+}
+
+std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order) {
+  std::vector<std::uint32_t> place(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  return place;
+}
+
+std::vector<std::size_t> component_ends(std::span<const Spring> springs,
+                                        std::span<const std::uint32_t> place) {
+  std::vector<std::size_t> reach(place.size());  // how far springs lead from each place on
+  std::iota(reach.begin(), reach.end(), std::size_t{0});
+  for (const Spring& spring : springs) {
+    const auto [near, far] = std::minmax(place[spring.first], place[spring.second]);
+    reach[near] = std::max<std::size_t>(reach[near], far);
+  }
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 0, farthest = 0; i < reach.size(); ++i) {
+    farthest = std::max(farthest, reach[i]);
+    if (farthest == i) ends.push_back(i + 1);
+  }
+  return ends;
 }
 
 }  // namespace mssim

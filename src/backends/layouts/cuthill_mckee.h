@@ -30,4 +30,11 @@ struct Adjacency {
 /// permutation.
 std::vector<std::uint32_t> reverse_cuthill_mckee(std::size_t nodes, std::span<const Spring> springs);
 
+/// [nodes] Where each node stands in an order of them.
+std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order);
+
+/// Behind which places the connected components end, ascending, where each component's nodes stand together.
+std::vector<std::size_t> component_ends(std::span<const Spring> springs,
+                                        std::span<const std::uint32_t> place);
+
 }  // namespace mssim

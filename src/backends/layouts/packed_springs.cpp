@@ -32,15 +32,15 @@ struct NodeOrder {
 
 NodeOrder node_order(const System& system) {
   NodeOrder order;
-  order.rank.resize(system.nodes());
   if (std::holds_alternative<GridPatch>(system.topology)) {
+    order.rank.resize(system.nodes());
     std::iota(order.rank.begin(), order.rank.end(), 0U);
     order.scene_node = order.rank;
     return order;
   }
   std::vector<std::uint32_t>& node = order.scene_node;
   node = reverse_cuthill_mckee(system.nodes(), system.springs);
-  for (std::uint32_t i = 0; i < node.size(); ++i) order.rank[node[i]] = i;
+  order.rank = places_in(node);
 
   std::vector<std::array<std::uint32_t, 2>> forces(system.nodes());  // added, subtracted
   for (const Spring& spring : system.springs) {

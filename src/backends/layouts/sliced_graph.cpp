@@ -38,17 +38,12 @@ std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring>
   return degree;
 }
 
-/// Sorts nodes by degree, the largest first, within windows, the first of which has begun `skipped` nodes
-/// before.
-void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint32_t>& degree,
-                     std::size_t skipped) {
-  for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
-    end = std::min(
-        (begin + skipped) / SlicedGraph::window * SlicedGraph::window + SlicedGraph::window - skipped,
-        nodes.size());
-    const std::span<std::uint32_t> some = nodes.subspan(begin, end - begin);
-    std::stable_sort(some.begin(), some.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return degree[a] > degree[b]; });
+/// Sorts nodes by degree, the largest first, within windows.
+void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint32_t>& degree) {
+  for (std::size_t begin = 0; begin < nodes.size(); begin += SlicedGraph::window) {
+    const std::size_t count = std::min(SlicedGraph::window, nodes.size() - begin);
+    std::ranges::stable_sort(nodes.subspan(begin, count), std::ranges::greater{},
+                             [&](std::uint32_t node) { return degree[node]; });
   }
 }
 
@@ -57,10 +52,7 @@ GraphPart whole_of(const System& system) {
   if (system.springs.size() > SlicedGraph::no_node / 2)
     throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
                       " springs; a sliced graph holds at most 2147483647");
-  GraphPart all{std::vector<std::uint32_t>(system.nodes()), system.nodes()};
-  const std::vector<std::uint32_t> order = slice_order(system.nodes(), system.springs);
-  for (std::uint32_t i = 0; i < order.size(); ++i) all.place[order[i]] = i;
-  return all;
+  return {places_in(reverse_cuthill_mckee(system.nodes(), system.springs)), system.nodes()};
 }
 
 /// Whether each own node of a part has a ghost for a neighbour.
@@ -75,13 +67,6 @@ std::vector<bool> edge_nodes(const System& system, std::size_t own) {
 
 }  // namespace
 
-std::vector<std::uint32_t> slice_order(std::size_t nodes, std::span<const Spring> springs,
-                                       std::size_t first_place) {
-  std::vector<std::uint32_t> order = reverse_cuthill_mckee(nodes, springs);
-  sort_in_windows(order, degrees_of(nodes, springs), first_place % SlicedGraph::window);
-  return order;
-}
-
 SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes)
     : SlicedGraph(system, slice_lanes, whole_of(system)) {}
 
@@ -94,7 +79,7 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const Gr
   for (std::uint32_t node = 0; node < part.own; ++node) (edge[node] ? at_edge : inner).push_back(node);
   const auto append = [&](std::vector<std::uint32_t>& group) {
     std::ranges::sort(group, {}, [&](std::uint32_t node) { return part.place[node]; });
-    sort_in_windows(group, degree, 0);
+    sort_in_windows(group, degree);
     scene_node.insert(scene_node.end(), group.begin(), group.end());
     scene_node.resize((scene_node.size() + lanes - 1) / lanes * lanes, no_node);
   };

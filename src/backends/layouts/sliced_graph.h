@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "model/system.h"
@@ -13,17 +12,12 @@ namespace mssim {
 /// What a system that is a part of another one (the whole) must know of that, so that its steps have the same
 /// bits.
 struct GraphPart {
-  /// [nodes] where the node stands in the whole's order of slots (slice_order): a node's springs are added in
-  /// this order of its neighbours.
+  /// [nodes] where the node stands in the whole's reverse_cuthill_mckee(): a node's springs are added in this
+  /// order of its neighbours.
   std::vector<std::uint32_t> place;
   /// Nodes from this one on are ghosts: neighbours of the part's own nodes that are stepped elsewhere.
   std::size_t own = 0;
 };
-
-/// The nodes of bodies in the order of a SlicedGraph's slots. `first_place`: where the first of them stands
-/// in the order of a whole that has other bodies before these.
-std::vector<std::uint32_t> slice_order(std::size_t nodes, std::span<const Spring> springs,
-                                       std::size_t first_place = 0);
 
 /// The springs of a system as every node sees them, for code that gathers: the nodes renumbered so that
 /// neighbours stand near each other (reverse Cuthill-McKee), then sorted by degree within windows, then cut
@@ -31,8 +25,8 @@ std::vector<std::uint32_t> slice_order(std::size_t nodes, std::span<const Spring
 /// call it SELL-C-sigma). The spring law's constants are divided by the mass of the node, so that forces are
 /// accelerations.
 ///
-/// A slice has as many entries as its node of the largest degree, ascending by neighbour; entry e of the
-/// slice gives each lane's node one neighbour, in elements e * lanes + lane of `neighbour` and
+/// A slice has as many entries as its node of the largest degree, its neighbours in the order before windows
+/// were sorted; entry e of the slice gives each lane's node one neighbour, in elements e * lanes + lane of `neighbour` and
 /// `stiffness_rest`. Nodes of smaller degree end with empty entries: the node itself for a neighbour, and
 /// empty_entry, which is negative as no spring's is, for stiffness_rest. They must give no force: their
 /// length is 0, so that any finite pull gives none.

@@ -101,6 +101,8 @@ INSTANTIATE_TEST_SUITE_P(Widths, SlicedGraphOfLanes, testing::Values(1, 4, 8, 16
 TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThatEnd) {
   for (const System& system : bodies()) {
     const SlicedGraph graph(system, GetParam());
+    const std::vector<std::uint32_t> place =
+        places_in(reverse_cuthill_mckee(system.nodes(), system.springs));
     ASSERT_EQ(graph.nodes(), system.nodes());
     std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
     for (const Spring& spring : system.springs)
@@ -121,8 +123,8 @@ TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThat
           const std::pair spring{graph.scene_node[slot], graph.scene_node[graph.neighbour[element]]};
           EXPECT_TRUE(found.emplace(spring, graph.stiffness_rest[element]).second)
               << "a spring appears twice";
-          EXPECT_GE(graph.neighbour[element], last) << "the order of sums is that of the numbers";
-          last = graph.neighbour[element];
+          EXPECT_GE(place[spring.second], last) << "the order of sums is that of the places";
+          last = place[spring.second];
         }
       }
     EXPECT_EQ(found, expected);
@@ -181,27 +183,10 @@ TEST_P(SlicedGraphOfLanes, FillsUpSlicesWithWhatFeelsNothingAndDoesNotMove) {
   }
 }
 
-TEST(SliceOrder, OfABodyIsThatWhichItHasBehindOthers) {
-  const System two = two_solid_blocks(), second = solid_block(3, 3, 7), large = solid_block(9, 9, 9);
-  const std::size_t first_nodes = 4 * 5 * 3;
-  const std::vector<std::uint32_t> all = slice_order(two.nodes(), two.springs);
-  std::vector<std::uint32_t> alone = slice_order(second.nodes(), second.springs, first_nodes);
-  for (std::uint32_t& node : alone) node += static_cast<std::uint32_t>(first_nodes);
-  // In a window that both have nodes in, they stand between each other.
-  std::vector<std::uint32_t> of_second;
-  std::ranges::copy_if(all, std::back_inserter(of_second),
-                       [&](std::uint32_t node) { return node >= first_nodes; });
-  EXPECT_EQ(alone, of_second);
-  EXPECT_NE(slice_order(large.nodes(), large.springs, 100), slice_order(large.nodes(), large.springs));
-  EXPECT_EQ(slice_order(large.nodes(), large.springs, 512), slice_order(large.nodes(), large.springs));
-}
-
 /// The part of a block that has its nodes below `own`, the neighbours of these behind them.
 std::pair<System, GraphPart> lower_part(const System& block, std::uint32_t own) {
   System part = block;
-  const std::vector<std::uint32_t> order = slice_order(block.nodes(), block.springs);
-  GraphPart graph{std::vector<std::uint32_t>(block.nodes()), own};
-  for (std::uint32_t i = 0; i < order.size(); ++i) graph.place[order[i]] = i;
+  const GraphPart graph{places_in(reverse_cuthill_mckee(block.nodes(), block.springs)), own};
   std::erase_if(part.springs,
                 [&](const Spring& spring) { return spring.first >= own && spring.second >= own; });
   return {part, graph};

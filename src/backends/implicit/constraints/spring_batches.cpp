@@ -12,18 +12,15 @@
 namespace mssim {
 namespace {
 
-/// Where parts end, in the order of `node_at`: where no spring goes on, and the part has some nodes.
-std::vector<std::size_t> part_ends(const Adjacency& adjacency, const std::vector<std::uint32_t>& node_at,
-                                   const std::vector<std::uint32_t>& place) {
+/// Where parts end: where no spring goes on, and the part has some nodes.
+std::vector<std::size_t> part_ends(const System& system, const std::vector<std::uint32_t>& place) {
   constexpr std::size_t fewest_nodes = 256;
   std::vector<std::size_t> ends;
-  std::size_t begin = 0, reach = 0;
-  for (std::size_t i = 0; i < node_at.size(); ++i) {
-    for (const std::uint32_t neighbour : adjacency.of(node_at[i]))
-      reach = std::max<std::size_t>(reach, place[neighbour]);
-    if (reach > i || (i + 1 - begin < fewest_nodes && i + 1 < node_at.size())) continue;
-    ends.push_back(i + 1);
-    begin = i + 1;
+  std::size_t begin = 0;
+  for (const std::size_t end : component_ends(system.springs, place)) {
+    if (end - begin < fewest_nodes && end < place.size()) continue;
+    ends.push_back(end);
+    begin = end;
   }
   return ends;
 }
@@ -78,9 +75,8 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
   kept = static_cast<float>(1 / (1 + small_s * system.viscous_damping));
 
   const std::vector<std::uint32_t> node_at = reverse_cuthill_mckee(system.nodes(), system.springs);
-  std::vector<std::uint32_t> place(system.nodes());
-  for (std::uint32_t i = 0; i < node_at.size(); ++i) place[node_at[i]] = i;
-  const std::vector<std::size_t> ends = part_ends(Adjacency(system.nodes(), system.springs), node_at, place);
+  const std::vector<std::uint32_t> place = places_in(node_at);
+  const std::vector<std::size_t> ends = part_ends(system, place);
 
   slot.resize(system.nodes());
   std::vector<std::uint32_t> part_of(system.nodes());  // by scene node
