@@ -31,8 +31,19 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Peaks of this machine, by integrator (the working set is its own) and threads.
-using Peaks = std::map<std::pair<const Integrator*, int>, MachinePeak>;
+/// Peaks of this machine, by threads and bytes of the working set.
+using Peaks = std::map<std::pair<int, std::size_t>, MachinePeak>;
+
+/// What a step of the combination works on, in a scene of this size.
+StepSize size_for(const Combination& combination, const StepSize& scene) {
+  return combination.stored_springs ? with_stored_springs(scene, *combination.stored_springs) : scene;
+}
+
+/// Of the roofs that the combination is held against.
+std::pair<int, std::size_t> peak_key(const Combination& combination, const StepSize& scene) {
+  return {combination.row.threads,
+          static_cast<std::size_t>(working_set_bytes(*combination.integrator, size_for(combination, scene)))};
+}
 
 /// Measures the peaks that the combinations are held against, now. None for a garment: what a step of it has
 /// to do depends on what touches and what is sewn; none of a cloth that does not fit here; none for implicit
@@ -42,14 +53,12 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
   Peaks peaks;
   if (job.garment || job.verified || job.windowed) return peaks;
   for (const Combination& combination : combinations) {
-    const int threads = combination.row.threads;
-    const auto key = std::pair(combination.integrator, threads);
-    if (is_implicit(*combination.integrator)) continue;
-    if (!combination.backend || !combination.on_host || peaks.contains(key)) continue;
+    if (is_implicit(*combination.integrator) || !combination.backend || !combination.on_host) continue;
+    const auto [threads, bytes] = peak_key(combination, size);
+    if (peaks.contains({threads, bytes})) continue;
     watch.progress("machine peak with " + counted(static_cast<std::uint64_t>(threads), "thread"),
                    job.preparation);
-    const double bytes = working_set_bytes(*combination.integrator, size);
-    peaks[key] = measure_peak(threads, static_cast<std::size_t>(bytes));
+    peaks[{threads, bytes}] = measure_peak(threads, bytes);
   }
   return peaks;
 }
@@ -57,11 +66,11 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
 void compare_with_peaks(const Combination& combination, const StepSize& size, const Peaks& peaks,
                         ResultRow& row) {
   if (!row.ms_per_step || row.dressing || is_implicit(*combination.integrator)) return;
-  const StepCost cost = step_cost(*combination.integrator, size, combination.steps_per_pass);
+  const StepCost cost =
+      step_cost(*combination.integrator, size_for(combination, size), combination.steps_per_pass);
   const double seconds = *row.ms_per_step / 1000;
   row.gigabytes_per_second = cost.bytes / seconds / 1e9;
-  if (const auto peak = peaks.find({combination.integrator, row.threads});
-      combination.on_host && peak != peaks.end())
+  if (const auto peak = peaks.find(peak_key(combination, size)); combination.on_host && peak != peaks.end())
     row.roofline_fraction = roofline_fraction(cost, seconds, peak->second);
 }
 
@@ -258,9 +267,8 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
       if (combination.backend) calibrate(combination, job);
     }
   }
-  const StepSize size = job.windowed ? StepSize{job.windowed->nodes(), job.windowed->springs,
-                                                bytes_per_spring(job.system->topology)}
-                                     : step_size(*job.system);
+  const StepSize size =
+      job.windowed ? StepSize{job.windowed->nodes(), job.windowed->springs, 0} : step_size(*job.system);
   const Peaks peaks = measure_peaks(job, all, size, watch);
 
   std::vector<std::size_t> order(all.size());

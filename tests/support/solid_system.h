@@ -66,27 +66,48 @@ inline System solid_block(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, 
   return system;
 }
 
-/// Two blocks beside each other in one system, of unlike nodes and materials.
-inline System two_solid_blocks() {
-  System system = solid_block(4, 5, 3);
-  const System other = solid_block(3, 3, 7);
-  const auto offset = static_cast<std::uint32_t>(system.nodes());
-  for (const Vec3d& x : other.start.position) system.start.position.push_back(x + Vec3d{0.5, 0.1, 0});
-  for (const Vec3d& v : other.start.velocity) system.start.velocity.push_back(v);
-  for (Spring spring : other.springs) {
-    spring.first += offset;
-    spring.second += offset;
-    spring.kind = 1;
+/// Appends a body to the bodies of a system, `offset` away from where it stands, with materials of its own.
+inline void append_body(System& system, const System& body, const Vec3d& offset) {
+  const auto nodes = static_cast<std::uint32_t>(system.nodes());
+  const auto kinds = static_cast<std::uint32_t>(system.materials.size());
+  for (const Vec3d& x : body.start.position) system.start.position.push_back(x + offset);
+  for (const Vec3d& v : body.start.velocity) system.start.velocity.push_back(v);
+  for (Spring spring : body.springs) {
+    spring.first += nodes;
+    spring.second += nodes;
+    spring.kind += kinds;
     system.springs.push_back(spring);
   }
   auto& tetrahedra = std::get<TetrahedralMesh>(system.topology).tetrahedra;
-  for (Tetrahedron corners : std::get<TetrahedralMesh>(other.topology).tetrahedra) {
-    for (std::uint32_t& corner : corners) corner += offset;
+  for (Tetrahedron corners : std::get<TetrahedralMesh>(body.topology).tetrahedra) {
+    for (std::uint32_t& corner : corners) corner += nodes;
     tetrahedra.push_back(corners);
   }
-  system.materials.push_back({350, 0.02});
-  system.node_mass.insert(system.node_mass.end(), other.nodes(), 0.007);
+  for (const SpringMaterial& material : body.materials) system.materials.push_back(material);
+  for (const double mass : body.node_mass) system.node_mass.push_back(mass);
+  for (const std::uint32_t pin : body.pins) system.pins.push_back(nodes + pin);
   round_to_single(system.start);
+}
+
+/// Two blocks beside each other in one system, of unlike nodes and materials.
+inline System two_solid_blocks() {
+  System system = solid_block(4, 5, 3), other = solid_block(3, 3, 7);
+  other.materials = {{350, 0.02}};
+  other.node_mass.assign(other.nodes(), 0.007);
+  append_body(system, other, {0.5, 0.1, 0});
+  return system;
+}
+
+/// `count` bodies like this one in one system, each in its own place and with velocities of its own.
+inline System alike_bodies(const System& body, std::size_t count) {
+  System system = body;
+  for (std::size_t i = 1; i < count; ++i) {
+    const auto number = static_cast<double>(i);
+    System other = body;
+    for (Vec3d& v : other.start.velocity) v += Vec3d{0.03 * number, -0.06 * number, 0.1};
+    for (const std::uint32_t pin : other.pins) other.start.velocity[pin] = {};
+    append_body(system, other, {0.3 * number, 0.01 * number, 0});
+  }
   return system;
 }
 

@@ -26,6 +26,7 @@ class AheadBackend final : public Backend {
   std::string device() const override { return backend_->device(); }
   int threads() const override { return backend_->threads(); }
   int steps_per_pass() const override { return backend_->steps_per_pass(); }
+  std::optional<std::uint64_t> stored_springs() const override { return backend_->stored_springs(); }
   bool runs_on_host() const override { return backend_->runs_on_host(); }
   std::string note() const override { return backend_->note(); }
   std::string reason_not_to_time() const override { return backend_->reason_not_to_time(); }

@@ -105,6 +105,9 @@ class Backend {
   /// Whole steps that one pass over the state in memory takes, where stages overlap; 0 where every stage
   /// makes a pass of its own. What a step moves through memory is counted by it.
   virtual int steps_per_pass() const { return 0; }
+  /// Springs whose ends and rest lengths a step reads from memory, where these are not all of the system's:
+  /// bodies that are alike can share theirs.
+  virtual std::optional<std::uint64_t> stored_springs() const { return std::nullopt; }
   /// Do the steps run on this machine's processor and memory, whose peaks the roofline compares with?
   virtual bool runs_on_host() const { return true; }
   /// What a reader of its times must know of it by now, or nothing: the limits that its steps have met, say.

@@ -19,7 +19,7 @@ namespace mssim::HWY_NAMESPACE {
 
 constexpr std::size_t vector_nodes = hn::MaxLanes(FloatTag());
 
-/// Where each pair's records start, by role.
+/// Where each pair's nodes start, by role.
 using Pairs = std::array<float*, pair_kinds>;
 
 /// The nodes whose records follow each other from `first` on.

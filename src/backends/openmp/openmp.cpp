@@ -2,10 +2,13 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "backends/layouts/band_grid.h"
+#include "backends/openmp/body_lanes.h"
 #include "backends/openmp/sliced_bodies.h"
 #include "backends/openmp/step_bands.h"
+#include "backends/openmp/step_body_lanes.h"
 #include "backends/openmp/step_slices.h"
 #include "integrators/integrators.h"
 
@@ -33,12 +36,12 @@ class OpenMpGrid final : public Backend {
   BandGrid bands_;
 };
 
-/// Bodies in slices.
+/// Bodies in slices, or alike ones beside each other.
+template <class Bodies, class Kernel>
 class OpenMpBodies final : public Backend {
  public:
-  OpenMpBodies(const System& system, const Integrator& integrator, double dt_s, std::size_t threads,
-               const SliceKernel& kernel)
-      : kernel_(kernel), bodies_(system, integrator, dt_s, kernel_.lanes, threads) {
+  OpenMpBodies(const System& system, const Kernel& kernel, Bodies bodies)
+      : kernel_(kernel), bodies_(std::move(bodies)) {
     bodies_.set_state(system.start);
   }
 
@@ -47,10 +50,14 @@ class OpenMpBodies final : public Backend {
   void step(int count) override { kernel_.step(bodies_, count); }
   std::string device() const override { return std::string("cpu ") + kernel_.instruction_set; }
   int threads() const override { return static_cast<int>(bodies_.threads); }
+  std::optional<std::uint64_t> stored_springs() const override {
+    if constexpr (requires { bodies_.stored_springs(); }) return bodies_.stored_springs();
+    return std::nullopt;
+  }
 
  private:
-  SliceKernel kernel_;
-  SlicedBodies bodies_;
+  Kernel kernel_;
+  Bodies bodies_;
 };
 
 /// The kernel for an instruction set.
@@ -89,8 +96,13 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
   if (const auto* grid = std::get_if<GridPatch>(&system.topology))
     return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads,
                                         kernel_for(band_kernels(integrator), instruction_set));
-  return std::make_unique<OpenMpBodies>(system, integrator, dt_s, threads,
-                                        kernel_for(slice_kernels(integrator), instruction_set));
+  const BodyLanesKernel abreast = kernel_for(body_lanes_kernels(), instruction_set);
+  if (const auto alike = bodies_for_lanes(system, abreast.lanes))
+    return std::make_unique<OpenMpBodies<BodyLanes, BodyLanesKernel>>(
+        system, abreast, BodyLanes(system, *alike, integrator, dt_s, abreast.lanes, threads));
+  const SliceKernel kernel = kernel_for(slice_kernels(integrator), instruction_set);
+  return std::make_unique<OpenMpBodies<SlicedBodies, SliceKernel>>(
+      system, kernel, SlicedBodies(system, integrator, dt_s, kernel.lanes, threads));
 }
 
 }  // namespace mssim

@@ -7,21 +7,20 @@
 #define MSSIM_SLICE_STEPS_INL_H_
 #endif
 
-#include <omp.h>
-
 #include <bit>
 #include <utility>
 
 #include "backends/layouts/slice_entries.h"
 #include "backends/layouts/update_nodes-inl.h"
+#include "backends/openmp/body_spring-inl.h"
+#include "backends/openmp/chunk_phases-inl.h"
 #include "backends/openmp/sliced_bodies.h"
-#include "backends/threads/chunk_tickets.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Some microseconds: about as long as a chunk takes.
-constexpr int spins = 300;
+/// Some microseconds (work_in_phases).
+constexpr int slice_spins = 300;
 
 /// Entries one after the other, whatever their slices. The records that the next one names are loaded and
 /// transposed before the springs of this one are computed: that takes long, and a processor does not look far
@@ -66,16 +65,13 @@ class EntryWalk {
 /// entries, which end at `end`.
 HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, const NodeLanes& node,
                                       Lanes stiffness, Lanes damping) {
-  // Added to lengths squared, of which an empty entry's is zero: then its pull is finite, and gives no force.
-  // In a spring's it can only decide a tie; a spring of length zero gives no force, where serial's gives NaN.
-  const Lanes least(1e-36F);
   Lanes3 sum = zero3();
   while (entries.is_before(end)) {
     const Lanes stiffness_rest = entries.stiffness_rest();
     const NodeLanes other = entries.take();
     const Lanes3 to_other = other.x - node.x;
-    const Lanes pull = spring_pull_at(inverse_length(dot_add(to_other, to_other, least)),
-                                      dot(other.v - node.v, to_other), stiffness, stiffness_rest, damping);
+    // An empty entry's pull is finite and its length zero: it gives no force.
+    const Lanes pull = body_spring_pull(to_other, other.v - node.v, {stiffness, stiffness_rest, damping});
     sum = mul_add(pull, to_other, sum);
   }
   return sum;
@@ -102,45 +98,13 @@ HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, Slic
     step_slice<method, stage>(bodies, base, slice, entries);
 }
 
-/// The pairs in a stage, counted from the first one of a call: `state` and `next` change places every step.
-template <std::size_t method>
-HWY_INLINE Pairs pairs_in(const SlicedBodies& bodies, std::uint32_t stage) {
-  Pairs base = bodies.base;
-  if (stage / integrators[method].stage_count % 2 != 0)
-    std::swap(base[index(Pair::state)], base[index(Pair::next)]);
-  return base;
-}
-
 /// Works on a chunk in a stage, counted from the first one of the call.
 template <std::size_t method>
 HWY_INLINE void work_on(const SlicedBodies& bodies, std::uint32_t number, SlicedBodies::Chunk chunk) {
-  const Pairs base = pairs_in<method>(bodies, number);
+  const Pairs base = pairs_in<method>(bodies.base, number);
   for_each_stage<method>([&](auto stage) HWY_ATTR {
     if (number % integrators[method].stage_count == stage) step_chunk<method, stage>(bodies, base, chunk);
   });
-}
-
-/// Calls act(thread, ticket) for every chunk of so many phases, one phase after the other. Whoever has
-/// finished the n-th one calls between(n), while all others wait.
-template <class Act, class Between>
-HWY_INLINE void work_in_phases(const SlicedBodies& bodies, std::uint32_t phases, const Act& act,
-                               const Between& between) {
-  ChunkTickets tickets(static_cast<std::uint32_t>(bodies.chunks.size()),
-                       static_cast<std::uint32_t>(bodies.threads));
-  std::uint32_t opened = 1;  // only whoever has finished a phase touches it
-  tickets.open();
-#pragma omp parallel num_threads(static_cast <int>(bodies.threads))
-  {
-    const auto thread = static_cast<std::uint32_t>(omp_get_thread_num());
-    tickets.work_until_closed(
-        thread, spins, [&](const ChunkTickets::Ticket& ticket) HWY_ATTR { act(thread, ticket); },
-        [&] {
-          between(opened);
-          if (opened == phases) return tickets.close();
-          ++opened;
-          tickets.open();
-        });
-  }
 }
 
 /// Stages of a part. Each is two phases: nodes without ghosts for neighbours are stepped while messages bring
@@ -150,11 +114,11 @@ HWY_INLINE void take_stages_of_part(const SlicedBodies& bodies, std::uint32_t co
   NodeMessages& messages = *bodies.messages;
   const auto gathered_in = [&](std::uint32_t number) {
     const Stage& stage = integrators[method].stages[number % integrators[method].stage_count];
-    return pairs_in<method>(bodies, number)[index(stage.gather)];
+    return pairs_in<method>(bodies.base, number)[index(stage.gather)];
   };
   messages.begin(gathered_in(0));
   work_in_phases(
-      bodies, 2 * count,
+      bodies.chunks.size(), bodies.threads, 2 * count, slice_spins,
       [&](std::uint32_t thread, const ChunkTickets::Ticket& ticket) HWY_ATTR {
         const bool at_edge = ticket.phase % 2 != 0;
         if (!at_edge && thread == 0) messages.advance();  // every few microseconds
@@ -180,19 +144,11 @@ HWY_INLINE void take_steps(SlicedBodies& bodies, int count) {
     take_stages_of_part<method>(bodies, stages);
   else
     work_in_phases(
-        bodies, stages,
+        bodies.chunks.size(), bodies.threads, stages, slice_spins,
         [&](std::uint32_t, const ChunkTickets::Ticket& ticket)
             HWY_ATTR { work_on<method>(bodies, ticket.phase, bodies.chunks[ticket.chunk]); },
         [](std::uint32_t) {});
   if (count % 2 != 0) std::swap(bodies.base[index(Pair::state)], bodies.base[index(Pair::next)]);
-}
-
-template <std::size_t method>
-HWY_INLINE void step_method(SlicedBodies& bodies, int count) {
-  constexpr int most = 1 << 20;  // a ticket numbers a call's phases
-  static_assert(2 * most * integrators[method].stage_count <= ChunkTickets::most_phases);
-  for (; count > most; count -= most) take_steps<method>(bodies, most);
-  take_steps<method>(bodies, count);
 }
 
 /// Takes `count` steps of an integrator of `fewest` to `most` stages.
@@ -200,7 +156,8 @@ template <std::size_t fewest, std::size_t most>
 void step_slices(SlicedBodies& bodies, int count) {
   with_integrator(*bodies.integrator, [&](auto method) HWY_ATTR {
     constexpr std::size_t stages = integrators[method].stage_count;
-    if constexpr (stages >= fewest && stages <= most) step_method<method>(bodies, count);
+    if constexpr (stages >= fewest && stages <= most)
+      take_in_calls<method>(count, [&](int some) HWY_ATTR { take_steps<method>(bodies, some); });
   });
 }
 

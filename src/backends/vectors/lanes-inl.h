@@ -144,6 +144,9 @@ HWY_INLINE Lanes3 operator*(Lanes s, const Lanes3& a) { return {s * a.x, s * a.y
 HWY_INLINE Lanes3 mul_add(Lanes s, const Lanes3& a, const Lanes3& b) {
   return {mul_add(s, a.x, b.x), mul_add(s, a.y, b.y), mul_add(s, a.z, b.z)};
 }
+HWY_INLINE Lanes3 mul_add(NegatedLanes s, const Lanes3& a, const Lanes3& b) {
+  return {mul_add(s, a.x, b.x), mul_add(s, a.y, b.y), mul_add(s, a.z, b.z)};
+}
 HWY_INLINE Lanes3 keep(Mask mask, const Lanes3& a) {
   return {keep(mask, a.x), keep(mask, a.y), keep(mask, a.z)};
 }

@@ -130,6 +130,7 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     add_to_note(row.note, excess_of(info, *combination.backend, job.execution));
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
+    combination.stored_springs = combination.backend->stored_springs();
   };
   try {
     attempt(combination, make);

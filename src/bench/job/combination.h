@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@ struct Combination {
   const Integrator* integrator = nullptr;
   bool on_host = true;
   int steps_per_pass = 0;
+  std::optional<std::uint64_t> stored_springs;
   const State* start = nullptr;         ///< of every sample
   std::unique_ptr<Backend> backend;     ///< null where the row has no times: it cannot run, or has failed
   DressingBackend* dressing = nullptr;  ///< the same, of a garment

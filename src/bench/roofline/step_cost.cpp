@@ -1,5 +1,7 @@
 #include "bench/roofline/step_cost.h"
 
+#include <algorithm>
+
 namespace mssim {
 namespace {
 
@@ -12,7 +14,13 @@ std::size_t bytes_per_spring(const Topology& topology) {
 }
 
 StepSize step_size(const System& system) {
-  return {system.nodes(), system.springs.size(), bytes_per_spring(system.topology)};
+  return {system.nodes(), system.springs.size(), static_cast<double>(bytes_per_spring(system.topology))};
+}
+
+StepSize with_stored_springs(StepSize size, std::uint64_t stored) {
+  size.bytes_per_spring *=
+      static_cast<double>(stored) / static_cast<double>(std::max<std::uint64_t>(1, size.springs));
+  return size;
 }
 
 StepCost step_cost(const Integrator& integrator, const StepSize& size, int steps_per_pass) {
@@ -25,7 +33,7 @@ StepCost step_cost(const Integrator& integrator, const StepSize& size, int steps
   const auto nodes = static_cast<double>(size.nodes), springs = static_cast<double>(size.springs);
   const auto stages = static_cast<double>(integrator.stage_count);
   const double slot_bytes = static_cast<double>(bytes_per_slot) * nodes;
-  const double spring_bytes = static_cast<double>(size.bytes_per_spring) * springs;
+  const double spring_bytes = size.bytes_per_spring * springs;
   const double bytes = steps_per_pass > 0 ? (slots_of_state * slot_bytes + spring_bytes) / steps_per_pass
                                           : static_cast<double>(slots) * slot_bytes + stages * spring_bytes;
   return {bytes, static_cast<double>(node_flops) * nodes + stages * flops_per_spring * springs};
@@ -36,7 +44,7 @@ double working_set_bytes(const Integrator& integrator, const StepSize& size) {
   for (std::size_t pair = 0; pair < pair_kinds; ++pair)
     pairs += std::size_t{stores(integrator, static_cast<Pair>(pair), Storage::in_place)};
   return static_cast<double>(2 * pairs * bytes_per_slot) * static_cast<double>(size.nodes) +
-         static_cast<double>(size.bytes_per_spring) * static_cast<double>(size.springs);
+         size.bytes_per_spring * static_cast<double>(size.springs);
 }
 
 }  // namespace mssim

@@ -58,8 +58,8 @@ constexpr std::size_t slots_moved(const Stage& stage) {
 /// What a step works on.
 struct StepSize {
   std::uint64_t nodes = 0;
-  std::uint64_t springs = 0;         ///< unique ones
-  std::size_t bytes_per_spring = 0;  ///< memory that says which nodes a spring joins, and its rest length
+  std::uint64_t springs = 0;    ///< unique ones
+  double bytes_per_spring = 0;  ///< memory that says which nodes a spring joins, and its rest length
 };
 
 /// Bytes that a spring takes in memory at least: none on a grid, where the place of a node says it all; two
@@ -67,6 +67,9 @@ struct StepSize {
 std::size_t bytes_per_spring(const Topology& topology);
 
 StepSize step_size(const System& system);
+
+/// The same where only so many of the springs are in memory (Backend::stored_springs): others share theirs.
+StepSize with_stored_springs(StepSize size, std::uint64_t stored);
 
 /// Cost of a step that passes over the nodes, and where they take memory over the springs, once per stage.
 /// Where stages overlap, so that one pass takes `steps_per_pass` whole steps (Backend::steps_per_pass), trial

@@ -124,6 +124,19 @@ TEST(StepCost, OfABodyReadsItsSpringsInEveryStage) {
   }
 }
 
+TEST(StepCost, OfAlikeBodiesReadsTheSpringsThatTheyShareOnce) {
+  for (const Integrator& integrator : integrators) {
+    const StepSize all{1000, 6000, 12}, shared = with_stored_springs(all, 1500);
+    EXPECT_EQ(shared.springs, 6000U);
+    EXPECT_EQ(step_cost(integrator, all).bytes - step_cost(integrator, shared).bytes,
+              12.0 * 4500 * static_cast<double>(integrator.stage_count))
+        << integrator.name;
+    EXPECT_EQ(step_cost(integrator, all).flops, step_cost(integrator, shared).flops) << integrator.name;
+    EXPECT_EQ(working_set_bytes(integrator, all) - working_set_bytes(integrator, shared), 12.0 * 4500);
+  }
+  EXPECT_EQ(with_stored_springs({1000, 0, 12}, 0).springs, 0U);  // nodes that nothing joins
+}
+
 TEST(WorkingSet, HoldsTheSpringsOfABodyOnce) {
   EXPECT_EQ(working_set_bytes(*find_integrator("rk4"), {2500, 15000, 12}), 72.0 * 2500 + 12.0 * 15000);
 }
@@ -132,10 +145,10 @@ TEST(StepSize, FollowsFromTheSystem) {
   const System cloth = cloth_system(10, 20), body = solid_block(2, 2, 2);
   EXPECT_EQ(step_size(cloth).nodes, 200U);
   EXPECT_EQ(step_size(cloth).springs, count_springs(10, 20));
-  EXPECT_EQ(step_size(cloth).bytes_per_spring, 0U);
+  EXPECT_EQ(step_size(cloth).bytes_per_spring, 0);
   EXPECT_EQ(step_size(body).nodes, 8U);
   EXPECT_EQ(step_size(body).springs, 19U);  // 12 edges, a diagonal in each of 6 faces, one through the cube
-  EXPECT_EQ(step_size(body).bytes_per_spring, 12U);
+  EXPECT_EQ(step_size(body).bytes_per_spring, 12);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "model/system.h"
+
+namespace mssim {
+
+/// Bodies that are alike: all have the same springs between the same nodes, of the same constants, whatever
+/// else their nodes do. A body is what springs join. Its nodes are numbered by their place in the body's
+/// reverse_cuthill_mckee().
+struct AlikeBodies {
+  /// To a node further behind.
+  struct SpringAhead {
+    std::uint32_t other;
+    float stiffness_rest;  ///< stiffness times rest length / mass, m/s^2
+    bool operator==(const SpringAhead&) const = default;
+  };
+
+  float stiffness = 0, damping = 0;  ///< divided by a node's mass: 1/s^2, 1/s
+  std::vector<std::uint8_t> pinned;  ///< [nodes] 1 where it is, else 0
+  /// [nodes + 1] where each node's begin in `springs`; the last one is their number.
+  std::vector<std::uint32_t> first_spring;
+  std::vector<SpringAhead> springs;  ///< [springs] ascending by both ends
+  /// [bodies][nodes] the scene's nodes
+  std::vector<std::vector<std::uint32_t>> bodies;
+
+  std::size_t nodes() const { return pinned.size(); }
+};
+
+/// All bodies of a system, by what they are alike in; the first of each in the order of the scene. Nothing
+/// where springs of unlike materials meet, or nodes of unlike mass are joined.
+std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system);
+
+}  // namespace mssim

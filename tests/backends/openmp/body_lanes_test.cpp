@@ -1,0 +1,146 @@
+#include "backends/openmp/body_lanes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "backends/openmp/sliced_bodies.h"
+#include "backends/openmp/step_body_lanes.h"
+#include "backends/openmp/step_slices.h"
+#include "integrators/all_integrators.h"
+#include "tests/support/backend_step.h"
+#include "tests/support/solid_system.h"
+
+namespace mssim {
+namespace {
+
+/// Bodies low enough to meet the floor within the steps: of a kind more and fewer than lanes, some with pins,
+/// one alone, and nodes that no spring joins.
+System many_bodies() {
+  System system = alike_bodies(solid_block(4, 4, 5, 0.002), 19);
+  System pinned = solid_block(3, 3, 4, 0.002);
+  pinned.pins = {0, 17};
+  for (const std::uint32_t node : pinned.pins) pinned.start.velocity[node] = {};
+  append_body(system, alike_bodies(pinned, 3), {0, 0, 1});
+  append_body(system, solid_block(5, 5, 5, 0.002), {0, 0, 2});
+  for (int i = 0; i < 3; ++i) {
+    system.start.position.push_back({0, 0.01 + 0.001 * i, 3});
+    system.start.velocity.push_back({0, -1, 0});
+    system.node_mass.push_back(0.004);
+  }
+  round_to_single(system.start);
+  return system;
+}
+
+class BodyLanesOf : public testing::TestWithParam<std::string_view> {};
+INSTANTIATE_TEST_SUITE_P(Integrators, BodyLanesOf,
+                         testing::Values("semi-euler", "midpoint", "rk4", "rk4-frozen", "explicit-euler"),
+                         [](const auto& test) {
+                           std::string name(test.param);
+                           for (char& c : name)
+                             if (c == '-') c = '_';
+                           return name;
+                         });
+
+// What a body's node feels, and in which order that is added, does not depend on how bodies lie in memory.
+TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstructionSet) {
+  const Integrator& method = *find_integrator(GetParam());
+  const System system = many_bodies();
+  const auto alike = find_alike_bodies(system);
+  ASSERT_TRUE(alike);
+  const double dt_s = backend_dt_of(method);
+  for (const BodyLanesKernel& kernel : body_lanes_kernels()) {
+    std::size_t found = 0;
+    for (const SliceKernel& other : slice_kernels(method)) {
+      if (std::string_view(other.instruction_set) != kernel.instruction_set) continue;
+      ++found;
+      SlicedBodies slices(system, method, dt_s, other.lanes, 2);
+      slices.set_state(system.start);
+      other.step(slices, 60);
+      const State expected = slices.state();
+      ASSERT_NE(expected.position, system.start.position);
+      for (const std::size_t threads : {1U, 2U, 3U, 7U, 64U}) {
+        BodyLanes bodies(system, *alike, method, dt_s, kernel.lanes, threads);
+        bodies.set_state(system.start);
+        EXPECT_EQ(bodies.state().position, system.start.position);
+        EXPECT_EQ(bodies.state().velocity, system.start.velocity);
+        kernel.step(bodies, 0);
+        kernel.step(bodies, 31);  // an odd number: the pairs have changed places
+        kernel.step(bodies, 29);
+        const State state = bodies.state();
+        EXPECT_EQ(state.position, expected.position) << kernel.instruction_set << ", " << threads;
+        EXPECT_EQ(state.velocity, expected.velocity) << kernel.instruction_set << ", " << threads;
+      }
+    }
+    EXPECT_EQ(found, 1U);
+  }
+}
+
+TEST(BodyLanes, GiveEveryNodeOfEveryGroupToOnePieceAndEveryPieceToOneChunk) {
+  const System system = many_bodies();
+  const auto alike = find_alike_bodies(system);
+  for (const std::size_t lanes : {1U, 4U, 8U, 16U})
+    for (const std::size_t threads : {1U, 2U, 3U, 5U, 1000U}) {
+      const BodyLanes bodies(system, *alike, integrators[0], 1e-4, lanes, threads);
+      std::set<std::pair<std::size_t, std::size_t>> seen;  // group's offset, node
+      for (const BodyLanes::Piece& piece : bodies.pieces) {
+        EXPECT_LT(piece.begin, piece.end);
+        EXPECT_LE(piece.end, piece.reach);
+        EXPECT_LE(piece.reach, bodies.shapes[piece.shape].pinned.size());
+        for (std::size_t node = piece.begin; node < piece.end; ++node)
+          EXPECT_TRUE(seen.emplace(piece.offset, node).second);
+      }
+      std::size_t nodes = 0;
+      for (const AlikeBodies& of : *alike) nodes += (of.bodies.size() + lanes - 1) / lanes * of.nodes();
+      EXPECT_EQ(seen.size(), nodes);
+      std::size_t next = 0;
+      for (const BodyLanes::Chunk& chunk : bodies.chunks) {
+        EXPECT_EQ(chunk.begin, next);
+        EXPECT_LT(chunk.begin, chunk.end);
+        next = chunk.end;
+      }
+      EXPECT_EQ(next, bodies.pieces.size());
+      EXPECT_LE(bodies.threads, threads);
+      const std::set<std::size_t> places(bodies.offset.begin(), bodies.offset.end());
+      EXPECT_EQ(places.size(), system.nodes());
+    }
+}
+
+TEST(BodyLanes, AreCutIntoFairShares) {
+  const System system = alike_bodies(solid_block(9, 9, 9), 16);
+  const BodyLanes bodies(system, *find_alike_bodies(system), integrators[0], 1e-4, 16, 3);
+  ASSERT_EQ(bodies.pieces.size(), 3U);
+  ASSERT_EQ(bodies.chunks.size(), 3U);
+  const BodyLanes::Shape& shape = bodies.shapes.front();
+  std::vector<double> springs;
+  for (const BodyLanes::Piece& piece : bodies.pieces)
+    springs.push_back(static_cast<double>(shape.first_spring[piece.end] - shape.first_spring[piece.begin] +
+                                          piece.cut.size()));
+  for (const double share : springs) EXPECT_NEAR(share / springs.front(), 1, 0.1);
+  EXPECT_TRUE(bodies.pieces.front().cut.empty());
+}
+
+TEST(BodyLanes, AreForManyAlikeBodiesOnly) {
+  const System block = solid_block(3, 3, 3);
+  EXPECT_FALSE(bodies_for_lanes(block, 16));
+  EXPECT_FALSE(bodies_for_lanes(alike_bodies(block, 5), 16));
+  EXPECT_TRUE(bodies_for_lanes(alike_bodies(block, 6), 16));
+  EXPECT_TRUE(bodies_for_lanes(alike_bodies(block, 3), 8));
+  EXPECT_FALSE(bodies_for_lanes(block, 4));
+  EXPECT_TRUE(bodies_for_lanes(alike_bodies(block, 2), 4));
+  EXPECT_TRUE(bodies_for_lanes(block, 1));
+  System mixed = alike_bodies(block, 16);
+  EXPECT_TRUE(bodies_for_lanes(mixed, 16));
+  append_body(mixed, solid_block(9, 9, 9), {9, 0, 0});
+  EXPECT_FALSE(bodies_for_lanes(mixed, 16)) << "most of its springs are in one body";
+  System unlike = alike_bodies(block, 16);
+  unlike.node_mass[3] *= 2;
+  EXPECT_FALSE(bodies_for_lanes(unlike, 16));
+}
+
+}  // namespace
+}  // namespace mssim
