@@ -42,7 +42,7 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
   // Copies: a vector's store may change all else, as far as the compiler knows.
   const Coefficients<float> coefficients = bodies.coefficients;
   const Surroundings surroundings = bodies.surroundings;
-  const std::size_t end = piece.end, reach = piece.reach, lanes_used = piece.bodies;
+  const std::size_t end = piece.end, reach = piece.reach;
   const std::uint32_t* const first_spring = shape.first_spring.data();
   const std::uint8_t* const pinned = shape.pinned.data();
   const BodyLanes::Shape::Spring* const all = shape.springs.data();
@@ -67,7 +67,7 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
       store3(force, mul_add(-pull, to_other, load3(force)));
       sum = mul_add(pull, to_other, sum);
     }
-    const Mask free = hn::FirstN(FloatTag(), pinned[node] != 0 ? 0 : lanes_used);
+    const Mask free = hn::FirstN(FloatTag(), pinned[node] != 0 ? 0 : vector_nodes);
     const auto at = [&](auto slot) MSSIM_INLINE_LAMBDA {
       constexpr std::size_t number = index(decltype(slot)::value);
       return pairs[number / 2] + 2 * offset + number % 2 * force_floats;

@@ -1,7 +1,6 @@
 #include "backends/openmp/body_lanes.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -60,21 +59,14 @@ class PieceCosts {
   std::vector<std::size_t> ended_before_;    // [nodes + 1]
 };
 
-/// As many bodies of a shape as lanes, or fewer.
-struct Group {
-  std::uint32_t shape;
-  std::size_t first_body, bodies;
-  std::size_t offset;  // BodyLanes::Piece::offset
-};
-
 /// Nodes of a group that a thread has in its share.
 struct Cut {
   std::size_t group, begin, end, share, cost;
 };
 
 /// Cuts groups, one after the other, into shares that cost at most `most`.
-std::vector<Cut> cut_groups(const std::vector<Group>& groups, const std::vector<PieceCosts>& costs,
-                            std::size_t most) {
+std::vector<Cut> cut_groups(const std::vector<AlikeSlices::Group>& groups,
+                            const std::vector<PieceCosts>& costs, std::size_t most) {
   std::vector<Cut> cuts;
   std::size_t share = 0, left = most;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -95,10 +87,10 @@ std::vector<Cut> cut_groups(const std::vector<Group>& groups, const std::vector<
 }
 
 /// The same for so many shares or fewer, which cost as little as possible.
-std::vector<Cut> cut_groups_into(const std::vector<Group>& groups, const std::vector<PieceCosts>& costs,
-                                 std::size_t shares) {
+std::vector<Cut> cut_groups_into(const std::vector<AlikeSlices::Group>& groups,
+                                 const std::vector<PieceCosts>& costs, std::size_t shares) {
   std::size_t low = 1, high = 1;
-  for (const Group& group : groups) high += costs[group.shape].of(0, costs[group.shape].nodes());
+  for (const AlikeSlices::Group& group : groups) high += costs[group.shape].of(0, costs[group.shape].nodes());
   while (low < high) {
     const std::size_t middle = (low + high) / 2;
     const std::vector<Cut> cuts = cut_groups(groups, costs, middle);
@@ -118,9 +110,9 @@ BodyLanes::Shape shape_of(const AlikeBodies& bodies, std::size_t node_floats) {
   return shape;
 }
 
-BodyLanes::Piece piece_of(const Group& group, const Cut& cut, const AlikeBodies& bodies,
+BodyLanes::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut, const AlikeBodies& bodies,
                           std::size_t node_floats) {
-  BodyLanes::Piece piece{group.shape, group.bodies, group.offset, cut.begin, cut.end, cut.end, {}};
+  BodyLanes::Piece piece{group.shape, 2 * node_floats * group.first_slice, cut.begin, cut.end, cut.end, {}};
   for (std::size_t node = 0; node < cut.end; ++node)
     for (std::size_t s = bodies.first_spring[node]; s < bodies.first_spring[node + 1]; ++s) {
       const AlikeBodies::SpringAhead& spring = bodies.springs[s];
@@ -137,33 +129,24 @@ BodyLanes::Piece piece_of(const Group& group, const Cut& cut, const AlikeBodies&
 
 BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
                      double dt_s, std::size_t lane_count, std::size_t thread_count)
-    : lanes(lane_count),
-      offset(system.nodes()),
+    : slices(bodies, lane_count),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
       surroundings(surroundings_of(system)) {
-  const std::size_t node_floats = components * lanes;
-  std::vector<Group> groups;
+  const std::size_t node_floats = components * lane_count;
+  const std::size_t allowed_nodes = std::numeric_limits<std::uint32_t>::max() / node_floats;
   std::vector<PieceCosts> costs;
-  std::size_t floats = 0, most_nodes = 0;
+  std::size_t most_nodes = 0;
   for (const AlikeBodies& of : bodies) {
-    if (of.nodes() > std::numeric_limits<std::uint32_t>::max() / node_floats)
+    if (of.nodes() > allowed_nodes)
       throw Unsupported("a body has " + std::to_string(of.nodes()) + " nodes; openmp supports at most " +
-                        std::to_string(std::numeric_limits<std::uint32_t>::max() / node_floats));
+                        std::to_string(allowed_nodes));
     most_nodes = std::max(most_nodes, of.nodes());
-    for (std::size_t first = 0; first < of.bodies.size(); first += lanes) {
-      groups.push_back({static_cast<std::uint32_t>(shapes.size()), first,
-                        std::min(lanes, of.bodies.size() - first), floats});
-      for (std::size_t lane = 0; lane < groups.back().bodies; ++lane)
-        for (std::size_t node = 0; node < of.nodes(); ++node)
-          offset[of.bodies[first + lane][node]] = floats + 2 * node_floats * node + lane;
-      floats += 2 * node_floats * of.nodes();
-    }
     shapes.push_back(shape_of(of, node_floats));
     costs.emplace_back(of);
   }
 
-  const std::vector<Cut> cuts = cut_groups_into(groups, costs, std::max<std::size_t>(1, thread_count));
+  const std::vector<Cut> cuts = cut_groups_into(slices.groups, costs, std::max<std::size_t>(1, thread_count));
   std::size_t cost = chunk_cost, largest = 0;
   for (const Cut& cut : cuts) {
     const bool next_share = !pieces.empty() && cut.share != cuts[pieces.size() - 1].share;
@@ -171,7 +154,8 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
       chunks.push_back({pieces.size(), pieces.size()});
       cost = 0;
     }
-    pieces.push_back(piece_of(groups[cut.group], cut, bodies[groups[cut.group].shape], node_floats));
+    pieces.push_back(
+        piece_of(slices.groups[cut.group], cut, bodies[slices.groups[cut.group].shape], node_floats));
     cost += cut.cost;
     largest = std::max(largest, cost);
     ++chunks.back().end;
@@ -181,49 +165,19 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
   for (std::size_t thread = 0; thread < threads; ++thread) forces.emplace_back(most_nodes * node_floats);
   for (std::size_t pair = 0; pair < pair_kinds; ++pair) {
     if (!stores(method, static_cast<Pair>(pair), Storage::separate)) continue;
-    pairs[pair] = AlignedArray(floats);
+    pairs[pair] = AlignedArray(slices.floats());
     base[pair] = pairs[pair].data();
   }
 }
 
-void BodyLanes::set_state(const State& state) {
-  for (std::size_t node = 0; node < offset.size(); ++node) {
-    const Vec3<float> x = vec3_cast<float>(state.position[node]), v = vec3_cast<float>(state.velocity[node]);
-    float* to = base[index(Pair::state)] + offset[node];
-    for (const float component : std::array{x.x, x.y, x.z, v.x, v.y, v.z}) {
-      *to = component;
-      to += lanes;
-    }
-  }
-}
+void BodyLanes::set_state(const State& state) { slices.write(state, base[index(Pair::state)]); }
 
-State BodyLanes::state() const {
-  State state;
-  for (const std::size_t first : offset) {
-    const float* from = base[index(Pair::state)] + first;
-    const auto component = [&](std::size_t i) { return static_cast<double>(from[i * lanes]); };
-    state.position.push_back({component(0), component(1), component(2)});
-    state.velocity.push_back({component(3), component(4), component(5)});
-  }
-  return state;
-}
+State BodyLanes::state() const { return slices.read(base[index(Pair::state)]); }
 
 std::uint64_t BodyLanes::stored_springs() const {
   std::uint64_t stored = 0;
   for (const Shape& shape : shapes) stored += shape.springs.size();
   return stored;
-}
-
-std::optional<std::vector<AlikeBodies>> bodies_for_lanes(const System& system, std::size_t lanes) {
-  // A vector of springs, each computed once, takes about a third of the time of two entries of SlicedBodies,
-  // which compute each spring twice but leave no lane empty.
-  constexpr std::size_t gain = 3;
-  std::optional<std::vector<AlikeBodies>> bodies = find_alike_bodies(system);
-  std::size_t cost = 0;
-  for (const AlikeBodies& of : bodies.value_or(std::vector<AlikeBodies>{}))
-    cost += (of.bodies.size() + lanes - 1) / lanes * lanes * of.springs.size();
-  if (cost > gain * system.springs.size()) bodies.reset();
-  return bodies;
 }
 
 }  // namespace mssim

@@ -3,12 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "backends/interface/surroundings.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/alike_bodies.h"
+#include "backends/layouts/alike_slices.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
@@ -35,10 +35,9 @@ struct BodyLanes {
     std::uint32_t first, second;  ///< offsets
     float stiffness_rest;
   };
-  /// Nodes [begin, end) of a group of bodies, as many as `lanes` or fewer.
+  /// Nodes [begin, end) of a group.
   struct Piece {
-    std::uint32_t shape;
-    std::size_t bodies;
+    std::size_t shape;
     std::size_t offset;          ///< where the group's first node starts in a pair, floats
     std::size_t begin, end;      ///< nodes
     std::size_t reach;           ///< behind the last node that springs lead to
@@ -49,18 +48,17 @@ struct BodyLanes {
     std::size_t begin, end;
   };
 
-  std::size_t lanes = 0;
+  AlikeSlices slices;
   std::vector<Shape> shapes;
   std::vector<Piece> pieces;
   std::vector<Chunk> chunks;
-  std::vector<std::size_t> offset;  ///< [nodes] where the scene's node starts in a pair, floats
 
   const Integrator* integrator = nullptr;
   Coefficients<float> coefficients{};
   Surroundings surroundings{};
   std::size_t threads = 1;
   int spins = 0;  ///< of a thread that waits for others, as long as the largest chunk may take
-  /// [nodes of a group, group by group][x y z u v w][lanes]; empty where not stored
+  /// As `slices` has them; empty where not stored
   std::array<AlignedArray, pair_kinds> pairs;
   std::array<float*, pair_kinds> base{};  ///< of `pairs`, by role: `state` and `next` change places
   /// [threads] of the piece that a thread works on, from its body's first node on; zero between pieces.
@@ -74,8 +72,5 @@ struct BodyLanes {
   /// Those of every shape.
   std::uint64_t stored_springs() const;
 };
-
-/// The bodies of a system, where so many of them are alike that BodyLanes is faster than SlicedBodies.
-std::optional<std::vector<AlikeBodies>> bodies_for_lanes(const System& system, std::size_t lanes);
 
 }  // namespace mssim

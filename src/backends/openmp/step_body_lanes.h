@@ -10,7 +10,7 @@ namespace mssim {
 
 /// The vector code for one instruction set.
 struct BodyLanesKernel {
-  std::size_t lanes;                           ///< floats in a vector: BodyLanes::lanes must equal it
+  std::size_t lanes;                           ///< floats in a vector: AlikeSlices::lanes must equal it
   const char* instruction_set;                 ///< Highway's name for it
   bool exact_roots;                            ///< as inverse_length (backends/vectors/lanes-inl.h) says
   void (*step)(BodyLanes& bodies, int count);  ///< takes `count` steps

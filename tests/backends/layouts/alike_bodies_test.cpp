@@ -83,5 +83,23 @@ TEST(AlikeBodies, AreNotSoughtWhereNodesThatSpringsJoinAreUnlike) {
   EXPECT_FALSE(find_alike_bodies(materials));
 }
 
+TEST(AlikeBodies, AreForLanesWhereTheyAreMany) {
+  const System block = solid_block(3, 3, 3);
+  EXPECT_FALSE(alike_bodies_for(block, 16));
+  EXPECT_FALSE(alike_bodies_for(alike_bodies(block, 5), 16));
+  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 6), 16));
+  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 3), 8));
+  EXPECT_FALSE(alike_bodies_for(block, 4));
+  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 2), 4));
+  EXPECT_TRUE(alike_bodies_for(block, 1));
+  System mixed = alike_bodies(block, 16);
+  EXPECT_TRUE(alike_bodies_for(mixed, 16));
+  append_body(mixed, solid_block(9, 9, 9), {9, 0, 0});
+  EXPECT_FALSE(alike_bodies_for(mixed, 16)) << "most of its springs are in one body";
+  System unlike = alike_bodies(block, 16);
+  unlike.node_mass[3] *= 2;
+  EXPECT_FALSE(alike_bodies_for(unlike, 16));
+}
+
 }  // namespace
 }  // namespace mssim

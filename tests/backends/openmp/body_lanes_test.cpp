@@ -105,8 +105,6 @@ TEST(BodyLanes, GiveEveryNodeOfEveryGroupToOnePieceAndEveryPieceToOneChunk) {
       }
       EXPECT_EQ(next, bodies.pieces.size());
       EXPECT_LE(bodies.threads, threads);
-      const std::set<std::size_t> places(bodies.offset.begin(), bodies.offset.end());
-      EXPECT_EQ(places.size(), system.nodes());
     }
 }
 
@@ -122,24 +120,6 @@ TEST(BodyLanes, AreCutIntoFairShares) {
                                           piece.cut.size()));
   for (const double share : springs) EXPECT_NEAR(share / springs.front(), 1, 0.1);
   EXPECT_TRUE(bodies.pieces.front().cut.empty());
-}
-
-TEST(BodyLanes, AreForManyAlikeBodiesOnly) {
-  const System block = solid_block(3, 3, 3);
-  EXPECT_FALSE(bodies_for_lanes(block, 16));
-  EXPECT_FALSE(bodies_for_lanes(alike_bodies(block, 5), 16));
-  EXPECT_TRUE(bodies_for_lanes(alike_bodies(block, 6), 16));
-  EXPECT_TRUE(bodies_for_lanes(alike_bodies(block, 3), 8));
-  EXPECT_FALSE(bodies_for_lanes(block, 4));
-  EXPECT_TRUE(bodies_for_lanes(alike_bodies(block, 2), 4));
-  EXPECT_TRUE(bodies_for_lanes(block, 1));
-  System mixed = alike_bodies(block, 16);
-  EXPECT_TRUE(bodies_for_lanes(mixed, 16));
-  append_body(mixed, solid_block(9, 9, 9), {9, 0, 0});
-  EXPECT_FALSE(bodies_for_lanes(mixed, 16)) << "most of its springs are in one body";
-  System unlike = alike_bodies(block, 16);
-  unlike.node_mass[3] *= 2;
-  EXPECT_FALSE(bodies_for_lanes(unlike, 16));
 }
 
 }  // namespace
