@@ -44,13 +44,13 @@ static inline void forces_of_units(Node first, __global const uint* restrict sec
 /* nodes: records (records.h). entries: the slice of each entry, and an index into `materials`. units:
  * [entries][second node, rest length][16]. forces: [entries][16] of four floats, those of nodes 0, 4, 8 and
  * 12 first, then of 1, 5 and so on.
- * A work-item takes `count` times units_at_a_time units, up to units_end. */
+ * A work-item takes `count` parts of units_at_a_time units, up to parts_end. */
 #define first_node(lane) first_number + (lane)
-__kernel void packed_spring_forces(__global const uint* restrict units, __global const float* restrict nodes,
-                                   __global float* restrict forces, __global const uint2* restrict entries,
-                                   __global const float2* restrict materials, uint units_end, uint count) {
+__kernel void packed_spring_forces(__global const float* restrict nodes, __global float* restrict forces,
+                                   __global const uint* restrict units, __global const uint2* restrict entries,
+                                   __global const float2* restrict materials, uint parts_end, uint count) {
   const size_t begin = get_global_id(0) * count * units_at_a_time;
-  const size_t end = min(begin + count * units_at_a_time, (size_t)units_end);
+  const size_t end = min(begin + count * units_at_a_time, (size_t)parts_end * units_at_a_time);
   uint slice = 0xffffffffu;
   Node first[parts_at_a_time];
   for (size_t unit = begin; unit < end; unit += units_at_a_time) {

@@ -134,10 +134,6 @@ std::string program_text(int lanes, std::initializer_list<const char*> files) {
   return text;
 }
 
-std::string packed_springs_program_text(int lanes) {
-  return program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "packed_springs.cl"});
-}
-
 cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text) {
   const bool exact =
       (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;

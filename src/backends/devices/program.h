@@ -56,9 +56,6 @@ std::string name_of(const StoredStage& stage, Pair pair);
 /// store_velocity.
 std::string update_text(const StoredStage& stage);
 
-/// Text of the program that computes one force per packed spring (kernels/packed_springs.cl).
-std::string packed_springs_program_text(int lanes);
-
 /// The built program. Square roots and divisions are correctly rounded where the device can do that.
 /// Throws Unavailable with the compiler's first complaint.
 cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text);

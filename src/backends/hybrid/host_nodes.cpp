@@ -1,5 +1,7 @@
 #include "backends/hybrid/host_nodes.h"
 
+#include "backends/devices/program.h"
+
 namespace mssim {
 
 HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s)
@@ -18,6 +20,24 @@ HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s
     of_slot(packed.slot[node])[slice_nodes] = 0;
   }
   for (const std::uint32_t pin : system.pins) of_slot(packed.slot[pin])[slice_nodes] = 1;
+  for (const SpringMaterial& material : system.materials)
+    materials.push_back({static_cast<float>(material.stiffness), static_cast<float>(material.damping)});
+}
+
+SpringKernel HostNodes::spring_kernel(int lanes) const {
+  const std::size_t units_of_part = lanes == 1 ? 1 : PackedSprings::slice_nodes;
+  return {program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "packed_springs.cl"}),
+          "packed_spring_forces",
+          packed.unit_count() / units_of_part,
+          packed.slots() * record_floats,
+          4 * (packed.unit_count() + 1),  // what lies behind the forces of the units stays zero
+          {std::as_bytes(std::span(packed.units)), std::as_bytes(std::span(packed.entries)),
+           std::as_bytes(std::span(materials))}};
+}
+
+void HostNodes::forget_units() {
+  packed.units = {};
+  packed.entries = {};
 }
 
 }  // namespace mssim

@@ -111,7 +111,7 @@ void integrate(const HostNodes& nodes, const MappedNodes& mapped, std::size_t nu
   });
 }
 
-NodeKernel node_kernel() { return {hwy::TargetName(HWY_TARGET), &integrate}; }
+NodeKernel<HostNodes> node_kernel() { return {hwy::TargetName(HWY_TARGET), &integrate}; }
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -119,6 +119,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace mssim {
 HWY_EXPORT(node_kernel);
-std::vector<NodeKernel> node_kernels() { return kernels_of_this_processor(HWY_DISPATCH_TABLE(node_kernel)); }
+std::vector<NodeKernel<HostNodes>> node_kernels() {
+  return kernels_of_this_processor(HWY_DISPATCH_TABLE(node_kernel));
+}
 }  // namespace mssim
 #endif

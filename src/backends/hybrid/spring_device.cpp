@@ -2,36 +2,25 @@
 
 #include <cstdint>
 
-#include "backends/devices/program.h"
-
 namespace mssim {
-namespace {
 
-/// Units that a work-item takes at a time (kernels/packed_springs.cl).
-std::size_t units_at_a_time(int lanes) { return lanes == 1 ? 1 : PackedSprings::slice_nodes; }
-
-}  // namespace
-
-SpringDevice::SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
+SpringDevice::SpringDevice(const SpringKernel& spring_kernel, const std::vector<Pair>& stored,
                            const OpenclDevice& device, int lanes, DeviceMemory memory)
-    : chunks_(packed.unit_count() / units_at_a_time(lanes), device, lanes), queue_(device, memory) {
-  const std::size_t pair_floats = packed.slots() * record_floats;
-  const std::size_t force_floats = 4 * (packed.unit_count() + 1);
-  std::vector<std::uint64_t> buffers(stored.size(), pair_floats * sizeof(float));
-  buffers.insert(buffers.end(),
-                 {packed.units.size() * sizeof(cl_uint), packed.entries.size() * sizeof(PackedSprings::Entry),
-                  force_floats * sizeof(float)});
+    : chunks_(spring_kernel.parts, device, lanes), queue_(device, memory) {
+  std::vector<std::uint64_t> buffers(stored.size(), spring_kernel.pair_floats * sizeof(float));
+  for (const std::span<const std::byte> constants : spring_kernel.constants)
+    buffers.push_back(constants.size());
+  buffers.push_back(spring_kernel.force_floats * sizeof(float));
   require_memory(device, buffers);
 
   for (const Pair pair : stored) {
     auto& buffer = pairs_[index(pair)];
-    buffer = queue_.zeros<float>(pair_floats);
+    buffer = queue_.zeros<float>(spring_kernel.pair_floats);
     host_pairs_[index(pair)] = buffer->map(queue_.commands(), CL_MAP_WRITE);
   }
-  // What lies behind the forces of the units stays zero.
-  forces_ = queue_.zeros<float>(force_floats);
+  forces_ = queue_.zeros<float>(spring_kernel.force_floats);
   host_forces_ = forces_->map(queue_.commands(), CL_MAP_READ);
-  if (packed.unit_count() > 0) make_launch(system, packed, lanes);
+  if (spring_kernel.parts > 0) make_launch(spring_kernel);
 }
 
 SpringDevice::~SpringDevice() {
@@ -46,20 +35,16 @@ SpringDevice::~SpringDevice() {
   }
 }
 
-void SpringDevice::make_launch(const System& system, const PackedSprings& packed, int lanes) {
-  std::vector<Material> materials;
-  for (const SpringMaterial& material : system.materials)
-    materials.push_back({static_cast<float>(material.stiffness), static_cast<float>(material.damping)});
-  units_ = queue_.copy_of(std::span<const cl_uint>(packed.units));
-  entries_ = queue_.copy_of(std::span<const PackedSprings::Entry>(packed.entries));
-  materials_ = queue_.copy_of(std::span<const Material>(materials));
-  cl::Kernel kernel(queue_.build(packed_springs_program_text(lanes)), "packed_spring_forces");
-  kernel.setArg(0, units_->buffer());
-  kernel.setArg(2, forces_->buffer());
-  kernel.setArg(3, entries_->buffer());
-  kernel.setArg(4, materials_->buffer());
-  kernel.setArg(5, static_cast<cl_uint>(packed.unit_count()));
-  kernel.setArg(6, static_cast<cl_uint>(chunks_.per_item));
+void SpringDevice::make_launch(const SpringKernel& spring_kernel) {
+  cl::Kernel kernel(queue_.build(spring_kernel.text), spring_kernel.name);
+  kernel.setArg(1, forces_->buffer());
+  cl_uint argument = 2;
+  for (const std::span<const std::byte> constants : spring_kernel.constants) {
+    constants_.push_back(queue_.copy_of(constants));
+    kernel.setArg(argument++, constants_.back().buffer());
+  }
+  kernel.setArg(argument++, static_cast<cl_uint>(spring_kernel.parts));
+  kernel.setArg(argument, static_cast<cl_uint>(chunks_.per_item));
   launch_ = {kernel, chunks_.items};
 }
 
@@ -69,7 +54,7 @@ void SpringDevice::compute_forces(Pair stored) {
   auto& host_pair = host_pairs_[index(stored)];
   forces_->unmap(queue_.commands(), host_forces_, CL_MAP_READ);
   pair.unmap(queue_.commands(), host_pair, CL_MAP_WRITE);
-  launch_->kernel.setArg(1, pair.buffer());
+  launch_->kernel.setArg(0, pair.buffer());
   queue_.launch(*launch_);
   host_pair = pair.map(queue_.commands(), CL_MAP_WRITE, false);
   host_forces_ = forces_->map(queue_.commands(), CL_MAP_READ);

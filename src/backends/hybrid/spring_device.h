@@ -2,6 +2,7 @@
 
 #include <CL/opencl.hpp>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,10 +11,8 @@
 #include "backends/devices/device.h"
 #include "backends/devices/device_queue.h"
 #include "backends/devices/work_items.h"
-#include "backends/layouts/node_records.h"
-#include "backends/layouts/packed_springs.h"
+#include "backends/hybrid/spring_kernel.h"
 #include "integrators/integrator.h"
-#include "model/system.h"
 
 namespace mssim {
 
@@ -21,25 +20,24 @@ namespace mssim {
 /// takes turns with the host to use. Between calls the host has them.
 class SpringDevice {
  public:
-  /// Takes `lanes` springs side by side (1, 4, 8 or 16). `stored`: the pairs that the integrator needs; all
-  /// are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
-  SpringDevice(const System& system, const PackedSprings& packed, const std::vector<Pair>& stored,
-               const OpenclDevice& device, int lanes, DeviceMemory memory);
+  /// `lanes`: those that the kernel was written for. `stored`: the pairs that the integrator needs; they and
+  /// the forces are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
+  SpringDevice(const SpringKernel& spring_kernel, const std::vector<Pair>& stored, const OpenclDevice& device,
+               int lanes, DeviceMemory memory);
   ~SpringDevice();
   SpringDevice(const SpringDevice&) = delete;
   SpringDevice& operator=(const SpringDevice&) = delete;
 
   const DeviceQueue& queue() const { return queue_; }
-  /// The records of a stored pair, [slots][record_floats].
+  /// The nodes of a stored pair.
   std::span<float> pair(Pair stored) const { return host_pairs_[index(stored)]; }
-  /// Forces as PackedSprings places them, four floats each, N.
   const float* forces() const { return host_forces_.data(); }
 
   /// Computes the forces of all springs in a stored pair, and waits for them. Throws cl::Error.
   void compute_forces(Pair stored);
 
  private:
-  void make_launch(const System& system, const PackedSprings& packed, int lanes);
+  void make_launch(const SpringKernel& spring_kernel);
 
   OpenclChunks chunks_;
   DeviceQueue queue_;
@@ -47,13 +45,7 @@ class SpringDevice {
   std::array<std::span<float>, pair_kinds> host_pairs_;               // as mapped
   std::optional<OpenclBuffer<float>> forces_;
   std::span<float> host_forces_;  // as mapped
-  std::optional<OpenclBuffer<cl_uint>> units_;
-  std::optional<OpenclBuffer<PackedSprings::Entry>> entries_;
-  struct Material {
-    float stiffness;  // N/m
-    float damping;    // N s/m
-  };
-  std::optional<OpenclBuffer<Material>> materials_;
+  std::vector<OpenclBuffer<std::byte>> constants_;
   std::optional<Launch> launch_;  // none without springs
 };
 

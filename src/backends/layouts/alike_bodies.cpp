@@ -90,16 +90,14 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
   return all;
 }
 
-std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes) {
-  // openmp takes a third of the time for a spring of all lanes as for two entries of SlicedBodies, which
-  // compute each spring twice but leave no lane empty.
-  constexpr std::size_t gain = 3;
+std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes,
+                                                         std::size_t per_body) {
   std::optional<std::vector<AlikeBodies>> bodies = find_alike_bodies(system);
   if (!bodies) return bodies;
-  std::size_t cost = 0;
+  std::size_t springs_of_lanes = 0;
   for (const AlikeBodies& of : *bodies)
-    cost += (of.bodies.size() + lanes - 1) / lanes * lanes * of.springs.size();
-  if (cost > gain * system.springs.size()) bodies.reset();
+    springs_of_lanes += (of.bodies.size() + lanes - 1) / lanes * lanes * of.springs.size();
+  if (springs_of_lanes > per_body * system.springs.size()) bodies.reset();
   return bodies;
 }
 

@@ -36,7 +36,8 @@ struct AlikeBodies {
 std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system);
 
 /// The same where they are worth a vector of so many lanes for each of their springs (AlikeSlices): where at
-/// least a third of the lanes have a body of their own, counted over the springs.
-std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes);
+/// least one of `per_body` lanes has a body of its own, counted over the springs.
+std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes,
+                                                         std::size_t per_body);
 
 }  // namespace mssim

@@ -65,7 +65,7 @@ std::vector<System> systems() {
 
 class EachNodeKernel : public testing::TestWithParam<std::size_t> {
  protected:
-  const NodeKernel kernel = node_kernels()[GetParam()];
+  const NodeKernel<HostNodes> kernel = node_kernels()[GetParam()];
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNodeKernel,
                          testing::Range(std::size_t{0}, node_kernels().size()), [](const auto& test) {

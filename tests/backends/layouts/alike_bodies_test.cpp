@@ -85,20 +85,22 @@ TEST(AlikeBodies, AreNotSoughtWhereNodesThatSpringsJoinAreUnlike) {
 
 TEST(AlikeBodies, AreForLanesWhereTheyAreMany) {
   const System block = solid_block(3, 3, 3);
-  EXPECT_FALSE(alike_bodies_for(block, 16));
-  EXPECT_FALSE(alike_bodies_for(alike_bodies(block, 5), 16));
-  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 6), 16));
-  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 3), 8));
-  EXPECT_FALSE(alike_bodies_for(block, 4));
-  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 2), 4));
-  EXPECT_TRUE(alike_bodies_for(block, 1));
+  EXPECT_FALSE(alike_bodies_for(block, 16, 3));
+  EXPECT_FALSE(alike_bodies_for(alike_bodies(block, 5), 16, 3));
+  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 6), 16, 3));
+  EXPECT_FALSE(alike_bodies_for(alike_bodies(block, 6), 16, 2));
+  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 8), 16, 2));
+  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 3), 8, 3));
+  EXPECT_FALSE(alike_bodies_for(block, 4, 3));
+  EXPECT_TRUE(alike_bodies_for(alike_bodies(block, 2), 4, 3));
+  EXPECT_TRUE(alike_bodies_for(block, 1, 3));
   System mixed = alike_bodies(block, 16);
-  EXPECT_TRUE(alike_bodies_for(mixed, 16));
+  EXPECT_TRUE(alike_bodies_for(mixed, 16, 3));
   append_body(mixed, solid_block(9, 9, 9), {9, 0, 0});
-  EXPECT_FALSE(alike_bodies_for(mixed, 16)) << "most of its springs are in one body";
+  EXPECT_FALSE(alike_bodies_for(mixed, 16, 3)) << "most of its springs are in one body";
   System unlike = alike_bodies(block, 16);
   unlike.node_mass[3] *= 2;
-  EXPECT_FALSE(alike_bodies_for(unlike, 16));
+  EXPECT_FALSE(alike_bodies_for(unlike, 16, 3));
 }
 
 }  // namespace

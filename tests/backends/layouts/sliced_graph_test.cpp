@@ -101,8 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Widths, SlicedGraphOfLanes, testing::Values(1, 4, 8, 16
 TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThatEnd) {
   for (const System& system : bodies()) {
     const SlicedGraph graph(system, GetParam());
-    const std::vector<std::uint32_t> place =
-        places_in(reverse_cuthill_mckee(system.nodes(), system.springs));
+    const std::vector<std::uint32_t> place = places_in(reverse_cuthill_mckee(system.nodes(), system.springs));
     ASSERT_EQ(graph.nodes(), system.nodes());
     std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
     for (const Spring& spring : system.springs)

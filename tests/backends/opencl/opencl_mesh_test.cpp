@@ -46,9 +46,11 @@ INSTANTIATE_TEST_SUITE_P(Tables, EachWidthAndIntegrator,
                          });
 
 TEST_P(EachWidthAndIntegrator, AgreesWithTheReferenceOnBodiesOfAnySize) {
-  // One tetrahedral cube, fewer nodes than lanes, sizes that no number of lanes divides, two bodies in one.
-  for (const System& system : {solid_block(2, 2, 2), solid_block(2, 3, 2), solid_block(3, 4, 5),
-                               solid_block(7, 5, 6), two_solid_blocks()}) {
+  // One tetrahedral cube, fewer nodes than lanes, sizes that no number of lanes divides, two bodies in one,
+  // more and fewer alike ones than lanes.
+  for (const System& system :
+       {solid_block(2, 2, 2), solid_block(2, 3, 2), solid_block(3, 4, 5), solid_block(7, 5, 6),
+        two_solid_blocks(), alike_bodies(solid_block(3, 4, 3), 19), alike_bodies(solid_block(3, 4, 3), 9)}) {
     const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
     ASSERT_FALSE(reference.failure) << *reference.failure;
     ASSERT_EQ(reference.steps, verification_steps);
@@ -59,19 +61,21 @@ TEST_P(EachWidthAndIntegrator, AgreesWithTheReferenceOnBodiesOfAnySize) {
 }
 
 TEST_P(EachWidthAndIntegrator, HoldsPinsExactlyAndMovesTheirNeighboursLikeTheReference) {
-  System system = solid_block(5, 4, 6);
-  const auto last = static_cast<std::uint32_t>(system.nodes() - 1);
-  system.pins = {0, 1, 17, 50, last};
-  for (const std::uint32_t pin : system.pins) system.start.velocity[pin] = {};
-  const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
-  ASSERT_FALSE(reference.failure) << *reference.failure;
-  const auto simulation = make(system);
-  const Verification verification = verify(*simulation, system, reference, backend_dt_of(integrator()));
-  EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
-  const State state = simulation->state();
-  for (const std::uint32_t pin : system.pins) {
-    EXPECT_EQ(state.position[pin], system.start.position[pin]) << pin;
-    EXPECT_EQ(state.velocity[pin], Vec3d{}) << pin;
+  System block = solid_block(5, 4, 6);
+  const auto last = static_cast<std::uint32_t>(block.nodes() - 1);
+  block.pins = {0, 1, 17, 50, last};
+  for (const std::uint32_t pin : block.pins) block.start.velocity[pin] = {};
+  for (const System& system : {block, alike_bodies(block, 9)}) {
+    const Reference reference = run_reference(system, integrator(), backend_dt_of(integrator()));
+    ASSERT_FALSE(reference.failure) << *reference.failure;
+    const auto simulation = make(system);
+    const Verification verification = verify(*simulation, system, reference, backend_dt_of(integrator()));
+    EXPECT_FALSE(verification.failure) << verification.failure.value_or("");
+    const State state = simulation->state();
+    for (const std::uint32_t pin : system.pins) {
+      EXPECT_EQ(state.position[pin], system.start.position[pin]) << pin;
+      EXPECT_EQ(state.velocity[pin], Vec3d{}) << pin;
+    }
   }
 }
 
@@ -162,36 +166,37 @@ TEST(OpenclMeshes, TakeSpringsOfSeveralMaterialsInOneNodeInHybrid) {
 }
 
 TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
-  const System system = solid_block(7, 5, 6);
-  for (const Integrator& integrator : integrators) {
-    const auto run = [&](const OpenclVariant& way) {
-      const auto backend = way.make(system, integrator, backend_dt_of(integrator));
-      backend->step(30);
-      return backend->state().position;
-    };
-    for (const int lanes : opencl_lanes) {
-      if (lanes == 1) continue;  // a GPU's kernels sum in another order
-      for (const bool hybrid : {false, true})
-        EXPECT_EQ(run({hybrid, lanes}), run({hybrid, most_opencl_lanes})) << integrator.name << ", " << lanes;
+  for (const System& system : {solid_block(7, 5, 6), alike_bodies(solid_block(3, 4, 3), 19)})
+    for (const Integrator& integrator : integrators) {
+      const auto run = [&](const OpenclVariant& way) {
+        const auto backend = way.make(system, integrator, backend_dt_of(integrator));
+        backend->step(30);
+        return backend->state().position;
+      };
+      for (const int lanes : opencl_lanes) {
+        if (lanes == 1) continue;  // a GPU's kernels sum in another order
+        for (const bool hybrid : {false, true})
+          EXPECT_EQ(run({hybrid, lanes}), run({hybrid, most_opencl_lanes}))
+              << integrator.name << ", " << lanes;
+      }
+      EXPECT_EQ(run({true, most_opencl_lanes, 1}), run({true, most_opencl_lanes, 3})) << integrator.name;
     }
-    EXPECT_EQ(run({true, most_opencl_lanes, 1}), run({true, most_opencl_lanes, 3})) << integrator.name;
-  }
 }
 
 TEST(OpenclMeshes, GiveTheSameBitsHoweverMemoryIsSharedOrCopied) {
-  const System system = two_solid_blocks();
-  for (const Integrator& integrator : integrators)
-    for (const OpenclVariant way : {OpenclVariant{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
-      std::vector<State> found;
-      for (const DeviceInMemory& memory : ways_to_memory()) {
-        const auto backend = way.make_in(memory, system, integrator, backend_dt_s);
-        backend->step(31);
-        found.push_back(backend->state());
-        EXPECT_EQ(found.back().position, found[0].position) << memory.name << ", " << integrator.name;
-        EXPECT_EQ(found.back().velocity, found[0].velocity) << memory.name << ", " << integrator.name;
+  for (const System& system : {two_solid_blocks(), alike_bodies(solid_block(3, 4, 3), 11)})
+    for (const Integrator& integrator : integrators)
+      for (const OpenclVariant way : {OpenclVariant{false, most_opencl_lanes}, {true, most_opencl_lanes}}) {
+        std::vector<State> found;
+        for (const DeviceInMemory& memory : ways_to_memory()) {
+          const auto backend = way.make_in(memory, system, integrator, backend_dt_s);
+          backend->step(31);
+          found.push_back(backend->state());
+          EXPECT_EQ(found.back().position, found[0].position) << memory.name << ", " << integrator.name;
+          EXPECT_EQ(found.back().velocity, found[0].velocity) << memory.name << ", " << integrator.name;
+        }
+        EXPECT_NE(found[0].position, system.start.position);
       }
-      EXPECT_NE(found[0].position, system.start.position);
-    }
 }
 
 TEST(OpenclMeshes, SayWhyTheyDoNotFit) {
