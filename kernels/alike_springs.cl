@@ -1,25 +1,15 @@
 /* One acceleration per spring of alike bodies, as packed_springs.cl computes one force per spring: the
  * device's share of hybrid where a scene has enough alike bodies.
  *
- * The ends of a spring are two slices, of a node of sixteen bodies each (AlikeSlices and AlikeSprings in
- * src/backends/layouts): nothing is gathered.
+ * The ends of a spring are two slices (alike_slices.h; AlikeSprings in src/backends/layouts): nothing is
+ * gathered.
  */
-#define slice_nodes 16
-#define spring_parts (slice_nodes / MSSIM_LANES)
+#define spring_parts (MSSIM_SLICE / MSSIM_LANES)
 
-static inline Vector load_components(__global const float* from) {
-  const Vector value = {load_aligned(from), load_aligned(from + slice_nodes), load_aligned(from + 2 * slice_nodes)};
-  return value;
-}
-static inline Node load_slice(__global const float* from) {
-  const Node node = {load_components(from), load_components(from + 3 * slice_nodes)};
-  return node;
-}
-
-/* nodes: [slices][x y z u v w][16]. forces: [springs][x y z][16], accelerations (m/s^2) of the first ends; on
+/* nodes: slices (alike_slices.h). forces: [springs][x y z][16], accelerations (m/s^2) of the first ends; on
  * the second ends they are the opposite. springs: first slice, second slice, stiffness times rest length /
- * mass (the bits of a float, m/s^2), and an index into shapes: stiffness / mass (1/s^2), damping / mass (1/s).
- * A work-item takes `count` parts of springs, MSSIM_LANES lanes each, up to parts_end. */
+ * mass (the bits of a float, m/s^2), and an index into shapes: stiffness / mass (1/s^2), damping / mass
+ * (1/s). A work-item takes `count` parts of springs, MSSIM_LANES lanes each, up to parts_end. */
 __kernel void alike_spring_forces(__global const float* restrict nodes, __global float* restrict forces,
                                   __global const uint4* restrict springs,
                                   __global const float2* restrict shapes, uint parts_end, uint count) {
@@ -29,15 +19,11 @@ __kernel void alike_spring_forces(__global const float* restrict nodes, __global
     const size_t number = part / spring_parts, lane = part % spring_parts * MSSIM_LANES;
     const uint4 spring = springs[number];
     const float2 shape = shapes[spring.w];
-    const Node first = load_slice(nodes + (size_t)spring.x * 6 * slice_nodes + lane);
-    const Node second = load_slice(nodes + (size_t)spring.y * 6 * slice_nodes + lane);
+    const Node first = load_node_of_slice(nodes + slice_floats * (size_t)spring.x + lane);
+    const Node second = load_node_of_slice(nodes + slice_floats * (size_t)spring.y + lane);
     const Vector d = minus(second.x, first.x);
-    const Real pull = spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d), (Real)(shape.x),
-                                  (Real)(as_float(spring.z)), (Real)(shape.y));
-    const Vector force = times(pull, d);
-    __global float* to = forces + number * 3 * slice_nodes + lane;
-    store_aligned(force.x, to);
-    store_aligned(force.y, to + slice_nodes);
-    store_aligned(force.z, to + 2 * slice_nodes);
+    const Real pull = spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d),
+                                  (Real)(shape.x), (Real)(as_float(spring.z)), (Real)(shape.y));
+    store_to_slice(times(pull, d), forces + number * 3 * MSSIM_SLICE + lane);
   }
 }

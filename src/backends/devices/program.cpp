@@ -134,6 +134,11 @@ std::string program_text(int lanes, std::initializer_list<const char*> files) {
   return text;
 }
 
+std::string slices_program_text(std::size_t slice_nodes, int lanes,
+                                std::initializer_list<const char*> files) {
+  return "#define MSSIM_SLICE " + std::to_string(slice_nodes) + "\n" + program_text(lanes, files);
+}
+
 cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text) {
   const bool exact =
       (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;

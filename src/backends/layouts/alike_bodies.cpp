@@ -91,13 +91,14 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
 }
 
 std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes,
-                                                         std::size_t per_body) {
+                                                         double per_body) {
   std::optional<std::vector<AlikeBodies>> bodies = find_alike_bodies(system);
   if (!bodies) return bodies;
   std::size_t springs_of_lanes = 0;
   for (const AlikeBodies& of : *bodies)
     springs_of_lanes += (of.bodies.size() + lanes - 1) / lanes * lanes * of.springs.size();
-  if (springs_of_lanes > per_body * system.springs.size()) bodies.reset();
+  if (static_cast<double>(springs_of_lanes) > per_body * static_cast<double>(system.springs.size()))
+    bodies.reset();
   return bodies;
 }
 

@@ -38,6 +38,6 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system);
 /// The same where they are worth a vector of so many lanes for each of their springs (AlikeSlices): where at
 /// least one of `per_body` lanes has a body of its own, counted over the springs.
 std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, std::size_t lanes,
-                                                         std::size_t per_body);
+                                                         double per_body);
 
 }  // namespace mssim

@@ -10,7 +10,6 @@
 #include "backends/layouts/sliced_graph.h"
 #include "backends/opencl/mesh_program.h"
 #include "backends/opencl/stages.h"
-#include "kernels/mesh_parameters.h"
 
 namespace mssim {
 namespace {

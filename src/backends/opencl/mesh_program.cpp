@@ -7,17 +7,30 @@
 namespace mssim {
 namespace {
 
-std::string kernel_text(const StoredStage& stage) {
+/// What a kernel is given of the bodies, and what it knows of them.
+struct MeshText {
+  const char* parameters;
+  const char* members;  ///< of Mesh
+};
+constexpr MeshText sliced{
+    "__global const uint* restrict first_entry, __global const uint* restrict neighbour,\n"
+    "    __global const float* restrict stiffness_rest, __global const float* restrict stiffness,\n"
+    "    __global const float* restrict damping, __global const int* restrict held",
+    "first_entry, neighbour, stiffness_rest, stiffness, damping, held"};
+constexpr MeshText alike{
+    "__global const uint4* restrict slices, __global const uint2* restrict springs,\n"
+    "    __global const float2* restrict constants",
+    "slices, springs, constants"};
+
+std::string kernel_text(const StoredStage& stage, const MeshText& mesh) {
   const std::size_t number = stage.number;
   const std::string gathered = name_of(stage, stage.stage().gather);
   std::ostringstream text;
   text << "__kernel void " << stage_kernel_name(number) << "(" << pair_parameters(stage)
        << "__constant struct StepParameters* step,\n"
-          "    __constant struct MeshParameters* parameters, __global const uint* restrict first_entry,\n"
-          "    __global const uint* restrict neighbour, __global const float* restrict stiffness_rest,\n"
-          "    __global const float* restrict stiffness, __global const float* restrict damping,\n"
-          "    __global const int* restrict held) {\n"
-          "  const Mesh mesh = {first_entry, neighbour, stiffness_rest, stiffness, damping, held};\n"
+          "    __constant struct MeshParameters* parameters, "
+       << mesh.parameters << ") {\n  const Mesh mesh = {" << mesh.members
+       << "};\n"
           "  const uint first = (uint)get_global_id(0) * parameters->tiles_per_item;\n"
           "  const uint end = min(first + parameters->tiles_per_item, parameters->tiles);\n"
           "  for (uint number = first; number < end; ++number) {\n"
@@ -30,6 +43,15 @@ std::string kernel_text(const StoredStage& stage) {
   return text.str();
 }
 
+/// A kernel for each stage behind what they have in common.
+std::string with_kernels(std::string text, const Integrator& integrator, const MeshText& mesh) {
+  for (std::size_t number = 0; number < integrator.stage_count; ++number) {
+    const StoredStage stage{integrator, number, Storage::separate};
+    text += update_text(stage) + kernel_text(stage, mesh);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::size_t mesh_slice_lanes(int lanes) {
@@ -38,16 +60,26 @@ std::size_t mesh_slice_lanes(int lanes) {
 }
 
 std::string mesh_program_text(const Integrator& integrator, int lanes) {
-  std::string text =
-      "#define MSSIM_SLICE " + std::to_string(mesh_slice_lanes(lanes)) + "\n" +
-      program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "acceleration_law.h", "floor_law.h",
-                           "surroundings.h", "touch_floor.h", "step_parameters.h", "stage.h",
-                           "mesh_parameters.h", "mesh_stage.cl"});
-  for (std::size_t number = 0; number < integrator.stage_count; ++number) {
-    const StoredStage stage{integrator, number, Storage::separate};
-    text += update_text(stage) + kernel_text(stage);
-  }
-  return text;
+  return with_kernels(
+      slices_program_text(
+          mesh_slice_lanes(lanes), lanes,
+          {"lanes.h", "records.h", "spring_law.h", "acceleration_law.h", "floor_law.h", "surroundings.h",
+           "touch_floor.h", "step_parameters.h", "stage.h", "mesh_parameters.h", "mesh_stage.cl"}),
+      integrator, sliced);
+}
+
+std::size_t alike_slice_lanes(int lanes) {
+  // Where a work-item owns one node, slices of as many bodies as vectors hold elsewhere leave few lanes
+  // empty.
+  return lanes > 1 ? static_cast<std::size_t>(lanes) : 16;
+}
+
+std::string alike_program_text(const Integrator& integrator, int lanes) {
+  return with_kernels(slices_program_text(alike_slice_lanes(lanes), lanes,
+                                          {"lanes.h", "spring_law.h", "acceleration_law.h", "floor_law.h",
+                                           "surroundings.h", "touch_floor.h", "step_parameters.h", "stage.h",
+                                           "mesh_parameters.h", "alike_slices.h", "alike_stage.cl"}),
+                      integrator, alike);
 }
 
 }  // namespace mssim

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "integrators/integrator.h"
+#include "kernels/mesh_parameters.h"
 
 namespace mssim {
 
@@ -13,5 +14,9 @@ std::string mesh_program_text(const Integrator& integrator, int lanes);
 
 /// Nodes in a slice of the graph that the program reads.
 std::size_t mesh_slice_lanes(int lanes);
+
+/// The same for alike bodies, over kernels/alike_stage.cl, and the bodies in a slice of them.
+std::string alike_program_text(const Integrator& integrator, int lanes);
+std::size_t alike_slice_lanes(int lanes);
 
 }  // namespace mssim

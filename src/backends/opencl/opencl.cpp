@@ -3,8 +3,10 @@
 #include "backends/devices/call.h"
 #include "backends/devices/offer.h"
 #include "backends/devices/sub_device.h"
+#include "backends/opencl/alike_mesh.h"
 #include "backends/opencl/grid.h"
 #include "backends/opencl/mesh.h"
+#include "backends/opencl/mesh_program.h"
 
 namespace mssim {
 
@@ -14,6 +16,11 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     if (const auto* grid = std::get_if<GridPatch>(&system.topology))
       return make_opencl_grid(system, *grid, integrator, dt_s, device, memory, lanes);
+    // With thirteen bodies in sixteen lanes a step takes 0.64 of the time that a sliced graph takes (PoCL on an
+    // Intel Xeon): so it is worth it from nine on.
+    constexpr double lanes_per_body = 1.8;
+    if (const auto alike = alike_bodies_for(system, alike_slice_lanes(lanes), lanes_per_body))
+      return make_opencl_alike_mesh(system, *alike, integrator, dt_s, device, memory, lanes);
     return make_opencl_mesh(system, integrator, dt_s, device, memory, lanes);
   });
 }

@@ -99,7 +99,7 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
   const BodyLanesKernel abreast = kernel_for(body_lanes_kernels(), instruction_set);
   // A vector of springs takes a third of the time of two entries of slices, which compute each spring twice
   // but leave no lane empty.
-  constexpr std::size_t lanes_per_body = 3;
+  constexpr double lanes_per_body = 3;
   if (const auto alike = alike_bodies_for(system, abreast.lanes, lanes_per_body))
     return std::make_unique<OpenMpBodies<BodyLanes, BodyLanesKernel>>(
         system, abreast, BodyLanes(system, *alike, integrator, dt_s, abreast.lanes, threads));

@@ -11,7 +11,10 @@
 #include <tuple>
 #include <vector>
 
+#include "backends/layouts/alike_bodies.h"
 #include "backends/layouts/packed_springs.h"
+#include "backends/opencl/mesh.h"
+#include "backends/opencl/mesh_program.h"
 #include "backends/reference.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
@@ -180,6 +183,27 @@ TEST(OpenclMeshes, GiveTheSameBitsWithAnyNumberOfLanesAndThreads) {
               << integrator.name << ", " << lanes;
       }
       EXPECT_EQ(run({true, most_opencl_lanes, 1}), run({true, most_opencl_lanes, 3})) << integrator.name;
+    }
+}
+
+TEST(OpenclMeshes, GiveABodyTheSameBitsAloneAndBesideOthersThatAreAlike) {
+  const System block = solid_block(3, 4, 3), system = alike_bodies(block, 19);
+  const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
+  for (const Integrator& integrator : integrators)
+    for (const int lanes : opencl_lanes) {
+      const double dt_s = backend_dt_of(integrator);
+      ASSERT_TRUE(alike_bodies_for(system, alike_slice_lanes(lanes), 1.8));
+      const auto beside = make_opencl(system, integrator, dt_s, device, lanes);
+      const auto alone = make_opencl_mesh(block, integrator, dt_s, device, DeviceMemory::shared, lanes);
+      beside->step(50);
+      alone->step(50);
+      State first = beside->state();
+      first.position.resize(block.nodes());
+      first.velocity.resize(block.nodes());
+      EXPECT_EQ(first.position, alone->state().position) << integrator.name << ", " << lanes;
+      EXPECT_EQ(first.velocity, alone->state().velocity) << integrator.name << ", " << lanes;
+      EXPECT_EQ(beside->stored_springs(), block.springs.size());
+      EXPECT_EQ(alone->stored_springs(), std::nullopt);
     }
 }
 

@@ -1,0 +1,65 @@
+/* What the stage kernels of alike bodies have in common, in place of mesh_stage.cl. A work-item takes tiles
+ * of a node of MSSIM_LANES bodies, one after the other, and every node gathers the forces of all its springs:
+ * whole vectors, as the neighbours of one body's node are the same as those of all others.
+ *
+ * A pair is an array of slices (alike_slices.h). Constants are per unit of node mass.
+ */
+typedef struct {
+  __global const uint4* slices;     /* where its springs begin and end, its bodies' first slice, 1: pinned */
+  __global const uint2* springs;    /* the neighbour's slice, from the bodies' first one on; stiffness times
+                                       rest length, m/s^2, the bits of a float */
+  __global const float2* constants; /* of a slice: stiffness, 1/s^2, and damping, 1/s */
+} Mesh;
+typedef const Mesh* Shape;
+
+/* Where the nodes of MSSIM_LANES bodies are. */
+typedef struct {
+  size_t slice, lane;
+  Mask free;
+} Tile;
+
+static inline Tile tile_at(uint number, const Mesh* mesh) {
+  const size_t first = (size_t)number * MSSIM_LANES;
+  Tile tile;
+  tile.slice = first / MSSIM_SLICE;
+  tile.lane = first % MSSIM_SLICE;
+  tile.free = all_lanes(mesh->slices[tile.slice].w == 0);
+  return tile;
+}
+#define own_floats(pair, tile) ((pair) + slice_floats * (tile).slice + (tile).lane)
+
+static inline Node load_node(__global const float* restrict pair, Tile tile) {
+  return load_node_of_slice(own_floats(pair, tile));
+}
+
+/* The tile's own vectors in a pair. */
+static inline Vector load_position(__global const float* pair, Tile tile, Shape mesh) {
+  return load_of_slice(own_floats(pair, tile));
+}
+static inline Vector load_velocity(__global const float* pair, Tile tile, Shape mesh) {
+  return load_of_slice(own_floats(pair, tile) + 3 * MSSIM_SLICE);
+}
+static inline void store_position(Vector value, __global float* pair, Tile tile, Shape mesh) {
+  store_to_slice(value, own_floats(pair, tile));
+}
+static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape mesh) {
+  store_to_slice(value, own_floats(pair, tile) + 3 * MSSIM_SLICE);
+}
+
+/* The forces of all springs on the tile's nodes, m/s^2. */
+static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node,
+                                    const Mesh* mesh) {
+  const uint4 own = mesh->slices[tile.slice];
+  const float2 constants = mesh->constants[tile.slice];
+  __global const float* bodies = pair + slice_floats * (size_t)own.z + tile.lane;
+  Vector sum = no_vector();
+  for (uint number = own.x; number < own.y; ++number) {
+    const uint2 spring = mesh->springs[number];
+    const Node other = load_node_of_slice(bodies + slice_floats * (size_t)spring.x);
+    const Vector d = minus(other.x, node.x);
+    const Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, node.v), d),
+                                  (Real)(constants.x), (Real)(as_float(spring.y)), (Real)(constants.y));
+    sum = times_plus(pull, d, sum);
+  }
+  return sum;
+}
