@@ -47,7 +47,8 @@ static inline void forces_of_units(Node first, __global const uint* restrict sec
  * A work-item takes `count` parts of units_at_a_time units, up to parts_end. */
 #define first_node(lane) first_number + (lane)
 __kernel void packed_spring_forces(__global const float* restrict nodes, __global float* restrict forces,
-                                   __global const uint* restrict units, __global const uint2* restrict entries,
+                                   __global const uint* restrict units,
+                                   __global const uint2* restrict entries,
                                    __global const float2* restrict materials, uint parts_end, uint count) {
   const size_t begin = get_global_id(0) * count * units_at_a_time;
   const size_t end = min(begin + count * units_at_a_time, (size_t)parts_end * units_at_a_time);

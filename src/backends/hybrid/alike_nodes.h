@@ -23,7 +23,7 @@ struct AlikeNodes {
   AlikeNodes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
              double dt_s);
 
-  std::size_t slices() const { return springs.slices.slices(); }
+  std::size_t slices() const { return springs.slices.count; }
   void write(const State& state, float* pair) const { springs.slices.write(state, pair); }
   State read(const float* pair) const { return springs.slices.read(pair); }
   std::uint64_t stored_springs() const { return springs.subtracted.size(); }

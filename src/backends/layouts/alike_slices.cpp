@@ -10,7 +10,8 @@ AlikeSlices::AlikeSlices(const std::vector<AlikeBodies>& bodies, std::size_t lan
     const std::vector<std::vector<std::uint32_t>>& all = bodies[shape].bodies;
     nodes += all.size() * bodies[shape].nodes();
     for (std::size_t first = 0; first < all.size(); first += lanes) {
-      groups.push_back({shape, slices()});
+      groups.push_back({shape, count});
+      count += bodies[shape].nodes();
       for (std::size_t node = 0; node < bodies[shape].nodes(); ++node)
         for (std::size_t lane = 0; lane < lanes; ++lane)
           scene_node.push_back(all[first + lane < all.size() ? first + lane : first][node]);
@@ -19,7 +20,7 @@ AlikeSlices::AlikeSlices(const std::vector<AlikeBodies>& bodies, std::size_t lan
 }
 
 void AlikeSlices::write(const State& state, float* pair) const {
-  for (std::size_t slice = 0; slice < slices(); ++slice, pair += components * lanes)
+  for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::uint32_t node = scene_node[slice * lanes + lane];
       const Vec3<float> x = vec3_cast<float>(state.position[node]),
@@ -31,7 +32,7 @@ void AlikeSlices::write(const State& state, float* pair) const {
 
 State AlikeSlices::read(const float* pair) const {
   State state{std::vector<Vec3d>(nodes), std::vector<Vec3d>(nodes)};
-  for (std::size_t slice = 0; slice < slices(); ++slice, pair += components * lanes)
+  for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::uint32_t node = scene_node[slice * lanes + lane];
       const auto value = [&](std::size_t i) { return static_cast<double>(pair[i * lanes + lane]); };

@@ -23,11 +23,11 @@ struct AlikeSlices {
 
   std::size_t lanes = 0;
   std::size_t nodes = 0;                  ///< of the scene
+  std::size_t count = 0;                  ///< slices
   std::vector<Group> groups;              ///< shape after shape
   std::vector<std::uint32_t> scene_node;  ///< [slices][lanes]
 
   AlikeSlices(const std::vector<AlikeBodies>& bodies, std::size_t lane_count);
-  std::size_t slices() const { return scene_node.size() / lanes; }
   std::size_t floats() const { return scene_node.size() * components; }  ///< of a pair
   /// To and from a pair, [slices][components][lanes]. Rounds to float.
   void write(const State& state, float* pair) const;

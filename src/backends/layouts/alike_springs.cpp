@@ -17,7 +17,7 @@ AlikeSprings::AlikeSprings(const std::vector<AlikeBodies>& bodies) : slices(bodi
     throw Unsupported("the scene has " + std::to_string(count) +
                       " springs for each lane; hybrid supports at most " + std::to_string(largest));
   springs.reserve(count);
-  std::vector<std::uint32_t> ends(slices.slices(), 0);
+  std::vector<std::uint32_t> ends(slices.count, 0);
   for (const AlikeSlices::Group& group : slices.groups) {
     const AlikeBodies& of = bodies[group.shape];
     const auto slice = static_cast<std::uint32_t>(group.first_slice);
@@ -34,7 +34,7 @@ AlikeSprings::AlikeSprings(const std::vector<AlikeBodies>& bodies) : slices(bodi
   }
   first_end.push_back(static_cast<std::uint32_t>(springs.size()));
 
-  first_subtracted.assign(slices.slices() + 1, 0);
+  first_subtracted.assign(slices.count + 1, 0);
   std::partial_sum(ends.begin(), ends.end(), first_subtracted.begin() + 1);
   std::vector<std::uint32_t> next(first_subtracted.begin(), first_subtracted.end() - 1);
   subtracted.resize(springs.size());

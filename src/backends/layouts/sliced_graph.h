@@ -26,10 +26,10 @@ struct GraphPart {
 /// accelerations.
 ///
 /// A slice has as many entries as its node of the largest degree, its neighbours in the order before windows
-/// were sorted; entry e of the slice gives each lane's node one neighbour, in elements e * lanes + lane of `neighbour` and
-/// `stiffness_rest`. Nodes of smaller degree end with empty entries: the node itself for a neighbour, and
-/// empty_entry, which is negative as no spring's is, for stiffness_rest. They must give no force: their
-/// length is 0, so that any finite pull gives none.
+/// were sorted; entry e of the slice gives each lane's node one neighbour, in elements e * lanes + lane of
+/// `neighbour` and `stiffness_rest`. Nodes of smaller degree end with empty entries: the node itself for a
+/// neighbour, and empty_entry, which is negative as no spring's is, for stiffness_rest. They must give no
+/// force: their length is 0, so that any finite pull gives none.
 ///
 /// Places after the last node fill up the last slice: held, with empty entries only.
 ///

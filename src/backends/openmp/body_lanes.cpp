@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "backends/interface/backend.h"
+#include "backends/threads/chunk_tickets.h"
 
 namespace mssim {
 namespace {
@@ -14,7 +15,8 @@ namespace {
 /// What a node costs beside its springs, in springs.
 constexpr std::size_t node_cost = 2;
 
-/// A chunk of several pieces costs so many springs at least, unless there are no more: some microseconds.
+/// A chunk takes pieces until they cost so many springs, unless these were too many chunks: some
+/// microseconds.
 constexpr std::size_t chunk_cost = 1024;
 
 /// Springs for each time that a waiting thread looks whether others are ready: it takes 35 ns on an Intel
@@ -147,10 +149,13 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
   }
 
   const std::vector<Cut> cuts = cut_groups_into(slices.groups, costs, std::max<std::size_t>(1, thread_count));
-  std::size_t cost = chunk_cost, largest = 0;
+  std::size_t all = 0;
+  for (const Cut& cut : cuts) all += cut.cost;
+  const std::size_t least = std::max(chunk_cost, all / (ChunkTickets::most_chunks / 2));
+  std::size_t cost = least, largest = 0;
   for (const Cut& cut : cuts) {
     const bool next_share = !pieces.empty() && cut.share != cuts[pieces.size() - 1].share;
-    if (cost >= chunk_cost || next_share) {
+    if (cost >= least || next_share) {
       chunks.push_back({pieces.size(), pieces.size()});
       cost = 0;
     }

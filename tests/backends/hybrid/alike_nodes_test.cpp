@@ -79,7 +79,7 @@ TEST_P(EachAlikeNodeKernel, AddsAForceAtTheFirstEndSubtractsItAtTheSecondAndTake
       a[slices.scene_node[spring.second * AlikeSprings::slice_nodes + lane]] -= stage.force(s, lane);
     }
   }
-  kernel.integrate(stage.nodes, stage.mapped, 0, 0, slices.slices());
+  kernel.integrate(stage.nodes, stage.mapped, 0, 0, slices.count);
   // What repeats the first body of a group has other forces here: read() takes the lane behind the others.
   const float* next = stage.mapped.pairs[index(Pair::next)];
   std::vector<bool> seen(system.nodes(), false);

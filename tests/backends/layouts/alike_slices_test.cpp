@@ -22,7 +22,7 @@ TEST(AlikeSlices, HoldEveryNodeInTheLaneOfItsBody) {
       EXPECT_EQ(group.first_slice, next);
       next += bodies[group.shape].nodes();
     }
-    EXPECT_EQ(next, slices.slices());
+    EXPECT_EQ(next, slices.count);
     for (std::size_t group = 0; group + 1 < slices.groups.size(); ++group)
       for (std::size_t node = 0; node < 36; ++node)
         for (std::size_t lane = 0; lane < lanes; ++lane) {

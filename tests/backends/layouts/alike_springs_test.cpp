@@ -20,9 +20,9 @@ TEST(AlikeSprings, GiveEachSpringOfEachBodyToBothOfItsEndsOnce) {
   append_body(system, alike_bodies(solid_block(2, 2, 2), 3), {0, 0, 1});
   const AlikeSprings springs(*find_alike_bodies(system));
   const AlikeSlices& slices = springs.slices;
-  ASSERT_EQ(springs.pinned.size(), slices.slices());
-  ASSERT_EQ(springs.first_end.size(), slices.slices() + 1);
-  ASSERT_EQ(springs.first_subtracted.size(), slices.slices() + 1);
+  ASSERT_EQ(springs.pinned.size(), slices.count);
+  ASSERT_EQ(springs.first_end.size(), slices.count + 1);
+  ASSERT_EQ(springs.first_subtracted.size(), slices.count + 1);
   EXPECT_EQ(std::ranges::count(springs.pinned, 1), 2) << "a node of two groups";
 
   std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
@@ -30,7 +30,7 @@ TEST(AlikeSprings, GiveEachSpringOfEachBodyToBothOfItsEndsOnce) {
     expected[std::minmax(spring.first, spring.second)] =
         static_cast<float>(200 * static_cast<double>(spring.rest_length) / 0.004);
   std::vector<int> subtracted(springs.springs.size(), 0);
-  for (std::uint32_t slice = 0; slice < slices.slices(); ++slice) {
+  for (std::uint32_t slice = 0; slice < slices.count; ++slice) {
     const std::uint32_t pin = slices.scene_node[slice * AlikeSprings::slice_nodes];
     EXPECT_EQ(springs.pinned[slice], std::ranges::count(system.pins, pin));
     for (std::uint32_t s = springs.first_end[slice]; s < springs.first_end[slice + 1]; ++s) {

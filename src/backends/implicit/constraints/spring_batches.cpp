@@ -119,7 +119,7 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
       const std::size_t first_batch = batches.size();
       for (auto& [constants, list] : colour) {
         std::ranges::sort(list, {}, [&](const Spring& spring) { return slot[spring.first]; });
-        const auto& [kind, first_mobility, second_mobility] = constants;
+        const double first_mobility = std::get<1>(constants), second_mobility = std::get<2>(constants);
         const auto compliance = [&](const Spring& spring) {
           return Compliance<float>(system.materials[spring.kind], spring.rest_length, small_s,
                                    first_mobility + second_mobility);
@@ -142,8 +142,8 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
       colours.push_back({first_batch, batches.size()});
     }
     parts[part].end_colour = colours.size();
-    costs.push_back({part, static_cast<double>(entries.size() / (3 * lanes) - first_vector),
-                     static_cast<double>(sorted[part].size() + 1)});
+    const std::size_t vectors = entries.size() / (3 * lanes) - first_vector;
+    costs.push_back({part, static_cast<double>(vectors), static_cast<double>(sorted[part].size() + 1)});
   }
   springs = AlignedArray(entries.size());
   std::ranges::copy(entries, springs.data());
