@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "backends/layouts/cuthill_mckee.h"
+#include "backends/openmp/openmp.h"
 #include "ranks/bodies_part.h"
 #include "ranks/common_kernel.h"
 #include "ranks/graph_partition.h"
@@ -174,6 +175,10 @@ BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
     if (static_cast<int>(rank) != session.rank()) runs_[rank] = {};
 
   const BodiesPart part = part_of_rank(session.rank(), system, here, rank_of);
+  if (part.graph.own == system.nodes()) {
+    whole_ = make_openmp(system, *job.integrator, job.dt_s, {job.threads, ""}, kernel_.instruction_set);
+    return;
+  }
   bodies_.emplace(part.system, SlicedGraph(part.system, kernel_.lanes, part.graph), *job.integrator, job.dt_s,
                   static_cast<std::size_t>(job.threads));
   if (!part.neighbours.empty()) bodies_->messages = &messages_.emplace(session, part, *bodies_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,11 +25,13 @@ class BodiesPiece final : public Piece {
   std::vector<NodeRun> taken_by(int rank) const override { return runs_[static_cast<std::size_t>(rank)]; }
   std::vector<NodeRun> owned_by(int rank) const override { return taken_by(rank); }
   std::size_t scene_nodes() const override { return scene_nodes_; }
-  void set_state(const State& state) override { bodies_->set_state(state); }
-  State state() const override { return bodies_->state(); }
-  void step(int count) override { kernel_.step(*bodies_, count); }
+  void set_state(const State& state) override {
+    whole_ ? whole_->set_state(state) : bodies_->set_state(state);
+  }
+  State state() const override { return whole_ ? whole_->state() : bodies_->state(); }
+  void step(int count) override { whole_ ? whole_->step(count) : kernel_.step(*bodies_, count); }
   RankCosts costs() const override { return messages_ ? messages_->costs() : RankCosts{}; }
-  int threads() const override { return static_cast<int>(bodies_->threads); }
+  int threads() const override { return whole_ ? whole_->threads() : static_cast<int>(bodies_->threads); }
   std::string note() const override;
 
  private:
@@ -36,7 +39,8 @@ class BodiesPiece final : public Piece {
   std::vector<std::vector<BodyShare>> shares_;  ///< [bodies of the scene]
   std::vector<std::vector<NodeRun>> runs_;      ///< [ranks] on rank 0; elsewhere only its own
   std::size_t scene_nodes_ = 0;
-  std::optional<SlicedBodies> bodies_;
+  std::unique_ptr<Backend> whole_;      ///< openmp, where this rank has whole bodies only
+  std::optional<SlicedBodies> bodies_;  ///< else
   std::optional<GhostMessages> messages_;
 };
 
