@@ -57,7 +57,8 @@ TEST_P(OpenclKernels, TakeAFewStepsLikeTheReference) {
   // Bands of two rows and a last one that is not full.
   const auto rows = static_cast<std::uint32_t>(lanes + lanes / 2 + 3);
   for (const System& system :
-       {held_above_a_floor(cloth_system(rows, 6)), held_above_a_floor(solid_block(3, 2, 4))})
+       {held_above_a_floor(cloth_system(rows, 6)), held_above_a_floor(solid_block(3, 2, 4)),
+        alike_bodies(held_above_a_floor(solid_block(2, 2, 3)), 9)})
     for (const Integrator& integrator : integrators) {
       const auto reference = make_reference(system, integrator, backend_dt_s);
       reference->step(few_steps);
