@@ -19,8 +19,9 @@ namespace mssim::HWY_NAMESPACE {
 HWY_INLINE NodeLanes load_bodies(const float* from) { return {load3(from), load3(from + 3 * vector_nodes)}; }
 
 /// Adds to the forces on a piece's nodes those of springs from nodes before it.
-HWY_INLINE void add_cut_springs(const BodyLanes::Piece& piece, Lanes stiffness, Lanes damping,
-                                const float* gathered, float* forces) {
+HWY_NOINLINE inline void add_cut_springs(const BodyLanes::Shape& shape, const BodyLanes::Piece& piece,
+                                         const float* gathered, float* forces) {
+  const Lanes stiffness(shape.stiffness), damping(shape.damping);
   for (const BodyLanes::CutSpring& cut : piece.cut) {
     const NodeLanes first = load_bodies(gathered + 2 * std::size_t{cut.first});
     const NodeLanes second = load_bodies(gathered + 2 * std::size_t{cut.second});
@@ -51,7 +52,7 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
     if (pair != nullptr) pair += piece.offset;
   const float* const gathered = pairs[index(integrators[method].stages[stage].gather)];
 
-  add_cut_springs(piece, stiffness, damping, gathered, forces);
+  add_cut_springs(shape, piece, gathered, forces);
   for (std::size_t node = piece.begin; node < end; ++node) {
     const std::size_t offset = node * force_floats;
     const NodeLanes here = load_bodies(gathered + 2 * offset);
