@@ -1,10 +1,11 @@
 #include "backends/layouts/alike_bodies.h"
 
 #include <algorithm>
-#include <span>
+#include <utility>
 
 #include "backends/layouts/cuthill_mckee.h"
 #include "backends/layouts/spring_constants.h"
+#include "backends/layouts/springs_by_first_end.h"
 
 namespace mssim {
 namespace {
@@ -14,44 +15,12 @@ bool are_alike(const AlikeBodies& a, const AlikeBodies& b) {
          a.first_spring == b.first_spring && a.springs == b.springs;
 }
 
-/// The springs of a system by the end that comes first in an order of the nodes.
-class SpringsAhead {
- public:
-  SpringsAhead(const System& system, const std::vector<std::uint32_t>& place)
-      : springs_(system.springs), place_(place), first_(system.nodes() + 1, 0), number_(springs_.size()) {
-    for (const Spring& spring : springs_) ++first_[near(spring) + 1];
-    for (std::size_t i = 0; i + 1 < first_.size(); ++i) first_[i + 1] += first_[i];
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t s = 0; s < springs_.size(); ++s) number_[next[near(springs_[s])]++] = s;
-    for (std::size_t i = 0; i + 1 < first_.size(); ++i)
-      std::ranges::sort(span_of(i), {}, [&](std::size_t s) { return far(springs_[s]); });
-  }
-  /// Numbers of the springs from the node at this place, ascending by the other end.
-  std::span<const std::size_t> of(std::size_t at) const {
-    return std::span(number_).subspan(first_[at], first_[at + 1] - first_[at]);
-  }
-  std::uint32_t near(const Spring& spring) const {
-    return std::min(place_[spring.first], place_[spring.second]);
-  }
-  std::uint32_t far(const Spring& spring) const {
-    return std::max(place_[spring.first], place_[spring.second]);
-  }
-
- private:
-  std::span<std::size_t> span_of(std::size_t at) {
-    return std::span(number_).subspan(first_[at], first_[at + 1] - first_[at]);
-  }
-  const std::vector<Spring>& springs_;
-  const std::vector<std::uint32_t>& place_;
-  std::vector<std::size_t> first_, number_;
-};
-
 }  // namespace
 
 std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) {
   const std::vector<std::uint32_t> order = reverse_cuthill_mckee(system.nodes(), system.springs);
   const std::vector<std::uint32_t> place = places_in(order);
-  const SpringsAhead ahead(system, place);
+  const SpringsByFirstEnd springs(system.springs, place, place);
   std::vector<std::uint8_t> pinned(system.nodes(), 0);
   for (const std::uint32_t node : system.pins) pinned[node] = 1;
 
@@ -67,7 +36,8 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
       if (system.node_mass[order[at]] != mass) return std::nullopt;
       body.pinned.push_back(pinned[order[at]]);
       body.first_spring.push_back(static_cast<std::uint32_t>(body.springs.size()));
-      for (const std::size_t number : ahead.of(at)) {
+      const std::size_t first = body.springs.size();
+      for (const std::uint32_t number : springs.at(at)) {
         const Spring& spring = system.springs[number];
         if (spring.kind != kind.value_or(spring.kind)) return std::nullopt;
         kind = spring.kind;
@@ -76,8 +46,10 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
         body.stiffness = constants.stiffness;
         body.damping = constants.damping;
         body.springs.push_back(
-            {ahead.far(spring) - static_cast<std::uint32_t>(begin), constants.stiffness_rest});
+            {springs.second_slot(spring) - static_cast<std::uint32_t>(begin), constants.stiffness_rest});
       }
+      std::ranges::sort(body.springs.begin() + static_cast<std::ptrdiff_t>(first), body.springs.end(), {},
+                        &AlikeBodies::SpringAhead::other);
     }
     body.first_spring.push_back(static_cast<std::uint32_t>(body.springs.size()));
     begin = end;

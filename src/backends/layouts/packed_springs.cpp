@@ -12,6 +12,7 @@
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/cuthill_mckee.h"
+#include "backends/layouts/springs_by_first_end.h"
 
 namespace mssim {
 namespace {
@@ -57,43 +58,16 @@ NodeOrder node_order(const System& system) {
   return order;
 }
 
-/// The springs by their first ends: found by counting, since sorting a copy of all springs takes four times
-/// as long on a large cloth.
-class SpringsByFirstEnd {
- public:
-  SpringsByFirstEnd(const System& system, const std::vector<std::uint32_t>& slot,
-                    const std::vector<std::uint32_t>& rank)
-      : springs_(system.springs), slot_(slot), rank_(rank), begin_(slot.size() + 1, 0) {
-    for (const Spring& spring : springs_) ++begin_[slot_[ends_of(spring).first] + 1];
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    order_.resize(springs_.size());
-    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::uint32_t s = 0; s < springs_.size(); ++s) order_[next[slot_[ends_of(springs_[s]).first]]++] = s;
+/// The units that begin at a slot: by kind, then by their second ends.
+void find_units(const System& system, const SpringsByFirstEnd& springs, std::size_t slot,
+                std::vector<Unit>& units) {
+  units.clear();
+  for (const std::uint32_t number : springs.at(slot)) {
+    const Spring& spring = system.springs[number];
+    units.push_back({spring.kind, springs.second_slot(spring), spring.rest_length});
   }
-
-  /// Those that begin at a slot: by kind, then by their second ends; none at a slot without a node.
-  void get(std::size_t slot, std::vector<Unit>& units) const {
-    units.clear();
-    if (slot + 1 >= begin_.size()) return;
-    for (std::size_t i = begin_[slot]; i < begin_[slot + 1]; ++i) {
-      const Spring& spring = springs_[order_[i]];
-      units.push_back({spring.kind, slot_[ends_of(spring).second], spring.rest_length});
-    }
-    std::sort(units.begin(), units.end());
-  }
-
- private:
-  /// Scene's nodes, the one further ahead first.
-  std::pair<std::uint32_t, std::uint32_t> ends_of(const Spring& spring) const {
-    if (rank_[spring.first] < rank_[spring.second]) return {spring.first, spring.second};
-    return {spring.second, spring.first};
-  }
-
-  const std::vector<Spring>& springs_;
-  const std::vector<std::uint32_t>&slot_, &rank_;
-  std::vector<std::uint32_t> begin_;  // [nodes + 1]
-  std::vector<std::uint32_t> order_;  // [springs]
-};
+  std::sort(units.begin(), units.end());
+}
 
 }  // namespace
 
@@ -112,12 +86,13 @@ PackedSprings::PackedSprings(const System& system) : slot(system.nodes()) {
 }
 
 void PackedSprings::pack_units(const System& system, const std::vector<std::uint32_t>& rank) {
-  const SpringsByFirstEnd springs(system, slot, rank);
+  const SpringsByFirstEnd springs(system.springs, slot, rank);
   constexpr std::uint32_t no_kind = std::numeric_limits<std::uint32_t>::max();
   std::array<std::vector<Unit>, slice_nodes> of_node;
   first_entry.push_back(0);
   for (std::uint32_t slice = 0; slice < slots() / slice_nodes; ++slice) {
-    for (std::size_t i = 0; i < slice_nodes; ++i) springs.get(slice * slice_nodes + i, of_node[i]);
+    for (std::size_t i = 0; i < slice_nodes; ++i)
+      find_units(system, springs, slice * slice_nodes + i, of_node[i]);
     std::array<std::size_t, slice_nodes> next{};
     while (true) {
       // The kinds in turn, each until no node of the slice has one left.
