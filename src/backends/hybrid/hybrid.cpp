@@ -139,8 +139,8 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
   if (threads < 1)
     throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
-    // With seven bodies in sixteen lanes a step takes 1.1 times as long as with packed springs, with thirteen
-    // 0.65 times (Intel Xeon).
+    // With seven bodies in sixteen lanes a step takes 1.05 to 1.1 times as long as with packed springs,
+    // with thirteen 0.66 times (Intel Xeon).
     constexpr double lanes_per_body = 2;
     if (const auto alike = alike_bodies_for(system, AlikeSprings::slice_nodes, lanes_per_body))
       return std::make_unique<Hybrid<AlikeNodes>>(AlikeNodes(system, *alike, integrator, dt_s),

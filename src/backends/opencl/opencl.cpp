@@ -16,7 +16,7 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     if (const auto* grid = std::get_if<GridPatch>(&system.topology))
       return make_opencl_grid(system, *grid, integrator, dt_s, device, memory, lanes);
-    // With thirteen bodies in sixteen lanes a step takes 0.64 of the time that a sliced graph takes (PoCL on
+    // With thirteen bodies in sixteen lanes a step takes 0.61 of the time that a sliced graph takes (PoCL on
     // an Intel Xeon): so it is worth it from nine on.
     constexpr double lanes_per_body = 1.8;
     if (const auto alike = alike_bodies_for(system, alike_slice_lanes(lanes), lanes_per_body))

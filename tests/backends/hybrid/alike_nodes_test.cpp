@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "backends/layouts/aligned_array.h"
 #include "integrators/integrators.h"
 #include "tests/support/solid_system.h"
+#include "tests/support/stage_in_parts.h"
 
 namespace mssim {
 namespace {
@@ -99,21 +99,9 @@ TEST_P(EachAlikeNodeKernel, AddsAForceAtTheFirstEndSubtractsItAtTheSecondAndTake
 }
 
 TEST_P(EachAlikeNodeKernel, GivesInPartsWhatTheBestOneGivesAtOnceInEveryStageOfEveryIntegrator) {
-  const System system = pinned_bodies();
-  for (const Integrator& integrator : integrators) {
-    const StageOfAlikeNodes expected(system, integrator), found(system, integrator);
-    const std::size_t slices = expected.nodes.slices();
-    for (std::size_t stage = 0; stage < integrator.stage_count; ++stage) {
-      alike_node_kernels().front().integrate(expected.nodes, expected.mapped, stage, 0, slices);
-      kernel.integrate(found.nodes, found.mapped, stage, slices / 3, slices);
-      kernel.integrate(found.nodes, found.mapped, stage, 0, slices / 3);
-    }
-    for (std::size_t pair = 0; pair < pair_kinds; ++pair)
-      for (std::size_t i = 0; i < expected.pairs[pair].size(); ++i)
-        ASSERT_NEAR(found.mapped.pairs[pair][i], expected.mapped.pairs[pair][i],
-                    1e-5 * (1 + std::abs(expected.mapped.pairs[pair][i])))
-            << integrator.name << ", pair " << pair;
-  }
+  for (const Integrator& integrator : integrators)
+    expect_parts_like_the_whole<StageOfAlikeNodes>(kernel, alike_node_kernels().front(), pinned_bodies(),
+                                                   integrator);
 }
 
 }  // namespace

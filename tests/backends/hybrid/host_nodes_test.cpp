@@ -16,6 +16,7 @@
 #include "integrators/integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
+#include "tests/support/stage_in_parts.h"
 
 namespace mssim {
 namespace {
@@ -111,20 +112,8 @@ TEST_P(EachNodeKernel, AddsAForceAtTheFirstEndSubtractsItAtTheSecondAndTakesTheS
 
 TEST_P(EachNodeKernel, GivesInPartsWhatTheBestOneGivesAtOnceInEveryStageOfEveryIntegrator) {
   for (const System& system : systems())
-    for (const Integrator& integrator : integrators) {
-      RandomStage expected(system, integrator), found(system, integrator);
-      const std::size_t slices = expected.nodes.packed.slices();
-      for (std::size_t stage = 0; stage < integrator.stage_count; ++stage) {
-        node_kernels().front().integrate(expected.nodes, expected.mapped, stage, 0, slices);
-        kernel.integrate(found.nodes, found.mapped, stage, slices / 3, slices);
-        kernel.integrate(found.nodes, found.mapped, stage, 0, slices / 3);
-      }
-      for (std::size_t pair = 0; pair < pair_kinds; ++pair)
-        for (std::size_t i = 0; i < expected.pairs[pair].size(); ++i)
-          ASSERT_NEAR(found.mapped.pairs[pair][i], expected.mapped.pairs[pair][i],
-                      1e-5 * (1 + std::abs(expected.mapped.pairs[pair][i])))
-              << integrator.name << ", pair " << pair;
-    }
+    for (const Integrator& integrator : integrators)
+      expect_parts_like_the_whole<RandomStage>(kernel, node_kernels().front(), system, integrator);
 }
 
 }  // namespace
