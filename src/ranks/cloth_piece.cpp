@@ -46,7 +46,8 @@ void ClothPiece::make(const Session& session, const RankJob& job, std::size_t st
   const ColumnRange own = columns_of(rank_), all = with_ghosts(rank_);
   const System system = nodes_at_start();
   bands_.emplace(system, std::get<GridPatch>(system.topology), *job.integrator, job.dt_s, kernel_.lanes,
-                 static_cast<std::size_t>(job.threads), steps, ColumnRange{own.first - all.first, own.count});
+                 static_cast<std::size_t>(job.threads),
+                 BandCut{.steps_per_pass = steps, .piece = ColumnRange{own.first - all.first, own.count}});
   messages_.emplace(session, *bands_);
   if (ranks_ > 1) bands_->messages = &*messages_;
   bands_->set_state(system.start);

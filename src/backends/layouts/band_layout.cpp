@@ -4,10 +4,12 @@
 
 namespace mssim {
 
-BandLayout::BandLayout(const GridPatch& grid, std::size_t lane_count)
+BandLayout::BandLayout(const GridPatch& grid, std::size_t lane_count, std::size_t half_count)
     : lanes(lane_count),
+      halves(half_count),
+      bands(lanes / halves),
       rows(grid.rows),
       columns(grid.columns),
-      height(std::max(halo, (rows + lanes - 1) / lanes)) {}
+      height(std::max(halo, (rows + bands - 1) / bands)) {}
 
 }  // namespace mssim

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -11,13 +12,22 @@
 
 namespace mssim {
 
+/// Of each half of a layout's columns, how many columns of the cloth there are from one of them to the
+/// cloth's end, itself included; 0 if it is none of the cloth's.
+using ColumnsToEnd = std::array<std::size_t, 2>;
+
 /// What the nodes of each row of a banded cloth compute with, one value a lane: the constants of the springs
 /// that they own, and gravity. All are zero where there is no such spring, or no node: then nothing pulls,
 /// dummies stay at rest, and the vector code needs no masks. Most rows share their values.
 class BandRows {
  public:
-  /// `springs`: by GridSpringKind. `gravity` in m/s^2.
-  BandRows(const BandLayout& layout, const std::vector<SpringConstants>& springs, float gravity);
+  /// Of a column that so many are `behind`, unless it is far from the cloth's end. `springs`: by
+  /// GridSpringKind. `gravity` in m/s^2.
+  BandRows(const BandLayout& layout, const std::vector<SpringConstants>& springs, float gravity,
+           ColumnsToEnd to_end = {far_from_end, far_from_end});
+
+  /// Columns to the end beyond which springs reach no further.
+  static constexpr std::size_t far_from_end = BandLayout::halo + 1;
 
   /// Vectors of a row: [spring of grid_stencil][stiffness, stiffness_rest, damping], then gravity.
   static constexpr std::size_t spring_vectors = 3;

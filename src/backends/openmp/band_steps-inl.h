@@ -49,8 +49,9 @@ struct StageUnderWay {
 /// What a stage that gathers `gather` sees of a column.
 HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& partition,
                                        const StageUnderWay& under_way, Pair gather, std::size_t column) {
-  const std::size_t to_row_0 = BandLayout::halo * layout.row_floats();
+  const std::size_t to_row_0 = layout.offset(0);
   ColumnView view;
+  view.rows = partition.column_rows[partition.local(column)];
   view.here = partition.column(layout, gather, column) + to_row_0;
   view.next = partition.column(layout, gather, column + 1) + to_row_0;
   view.next_2 = partition.column(layout, gather, column + 2) + to_row_0;
@@ -64,15 +65,6 @@ HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& 
   return view;
 }
 
-/// The springs of a column that exist and act on columns from `begin` on.
-HWY_INLINE unsigned springs_of_column(std::size_t column, std::size_t begin, std::size_t columns) {
-  unsigned set = every_spring;
-  if (column < begin) set &= ~within_column;
-  if (column + 1 < begin || column + 1 == columns) set &= ~to_next_column;
-  if (column + 2 >= columns) set &= ~right_2;
-  return set;
-}
-
 /// Takes the stage through one column, if it is one of those that it updates or of the two before them, whose
 /// springs act on them.
 template <std::size_t method, std::size_t stage>
@@ -82,13 +74,16 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
   constexpr Pair gather =
       storage_of(integrators[method], integrators[method].stages[stage].gather, Storage::in_place);
   const ColumnView view = view_of(layout, partition, under_way, gather, column);
-  const unsigned set = springs_of_column(column, under_way.begin, layout.columns);
-  const bool update = column >= under_way.begin;
-  if (set == every_spring)
+  const std::size_t behind = bands.columns - 1 - column;
+  if (column + 2 == under_way.begin)
+    walk_column_before<right_2>(bands, view);
+  else if (column + 1 == under_way.begin)
+    walk_column_before<to_next_column | right_2>(bands, view);
+  else if (behind >= BandLayout::halo)
     walk_inner_column<method, stage>(bands, view);
   else
-    walk_edge_column<method, stage>(bands, view, set, update);
-  if (update) put_pins_back<method, stage>(layout, partition, column);
+    walk_last_column<method, stage>(bands, view, behind);
+  if (column >= under_way.begin) put_pins_back<method, stage>(layout, partition, column);
   std::rotate(under_way.forces.begin(), under_way.forces.begin() + 1, under_way.forces.end());
 }
 
@@ -102,7 +97,7 @@ template <std::size_t method>
 HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps, std::uint64_t pass,
                                ColumnMessages* messages, TeamGain::Duration& waited) {
   constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
-  const std::size_t count = steps * stages, columns = bands.layout.columns;
+  const std::size_t count = steps * stages, columns = bands.columns;
   BandPartition& partition = bands.partitions[p];
   std::array<StageUnderWay, stages_under_way> under_way;
   for (std::size_t i = 0; i < count; ++i) {
@@ -120,22 +115,26 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
   const std::size_t own_end = partition.first + partition.count;
   constexpr std::size_t columns_an_advance = 8;  // some microseconds
   const bool has_next = p + 1 < bands.partitions.size();
-  if (p > 0) {
-    for (std::size_t i = 0; i < partition.ghosts; ++i)
-      prefetch_to_leave(bands.layout, partition.left, i, pass);
-    take_ghosts(bands.layout, partition, bands.partitions[p - 1].right, partition.first - partition.ghosts,
+  // What the next pass begins with, and what this one ends with; both in two thirds of the columns.
+  EdgeAhead left_ahead, right_ahead;
+  if (p > 0) left_ahead = EdgeAhead(bands.layout, partition.left, bands.partitions[p - 1].right, pass + 1);
+  if (has_next) right_ahead = EdgeAhead(bands.layout, partition.right, bands.partitions[p + 1].left, pass);
+  const std::size_t edge_floats = partition.ghosts * EdgeColumns::column_floats(bands.layout);
+  const std::size_t floats_ahead = edge_floats * 3 / (2 * partition.count) + 1;
+  if (bands.layout.halves > 1) take_ghosts_of_halves(bands.layout, partition);
+  if (p > 0)
+    take_ghosts(bands.layout, partition, bands.partitions[p - 1].right, partition.first - partition.ghosts, 0,
                 pass, waited);
-  }
   for (std::size_t head = start; head < end; ++head) {
     if (messages && head % columns_an_advance == 0) messages->advance();
-    if (has_next && head + 2 * partition.ghosts + 2 >= own_end && head + partition.ghosts + 2 < own_end) {
-      const std::size_t number = head + 2 * partition.ghosts + 2 - own_end;
-      prefetch_to_leave(bands.layout, partition.right, number, pass);
-      prefetch_to_take(bands.layout, bands.partitions[p + 1].left, number, pass);
+    if (head >= partition.first) {
+      left_ahead.ask(floats_ahead, edge_floats);
+      right_ahead.ask(floats_ahead, edge_floats);
     }
     // Before any of the own last columns is left for others.
     if (has_next && head + partition.ghosts == own_end)
-      take_ghosts(bands.layout, partition, bands.partitions[p + 1].left, own_end, pass, waited);
+      take_ghosts(bands.layout, partition, bands.partitions[p + 1].left, own_end, bands.layout.halves - 1,
+                  pass, waited);
     for (std::size_t step = 0; step < steps; ++step)
       for_each_stage<method>([&](auto stage) HWY_ATTR {
         const std::size_t i = step * stages + stage, behind = distance * i;
@@ -154,8 +153,8 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
 /// this is a small part of their time.
 HWY_INLINE std::size_t passes_between_meetings(const BandGrid& bands) {
   constexpr std::size_t updates = 100'000;  // of nodes: some tenth of a millisecond
-  const std::size_t of_a_pass =
-      bands.layout.rows * bands.own.count * bands.steps_per_pass * bands.integrator->stage_count;
+  const std::size_t of_a_pass = bands.layout.rows * bands.layout.halves * bands.own.count *
+                                bands.steps_per_pass * bands.integrator->stage_count;
   return std::max<std::size_t>(1, updates / std::max<std::size_t>(1, of_a_pass));
 }
 

@@ -32,19 +32,16 @@ HWY_INLINE void store_nodes(const NodeLanes& nodes, float* column, std::ptrdiff_
 constexpr float far_away = 1e9F;
 
 /// A row of which each lane has what the lane before, or behind, it has in this one.
-HWY_INLINE NodeLanes of_lane_before(const NodeLanes& row) {
-  return {from_lane_before(row.x, far_away), from_lane_before(row.v, far_away)};
+HWY_INLINE NodeLanes of_lane_before(const NodeLanes& row, std::size_t bands) {
+  return {from_lane_before(row.x, far_away, bands), from_lane_before(row.v, far_away, bands)};
 }
-HWY_INLINE NodeLanes of_lane_behind(const NodeLanes& row) {
-  return {from_lane_behind(row.x, far_away), from_lane_behind(row.v, far_away)};
+HWY_INLINE NodeLanes of_lane_behind(const NodeLanes& row, std::size_t bands) {
+  return {from_lane_behind(row.x, far_away, bands), from_lane_behind(row.v, far_away, bands)};
 }
 
-/// Writes row -1 or -2 of a column of so many rows; row `height` or the one after it.
-HWY_INLINE void write_row_above(float* column, std::ptrdiff_t height, std::ptrdiff_t row) {
-  store_nodes(of_lane_before(nodes_of(column, height + row)), column, row);
-}
-HWY_INLINE void write_row_below(float* column, std::ptrdiff_t height, std::ptrdiff_t row) {
-  store_nodes(of_lane_behind(nodes_of(column, row - height)), column, row);
+/// Writes row -1 of a column of so many rows.
+HWY_INLINE void write_row_above(float* column, std::ptrdiff_t height, std::size_t bands) {
+  store_nodes(of_lane_before(nodes_of(column, height - 1), bands), column, -1);
 }
 
 }  // namespace mssim::HWY_NAMESPACE

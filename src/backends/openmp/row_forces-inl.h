@@ -44,6 +44,7 @@ static_assert(grid_stencil[5].rows == 0 && grid_stencil[5].columns == 2, "right_
 
 /// Where the walk reads and writes. Pointers to columns stand at row 0.
 struct ColumnView {
+  const BandRows* rows;                  ///< what this column computes with
   float* here;                           ///< gathered pair, this column; its halo rows may be written
   float* next;                           ///< the column to the right; the same
   const float* next_2;                   ///< the one after
@@ -62,12 +63,14 @@ struct RowConstants {
   const float* values;                 ///< BandRows::values
   const std::uint32_t* offset_of_row;  ///< the same
   std::ptrdiff_t height;               ///< of the bands
-  HWY_INLINE explicit RowConstants(const BandGrid& bands)
-      : coefficients(bands.coefficients),
-        surroundings(bands.surroundings),
-        values(bands.band_rows.values()),
-        offset_of_row(bands.band_rows.offset_of_row()),
-        height(static_cast<std::ptrdiff_t>(bands.layout.height)) {}
+  std::size_t bands;                   ///< in a half of the lanes
+  HWY_INLINE RowConstants(const BandGrid& grid, const ColumnView& column)
+      : coefficients(grid.coefficients),
+        surroundings(grid.surroundings),
+        values(column.rows->values()),
+        offset_of_row(column.rows->offset_of_row()),
+        height(static_cast<std::ptrdiff_t>(grid.layout.height)),
+        bands(grid.layout.bands) {}
   /// The vectors of a row (BandRows).
   HWY_INLINE const float* of_row(std::ptrdiff_t row) const { return values + offset_of_row[row]; }
 };

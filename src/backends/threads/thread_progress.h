@@ -18,6 +18,8 @@ class ThreadProgress {
   /// What was written before is visible to who has waited for `number`, which is not less than before.
   void reach(std::uint64_t number) { reached_.store(number, std::memory_order_release); }
 
+  bool has_reached(std::uint64_t number) const { return reached_.load(std::memory_order_acquire) >= number; }
+
   /// Returns when `number` is reached. Adds the time to `waited` if that was so long that other programs may
   /// be the reason (TeamGain): to read the clock takes as long as a short wait.
   void wait_for(std::uint64_t number, TeamGain::Duration& waited) const {
@@ -30,11 +32,9 @@ class ThreadProgress {
  private:
   static constexpr int first_spins = 10, spins = 290;  // together as many as SpinBarrier has
 
-  bool is_reached(std::uint64_t number) const { return reached_.load(std::memory_order_acquire) >= number; }
-
   bool spins_until(std::uint64_t number, int most) const {
     for (int tries = 0; tries < most; ++tries) {
-      if (is_reached(number)) return true;
+      if (has_reached(number)) return true;
       pause_spinning();
     }
     return false;
@@ -43,7 +43,7 @@ class ThreadProgress {
   /// Nobody is notified, so that reach() costs nothing: who has waited long asks again from time to time.
   void yield_until(std::uint64_t number) const {
     constexpr int yields = 100;
-    for (int tries = 0; !is_reached(number); ++tries)
+    for (int tries = 0; !has_reached(number); ++tries)
       if (tries < yields)
         std::this_thread::yield();
       else

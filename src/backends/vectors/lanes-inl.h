@@ -101,22 +101,24 @@ HWY_INLINE Mask below(Index index, std::uint32_t limit) {
   return hn::RebindMask(FloatTag(), hn::Lt(index, hn::Set(IndexTag(), limit)));
 }
 
-/// Each lane has what the lane `before` places before it has in `a`, counted around; lane `outside` has that
-/// of `other`.
-HWY_INLINE Lanes from_lane(Lanes a, std::uint32_t before, std::uint32_t outside, Lanes other) {
+/// Each lane has what the lane `before` places before it has in `a`, counted around. Of every `group` lanes,
+/// a power of two, lane `outside` has that of `other`.
+HWY_INLINE Lanes from_lane(Lanes a, std::size_t before, std::size_t group, std::size_t outside, Lanes other) {
   const FloatTag d;
+  const auto set = [](std::size_t number)
+                       HWY_ATTR { return hn::Set(IndexTag(), static_cast<std::uint32_t>(number)); };
   const auto lane = hn::Iota(IndexTag(), 0);
-  const auto last = hn::Set(IndexTag(), static_cast<std::uint32_t>(hn::Lanes(d) - 1));
-  const auto source = hn::IndicesFromVec(d, hn::And(hn::Sub(lane, hn::Set(IndexTag(), before)), last));
-  return hn::IfThenElse(hn::RebindMask(d, hn::Ne(lane, hn::Set(IndexTag(), outside))),
+  const auto source = hn::IndicesFromVec(d, hn::And(hn::Sub(lane, set(before)), set(hn::Lanes(d) - 1)));
+  return hn::IfThenElse(hn::RebindMask(d, hn::Ne(hn::And(lane, set(group - 1)), set(outside))),
                         hn::TableLookupLanes(a.v, source), other.v);
 }
-/// Each lane has what the lane before it has in `a`; the first one has that of `first`.
-HWY_INLINE Lanes from_lane_before(Lanes a, Lanes first) { return from_lane(a, 1, 0, first); }
-/// Each lane has what the lane behind it has in `a`; the last one has that of `last`.
-HWY_INLINE Lanes from_lane_behind(Lanes a, Lanes last) {
-  const auto lanes = static_cast<std::uint32_t>(lane_count());
-  return from_lane(a, lanes - 1, lanes - 1, last);
+/// Each lane has what the lane before it has in `a`; the first one of every `group` has that of `first`.
+HWY_INLINE Lanes from_lane_before(Lanes a, Lanes first, std::size_t group) {
+  return from_lane(a, 1, group, 0, first);
+}
+/// Each lane has what the lane behind it has in `a`; the last one of every `group` has that of `last`.
+HWY_INLINE Lanes from_lane_behind(Lanes a, Lanes last, std::size_t group) {
+  return from_lane(a, lane_count() - 1, group, group - 1, last);
 }
 
 /// Three components of a vector in space, of one node a lane.
@@ -155,11 +157,13 @@ HWY_INLINE Lanes3 select(Mask mask, const Lanes3& yes, const Lanes3& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 /// The same of components: `none` in the lane that has no other.
-HWY_INLINE Lanes3 from_lane_before(const Lanes3& a, Lanes none) {
-  return {from_lane_before(a.x, none), from_lane_before(a.y, none), from_lane_before(a.z, none)};
+HWY_INLINE Lanes3 from_lane_before(const Lanes3& a, Lanes none, std::size_t group) {
+  return {from_lane_before(a.x, none, group), from_lane_before(a.y, none, group),
+          from_lane_before(a.z, none, group)};
 }
-HWY_INLINE Lanes3 from_lane_behind(const Lanes3& a, Lanes none) {
-  return {from_lane_behind(a.x, none), from_lane_behind(a.y, none), from_lane_behind(a.z, none)};
+HWY_INLINE Lanes3 from_lane_behind(const Lanes3& a, Lanes none, std::size_t group) {
+  return {from_lane_behind(a.x, none, group), from_lane_behind(a.y, none, group),
+          from_lane_behind(a.z, none, group)};
 }
 HWY_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
   return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));

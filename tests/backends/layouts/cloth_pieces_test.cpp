@@ -82,9 +82,10 @@ State state_of_pieces(const SceneSpec& spec, const Integrator& integrator, const
                                               .rows = cloth.rows,
                                               .columns = static_cast<std::uint32_t>(here.count)});
     round_start_to_single(system);
-    BandGrid bands(system, std::get<GridPatch>(system.topology), integrator, backend_dt_of(integrator),
-                   kernel.lanes, cut.threads, cut.steps_per_pass,
-                   ColumnRange{own.first - here.first, own.count});
+    BandGrid bands(
+        system, std::get<GridPatch>(system.topology), integrator, backend_dt_of(integrator), kernel.lanes,
+        cut.threads,
+        {.steps_per_pass = cut.steps_per_pass, .piece = ColumnRange{own.first - here.first, own.count}});
     const bool left = piece > 0, right = piece + 1 < cut.pieces;
     MailMessages messages(bands, left ? &to_left[piece] : nullptr, left ? &to_right[piece - 1] : nullptr,
                           right ? &to_right[piece] : nullptr, right ? &to_left[piece + 1] : nullptr);
