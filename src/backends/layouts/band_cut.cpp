@@ -61,14 +61,14 @@ std::size_t steps_per_pass_for(const BandLayout& layout, const Integrator& integ
 }
 
 /// Folded where that leaves fewer rows to walk through, clearly, and where the first-level cache holds the
-/// columns under way: three of the state and three of forces.
+/// columns under way: three of the state and two of forces.
 std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                        std::size_t threads) {
   constexpr double clearly_fewer = 0.97;
   if (layout.lanes < 2) return 1;
   const BandLayout folded(
       {static_cast<std::uint32_t>(layout.rows), static_cast<std::uint32_t>(layout.columns)}, layout.lanes, 2);
-  const std::size_t under_way = 3 * (folded.column_floats() + folded.force_floats()) * sizeof(float);
+  const std::size_t under_way = (3 * folded.column_floats() + 2 * folded.force_floats()) * sizeof(float);
   if (under_way > cache_bytes(_SC_LEVEL1_DCACHE_SIZE, 32L << 10)) return 1;
   return rows_of_pass(folded, integrator, steps_per_pass, threads) <
                  clearly_fewer * rows_of_pass(layout, integrator, steps_per_pass, threads)

@@ -67,7 +67,7 @@ void BandGrid::make_arrays(BandPartition& partition) const {
   for (const Pair pair : stored_pairs(*integrator, Storage::in_place))
     partition.pairs[index(pair)] =
         AlignedArray((pair == Pair::state ? local_columns : ring_columns) * layout.column_floats());
-  partition.forces = AlignedArray(stages_under_way * 3 * layout.force_floats());
+  partition.forces = AlignedArray(stages_under_way * 2 * layout.force_floats());
 }
 
 ColumnRange BandGrid::filled_columns(const BandPartition& partition) const {

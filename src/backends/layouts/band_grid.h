@@ -63,7 +63,7 @@ struct BandPartition {
   std::array<AlignedArray, pair_kinds> pairs;
   std::vector<std::vector<BandPin>> pins;    ///< [ghosts + count + ghosts] by column
   std::vector<const BandRows*> column_rows;  ///< the same: what the rows of a column compute with
-  AlignedArray forces;                       ///< [stages_under_way][3][force_floats], columns under way
+  AlignedArray forces;                       ///< [stages_under_way][2][force_floats], columns under way
   /// Its first `ghosts` columns for the partition before it and its last ones for the one behind; empty where
   /// there is none.
   EdgeColumns left, right;

@@ -43,7 +43,7 @@ HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition
 /// One of the stages under way in a partition.
 struct StageUnderWay {
   std::size_t begin, end;        ///< columns that it updates
-  std::array<float*, 3> forces;  ///< of the column that it is at, the next and the one after
+  std::array<float*, 2> forces;  ///< of the column that it is at and the next, as ColumnView has them
 };
 
 /// What a stage that gathers `gather` sees of a column.
@@ -61,7 +61,6 @@ HWY_NOINLINE inline ColumnView view_of(const BandLayout& layout, BandPartition& 
                         : partition.column(layout, static_cast<Pair>(i), column) + to_row_0;
   view.forces_here = under_way.forces[0];
   view.forces_next = under_way.forces[1];
-  view.forces_next_2 = under_way.forces[2];
   return view;
 }
 
@@ -84,7 +83,7 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
   else
     walk_last_column<method, stage>(bands, view, behind);
   if (column >= under_way.begin) put_pins_back<method, stage>(layout, partition, column);
-  std::rotate(under_way.forces.begin(), under_way.forces.begin() + 1, under_way.forces.end());
+  std::swap(under_way.forces[0], under_way.forces[1]);
 }
 
 /// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other. Messages
@@ -105,10 +104,9 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
     const std::size_t reach = distance * (count - 1 - i);
     under_way[i].begin = partition.first - std::min(partition.first, reach);
     under_way[i].end = std::min(partition.first + partition.count + reach, columns);
-    for (std::size_t f = 0; f < 3; ++f)
-      under_way[i].forces[f] = partition.forces.data() + (3 * i + f) * bands.layout.force_floats();
     for (std::size_t f = 0; f < 2; ++f)
-      std::memset(under_way[i].forces[f], 0, bands.layout.force_floats() * sizeof(float));
+      under_way[i].forces[f] = partition.forces.data() + (2 * i + f) * bands.layout.force_floats();
+    std::memset(under_way[i].forces[0], 0, 2 * bands.layout.force_floats() * sizeof(float));
   }
   const std::size_t start = under_way[0].begin - std::min(under_way[0].begin, distance);
   const std::size_t end = under_way[count - 1].end + distance * (count - 1);

@@ -99,8 +99,8 @@ HWY_INLINE void walk_rows(const RowConstants& constants, const ColumnView& colum
   for (std::ptrdiff_t row = 0; row < height - 2; ++row) walk_row(row, {});
   walk_row(height - 2, ends.last_but_one);
   walk_row(height - 1, ends.last);
-  if constexpr ((set & right_up) !=
-                0)  // that from a band's first row reaches the last row of the lane before
+  // The spring from a band's first row up to the right reaches the last row of the lane before.
+  if constexpr ((set & right_up) != 0)
     store3(column.forces_next + (height - 1) * force_floats,
            carry.right_above +
                from_lane_behind(load3(column.forces_next + height * force_floats), none, constants.bands));

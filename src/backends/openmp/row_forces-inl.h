@@ -2,8 +2,7 @@
 // instruction set, so the guard toggles.
 //
 // A spring belongs to its upper or left end (grid_stencil). Its force on the other end waits: in registers
-// for the rows below, in three columns of forces (this one, the next, the one after) for the columns to the
-// right.
+// for the rows below, in two columns of forces for the two columns to the right.
 #if defined(MSSIM_ROW_FORCES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_ROW_FORCES_INL_H_
 #undef MSSIM_ROW_FORCES_INL_H_
@@ -49,9 +48,10 @@ struct ColumnView {
   float* next;                           ///< the column to the right; the same
   const float* next_2;                   ///< the one after
   std::array<float*, pair_kinds> pairs;  ///< this column of every pair that is stored, for the update
-  float* forces_here;                    ///< [row][x y z][lane] from columns already walked
+  /// [row][x y z][lane] from columns already walked; where a row has been read, those on the column after
+  /// the next one take its place, so that there is room for more rows in the first-level cache.
+  float* forces_here;
   float* forces_next;
-  float* forces_next_2;
 };
 
 /// What every row needs of the bands. A copy, as the walk's ColumnView is: a vector's store may change
@@ -186,7 +186,7 @@ HWY_INLINE Lanes3 pull_row(const RowConstants& constants, const ColumnView& colu
   if ((set & right_2) != 0) {
     const Lanes3 pull = force_of(to_right_2, spring_of_row(of_row, right_2));
     force = force - pull;
-    store3(column.forces_next_2 + row * force_floats, pull);
+    store3(column.forces_here + row * force_floats, pull);
   }
 
   return force;
