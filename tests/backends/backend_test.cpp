@@ -287,30 +287,46 @@ TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsForEveryNumberOfThreads) {
   }
 }
 
+/// Calls it where OpenMP gives a thread nobody else: within threads, which have no threads of their own.
+template <class Call>
+void call_alone(Call call) {
+#pragma omp parallel num_threads(2)
+#pragma omp single
+  call();
+}
+
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverItIsCut) {
   const BandKernel kernel = band_kernels(integrator()).front();
   for (const auto& [rows, columns] : {std::pair{37U, 23U}, {9U, 11U}, {61U, 80U}, {1U, 7U}, {7U, 1U}}) {
     const System system = low_cloth(rows, columns);
     const auto& grid = std::get<GridPatch>(system.topology);
-    const auto state_after = [&](std::size_t threads, std::size_t steps_per_pass, std::size_t halves) {
+    const auto state_after = [&](std::size_t threads, std::size_t steps_per_pass, std::size_t halves,
+                                 bool alone) {
       BandGrid bands(system, grid, integrator(), backend_dt_of(integrator()), kernel.lanes, threads,
                      {.steps_per_pass = steps_per_pass, .halves = halves});
       bands.set_state(system.start);
-      kernel.step(bands, steps_with_a_bounce(integrator()) + 1);  // the last pass is a short one
+      const auto step = [&] {
+        kernel.step(bands, steps_with_a_bounce(integrator()) + 1);  // the last pass is a short one
+      };
+      if (alone)
+        call_alone(step);
+      else
+        step();
       return bands.state();
     };
-    const State expected = state_after(1, 1, 1);
+    const State expected = state_after(1, 1, 1, false);
     // A strip may hang in the air again by now.
     EXPECT_TRUE(rows == 1 || has_met_floor(system, expected)) << rows << " x " << columns;
     for (std::size_t steps = 1; steps * integrator().stage_count <= stages_under_way; ++steps)
       for (const std::size_t threads : {1U, 2U, 3U, 4U})
-        for (const std::size_t halves : {1U, 2U}) {
-          SCOPED_TRACE(testing::Message()
-                       << steps << " steps a pass, " << threads << " threads, " << halves << " halves");
-          const State state = state_after(threads, steps, halves);
-          EXPECT_EQ(state.position, expected.position);
-          EXPECT_EQ(state.velocity, expected.velocity);
-        }
+        for (const std::size_t halves : {1U, 2U})
+          for (const bool alone : {false, true}) {
+            SCOPED_TRACE(testing::Message() << steps << " steps a pass, " << threads << " threads, " << halves
+                                            << " halves" << (alone ? ", walked by one thread" : ""));
+            const State state = state_after(threads, steps, halves, alone);
+            EXPECT_EQ(state.position, expected.position);
+            EXPECT_EQ(state.velocity, expected.velocity);
+          }
   }
 }
 

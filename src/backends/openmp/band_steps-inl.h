@@ -40,10 +40,13 @@ HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition
   (std::make_index_sequence<pair_kinds>{});
 }
 
+/// Forces on the column that a stage is at and on the next one, as ColumnView has them.
+using ForcesUnderWay = std::array<float*, 2>;
+
 /// One of the stages under way in a partition.
 struct StageUnderWay {
-  std::size_t begin, end;        ///< columns that it updates
-  std::array<float*, 2> forces;  ///< of the column that it is at and the next, as ColumnView has them
+  std::size_t begin, end;  ///< columns that it updates
+  ForcesUnderWay forces;
 };
 
 /// What a stage that gathers `gather` sees of a column.
@@ -87,14 +90,18 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
 }
 
 /// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other. Messages
-/// that are under way meanwhile go on (null: there are none). `waited`: as take_ghosts.
+/// that are under way meanwhile go on (null: there are none). `waited`: as take_ghosts. `handed_on`: null, or
+/// of the thread that walks over all partitions, the forces that the one before has left, if any, and that
+/// this one leaves; with one stage under way in a cloth that is not folded they are those that the columns
+/// before this partition would give once more.
 ///
 /// The columns of other partitions in the pass before are read as late as possible, and the own ones left for
 /// them as soon as they are complete. No set is written that is still read: who leaves columns for a pass has
 /// seen those that the reader left in the pass before, after it had read the same set.
 template <std::size_t method>
 HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps, std::uint64_t pass,
-                               ColumnMessages* messages, TeamGain::Duration& waited) {
+                               ColumnMessages* messages, std::optional<ForcesUnderWay>* handed_on,
+                               TeamGain::Duration& waited) {
   constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
   const std::size_t count = steps * stages, columns = bands.columns;
   BandPartition& partition = bands.partitions[p];
@@ -108,19 +115,24 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
       under_way[i].forces[f] = partition.forces.data() + (2 * i + f) * bands.layout.force_floats();
     std::memset(under_way[i].forces[0], 0, 2 * bands.layout.force_floats() * sizeof(float));
   }
-  const std::size_t start = under_way[0].begin - std::min(under_way[0].begin, distance);
+  const bool goes_on = handed_on && *handed_on && count == 1 && bands.layout.halves == 1;
+  if (goes_on) under_way[0].forces = **handed_on;
+  const std::size_t start =
+      goes_on ? partition.first : under_way[0].begin - std::min(under_way[0].begin, distance);
   const std::size_t end = under_way[count - 1].end + distance * (count - 1);
   const std::size_t own_end = partition.first + partition.count;
   constexpr std::size_t columns_an_advance = 8;  // some microseconds
   const bool has_next = p + 1 < bands.partitions.size();
   // What the next pass begins with, and what this one ends with; both in two thirds of the columns.
   EdgeAhead left_ahead, right_ahead;
-  if (p > 0) left_ahead = EdgeAhead(bands.layout, partition.left, bands.partitions[p - 1].right, pass + 1);
-  if (has_next) right_ahead = EdgeAhead(bands.layout, partition.right, bands.partitions[p + 1].left, pass);
+  if (p > 0 && !handed_on)
+    left_ahead = EdgeAhead(bands.layout, partition.left, bands.partitions[p - 1].right, pass + 1);
+  if (has_next && !handed_on)
+    right_ahead = EdgeAhead(bands.layout, partition.right, bands.partitions[p + 1].left, pass);
   const std::size_t edge_floats = partition.ghosts * EdgeColumns::column_floats(bands.layout);
   const std::size_t floats_ahead = edge_floats * 3 / (2 * partition.count) + 1;
   if (bands.layout.halves > 1) take_ghosts_of_halves(bands.layout, partition);
-  if (p > 0)
+  if (p > 0 && !goes_on)
     take_ghosts(bands.layout, partition, bands.partitions[p - 1].right, partition.first - partition.ghosts, 0,
                 pass, waited);
   for (std::size_t head = start; head < end; ++head) {
@@ -145,6 +157,7 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
     if (head >= behind + partition.first && head < behind + own_end)
       leave_column(bands.layout, partition, head - behind, pass);
   }
+  if (handed_on) *handed_on = under_way[0].forces;
 }
 
 /// Passes after which the threads of a cloth meet, to see whether they gain by being several: so many that
@@ -167,8 +180,10 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   const auto walk = [&](std::size_t first, std::size_t stride, std::size_t pass,
                         TeamGain::Duration& waited) HWY_ATTR {
     const std::size_t steps = std::min(bands.steps_per_pass, count - pass * bands.steps_per_pass);
-    const auto walk_one = [&](std::size_t p, ColumnMessages* messages) HWY_ATTR {
-      walk_partition<method>(bands, p, steps, bands.passes + pass, messages, waited);
+    std::optional<ForcesUnderWay> forces;
+    const auto walk_one = [&](std::size_t p, ColumnMessages* messages,
+                              std::optional<ForcesUnderWay>* handed_on = nullptr) HWY_ATTR {
+      walk_partition<method>(bands, p, steps, bands.passes + pass, messages, handed_on, waited);
     };
     ColumnMessages* const messages = first == 0 ? bands.messages : nullptr;
     if (messages && pass > 0) messages->finish();
@@ -177,7 +192,8 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
       if (bands.first_inner + bands.inner_count < partitions) walk_one(partitions - 1, nullptr);
       messages->begin();
     }
-    for (std::size_t p = first; p < bands.inner_count; p += stride) walk_one(bands.first_inner + p, messages);
+    for (std::size_t p = first; p < bands.inner_count; p += stride)
+      walk_one(bands.first_inner + p, messages, stride == 1 ? &forces : nullptr);
     if (messages && !has_edges) messages->begin();
   };
   const auto pass_alone = [&](std::size_t pass) HWY_ATTR {
