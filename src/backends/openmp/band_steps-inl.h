@@ -89,6 +89,23 @@ HWY_INLINE void walk_stage(const BandGrid& bands, BandPartition& partition, Stag
   std::swap(under_way.forces[0], under_way.forces[1]);
 }
 
+/// So many stages of a pass over a partition, before its first column.
+inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGrid& bands,
+                                                                  BandPartition& partition,
+                                                                  std::size_t count) {
+  std::array<StageUnderWay, stages_under_way> stages;
+  for (std::size_t i = 0; i < count; ++i) {
+    // What the stages behind need of the neighbours' columns is computed here too.
+    const std::size_t reach = BandLayout::halo * (count - 1 - i);
+    stages[i].begin = partition.first - std::min(partition.first, reach);
+    stages[i].end = std::min(partition.first + partition.count + reach, bands.columns);
+    for (std::size_t f = 0; f < 2; ++f)
+      stages[i].forces[f] = partition.forces.data() + (2 * i + f) * bands.layout.force_floats();
+    std::memset(stages[i].forces[0], 0, 2 * bands.layout.force_floats() * sizeof(float));
+  }
+  return stages;
+}
+
 /// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other. Messages
 /// that are under way meanwhile go on (null: there are none). `waited`: as take_ghosts. `handed_on`: null, or
 /// of the thread that walks over all partitions, the forces that the one before has left, if any, and that
@@ -103,18 +120,9 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
                                ColumnMessages* messages, std::optional<ForcesUnderWay>* handed_on,
                                TeamGain::Duration& waited) {
   constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
-  const std::size_t count = steps * stages, columns = bands.columns;
+  const std::size_t count = steps * stages;
   BandPartition& partition = bands.partitions[p];
-  std::array<StageUnderWay, stages_under_way> under_way;
-  for (std::size_t i = 0; i < count; ++i) {
-    // What the stages behind need of the neighbours' columns is computed here too.
-    const std::size_t reach = distance * (count - 1 - i);
-    under_way[i].begin = partition.first - std::min(partition.first, reach);
-    under_way[i].end = std::min(partition.first + partition.count + reach, columns);
-    for (std::size_t f = 0; f < 2; ++f)
-      under_way[i].forces[f] = partition.forces.data() + (2 * i + f) * bands.layout.force_floats();
-    std::memset(under_way[i].forces[0], 0, 2 * bands.layout.force_floats() * sizeof(float));
-  }
+  std::array<StageUnderWay, stages_under_way> under_way = stages_of_pass(bands, partition, count);
   const bool goes_on = handed_on && *handed_on && count == 1 && bands.layout.halves == 1;
   if (goes_on) under_way[0].forces = **handed_on;
   const std::size_t start =
