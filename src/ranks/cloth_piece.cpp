@@ -77,9 +77,9 @@ std::size_t ClothPiece::chosen_steps(const Session& session, const RankJob& job)
   const auto& cloth = std::get<ClothSpec>(job.scene.content);
   const GridPatch on_host{cloth.rows, static_cast<std::uint32_t>(columns_on_host(session, columns_)),
                           cloth.spacing_m};
-  const std::size_t found =
-      steps_per_pass_for(BandLayout(on_host, kernel_.lanes), integrator,
-                         static_cast<std::size_t>(session.ranks_on_host() * job.threads));
+  const std::size_t found = steps_per_pass_for(
+      BandLayout(on_host, kernel_.lanes), integrator,
+      static_cast<std::size_t>(session.ranks_on_host()) * static_cast<std::size_t>(job.threads));
   const std::size_t usual = std::stoul(session.share(std::to_string(found)));
   const std::size_t narrowest = columns_ / static_cast<std::size_t>(ranks_);
   // Of a larger piece messages are a small part, and making it takes long.

@@ -48,7 +48,7 @@ const std::array<AccumulationMethod, 9>& table() {
        "a layout of its own",
        "twice",
        Repeatable::always},
-      {*find_backend("openmp"), "a layout of its own", "once on a cloth, twice on bodies",
+      {*find_backend("openmp"), "a layout of its own", "once, but twice on bodies that differ",
        Repeatable::always},
   }};
   return rows;

@@ -126,7 +126,7 @@ struct BandGrid {
   double spacing_ = 0;  ///< m, places the dummies, with the next
   std::size_t first_column_ = 0;
   void cut(std::size_t threads);
-  void add_partition(ColumnRange columns);
+  void add_partition(ColumnRange its);
   void make_arrays(BandPartition& partition) const;
   void choose_rows(BandPartition& partition, const std::vector<SpringConstants>& springs);
   void add_pins(BandPartition& partition, const System& system) const;

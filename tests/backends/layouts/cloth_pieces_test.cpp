@@ -51,7 +51,7 @@ class MailMessages final : public ColumnMessages {
   BandPartition& last() { return bands_.partitions.back(); }
   std::size_t ghosts() const { return ghost_columns(*bands_.integrator, bands_.steps_per_pass); }
   std::size_t floats() const { return ghosts() * bands_.layout.column_floats(); }
-  float* column(BandPartition& partition, std::size_t number) {
+  float* column(BandPartition& partition, std::size_t number) const {
     return partition.column(bands_.layout, Pair::state, number);
   }
 
