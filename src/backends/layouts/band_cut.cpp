@@ -18,7 +18,8 @@ std::size_t cache_bytes(int name, long usual) {
 /// Rows that a pass over one of the partitions walks through, as many as take its time.
 double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                     std::size_t threads) {
-  // Measured on an Intel Xeon: what a column takes beside its rows, and a column whose nodes are not updated.
+  // Measured on an Intel Xeon: what a column takes beside its rows; and, rounded up, what one takes whose
+  // nodes are not updated, with the copies that it is read from.
   constexpr double rows_beside = 0.7, partial_column = 0.8;
   const std::size_t columns = (layout.columns + layout.halves - 1) / layout.halves;
   const std::size_t partitions = partitions_for(columns, threads, integrator, steps_per_pass);

@@ -18,7 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Copies lanes of `count` vectors: `of_half` floats from each `from_stride` on to each `to_stride`.
+/// Copies half a vector `count` times, from each `from_stride` floats to each `to_stride`.
 HWY_INLINE void copy_half(float* to, std::size_t to_stride, const float* from, std::size_t from_stride,
                           std::size_t count) {
   const hn::Half<FloatTag> d;
