@@ -31,6 +31,9 @@ void LauncherOutput::take_line(const std::string& line) {
   // "process rank 1 with PID 7 on node a exited on signal 9 (Killed)" (mpirun), "a: task 1: Killed" (srun)
   if (line.find(" rank ") != std::string::npos || line.find(" task ") != std::string::npos)
     about_rank_ = line;
+  // Open MPI's note, now and then, that its ssh has ended sooner than it could be put into a group: no
+  // reason.
+  if (line.find("plm:rsh: Warning: setpgid(") != std::string::npos) return;
   const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
   const bool is_dashes = !is_blank && line.find_first_not_of('-') == std::string::npos;
   if (is_dashes || is_blank) {

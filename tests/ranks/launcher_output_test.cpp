@@ -67,6 +67,17 @@ TEST(LauncherOutput, TakesTheFirstParagraphBetweenDashesBehindWhatSshSays) {
             "ssh: connect to host b port 22: No route to host; " + reason);
 }
 
+TEST(LauncherOutput, DoesNotTakeANoteOfOpenMpiForAReason) {
+  EXPECT_EQ(
+      heard(
+          "ssh: connect to host b port 22: No route to host\n"
+          "[a:983] plm:rsh: Warning: setpgid(997,997) failed in parent with errno=Permission denied(13)\n\n" +
+          dashes + "\nORTE was unable to reliably start one or more daemons.\n" + dashes + "\n")
+          .reason,
+      "ssh: connect to host b port 22: No route to host; ORTE was unable to reliably start one or more "
+      "daemons.");
+}
+
 TEST(LauncherOutput, ElseTakesTheLastLine) {
   EXPECT_EQ(heard("one\ntwo\n\n").reason, "two");
   EXPECT_EQ(heard("").reason, "it printed nothing");
