@@ -12,14 +12,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
+/// The floats of a record, of one record a lane.
+struct EightLanes {
+  Lanes first[4], last[4];
+};
+
 #if HWY_TARGET == HWY_SCALAR
 
-/// The nodes whose records lie at record(0), record(1) ..., one a lane.
+/// The records of eight floats that lie at record(0), record(1) ..., one a lane.
 template <std::size_t lanes, class Record>
-HWY_INLINE NodeLanes load_records(Record record) {
+HWY_INLINE EightLanes load_eight(Record record) {
   static_assert(lanes == 1);
   const float* r = record(0);
-  return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}};
+  return {{r[0], r[1], r[2], r[3]}, {r[4], r[5], r[6], r[7]}};
 }
 
 /// Writes `lanes` records that follow each other at `to`.
@@ -37,8 +42,7 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
 
 #else
 
-/// Transposes in each block of four floats: from four vectors of records to their first three components, or
-/// back (the fourth component is then zero).
+/// Transposes in each block of four floats: from four vectors of records to their components, or back.
 template <class V>
 HWY_INLINE void transpose_blocks(V r0, V r1, V r2, V r3, V* out) {
   const FloatTag d;
@@ -78,7 +82,7 @@ HWY_INLINE V odd_blocks(V low, V high) {
 
 /// The same for vectors.
 template <std::size_t lanes, class Record>
-HWY_INLINE NodeLanes load_records(Record record) {
+HWY_INLINE EightLanes load_eight(Record record) {
   static_assert(lanes == 4 || lanes == 8 || lanes == 16);
   const FloatTag d;
   using Vector = hn::Vec<FloatTag>;
@@ -88,7 +92,7 @@ HWY_INLINE NodeLanes load_records(Record record) {
                              hn::Load(d, record(3)), x);
     transpose_blocks<Vector>(hn::Load(d, record(0) + 4), hn::Load(d, record(1) + 4),
                              hn::Load(d, record(2) + 4), hn::Load(d, record(3) + 4), v);
-    return {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}};
+    return {{x[0], x[1], x[2], x[3]}, {v[0], v[1], v[2], v[3]}};
   } else {
     // Record i, with 16 lanes followed by record i + 4.
     const auto load = [&](std::size_t i) MSSIM_INLINE_LAMBDA -> Vector {
@@ -100,11 +104,13 @@ HWY_INLINE NodeLanes load_records(Record record) {
       }
     };
     constexpr std::size_t middle = lanes / 2;
-    Vector low[4], high[4];  // even blocks: a component of positions, odd ones: of velocities
+    Vector low[4], high[4];  // even blocks: of the first four floats, odd ones: of the last
     transpose_blocks<Vector>(load(0), load(1), load(2), load(3), low);
     transpose_blocks<Vector>(load(middle), load(middle + 1), load(middle + 2), load(middle + 3), high);
-    return {{even_blocks(low[0], high[0]), even_blocks(low[1], high[1]), even_blocks(low[2], high[2])},
-            {odd_blocks(low[0], high[0]), odd_blocks(low[1], high[1]), odd_blocks(low[2], high[2])}};
+    return {{even_blocks(low[0], high[0]), even_blocks(low[1], high[1]), even_blocks(low[2], high[2]),
+             even_blocks(low[3], high[3])},
+            {odd_blocks(low[0], high[0]), odd_blocks(low[1], high[1]), odd_blocks(low[2], high[2]),
+             odd_blocks(low[3], high[3])}};
   }
 }
 
@@ -145,6 +151,13 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
 }
 
 #endif
+
+/// The nodes whose records lie at record(0), record(1) ..., one a lane.
+template <std::size_t lanes, class Record>
+HWY_INLINE NodeLanes load_records(Record record) {
+  const EightLanes all = load_eight<lanes>(record);
+  return {{all.first[0], all.first[1], all.first[2]}, {all.last[0], all.last[1], all.last[2]}};
+}
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

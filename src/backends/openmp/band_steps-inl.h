@@ -106,21 +106,27 @@ inline std::array<StageUnderWay, stages_under_way> stages_of_pass(const BandGrid
   return stages;
 }
 
-/// Takes `steps` steps in one pass over the columns of a partition, the stages one behind the other. Messages
-/// that are under way meanwhile go on (null: there are none). `waited`: as take_ghosts. `handed_on`: null, or
-/// of the thread that walks over all partitions, the forces that the one before has left, if any, and that
-/// this one leaves; with one stage under way in a cloth that is not folded they are those that the columns
-/// before this partition would give once more.
+/// A pass of a thread over partitions.
+struct BandPass {
+  std::uint64_t number;        ///< of all passes over the cloth
+  std::size_t steps;           ///< that it takes at once
+  TeamGain::Duration& waited;  ///< as take_ghosts
+};
+
+/// Takes the steps of a pass over the columns of a partition, the stages one behind the other. Messages that
+/// are under way meanwhile go on (null: there are none). `handed_on`: null, or of the thread that walks over
+/// all partitions, the forces that the one before has left, if any, and that this one leaves; with one stage
+/// under way in a cloth that is not folded they are those that the columns before this partition would give
+/// once more.
 ///
 /// The columns of other partitions in the pass before are read as late as possible, and the own ones left for
 /// them as soon as they are complete. No set is written that is still read: who leaves columns for a pass has
 /// seen those that the reader left in the pass before, after it had read the same set.
 template <std::size_t method>
-HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps, std::uint64_t pass,
-                               ColumnMessages* messages, std::optional<ForcesUnderWay>* handed_on,
-                               TeamGain::Duration& waited) {
+HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, const BandPass& pass, ColumnMessages* messages,
+                               std::optional<ForcesUnderWay>* handed_on) {
   constexpr std::size_t stages = integrators[method].stage_count, distance = BandLayout::halo;
-  const std::size_t count = steps * stages;
+  const std::size_t count = pass.steps * stages;
   BandPartition& partition = bands.partitions[p];
   std::array<StageUnderWay, stages_under_way> under_way = stages_of_pass(bands, partition, count);
   const bool goes_on = handed_on && *handed_on && count == 1 && bands.layout.halves == 1;
@@ -134,15 +140,15 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
   // What the next pass begins with, and what this one ends with; both in two thirds of the columns.
   EdgeAhead left_ahead, right_ahead;
   if (p > 0 && !handed_on)
-    left_ahead = EdgeAhead(bands.layout, partition.left, bands.partitions[p - 1].right, pass + 1);
+    left_ahead = EdgeAhead(bands.layout, partition.left, bands.partitions[p - 1].right, pass.number + 1);
   if (has_next && !handed_on)
-    right_ahead = EdgeAhead(bands.layout, partition.right, bands.partitions[p + 1].left, pass);
+    right_ahead = EdgeAhead(bands.layout, partition.right, bands.partitions[p + 1].left, pass.number);
   const std::size_t edge_floats = partition.ghosts * EdgeColumns::column_floats(bands.layout);
   const std::size_t floats_ahead = edge_floats * 3 / (2 * partition.count) + 1;
   if (bands.layout.halves > 1) take_ghosts_of_halves(bands.layout, partition);
   if (p > 0 && !goes_on)
     take_ghosts(bands.layout, partition, bands.partitions[p - 1].right, partition.first - partition.ghosts, 0,
-                pass, waited);
+                pass.number, pass.waited);
   for (std::size_t head = start; head < end; ++head) {
     if (messages && head % columns_an_advance == 0) messages->advance();
     if (head >= partition.first) {
@@ -152,8 +158,8 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
     // Before any of the own last columns is left for others.
     if (has_next && head + partition.ghosts == own_end)
       take_ghosts(bands.layout, partition, bands.partitions[p + 1].left, own_end, bands.layout.halves - 1,
-                  pass, waited);
-    for (std::size_t step = 0; step < steps; ++step)
+                  pass.number, pass.waited);
+    for (std::size_t step = 0; step < pass.steps; ++step)
       for_each_stage<method>([&](auto stage) HWY_ATTR {
         const std::size_t i = step * stages + stage, behind = distance * i;
         if (head < behind + (under_way[i].begin - std::min(under_way[i].begin, distance)) ||
@@ -163,7 +169,7 @@ HWY_INLINE void walk_partition(BandGrid& bands, std::size_t p, std::size_t steps
       });
     const std::size_t behind = distance * (count - 1);
     if (head >= behind + partition.first && head < behind + own_end)
-      leave_column(bands.layout, partition, head - behind, pass);
+      leave_column(bands.layout, partition, head - behind, pass.number);
   }
   if (handed_on) *handed_on = under_way[0].forces;
 }
@@ -187,12 +193,12 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   // Of every stride-th inner partition from `first` on; the first thread before that of the edges.
   const auto walk = [&](std::size_t first, std::size_t stride, std::size_t pass,
                         TeamGain::Duration& waited) HWY_ATTR {
-    const std::size_t steps = std::min(bands.steps_per_pass, count - pass * bands.steps_per_pass);
+    const BandPass its{bands.passes + pass,
+                       std::min(bands.steps_per_pass, count - pass * bands.steps_per_pass), waited};
     std::optional<ForcesUnderWay> forces;
-    const auto walk_one = [&](std::size_t p, ColumnMessages* messages,
-                              std::optional<ForcesUnderWay>* handed_on = nullptr) HWY_ATTR {
-      walk_partition<method>(bands, p, steps, bands.passes + pass, messages, handed_on, waited);
-    };
+    const auto walk_one =
+        [&](std::size_t p, ColumnMessages* messages, std::optional<ForcesUnderWay>* handed_on = nullptr)
+            HWY_ATTR { walk_partition<method>(bands, p, its, messages, handed_on); };
     ColumnMessages* const messages = first == 0 ? bands.messages : nullptr;
     if (messages && pass > 0) messages->finish();
     if (messages && has_edges) {
