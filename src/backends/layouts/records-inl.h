@@ -12,20 +12,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// The floats of a record, of one record a lane.
-struct EightLanes {
-  Lanes first[4], last[4];
-};
-
 #if HWY_TARGET == HWY_SCALAR
 
-/// The records of eight floats that lie at record(0), record(1) ..., one a lane.
-template <std::size_t lanes, class Record>
-HWY_INLINE EightLanes load_eight(Record record) {
+/// Records of eight floats, one a lane.
+template <std::size_t lanes>
+struct TransposedRecords {
   static_assert(lanes == 1);
-  const float* r = record(0);
-  return {{r[0], r[1], r[2], r[3]}, {r[4], r[5], r[6], r[7]}};
-}
+  const float* record_0;
+  template <class Record>
+  HWY_INLINE explicit TransposedRecords(Record record) : record_0(record(0)) {}
+  /// Float i of the first four of each record, and of the last four.
+  HWY_INLINE Lanes first(std::size_t i) const { return record_0[i]; }
+  HWY_INLINE Lanes last(std::size_t i) const { return record_0[4 + i]; }
+};
 
 /// Writes `lanes` records that follow each other at `to`.
 template <std::size_t lanes>
@@ -80,39 +79,48 @@ HWY_INLINE V odd_blocks(V low, V high) {
 #endif
 }
 
-/// The same for vectors.
-template <std::size_t lanes, class Record>
-HWY_INLINE EightLanes load_eight(Record record) {
+/// Records of eight floats, one a lane, transposed as far as goes without exchanging blocks of four floats.
+template <std::size_t lanes>
+struct TransposedRecords {
   static_assert(lanes == 4 || lanes == 8 || lanes == 16);
-  const FloatTag d;
   using Vector = hn::Vec<FloatTag>;
-  if constexpr (lanes == 4) {
-    Vector x[4], v[4];
-    transpose_blocks<Vector>(hn::Load(d, record(0)), hn::Load(d, record(1)), hn::Load(d, record(2)),
-                             hn::Load(d, record(3)), x);
-    transpose_blocks<Vector>(hn::Load(d, record(0) + 4), hn::Load(d, record(1) + 4),
-                             hn::Load(d, record(2) + 4), hn::Load(d, record(3) + 4), v);
-    return {{x[0], x[1], x[2], x[3]}, {v[0], v[1], v[2], v[3]}};
-  } else {
-    // Record i, with 16 lanes followed by record i + 4.
-    const auto load = [&](std::size_t i) MSSIM_INLINE_LAMBDA -> Vector {
-      if constexpr (lanes == 16) {
-        const hn::Half<FloatTag> half;
-        return hn::Combine(d, hn::Load(half, record(i + 4)), hn::Load(half, record(i)));
-      } else {
-        return hn::Load(d, record(i));
-      }
-    };
-    constexpr std::size_t middle = lanes / 2;
-    Vector low[4], high[4];  // even blocks: of the first four floats, odd ones: of the last
-    transpose_blocks<Vector>(load(0), load(1), load(2), load(3), low);
-    transpose_blocks<Vector>(load(middle), load(middle + 1), load(middle + 2), load(middle + 3), high);
-    return {{even_blocks(low[0], high[0]), even_blocks(low[1], high[1]), even_blocks(low[2], high[2]),
-             even_blocks(low[3], high[3])},
-            {odd_blocks(low[0], high[0]), odd_blocks(low[1], high[1]), odd_blocks(low[2], high[2]),
-             odd_blocks(low[3], high[3])}};
+  /// With 4 lanes the components of the first and of the last four floats; with more of both by turns, of the
+  /// first half of the records and of the second.
+  Vector low[4], high[4];
+
+  template <class Record>
+  HWY_INLINE explicit TransposedRecords(Record record) {
+    const FloatTag d;
+    if constexpr (lanes == 4) {
+      transpose_blocks<Vector>(hn::Load(d, record(0)), hn::Load(d, record(1)), hn::Load(d, record(2)),
+                               hn::Load(d, record(3)), low);
+      transpose_blocks<Vector>(hn::Load(d, record(0) + 4), hn::Load(d, record(1) + 4),
+                               hn::Load(d, record(2) + 4), hn::Load(d, record(3) + 4), high);
+    } else {
+      // Record i, with 16 lanes followed by record i + 4.
+      const auto load = [&](std::size_t i) MSSIM_INLINE_LAMBDA -> Vector {
+        if constexpr (lanes == 16) {
+          const hn::Half<FloatTag> half;
+          return hn::Combine(d, hn::Load(half, record(i + 4)), hn::Load(half, record(i)));
+        } else {
+          return hn::Load(d, record(i));
+        }
+      };
+      constexpr std::size_t middle = lanes / 2;
+      transpose_blocks<Vector>(load(0), load(1), load(2), load(3), low);
+      transpose_blocks<Vector>(load(middle), load(middle + 1), load(middle + 2), load(middle + 3), high);
+    }
   }
-}
+  /// Float i of the first four of each record, and of the last four.
+  HWY_INLINE Lanes first(std::size_t i) const {
+    if constexpr (lanes == 4) return low[i];
+    return even_blocks(low[i], high[i]);
+  }
+  HWY_INLINE Lanes last(std::size_t i) const {
+    if constexpr (lanes == 4) return high[i];
+    return odd_blocks(low[i], high[i]);
+  }
+};
 
 /// The same for vectors.
 template <std::size_t lanes>
@@ -155,8 +163,8 @@ HWY_INLINE void store_records(float* to, const NodeLanes& node) {
 /// The nodes whose records lie at record(0), record(1) ..., one a lane.
 template <std::size_t lanes, class Record>
 HWY_INLINE NodeLanes load_records(Record record) {
-  const EightLanes all = load_eight<lanes>(record);
-  return {{all.first[0], all.first[1], all.first[2]}, {all.last[0], all.last[1], all.last[2]}};
+  const TransposedRecords<lanes> all(record);
+  return {{all.first(0), all.first(1), all.first(2)}, {all.last(0), all.last(1), all.last(2)}};
 }
 
 }  // namespace mssim::HWY_NAMESPACE
