@@ -88,7 +88,7 @@ HWY_INLINE void walk_rows(const RowConstants& constants, const ColumnView& colum
   };
   Carry carry = nothing_carried();
   if constexpr ((set & within_column) != 0) {
-    carry.below = of_band_before(ends.last_but_one.down_2 + ends.last.down);
+    carry.below = of_band_before(ends.last_but_one.down_2) + of_band_before(ends.last.down);
     carry.below_2 = of_band_before(ends.last.down_2);
   }
   if constexpr ((set & right_down) != 0) carry.right_below = of_band_before(ends.last.right_down);
