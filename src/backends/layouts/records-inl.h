@@ -14,17 +14,17 @@ namespace mssim::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-/// Records of eight floats, one a lane.
-template <std::size_t lanes>
-struct TransposedRecords {
-  static_assert(lanes == 1);
-  const float* record_0;
+/// A record of eight floats.
+struct SingleRecord {
+  const float* floats;
   template <class Record>
-  HWY_INLINE explicit TransposedRecords(Record record) : record_0(record(0)) {}
-  /// Float i of the first four of each record, and of the last four.
-  HWY_INLINE Lanes first(std::size_t i) const { return record_0[i]; }
-  HWY_INLINE Lanes last(std::size_t i) const { return record_0[4 + i]; }
+  HWY_INLINE explicit SingleRecord(Record record) : floats(record(0)) {}
+  /// Float i of the first four, and of the last four.
+  HWY_INLINE Lanes first(std::size_t i) const { return floats[i]; }
+  HWY_INLINE Lanes last(std::size_t i) const { return floats[4 + i]; }
 };
+template <std::size_t lanes>
+using TransposedRecords = SingleRecord;
 
 /// Writes `lanes` records that follow each other at `to`.
 template <std::size_t lanes>
