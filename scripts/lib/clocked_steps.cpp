@@ -93,9 +93,8 @@ void measure(const char* file, const Chain& chain) {
   const double nodes = static_cast<double>(scene.system.nodes()) / 16;
   const double springs = static_cast<double>(scene.system.springs.size()) / 16;
   std::printf(
-      "%s: %.4g ms a step with one thread at %.2f GHz, %.1f cycles for sixteen nodes (half of the turns: "
-      "%.1f "
-      "to %.1f), %.1f for sixteen springs\n",
+      "%s: %.4g ms a step with one thread at %.2f GHz, %.1f cycles for sixteen nodes "
+      "(half of the turns: %.1f to %.1f), %.1f for sixteen springs\n",
       scene.spec.name.c_str(), median(step_s) * 1e3, 1e-9 / median(cycle_s), median(cycles) / nodes,
       quantile(cycles, 0.25) / nodes, quantile(cycles, 0.75) / nodes, median(cycles) / springs);
 }
