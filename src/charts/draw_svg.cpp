@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -25,7 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A chart takes 0.02 s; what takes this long never ends.
-constexpr unsigned most_cpu_seconds = 20;
+constexpr unsigned most_cpu_seconds = 20, most_elapsed_seconds = 120;
+/// Charts have some ten kilobytes, and gnuplot draws them in less than 0.3 GB.
+constexpr std::uint64_t most_svg_bytes = std::uint64_t{64} << 20, most_memory_bytes = std::uint64_t{2} << 30;
 
 void require_id(const std::string& id) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -48,9 +51,10 @@ ChartWords words_of(const Chart& chart, const std::vector<std::string>& notes) {
 }
 
 std::string how_it_ended(const ChildResult& ended) {
-  if (ended.signal == SIGXCPU || ended.signal == SIGKILL)
-    return "was stopped after " + std::to_string(most_cpu_seconds) +
-           " s of processor time or for lack of memory";
+  if (ended.out_of_time)
+    return "was stopped after " + std::to_string(most_cpu_seconds) + " s of processor time or " +
+           std::to_string(most_elapsed_seconds) + " s in all";
+  if (ended.out_of_memory || ended.signal == SIGKILL) return "was stopped for lack of memory";
   if (ended.signal != 0) return "ended with signal " + std::to_string(ended.signal);
   if (ended.exit_code != 0) return "ended with exit code " + std::to_string(ended.exit_code);
   return "ended without a complete chart";
@@ -94,8 +98,12 @@ DrawnChart draw_svg(const Chart& chart) {
                                  {"--default-settings", script.filename().string()},
                                  {"LC_ALL=C"},
                                  folder.path(),
-                                 most_cpu_seconds});
-  const bool well = ended.signal == 0 && ended.exit_code == 0 && fs::is_regular_file(output);
+                                 most_cpu_seconds,
+                                 most_elapsed_seconds,
+                                 most_memory_bytes,
+                                 most_svg_bytes});
+  const bool well = ended.signal == 0 && ended.exit_code == 0 && fs::is_regular_file(output) &&
+                    fs::file_size(output) <= most_svg_bytes;
   if (const auto svg = well ? page_svg(read_file(output), words_of(chart, drawn.notes)) : std::nullopt)
     drawn.svg = *svg;
   else

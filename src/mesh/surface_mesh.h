@@ -15,7 +15,8 @@ struct SurfaceShape {
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
 /// shaped and small enough; the shape stays. From the cache when it was made before. Throws InputError, which
-/// names the file, for one that cannot be read or encloses no body, and for numbers out of range;
+/// names the file, for one that cannot be read, encloses no body or is too thin to be
+/// filled, and for numbers out of range;
 /// MissingProgram when TetGen is needed and not installed.
 TetMesh surface_mesh(const SurfaceShape& body);
 

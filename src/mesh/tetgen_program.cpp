@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 /// TetGen's own shared libraries, which hold most of it in Debian's package. Asked of the dynamic loader the
 /// way ldd does: it then prints what it would load, one "NAME => FILE (ADDRESS)" a line, and runs nothing.
 std::vector<fs::path> libraries_of(const fs::path& executable) {
-  constexpr unsigned seconds = 5;
-  const ChildResult listing = run({executable, {}, {"LD_TRACE_LOADED_OBJECTS=1"}, "/", seconds});
+  constexpr unsigned cpu_s = 5, elapsed_s = 60;
+  const ChildResult listing = run({executable, {}, {"LD_TRACE_LOADED_OBJECTS=1"}, "/", cpu_s, elapsed_s});
   std::vector<fs::path> libraries;
   std::istringstream lines(listing.output);
   constexpr std::string_view before = " => ", after = " (";

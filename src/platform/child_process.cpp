@@ -1,17 +1,22 @@
 #include "platform/child_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <deque>
+#include <optional>
 #include <stdexcept>
+#include <thread>
 
 #include "platform/interruption.h"
 #include "platform/process_cpus.h"
@@ -74,27 +79,45 @@ void limit(int resource, rlim_t soft, rlim_t hard) {
 
 /// What the child does between fork and exec, where only async-signal-safe calls are allowed: this process
 /// may have threads. `group`: of processes, 0 for a new one. Returns errno when something fails.
-int become(const char* program, char* const* arguments, char* const* environment, const char* folder,
-           unsigned cpu_seconds, int output, pid_t group) {
+int become(const ChildProcess& child, char* const* arguments, char* const* environment, int output,
+           pid_t group) {
   // A group of their own, so that what it starts in turn can be ended with it; and no orphan if this process
   // is killed.
   if (::setpgid(0, group) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return errno;
   if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0) return errno;
-  limit(RLIMIT_CPU, cpu_seconds, cpu_seconds + 1);
+  limit(RLIMIT_CPU, child.cpu_seconds, child.cpu_seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
-  if (::chdir(folder) != 0) return errno;
-  ::execve(program, arguments, environment);
+  if (child.memory_bytes > 0) limit(RLIMIT_AS, child.memory_bytes, child.memory_bytes);
+  if (child.file_bytes > 0) limit(RLIMIT_FSIZE, child.file_bytes, child.file_bytes);
+  if (::chdir(child.folder.c_str()) != 0) return errno;
+  ::execve(child.program.c_str(), arguments, environment);
   return errno;
 }
 
-/// Reads to the end; keeps the last bytes.
-std::string read_tail(int descriptor) {
+using Clock = std::chrono::steady_clock;
+
+/// Waits until there is something to read, or the end; false when that time has come. None: for ever.
+bool wait_to_read(int descriptor, const std::optional<Clock::time_point>& deadline) {
+  while (true) {
+    constexpr std::chrono::milliseconds longest{60'000};
+    std::chrono::milliseconds left = longest;
+    if (deadline)
+      left = std::min(left, std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now()));
+    if (left.count() <= 0) return false;
+    pollfd waited{descriptor, POLLIN, 0};
+    const int ready = ::poll(&waited, 1, static_cast<int>(left.count()));
+    if (ready > 0 || (ready < 0 && errno != EINTR)) return true;
+  }
+}
+
+/// Reads to the end and keeps the last bytes; no farther than that time.
+std::string read_tail(int descriptor, const std::optional<Clock::time_point>& deadline) {
   constexpr std::size_t kept = 64 * 1024;
   std::string tail;
   std::array<char, 4096> buffer;
-  while (true) {
+  while (wait_to_read(descriptor, deadline)) {
     const ssize_t bytes = ::read(descriptor, buffer.data(), buffer.size());
     if (bytes < 0 && errno == EINTR) continue;
     if (bytes <= 0) break;
@@ -120,13 +143,15 @@ class Running {
     if (process_ < 0) fail(child, "fork", errno);
     if (process_ == 0) {
       interruption.release_child();
-      const int error = become(child.program.c_str(), argument_pointers.data(), environment_pointers.data(),
-                               child.folder.c_str(), child.cpu_seconds, output_.writer(), group);
+      const int error =
+          become(child, argument_pointers.data(), environment_pointers.data(), output_.writer(), group);
       [[maybe_unused]] const ssize_t written = ::write(start_error_.writer(), &error, sizeof error);
       ::_exit(127);
     }
     // Here as well, so that the group exists before it is watched.
-    ::setpgid(process_, group == 0 ? process_ : group);
+    group_ = group == 0 ? process_ : group;
+    ::setpgid(process_, group_);
+    if (child.elapsed_seconds > 0) deadline_ = Clock::now() + std::chrono::seconds(child.elapsed_seconds);
     output_.close_writer();
     start_error_.close_writer();
   }
@@ -145,16 +170,30 @@ class Running {
 
   /// Waits until it has ended.
   void end() {
-    result_.output = read_tail(output_.reader());
-    if (::read(start_error_.reader(), &error_, sizeof error_) != sizeof error_) error_ = 0;
+    result_.output = read_tail(output_.reader(), deadline_);
     int status = 0;
-    while (::waitpid(process_, &status, 0) < 0)
-      if (errno != EINTR) fail(child_, "waiting for it", errno);
-    ended_ = true;
+    rusage used{};
+    // What it started may hold the pipe open without it, and it may close the pipe and go on.
+    while (!has_ended(status, used)) {
+      if (deadline_ && Clock::now() >= *deadline_) {
+        result_.out_of_time = true;
+        ::kill(-group_, SIGKILL);
+        deadline_.reset();
+        continue;
+      }
+      constexpr std::chrono::milliseconds between{1};
+      std::this_thread::sleep_for(between);
+    }
+    if (::read(start_error_.reader(), &error_, sizeof error_) != sizeof error_) error_ = 0;
     if (WIFSIGNALED(status))
       result_.signal = WTERMSIG(status);
     else
       result_.exit_code = WEXITSTATUS(status);
+    result_.out_of_time = result_.out_of_time || result_.signal == SIGXCPU;
+    const bool failed = result_.signal != 0 || result_.exit_code != 0;
+    const std::uint64_t peak_bytes = static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
+    result_.out_of_memory =
+        failed && !result_.out_of_time && child_.memory_bytes > 0 && peak_bytes > child_.memory_bytes / 4 * 3;
   }
 
   /// Of one that has ended.
@@ -164,9 +203,19 @@ class Running {
   }
 
  private:
+  /// Without a time limit it waits for that.
+  bool has_ended(int& status, rusage& used) {
+    while (true) {
+      const pid_t ended = ::wait4(process_, &status, deadline_ ? WNOHANG : 0, &used);
+      if (ended < 0 && errno != EINTR) fail(child_, "waiting for it", errno);
+      if (ended >= 0) return ended_ = ended == process_;
+    }
+  }
+
   const ChildProcess& child_;
   Pipe output_, start_error_;  // the latter stays empty when the program starts: exec closes it
-  pid_t process_ = 0;
+  pid_t process_ = 0, group_ = 0;
+  std::optional<Clock::time_point> deadline_;
   bool ended_ = false;
   int error_ = 0;
   ChildResult result_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -9,9 +10,11 @@ namespace mssim {
 
 /// How a program that was run ended.
 struct ChildResult {
-  int exit_code = 0;   ///< what it returned, when signal is 0
-  int signal = 0;      ///< what ended it, or 0
-  std::string output;  ///< what it wrote to stdout and stderr, the last 64 KiB
+  int exit_code = 0;           ///< what it returned, when signal is 0
+  int signal = 0;              ///< what ended it, or 0
+  bool out_of_time = false;    ///< it was ended because its processor time or its elapsed time was over
+  bool out_of_memory = false;  ///< it failed when it had more than three quarters of memory_bytes
+  std::string output;          ///< what it wrote to stdout and stderr, the last 64 KiB
 };
 
 /// What a program is run with.
@@ -21,6 +24,10 @@ struct ChildProcess {
   std::vector<std::string> environment;  ///< NAME=VALUE, added to this process's or replacing what it has
   std::filesystem::path folder;          ///< the folder it runs in
   unsigned cpu_seconds = 0;              ///< processor time after which the system ends it with SIGXCPU
+  /// Time after which it is killed, with all that it started and all that runs together with it; 0: none.
+  unsigned elapsed_seconds = 0;
+  std::uint64_t memory_bytes = 0;  ///< the most address space that it gets; 0: as much as this process
+  std::uint64_t file_bytes = 0;    ///< the longest file that it can write; 0: as long as this process can
 };
 
 /// Runs a program to its end: no shell, empty stdin, no core file. Throws std::runtime_error with one

@@ -235,6 +235,24 @@ TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {
   EXPECT_NEAR(volume_of(fine), 1e-9 / 6, 1e-18);
 }
 
+TEST_F(SurfaceFile, OfASheetThatIsTooThinToBeMeshedIsRefused) {
+  const auto sheet = [&](double thickness) {
+    Surface box = unit_cube();
+    std::string text;
+    for (const Vec3d& p : box.points)
+      text += "v " + decimal(p.x) + ' ' + decimal(p.y * thickness) + ' ' + decimal(p.z) + '\n';
+    for (const auto& [a, b, c] : box.triangles)
+      text += "f " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + ' ' + std::to_string(c + 1) + '\n';
+    put("sheet.obj", text);
+    return folder() / "sheet.obj";
+  };
+  EXPECT_THAT(input_error_of([&] { surface_mesh({sheet(0.0001)}); }),
+              AllOf(HasSubstr("sheet.obj: it is 0.0001 m thick at (0."), HasSubstr("at most 4000000"),
+                    HasSubstr("thicker")));
+  // What is foreseen of the other is what comes.
+  EXPECT_NEAR(static_cast<double>(surface_mesh({sheet(0.03)}).nodes.size()), 0.5 * 2 / (0.03 * 0.03), 200);
+}
+
 TEST_F(SurfaceFile, ThatEnclosesNoBodyIsNamed) {
   put("open.obj", obj_points + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
   EXPECT_THAT(input_error_of([&] { surface_mesh({folder() / "open.obj"}); }),

@@ -109,6 +109,8 @@ TEST_F(TetgenTest, PartsBesideEachOtherAreFilled) {
 TEST_F(TetgenTest, ACrashAFailureAndNoMeshAreErrors) {
   install_tetgen("kill -SEGV $$\n");
   EXPECT_THAT(complaint_about(unit_cube()), HasSubstr("ended with signal 11"));
+  install_tetgen("kill -KILL $$\n");
+  EXPECT_THAT(complaint_about(unit_cube()), HasSubstr("TetGen needs more memory than the "));
   install_tetgen("echo out of luck >&2; exit 1\n");
   EXPECT_THAT(complaint_about(unit_cube()),
               HasSubstr("ended with exit code 1 after writing \"out of luck\""));

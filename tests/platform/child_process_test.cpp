@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -54,6 +56,36 @@ TEST_F(ChildProcesses, MayWriteMoreThanAPipeHolds) {
     EXPECT_EQ(result.output.size(), 64U * 1024);
     EXPECT_THAT(result.output, testing::EndsWith("789\nend\n"));
   }
+}
+
+TEST_F(ChildProcesses, AreEndedWithAllThatTheyStartedWhenTheirTimeIsOver) {
+  for (const std::string hold : {"exec sleep 600", "sleep 600 & exit 3", "exec >&- 2>&-; sleep 600 & wait"}) {
+    ChildProcess child = shell("echo begun; " + hold);
+    child.elapsed_seconds = 1;
+    const ChildResult result = run(child);
+    EXPECT_EQ(result.output, "begun\n") << hold;
+    if (hold.ends_with("exit 3")) {
+      EXPECT_EQ(result.exit_code, 3) << "what it started may be ended without it";
+    } else {
+      EXPECT_EQ(result.signal, SIGKILL) << hold;
+      EXPECT_TRUE(result.out_of_time) << hold;
+    }
+  }
+}
+
+TEST_F(ChildProcesses, ThatTakeMoreThanTheyMaySayThat) {
+  ChildProcess child = shell("exec awk 'BEGIN { while (1) text[n++] = n \" is put into memory\" }'");
+  child.memory_bytes = std::uint64_t{64} << 20;
+  const ChildResult filled = run(child);
+  EXPECT_TRUE(filled.out_of_memory);
+  EXPECT_FALSE(filled.out_of_time);
+  child = shell("exec head -c 100000 /dev/zero >file");
+  child.file_bytes = 4096;
+  EXPECT_NE(run(child).signal, 0);
+  EXPECT_EQ(std::filesystem::file_size(folder() / "file"), 4096U);
+  child = shell("exec false");
+  child.memory_bytes = std::uint64_t{64} << 20;
+  EXPECT_FALSE(run(child).out_of_memory);
 }
 
 TEST_F(ChildProcesses, MayBeNone) { EXPECT_TRUE(run_together({}).empty()); }

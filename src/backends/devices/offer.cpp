@@ -47,9 +47,12 @@ std::string last_line(std::string_view text) {
 
 /// How asking ended the process that asked, for the end of a sentence; nothing where it did not.
 std::optional<std::string> end_of_asking(const std::vector<std::string>& environment) {
-  constexpr unsigned patience_s = 60;  // processor time
-  const ChildResult asked = run({helper_program("ask-opencl"), {}, environment, ".", patience_s});
+  constexpr unsigned cpu_s = 60, elapsed_s = 120;
+  const ChildResult asked = run({helper_program("ask-opencl"), {}, environment, ".", cpu_s, elapsed_s});
   if (asked.signal == 0 && asked.exit_code == 0) return std::nullopt;
+  if (asked.out_of_time)
+    return "did not answer within " + std::to_string(cpu_s) + " s of processor time or " +
+           std::to_string(elapsed_s) + " s in all when asked for devices";
   const std::string line = last_line(asked.output);
   return "ended with " +
          (asked.signal != 0 ? "signal " + std::to_string(asked.signal)
