@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 namespace mssim {
@@ -19,8 +20,8 @@ void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) 
   for (const Hdf5Filter& filter : filters_of(dataset)) {
     constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
     if (std::ranges::find(known, filter.number) == known.end())
-      throw Hdf5ContentError(path + " is packed by a filter that mssim does not use, number " +
-                             std::to_string(filter.number));
+      throw Hdf5ContentError(path + " is packed by filter " + std::to_string(filter.number) +
+                             ", which mssim does not read: shuffle, deflate and Fletcher32 it does");
     if (filter.number == H5Z_FILTER_SHUFFLE && filter.option != H5Tget_size(type.get()))
       throw Hdf5ContentError(path + " is said to hold shuffled bytes of other numbers than it does");
   }
@@ -68,15 +69,15 @@ Hdf5Attribute open_attribute(hid_t file, const std::string& path, const std::str
 }
 
 template <class Number>
-Number read_number(hid_t file, const std::string& path, const std::string& name, hid_t file_type,
-                   hid_t memory_type) {
+Number read_number(hid_t file, const std::string& path, const std::string& name,
+                   bool (*is_known)(const Hdf5Type&), hid_t memory_type) {
   const Hdf5Attribute attribute = open_attribute(file, path, name);
   const std::string action = "reading attribute " + name + " of " + path;
   const Hdf5Type type(H5Aget_type(attribute.get()), action);
   const Hdf5Space space(H5Aget_space(attribute.get()), action);
-  if (checked(H5Tequal(type.get(), file_type), action) == 0 || H5Sget_simple_extent_npoints(space.get()) != 1)
+  if (!is_known(type) || H5Sget_simple_extent_npoints(space.get()) != 1)
     throw Hdf5ContentError("attribute " + name + " of " + path +
-                           " is no single number of the type that mssim writes");
+                           " is no single number of a type that mssim reads");
   Number number{};
   checked(H5Aread(attribute.get(), memory_type, &number), action);
   return number;
@@ -114,6 +115,18 @@ Hdf5Dataset open_dataset(hid_t file, const std::string& path) {
   Hdf5Dataset dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), action);
   require_known_storage(dataset, path);
   return dataset;
+}
+
+bool is_real(const Hdf5Type& type) {
+  const std::array known{H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE};
+  return std::ranges::any_of(known, [&](hid_t one) { return H5Tequal(type.get(), one) > 0; });
+}
+
+bool is_integer(const Hdf5Type& type) {
+  constexpr std::size_t most_bytes = 8, bits_per_byte = 8;
+  const std::size_t bytes = H5Tget_size(type.get());
+  return H5Tget_class(type.get()) == H5T_INTEGER && bytes <= most_bytes && std::has_single_bit(bytes) &&
+         H5Tget_precision(type.get()) == bytes * bits_per_byte;
 }
 
 std::vector<Hdf5Filter> filters_of(const Hdf5Dataset& dataset) {
@@ -174,11 +187,11 @@ std::string read_text_attribute(hid_t file, const std::string& path, const std::
 }
 
 double read_double_attribute(hid_t file, const std::string& path, const std::string& name) {
-  return read_number<double>(file, path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE);
+  return read_number<double>(file, path, name, is_real, H5T_NATIVE_DOUBLE);
 }
 
 std::int64_t read_integer_attribute(hid_t file, const std::string& path, const std::string& name) {
-  return read_number<std::int64_t>(file, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64);
+  return read_number<std::int64_t>(file, path, name, is_integer, H5T_NATIVE_INT64);
 }
 
 }  // namespace mssim

@@ -30,6 +30,11 @@ bool exists(hid_t file, const std::string& path);
 /// The dataset at `path`, which is stored in this file, by filters that hdf5_write.h uses.
 Hdf5Dataset open_dataset(hid_t file, const std::string& path);
 
+/// Whether numbers are floating-point ones of 32 or 64 bits, or integers of 8 to 64 bits, of either byte
+/// order.
+bool is_real(const Hdf5Type& type);
+bool is_integer(const Hdf5Type& type);
+
 /// What chunks go through when they are written.
 struct Hdf5Filter {
   H5Z_filter_t number = 0;
@@ -55,7 +60,7 @@ std::vector<std::string> read_texts(hid_t file, const std::string& path);
 /// Whether the object at `path`, which exists, has an attribute.
 bool has_attribute(hid_t file, const std::string& path, const std::string& name);
 
-/// An attribute of one string, or of one number, as hdf5_write.h writes it.
+/// An attribute of one string, or of one number (is_real, is_integer).
 std::string read_text_attribute(hid_t file, const std::string& path, const std::string& name);
 double read_double_attribute(hid_t file, const std::string& path, const std::string& name);
 std::int64_t read_integer_attribute(hid_t file, const std::string& path, const std::string& name);

@@ -9,10 +9,10 @@
 
 namespace mssim {
 
-/// Numbers in an HDF5 file that anybody may have written: rows of one shape, of a type that traces have
-/// (float32, float64, int64 or uint32, little-endian). What is read has its checksums compared and is stored
-/// in the file as a whole: HDF5 itself gives zeros for chunks that are not there. All functions throw
-/// Hdf5Error and Hdf5ContentError.
+/// Numbers in an HDF5 file that anybody may have written or repacked: rows of one shape, of a type that
+/// is_real() or is_integer() knows, in chunks of any extents or none. What is read has its checksums compared
+/// and is stored in the file as a whole: HDF5 itself gives zeros for chunks that are not there. All functions
+/// throw Hdf5Error and Hdf5ContentError.
 class Hdf5Table {
  public:
   static constexpr hsize_t any = H5S_UNLIMITED;  ///< an extent that may be any number
@@ -34,7 +34,6 @@ class Hdf5Table {
  private:
   template <class Number>
   std::vector<Number> read(hsize_t first_row, hsize_t rows, hid_t memory_type) const;
-  void require_written_chunks(bool grows) const;
   bool is_deflated() const;
   /// Calls `visit` with the first corner of each chunk of these rows.
   void each_chunk(hsize_t first_row, hsize_t rows,

@@ -16,14 +16,6 @@
 namespace mssim {
 namespace {
 
-void require_trace_of_mssim(hid_t file) {
-  if (!exists(file, "/h5md")) throw Hdf5ContentError("it is an HDF5 file, but no H5MD trace");
-  const std::string creator = exists(file, "/h5md/creator") && has_attribute(file, "/h5md/creator", "name")
-                                  ? read_text_attribute(file, "/h5md/creator", "name")
-                                  : "nobody";
-  if (creator != "mssim") throw Hdf5ContentError("its creator is " + creator + ", not mssim");
-}
-
 std::string read_particles(hid_t file) {
   for (const char* name : {"cloth", "bodies", "garment"})
     if (exists(file, std::string("/particles/") + name)) return name;
@@ -111,7 +103,7 @@ Surface read_static_body(hid_t file) {
 }  // namespace
 
 TraceContent read_trace_content(hid_t file) {
-  require_trace_of_mssim(file);
+  if (!exists(file, "/h5md")) throw Hdf5ContentError("it is an HDF5 file, but no H5MD trace");
   TraceContent content;
   content.particles = read_particles(file);
   read_series(file, content);

@@ -203,7 +203,67 @@ TEST_F(TraceReading, RefusesWhatOtherProgramsWrote) {
     create_group(h5.get(), "/h5md");
     write_attribute(create_group(h5.get(), "/h5md/creator").get(), "name", std::string_view("GROMACS"));
   }
-  EXPECT_THAT(refusal(file()), HasSubstr("its creator is GROMACS, not mssim"));
+  EXPECT_THAT(refusal(file()), HasSubstr("there is none of /particles/cloth"));
+}
+
+TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
+  constexpr int frames = 3;
+  write_system(system_, frames, false);
+  const std::string particles = "/particles/cloth";
+  const auto repack = [&](const std::string& path, hid_t type, std::vector<hsize_t> chunk, bool deflated) {
+    const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+    const std::vector<hsize_t> shape = shape_of(h5.get(), path);
+    const std::vector<double> numbers = read<double>(h5.get(), path, H5T_NATIVE_DOUBLE);
+    checked(H5Ldelete(h5.get(), path.c_str(), H5P_DEFAULT), path);
+    const Hdf5Properties properties(H5Pcreate(H5P_DATASET_CREATE), "properties");
+    if (!chunk.empty())
+      checked(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), path);
+    if (deflated) {
+      checked(H5Pset_fletcher32(properties.get()), path);
+      checked(H5Pset_deflate(properties.get(), 9), path);
+    }
+    const Hdf5Dataset dataset = create_dataset(h5.get(), path, type, shape, false, properties);
+    checked(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), path);
+  };
+  repack(particles + "/position/value", H5T_IEEE_F32BE, {2, 7, 2}, true);
+  repack(particles + "/velocity/value", H5T_IEEE_F64LE, {3, 20, 3}, false);
+  repack(particles + "/position/step", H5T_STD_U16BE, {2}, true);
+  repack("/connectivity/springs", H5T_STD_I64BE, {}, false);
+  repack("/parameters/springs/rest_length", H5T_IEEE_F64BE, {5}, true);
+  const auto others = [&](const std::string& path, const std::string& name, hid_t type, hid_t memory,
+                          const void* number) {
+    const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+    const Hdf5Space scalar(H5Screate(H5S_SCALAR), "space");
+    checked(H5Adelete_by_name(h5.get(), path.c_str(), name.c_str(), H5P_DEFAULT), name);
+    const Hdf5Attribute attribute(H5Acreate_by_name(h5.get(), path.c_str(), name.c_str(), type, scalar.get(),
+                                                    H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                  name);
+    checked(H5Awrite(attribute.get(), memory, number), name);
+  };
+  const int row_count = rows;
+  others("/parameters", "rows", H5T_STD_U8LE, H5T_NATIVE_INT, &row_count);
+  const double dt_s = header().dt_s;
+  others("/parameters", "dt_s", H5T_IEEE_F64BE, H5T_NATIVE_DOUBLE, &dt_s);
+  const Hdf5Type text(H5Tcopy(H5T_C_S1), "type");
+  checked(H5Tset_size(text.get(), H5T_VARIABLE), "type");
+  const char* creator = "another program";
+  others("/h5md/creator", "name", text.get(), text.get(), &creator);
+
+  const TraceReader reader(file());
+  EXPECT_EQ(reader.content().step, (std::vector<std::int64_t>{0, 10, 20}));
+  EXPECT_EQ(reader.content().dt_s, dt_s);
+  EXPECT_EQ(std::get<GridPatch>(reader.content().topology).rows, rows);
+  ASSERT_EQ(reader.content().springs.size(), system_.springs.size());
+  for (std::size_t s = 0; s < system_.springs.size(); ++s) {
+    EXPECT_EQ(reader.content().springs[s], (std::array{system_.springs[s].first, system_.springs[s].second}));
+    EXPECT_EQ(reader.content().rest_length[s], system_.springs[s].rest_length);
+  }
+  for (int frame = 0; frame < frames; ++frame) {
+    State state = state_at(system_, frame);
+    round_to_single(state);
+    EXPECT_EQ(reader.positions(static_cast<std::size_t>(frame)), state.position);
+    EXPECT_EQ(reader.velocities(static_cast<std::size_t>(frame)), state.velocity);
+  }
 }
 
 TEST_F(TraceReading, RefusesATraceWithoutFrames) {
