@@ -4,6 +4,7 @@
 
 #include "geometry/geometry.h"
 #include "platform/whole_file.h"
+#include "text/byte_order_mark.h"
 #include "text/input_error.h"
 #include "text/number_in.h"
 #include "text/printable.h"
@@ -26,10 +27,7 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 TextLines::TextLines(std::string file, std::string_view text, char comment)
-    : file_(std::move(file)), text_(text), comment_(comment) {
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
-}
+    : file_(std::move(file)), text_(without_byte_order_mark(text)), comment_(comment) {}
 
 bool TextLines::next() {
   words_.clear();

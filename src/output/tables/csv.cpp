@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "platform/whole_file.h"
+#include "text/byte_order_mark.h"
 #include "text/decimal.h"
 #include "text/number_in.h"
 #include "text/printable.h"
@@ -53,6 +54,7 @@ std::string csv_number(const std::optional<double>& value) {
 CsvTable::CsvTable(const std::filesystem::path& file) : CsvTable(file.string(), read_text(file)) {}
 
 CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(name)) {
+  text = without_byte_order_mark(text);
   std::size_t line = 1;
   for (std::size_t at = 0; at < text.size();) {
     Record record{line, {std::string()}};

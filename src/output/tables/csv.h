@@ -33,8 +33,8 @@ std::string csv_number(const std::optional<double>& value);
 /// A table read from a file: a header and records of as many fields.
 class CsvTable {
  public:
-  /// Parses a text; `name`, of the file it came from, stands in messages. Throws CsvError when a quote is
-  /// left open or a record has not the header's length.
+  /// Parses a text, which may begin with a byte-order mark; `name`, of the file it came from, stands in
+  /// messages. Throws CsvError when a quote is left open or a record has not the header's length.
   CsvTable(std::string name, std::string_view text);
 
   /// The same from a file. Throws CsvError when it cannot be read, too.

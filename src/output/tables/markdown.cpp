@@ -7,10 +7,17 @@
 namespace mssim {
 namespace {
 
-/// Text that cannot end a cell or a line.
+/// Text that begins no HTML: names of scenes and devices are anybody's.
+std::string prose(std::string_view text) {
+  std::string result;
+  for (const char character : text) character == '<' ? result += "&lt;" : result += character;
+  return result;
+}
+
+/// The same that cannot end a cell or a line.
 std::string one_cell(std::string_view text) {
   std::string cell;
-  for (const char character : text) {
+  for (const char character : prose(text)) {
     if (character == '|')
       cell += "\\|";
     else if (character == '\n')
@@ -22,10 +29,10 @@ std::string one_cell(std::string_view text) {
 }
 
 std::string text_of(const Heading& heading) {
-  return std::string(static_cast<std::size_t>(heading.level), '#') + ' ' + heading.text + '\n';
+  return std::string(static_cast<std::size_t>(heading.level), '#') + ' ' + prose(heading.text) + '\n';
 }
 
-std::string text_of(const Paragraph& paragraph) { return paragraph.text + '\n'; }
+std::string text_of(const Paragraph& paragraph) { return prose(paragraph.text) + '\n'; }
 
 std::string text_of(const BulletList& list) {
   std::string text;

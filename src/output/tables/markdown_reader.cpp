@@ -1,8 +1,11 @@
 #include "output/tables/markdown_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
+
+#include "text/byte_order_mark.h"
 
 namespace mssim {
 namespace {
@@ -22,20 +25,18 @@ std::string_view take_to(std::string_view& text, std::string_view end) {
   return part;
 }
 
-/// As it was before it became a cell.
-std::string cell_of(std::string_view text) {
-  std::string cell;
-  for (text = without_blanks(text); !text.empty();) {
-    if (text.starts_with("<br>")) {
-      cell += '\n';
-      text.remove_prefix(4);
-      continue;
-    }
-    if (text.starts_with("\\|")) text.remove_prefix(1);
-    cell += text.front();
-    text.remove_prefix(1);
+/// As it was before the writer replaced what means something in Markdown.
+std::string plain(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, char>, 3> replaced{
+      {{"<br>", '\n'}, {"\\|", '|'}, {"&lt;", '<'}}};
+  std::string result;
+  while (!text.empty()) {
+    const auto found = std::find_if(replaced.begin(), replaced.end(),
+                                    [&](const auto& pair) { return text.starts_with(pair.first); });
+    result += found == replaced.end() ? text.front() : found->second;
+    text.remove_prefix(found == replaced.end() ? 1 : found->first.size());
   }
-  return cell;
+  return result;
 }
 
 /// The cells of "| a | b |".
@@ -44,7 +45,7 @@ std::vector<std::string> cells_of(std::string_view line) {
   std::size_t begin = 1;
   for (std::size_t at = 1; at < line.size(); ++at) {
     if (line[at] != '|' || line[at - 1] == '\\') continue;
-    cells.push_back(cell_of(line.substr(begin, at - begin)));
+    cells.push_back(plain(without_blanks(line.substr(begin, at - begin))));
     begin = at + 1;
   }
   return cells;
@@ -71,7 +72,7 @@ Table table_of(std::string_view head, std::string_view rule, std::string_view ro
 
 BulletList list_of(std::string_view block) {
   BulletList list;
-  while (!block.empty()) list.items.push_back(cell_of(take_to(block, "\n").substr(2)));
+  while (!block.empty()) list.items.push_back(plain(without_blanks(take_to(block, "\n").substr(2))));
   return list;
 }
 
@@ -86,7 +87,7 @@ void add_block(Document& page, std::string_view block) {
   const std::string_view first = take_to(rest, "\n");
   const std::size_t level = std::min(first.find_first_not_of('#'), first.size());
   if (rest.empty() && level >= 1 && level <= 6 && first.substr(level).starts_with(' ')) {
-    page.emplace_back(Heading{static_cast<int>(level), std::string(without_blanks(first.substr(level)))});
+    page.emplace_back(Heading{static_cast<int>(level), plain(without_blanks(first.substr(level)))});
     return;
   }
   if (std::string_view rows = rest; first.starts_with('|')) {
@@ -98,12 +99,13 @@ void add_block(Document& page, std::string_view block) {
   if (is_list(block))
     page.emplace_back(list_of(block));
   else
-    page.emplace_back(Paragraph{std::string(block)});
+    page.emplace_back(Paragraph{plain(block)});
 }
 
 }  // namespace
 
 Document document_in(std::string_view markdown) {
+  markdown = without_byte_order_mark(markdown);
   Document page;
   while (!markdown.empty()) {
     std::string_view block = take_to(markdown, "\n\n");

@@ -209,7 +209,10 @@ std::filesystem::path xdmf_of(const std::filesystem::path& trace) {
 }
 
 void write_xdmf(const std::filesystem::path& trace, const XdmfMesh& mesh, std::span<const double> times_s) {
-  const std::string name = escape_xml(trace.filename().string());
+  std::string name = escape_xml(trace.filename().string());
+  // VTK drops bytes beyond ASCII before a name as it does blanks, and then finds no file.
+  constexpr unsigned char last_ascii = 0x7f;
+  if (static_cast<unsigned char>(name.front()) > last_ascii) name.insert(0, "./");
   std::string text =
       "<?xml version=\"1.0\"?>\n"
       "<Xdmf Version=\"3.0\">\n"

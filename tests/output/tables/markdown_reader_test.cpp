@@ -10,12 +10,13 @@ namespace {
 TEST(MarkdownReader, ReadsWhatTheWriterWrote) {
   Table table{{{"name"}, {"a | b", Align::right}}, {}};
   table.rows = {{"x|y\nz", 1.5}, {"", Cell()}};
-  const Document page{Heading{1, "Title"}, Paragraph{"A | b, `c`."}, BulletList{{"one | two", "three\nfour"}},
-                      Heading{3, "### is a heading"}, table};
+  const Document page{Heading{1, "Title <b>"}, Paragraph{"A | b, `c`, a < b."},
+                      BulletList{{"one | two", "three\nfour"}}, Heading{3, "### is a heading"}, table};
   const std::string text = markdown(page);
   const Document read = document_in(text);
   ASSERT_EQ(read.size(), page.size());
   EXPECT_EQ(markdown(read), text);
+  EXPECT_EQ(std::get<Paragraph>(read[1]).text, "A | b, `c`, a < b.");
   EXPECT_EQ(std::get<Heading>(read[3]).text, "### is a heading");
   EXPECT_EQ(std::get<BulletList>(read[2]).items[1], "three\nfour");
   const Table& found = std::get<Table>(read[4]);
@@ -23,6 +24,19 @@ TEST(MarkdownReader, ReadsWhatTheWriterWrote) {
   EXPECT_EQ(found.columns[1].align, Align::right);
   EXPECT_EQ(std::get<std::string>(found.rows[0][0].value), "x|y\nz");
   EXPECT_EQ(std::get<std::string>(found.rows[0][1].value), "1.50");
+}
+
+TEST(MarkdownReader, FindsNoHtmlButLineEnds) {
+  const std::string name = "\\`<img src=x>`";
+  const std::string text =
+      markdown({Heading{1, name}, Paragraph{name}, BulletList{{name}}, Table{{{name}}, {{name + "\n"}}}});
+  std::size_t ends = 0;
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
+    EXPECT_EQ(text.substr(at, 4), "<br>");
+    ++ends;
+  }
+  EXPECT_EQ(ends, 1U);
+  EXPECT_EQ(markdown(document_in("\xef\xbb\xbf" + text)), text);
 }
 
 TEST(MarkdownReader, MakesAPageOfAnyText) {
