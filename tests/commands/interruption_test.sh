@@ -84,6 +84,19 @@ cp copied/timings.csv kept.csv
 grep -q 'cannot continue in copied: the device of opencl was .* (copied memory) and is ' err || fail "other devices: $(cat err)"
 cmp -s kept.csv copied/timings.csv || fail "a refused --resume has changed the rows"
 expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
+cp -r int before
+for signal in INT KILL; do
+  env --default-signal=INT "$mssim" bench --scene cloth350k --backend serial --out int --overwrite >out 2>err </dev/null &
+  process=$!
+  for ((i = 0; i < 300; ++i)); do
+    ! grep -q 'cloth350k (1 of 1)' err || break
+    sleep 0.1
+  done
+  kill -"$signal" "$process"
+  wait "$process" || true
+  [ "$signal" = KILL ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
+  diff -r before int || fail "--overwrite that is ended by SIG$signal before it has a row changes what is there"
+done
 "$mssim" bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite >out 2>err ||
   fail "--overwrite exits with $?: $(cat err)"
 [ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"

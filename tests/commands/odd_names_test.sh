@@ -39,6 +39,24 @@ expect 2 'unknown command' $'\xff\x1b'
 expect 4 'no/f' bench --scene cloth2500 --backend serial --out "$work/two"$'\n'"lines.json/no/f"
 grep -q $'\x1b' "$work/err" && fail "a terminal would take what is said for a command"
 
+# Names that would make one file of two rows, or that no file can have.
+printf '#!/bin/sh\necho "${0##*/}"\nexit 3\n' >"$work/z"
+chmod +x "$work/z"
+cp "$work/z" "$work/y-z"
+long=$(printf 'n%.0s' $(seq 240))
+for scene in x x-y "$long"; do cp "$source/scenes/cloth2500.json" "$work/$scene.json"; done
+status=0
+(cd "$work" && "$mssim" bench --scene ./x.json,./x-y.json,"./$long.json" --backend serial,./z,./y-z --integrator semi-euler --rounds 1 \
+  --trace --out colliding >out 2>err) || status=$?
+[ "$status" -eq 1 ] || fail "names that collide: $status, $(cat "$work/err")"
+[ "$(wc -l <"$work/colliding/timings.csv")" -eq 10 ] || fail "rows are missing: $(cat "$work/colliding/timings.csv")"
+[ "$(cat "$work"/colliding/programs/x-*.txt | sort)" = $'y-z\ny-z\nz\nz' ] || fail "outputs: $(tail -n 9 "$work"/colliding/programs/*)"
+[ -s "$work/colliding/programs/x-y-z-semi-euler.txt" ] && [ -s "$work/colliding/traces/x-serial-semi-euler.h5" ] ||
+  fail "usual names: $(ls "$work"/colliding/*)"
+[ "$(find "$work/colliding" -name 'nnn*.txt' | wc -l)" -eq 2 ] && [ "$(find "$work/colliding/traces" -name 'nnn*.h5' | wc -l)" -eq 1 ] ||
+  fail "long names: $(ls "$work"/colliding/*)"
+rm -r "$work/colliding"
+
 # Commas.
 cp "$source/scenes/cloth2500.json" "$work/a,b.json"
 succeed bench --scene "$work/a,b.json,cloth4900" --dry-run

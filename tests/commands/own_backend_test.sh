@@ -106,8 +106,10 @@ describe floods '"environment": {"A": "1"}'
 succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 printf '{"command": ["%s"]}' "$work/spring_list" >backends/floods.json
 expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+mkdir again/programs/mine
+echo mine >again/programs/mine/file
 succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --overwrite
-[ ! -e again/programs ] || fail "--overwrite leaves the output of programs"
+[ "$(find again/programs -type f)" = again/programs/mine/file ] || fail "--overwrite leaves, of programs and the user: $(find again/programs)"
 
 # Ctrl-C ends a wait, without --backend-limit of two minutes, and leaves nothing.
 describe hangs

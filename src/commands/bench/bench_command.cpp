@@ -63,6 +63,8 @@ void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, 
   std::cerr << "mssim: ";
   if (!stopped)
     std::cerr << "results are in " << folder;
+  else if (results.rows().empty() && plan.output.overwrite)
+    std::cerr << "nothing was measured yet; earlier results are still in " << folder;
   else if (results.rows().empty())
     std::cerr << "nothing was measured yet; --resume continues";
   else

@@ -34,6 +34,13 @@ BenchResults::BenchResults(const BenchPlan& plan)
   if (folder_) folder_->begin();
 }
 
+std::vector<std::string> BenchResults::stems_of_scene(const std::string& name) const {
+  std::vector<std::string> stems = file_stems(rows()), of_scene;
+  for (std::size_t i = 0; i < stems.size(); ++i)
+    if (rows()[i].scene == name) of_scene.push_back(std::move(stems[i]));
+  return of_scene;
+}
+
 void BenchResults::keep(const std::string& scene, std::vector<ResultRow> rows) {
   require_resumable(differences(of_scene(scene), rows), plan_.output.folder);
   add_published_times(rows, plan_);
@@ -41,7 +48,7 @@ void BenchResults::keep(const std::string& scene, std::vector<ResultRow> rows) {
   if (folder_) folder_->write(rows_.all());
 }
 
-void BenchResults::keep(const std::vector<StructureRow>& rows) const {
+void BenchResults::keep(const std::vector<StructureRow>& rows) {
   if (folder_) folder_->write(rows);
 }
 

@@ -20,12 +20,14 @@ class BenchResults {
 
   const std::vector<ResultRow>& rows() const { return rows_.all(); }
   std::vector<ResultRow> of_scene(const std::string& name) const { return rows_.of_scene(name); }
+  /// The names of the files of these rows (file_stems), among those of all scenes.
+  std::vector<std::string> stems_of_scene(const std::string& name) const;
 
   /// Takes the rows of a scene in place of those that it had, adds the published times, and writes the
   /// folder. Throws UsageError where they are not comparable with what an earlier run left, and WriteError.
   void keep(const std::string& scene, std::vector<ResultRow> rows);
   /// Writes what scenes are. Throws WriteError.
-  void keep(const std::vector<StructureRow>& rows) const;
+  void keep(const std::vector<StructureRow>& rows);
   /// Writes what github-action-benchmark reads. Throws WriteError.
   void keep_for_github() const;
 

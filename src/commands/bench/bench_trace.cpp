@@ -32,13 +32,13 @@ void write_trace(const std::filesystem::path& file, const SceneJob& job, const P
 }  // namespace
 
 bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::vector<ResultRow>& rows,
-                        const Provenance& provenance, const std::filesystem::path& folder, bool keep_existing,
-                        const BenchWatch& watch) {
+                        const std::vector<std::string>& stems, const Provenance& provenance,
+                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch) {
   make_folder(folder);
   bool failed = false;
-  for (ResultRow& row : rows) {
-    const std::filesystem::path file =
-        folder / (row.scene + "-" + row.backend + "-" + row.integrator + ".h5");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ResultRow& row = rows[i];
+    const std::filesystem::path file = folder / (stems[i] + ".h5");
     if (row.status != "ok" || (keep_existing && std::filesystem::exists(file))) continue;
     if (watch.stop()) break;
     watch.progress("trace " + row.backend + " " + row.integrator, 1);

@@ -56,7 +56,7 @@ std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan)
     throw UsageError(output.folder +
                      " already holds results: give another --out, --resume to continue them, "
                      "or --overwrite to replace them");
-  folder.clear();
+  folder.replace_results();
   return {};
 }
 

@@ -44,8 +44,8 @@ std::vector<SceneSpec> asked_scenes(const GuideOptions& options) {
   return scenes;
 }
 
-/// The folder, empty; null where results are only printed.
-std::unique_ptr<ResultFolder> empty_folder(const GuideOptions& options, const Provenance& provenance) {
+/// The folder, without results that are to stay; null where results are only printed.
+std::unique_ptr<ResultFolder> result_folder(const GuideOptions& options, const Provenance& provenance) {
   if (options.folder.empty()) {
     if (options.overwrite) throw UsageError("--overwrite needs the folder of an earlier run: give --out too");
     return nullptr;
@@ -56,7 +56,7 @@ std::unique_ptr<ResultFolder> empty_folder(const GuideOptions& options, const Pr
       throw UsageError(options.folder +
                        " already holds results: give another --out, or --overwrite to "
                        "replace them");
-    folder->clear();
+    folder->replace_results();
   }
   folder->begin();
   return folder;
@@ -155,7 +155,7 @@ int run_guide(const GuideOptions& options) {
   Provenance provenance = run_provenance(plan.execution.threads, uses_device);
   add_programs(provenance, choice.own(), plan.execution);
   for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
-  const std::unique_ptr<ResultFolder> folder = empty_folder(options, provenance);
+  const std::unique_ptr<ResultFolder> folder = result_folder(options, provenance);
   for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
   if (uses_device) tell_of_opencl();
 

@@ -1,7 +1,11 @@
 #include "output/folders/result_folder.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -17,6 +21,7 @@
 #include "output/tables/timings_csv.h"
 #include "platform/atomic_file.h"
 #include "platform/write_error.h"
+#include "text/fnv1a.h"
 
 namespace mssim {
 namespace {
@@ -25,17 +30,50 @@ namespace fs = std::filesystem;
 
 constexpr const char* benchmark_name = "benchmark.json";
 constexpr const char* github_name = "github.json";
+constexpr const char* provenance_name = "provenance.json";
 
 std::string csv_of(std::string_view table) { return std::string(table) + ".csv"; }
 std::string markdown_of(std::string_view table) { return std::string(table) + ".md"; }
 
 std::vector<ResultFolder::File> files_of(const ResultTable& table) {
+  if (std::ranges::find(table_names, table.name) == table_names.end())
+    throw std::invalid_argument("the table " + table.name + " is not in table_names");
   std::vector<ResultFolder::File> files{{csv_of(table.name), table_csv(table.data)}};
   if (!table.page.empty()) files.push_back({markdown_of(table.name), markdown(table.page)});
   return files;
 }
 
+std::string output_of(const std::string& stem) {
+  return (fs::path(programs_name) / (stem + ".txt")).string();
+}
+
+/// The first bytes of a text, without a part of a letter.
+std::string beginning_of(std::string text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  constexpr unsigned letter_goes_on = 0x80, its_bits = 0xc0;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & its_bits) == letter_goes_on) --bytes;
+  text.resize(bytes);
+  return text;
+}
+
 }  // namespace
+
+std::vector<std::string> file_stems(std::span<const ResultRow> rows) {
+  constexpr std::size_t longest = 240;  // of 255, with room for ".xdmf.part"
+  std::vector<std::string> stems;
+  std::set<std::string> taken;
+  for (const ResultRow& row : rows) {
+    std::string stem = row.scene + '-' + row.backend + '-' + row.integrator;
+    if (stem.size() > longest || stem.find('/') != std::string::npos || taken.contains(stem)) {
+      const std::string hash = hexadecimal(fnv1a_64(row.scene + '/' + row.backend + '/' + row.integrator));
+      std::ranges::replace(stem, '/', '_');
+      stem = beginning_of(std::move(stem), longest - 1 - hash.size()) + '-' + hash;
+    }
+    taken.insert(stem);
+    stems.push_back(std::move(stem));
+  }
+  return stems;
+}
 
 ResultFolder::ResultFolder(fs::path folder, Provenance provenance, TableMaker tables)
     : folder_(std::move(folder)),
@@ -52,19 +90,25 @@ bool ResultFolder::has_results() const {
 }
 
 void ResultFolder::clear() const {
-  std::vector<std::string> names{timings_name, samples_name, garment_name, benchmark_name, github_name};
+  std::vector<std::string> names;
+  try {
+    if (!fs::is_symlink(folder_ / programs_name))
+      for (const std::string& stem : file_stems(read_timings(folder_ / timings_name)))
+        names.push_back(output_of(stem));
+  } catch (const CsvError&) {
+    // Rows that cannot be read name no outputs.
+  }
+  for (const char* name : {timings_name, samples_name, garment_name, benchmark_name, github_name})
+    names.emplace_back(name);
   for (const std::string_view table : table_names) {
     names.push_back(csv_of(table));
     names.push_back(markdown_of(table));
   }
-  for (const std::string& name : names) {
-    std::error_code error;
-    fs::remove(folder_ / name, error);
-    if (error) throw WriteError(write_failure(folder_ / name, "removing it", error.value()));
-  }
-  std::error_code error;
-  fs::remove_all(folder_ / programs_name, error);
-  if (error) throw WriteError(write_failure(folder_ / programs_name, "removing it", error.value()));
+  for (const std::string& name : names)
+    if (::unlink((folder_ / name).c_str()) != 0 && errno != ENOENT && errno != ENOTDIR)
+      throw WriteError(write_failure(folder_ / name, "removing it", errno));
+  // What else lies among the outputs of programs is the user's.
+  ::rmdir((folder_ / programs_name).c_str());
 }
 
 void ResultFolder::go_on_with(const Provenance& earlier) {
@@ -73,43 +117,52 @@ void ResultFolder::go_on_with(const Provenance& earlier) {
 }
 
 void ResultFolder::begin() const {
-  write_file_atomically(folder_ / "provenance.json", provenance_text(provenance_) + '\n');
+  AtomicFile file(folder_ / provenance_name);
+  file.append(provenance_text(provenance_) + '\n');
+  if (!replaces_) file.move_into_place();
 }
 
-void ResultFolder::write(std::span<const ResultRow> rows) const {
+void ResultFolder::write(std::span<const ResultRow> rows) {
   std::vector<File> files{{samples_name, samples_csv(rows)}};
   if (std::string garment = garment_csv(rows); !garment.empty())
     files.push_back({garment_name, std::move(garment)});
   files.push_back({benchmark_name, benchmark_json(rows, provenance_)});
-  for (const ResultTable& table : tables_(rows, provenance_)) {
-    if (std::ranges::find(table_names, table.name) == table_names.end())
-      throw std::invalid_argument("the table " + table.name + " is not in table_names");
+  for (const ResultTable& table : tables_(rows, provenance_))
     std::ranges::move(files_of(table), std::back_inserter(files));
-  }
-  for (const ResultRow& row : rows) {
-    if (row.program_output.empty()) continue;
-    make_folder(folder_ / programs_name);
-    const std::string name = row.scene + '-' + row.backend + '-' + row.integrator + ".txt";
-    files.push_back({(fs::path(programs_name) / name).string(), row.program_output});
-  }
   files.push_back({timings_name, timings_csv(rows)});
-  write_files(files);
+  const std::vector<std::string> stems = file_stems(rows);
+  std::vector<File> programs;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!rows[i].program_output.empty()) programs.push_back({output_of(stems[i]), rows[i].program_output});
+  write_files(std::move(files), programs);
 }
 
 void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
   write_file_atomically(folder_ / github_name, table_json_text(github_table(rows)));
 }
 
-void ResultFolder::write(std::span<const ResultTable> tables) const {
-  for (const ResultTable& table : tables) write_files(files_of(table));
+void ResultFolder::write(std::span<const ResultTable> tables) {
+  std::vector<File> files;
+  for (const ResultTable& table : tables) std::ranges::move(files_of(table), std::back_inserter(files));
+  write_files(std::move(files));
 }
 
-void ResultFolder::write(std::span<const StructureRow> rows) const {
+void ResultFolder::write(std::span<const StructureRow> rows) {
   write_files(files_of(structure_table(rows, provenance_)));
 }
 
-void ResultFolder::write_files(const std::vector<File>& files) const {
-  for (const File& file : files) write_file_atomically(folder_ / file.name, file.text);
+void ResultFolder::write_files(std::vector<File> files, const std::vector<File>& programs) {
+  if (replaces_) files.insert(files.begin(), {provenance_name, provenance_text(provenance_) + '\n'});
+  std::vector<AtomicFile> written;
+  written.reserve(files.size());
+  for (const File& file : files) written.emplace_back(folder_ / file.name).append(file.text);
+  if (!programs.empty() && fs::is_symlink(folder_ / programs_name))
+    throw WriteError("cannot write into " + (folder_ / programs_name).string() +
+                     ": it is a link; remove it or choose another folder");
+  if (std::exchange(replaces_, false)) clear();
+  if (!programs.empty()) make_folder(folder_ / programs_name);
+  for (const File& output : programs) write_file_atomically(folder_ / output.name, output.text);
+  for (AtomicFile& file : written) file.move_into_place();
 }
 
 std::vector<ResultRow> read_results(const fs::path& folder) {

@@ -22,11 +22,14 @@ struct ResultTable {
 };
 
 /// Every name of such a table, and table2, which is made of what the scenes are.
-inline constexpr std::array<std::string_view, 14> table_names{
-    "table1",       "table2",          "table3",      "races",
-    "scaling",      "peers",           "cluster",     "cluster-estimates",
-    "figure6",      "guide",           "guide-steps", "guide-sizes",
-    "guide-frames", "guide-crossovers"};
+inline constexpr std::array<std::string_view, 15> table_names{"table1",       "table2",
+                                                              "table3",       "races",
+                                                              "scaling",      "peers",
+                                                              "cluster",      "cluster-estimates",
+                                                              "figure6",      "guide",
+                                                              "guide-steps",  "guide-sizes",
+                                                              "guide-frames", "guide-crossovers",
+                                                              "guide-errors"};
 
 /// Makes tables of the rows that a run has so far; none where no row belongs into one.
 using TableMaker =

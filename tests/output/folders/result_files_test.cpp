@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -31,6 +32,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Lt;
+using testing::Not;
 using testing::SizeIs;
 
 class ResultFiles : public TemporaryFolderTest {};
@@ -167,8 +169,7 @@ TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
 }
 
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
-  const ResultFolder results(folder() / "new/out", made_up_provenance(),
-                             paper_tables(legend, published_tables()));
+  ResultFolder results(folder() / "new/out", made_up_provenance(), paper_tables(legend, published_tables()));
   results.begin();
   EXPECT_EQ(text_of(folder() / "new/out/provenance.json"), provenance_text(made_up_provenance()) + '\n');
   EXPECT_TRUE(read_results(folder() / "new/out").empty());
@@ -192,7 +193,7 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
 }
 
 TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
-  const ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+  ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
   std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
   results.write(rows);
   const std::string before = text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json");
@@ -222,15 +223,83 @@ TEST_F(ResultFiles, AreWrittenByOneAtATime) {
   EXPECT_FALSE(open().has_rows());
 }
 
-TEST_F(ResultFiles, AreClearedOfAnEarlierRunsRows) {
-  const ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
-  put("notes.txt", "mine");
-  results.write(std::vector{measured_row("serial", 0.5, 1.0)});
-  EXPECT_TRUE(results.has_rows());
-  results.clear();
-  EXPECT_FALSE(results.has_rows());
-  EXPECT_FALSE(fs::exists(folder() / "samples.csv"));
-  EXPECT_EQ(text_of(folder() / "notes.txt"), "mine");
+TEST_F(ResultFiles, AreReplacedWhenThereIsARowAndWithNothingElse) {
+  {
+    ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
+    ResultRow program = failed_row("mine.py", "failed: out of cake");
+    program.program_output = "cake";
+    results.begin();
+    results.write(std::vector{measured_row("serial", 0.5, 1.0), program});
+  }
+  const fs::path output = folder() / programs_name / "cloth2500-mine.py-semi-euler.txt";
+  EXPECT_EQ(text_of(output), "cake");
+  const fs::path notes = put("notes.txt", "mine"), theirs = put("programs/mine/more.txt", "mine");
+  Provenance provenance = made_up_provenance();
+  provenance.started_utc = "2026-02-01T12:00:00Z";
+  const auto replace = [&](std::vector<ResultRow> rows) {
+    ResultFolder results(folder(), provenance, paper_tables(legend, published_tables()));
+    results.replace_results();
+    results.begin();
+    EXPECT_EQ(text_of(folder() / "provenance.json"), provenance_text(made_up_provenance()) + '\n');
+    EXPECT_EQ(read_results(folder()).size(), 2U);
+    rows[0].scene = "my-own";
+    rows[0].nodes = 2501;  // which no table has
+    results.write(rows);
+  };
+  ResultRow bad = measured_row("openmp", 0.25, 1.0);
+  bad.energy_drift = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(replace({bad}), std::invalid_argument);
+  EXPECT_EQ(read_results(folder()).size(), 2U);
+  replace({measured_row("openmp", 0.25, 1.0)});
+  EXPECT_EQ(read_results(folder()).size(), 1U);
+  EXPECT_EQ(text_of(folder() / "provenance.json"), provenance_text(provenance) + '\n');
+  for (const fs::path& old : {output, folder() / "table1.csv", folder() / "table1.md"})
+    EXPECT_FALSE(fs::exists(old)) << old;
+  EXPECT_EQ(text_of(notes), "mine");
+  EXPECT_EQ(text_of(theirs), "mine");
+}
+
+TEST_F(ResultFiles, GoIntoNoFolderThatALinkLeadsTo) {
+  fs::create_directory(folder() / "elsewhere");
+  fs::create_directory(folder() / "out");
+  fs::create_directory_symlink(folder() / "elsewhere", folder() / "out" / programs_name);
+  ResultFolder results(folder() / "out", made_up_provenance(), paper_tables(legend, published_tables()));
+  ResultRow program = failed_row("mine.py", "failed: out of cake");
+  program.program_output = "cake";
+  EXPECT_THROW(results.write(std::vector{program}), WriteError);
+  EXPECT_TRUE(fs::is_empty(folder() / "elsewhere"));
+}
+
+TEST_F(ResultFiles, WithAByteOrderMarkAreReadToo) {
+  const std::string mark = "\xef\xbb\xbf";
+  const std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
+  std::vector<ResultRow> back = read_timings(put("timings.csv", mark + timings_csv(rows)));
+  ASSERT_EQ(back.size(), 1U);
+  read_samples(put("samples.csv", mark + samples_csv(rows)), back);
+  EXPECT_EQ(back[0].samples_ms, rows[0].samples_ms);
+  EXPECT_EQ(parse_provenance("p.json", mark + provenance_text(made_up_provenance())).threads, 2);
+}
+
+TEST(FileStems, AreTheNamesOfARowAndUnambiguousAndShortEnough) {
+  const auto row = [](std::string scene, std::string backend) {
+    ResultRow named = measured_row(backend, 1, 1.0);
+    named.scene = std::move(scene);
+    return named;
+  };
+  std::string letters;
+  for (int i = 0; i < 100; ++i) letters += "\xc3\xa4";
+  const std::vector<std::string> stems = file_stems(std::vector{
+      row("box-small", "threads-mutex"), row("x", "y-z"), row("x-y", "z"), row(letters, letters.substr(2)),
+      row(letters.substr(2), letters), row("../../etc", "serial")});
+  EXPECT_EQ(stems[0], "box-small-threads-mutex-semi-euler");
+  EXPECT_EQ(stems[1], "x-y-z-semi-euler");
+  EXPECT_THAT(stems[2], testing::MatchesRegex("x-y-z-semi-euler-[0-9a-f]{16}"));
+  EXPECT_THAT(stems[5], AllOf(testing::StartsWith(".._.._etc-"), Not(HasSubstr("/"))));
+  EXPECT_EQ(std::set<std::string>(stems.begin(), stems.end()).size(), stems.size());
+  for (const std::string& stem : stems) {
+    EXPECT_LE(stem.size(), 240U);
+    EXPECT_NO_THROW(nlohmann::json(stem).dump()) << "a letter is cut";
+  }
 }
 
 TEST_F(ResultFiles, CannotGoWhereAFileIs) {
