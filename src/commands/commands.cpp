@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -77,6 +78,13 @@ int fail(int code, const std::string& sentence) {
   return code;
 }
 
+/// The standard library's own sentence names a call in it.
+std::string sentence_of(const std::filesystem::filesystem_error& error) {
+  const std::string file = error.path1().string(), reason = " (" + error.code().message() + "): ";
+  return file.empty() ? "the working folder cannot be found" + reason + "change into a folder that is there"
+                      : file + " cannot be looked up" + reason + "check the path and its permissions";
+}
+
 /// Names the exit code of an error; the one place that does.
 int run_guarded(const std::function<int()>& run) {
   try {
@@ -110,6 +118,8 @@ int run_guarded(const std::function<int()>& run) {
     return fail(exit_file_error, error.what());
   } catch (const std::bad_alloc&) {
     return fail(exit_bad_input, "there is not enough memory; close other programs or use a smaller scene");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(exit_file_error, sentence_of(error));
   } catch (const std::exception& error) {
     return fail(exit_file_error, error.what());
   }

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <string>
 #include <system_error>
@@ -20,26 +21,53 @@ namespace fs = std::filesystem;
   throw WriteError(write_failure(file, action, errno));
 }
 
-/// Whether the open file is the one that stands under this name.
-bool is_named(const Descriptor& open, const fs::path& name) {
-  struct stat opened {};
-  struct stat named {};
-  return ::fstat(open.get(), &opened) == 0 && ::stat(name.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+[[noreturn]] void refuse(const fs::path& file, const std::string& why, const char* or_do = "") {
+  throw WriteError("cannot write " + file.string() + ": " + why + "; " + or_do + "choose another file name");
 }
 
-/// Opens the temporary of `file` and locks it, before a byte of it changes.
+/// What lies below these is not made of files. Shared memory is.
+void require_ordinary_folder(const fs::path& file) {
+  std::error_code ignored;
+  const fs::path folder = fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".", ignored);
+  const auto begins_with = [&](const fs::path& start) {
+    return std::mismatch(start.begin(), start.end(), folder.begin(), folder.end()).first == start.end();
+  };
+  for (const char* system : {"/dev", "/proc", "/sys"})
+    if (begins_with(system) && !begins_with("/dev/shm"))
+      refuse(file, std::string("it lies in ") + system + ", which belongs to the system");
+}
+
+/// Opens the temporary of `file` and locks it, before a byte of it changes. Follows no link, which could lead
+/// to a file of somebody else, and takes no file that has another name or owner, too.
 Descriptor open_locked(const fs::path& file) {
+  constexpr int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
   constexpr mode_t everyone_as_umask_allows = 0666;
   const fs::path temporary = temporary_of(file);
   while (true) {
-    Descriptor part(::open(temporary.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, everyone_as_umask_allows));
+    Descriptor part(::open(temporary.c_str(), flags | O_CREAT | O_EXCL, everyone_as_umask_allows));
+    const bool is_new = part.is_open();
+    if (!is_new && errno == EEXIST) {
+      part = Descriptor(::open(temporary.c_str(), flags));
+      if (!part.is_open() && errno == ENOENT) continue;
+      if (!part.is_open() && errno == ELOOP)
+        refuse(file, temporary.string() + " is a link", "remove it, or ");
+    }
     if (!part.is_open()) fail(file, "creating " + temporary.string());
     if (!part.lock())
       throw WriteError("another mssim is writing " + file.string() +
                        "; wait until it has ended, or choose another file name");
+    struct stat opened {};
+    struct stat named {};
+    if (::fstat(part.get(), &opened) != 0) fail(file, "looking at " + temporary.string());
     // Between opening and locking the writer before may have renamed or removed it.
-    if (is_named(part, temporary)) return part;
+    if (::lstat(temporary.c_str(), &named) != 0 || opened.st_dev != named.st_dev ||
+        opened.st_ino != named.st_ino)
+      continue;
+    if (is_new) return part;
+    if (!S_ISREG(opened.st_mode))
+      refuse(file, temporary.string() + " is not a regular file", "remove it, or ");
+    if (opened.st_nlink == 1 && opened.st_uid == ::geteuid()) return part;
+    if (::unlink(temporary.c_str()) != 0) fail(file, "removing " + temporary.string());
   }
 }
 
@@ -66,17 +94,30 @@ std::string kept_in_part(const fs::path& file, std::string_view what, std::size_
          " written before: " + std::to_string(count);
 }
 
+fs::path target_of(const fs::path& file) {
+  constexpr int most_links = 40;  // as many as Linux follows
+  fs::path target = file;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(target, error); ++links) {
+    require_ordinary_folder(target);
+    if (links == most_links) refuse(file, "its links lead round in a circle");
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) throw WriteError(write_failure(file, "following the link", error.value()));
+  }
+  require_replaceable(target);
+  return target;
+}
+
 void require_replaceable(const fs::path& file) {
   struct stat status {};
-  if (::stat(file.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return;
-  throw WriteError("cannot write " + file.string() + ": it exists and is " +
-                   (S_ISDIR(status.st_mode) ? "a folder" : "not a regular file") +
-                   "; choose another file name");
+  if (::lstat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
+    refuse(file,
+           std::string("it exists and is ") + (S_ISDIR(status.st_mode) ? "a folder" : "not a regular file"));
+  require_ordinary_folder(file);
 }
 
 AtomicFile::AtomicFile(fs::path file) : name_(std::move(file)) {
   require_replaceable(name_);
-  require_replaceable(temporary_of(name_));
   part_ = open_locked(name_);
   if (::ftruncate(part_.get(), 0) != 0) fail(name_, "emptying " + temporary_of(name_).string());
 }

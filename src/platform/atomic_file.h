@@ -15,16 +15,23 @@ std::filesystem::path temporary_of(const std::filesystem::path& file);
 /// For the end of a WriteError's sentence: that FILE.part keeps so many of `what` ("frames"); empty for none.
 std::string kept_in_part(const std::filesystem::path& file, std::string_view what, std::size_t count);
 
-/// Throws WriteError when `file` exists and is not a regular file, so that a rename would replace a folder or
-/// a device.
+/// Where a file that the user names is written: itself, or what it leads to where it is a link, through
+/// however many. Throws WriteError for what cannot be replaced, and for links in a circle.
+std::filesystem::path target_of(const std::filesystem::path& file);
+
+/// Throws WriteError when `file` exists and is neither a regular file nor a link, so that a rename would
+/// replace a folder or a device, and when it lies in /dev (but for /dev/shm), /proc or /sys.
 void require_replaceable(const std::filesystem::path& file);
 
 /// A file that is filled as FILE.part, by one writer at a time, and gets its name when it is whole: at every
 /// moment, even after a crash of the machine, either the whole old file or the whole new one stands there.
+/// Links are not followed: one in the place of the file is replaced, so that what lies in a folder decides
+/// over no file outside. Where the user names the file, target_of() follows them first.
 class AtomicFile {
  public:
   /// Makes FILE.part this writer's, and empty. Throws WriteError where another writer has it, in this process
-  /// or another one, where `file` exists and is not a regular file, and where FILE.part cannot be created.
+  /// or another one, like require_replaceable(), where FILE.part is a link or no regular file, and where it
+  /// cannot be created.
   explicit AtomicFile(std::filesystem::path file);
   AtomicFile(AtomicFile&&) = default;
   AtomicFile& operator=(AtomicFile&&) = delete;

@@ -12,6 +12,7 @@
 #include "output/tables/timings_csv.h"
 #include "platform/whole_file.h"
 #include "report/readable_records.h"
+#include "text/byte_order_mark.h"
 #include "text/counted.h"
 
 namespace mssim {
@@ -112,11 +113,9 @@ void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
 }  // namespace
 
 std::vector<fs::path> result_folders(const fs::path& folder) {
-  std::vector<fs::path> folders;
-  if (!has_results(folder))
-    for (const fs::path& entry : entries_of(folder))
-      if (has_results(entry)) folders.push_back(entry);
-  if (folders.empty()) folders.push_back(folder);
+  if (has_results(folder)) return {folder};
+  std::vector<fs::path> folders = entries_of(folder);
+  std::erase_if(folders, [](const fs::path& entry) { return !has_results(entry); });
   return folders;
 }
 
@@ -144,6 +143,7 @@ ReportFolder read_report_folder(const fs::path& path) {
 }
 
 std::optional<FoundCurve> energy_curve_in(const std::string& name, std::string_view text) {
+  text = without_byte_order_mark(text);
   while (text.starts_with('#')) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   if (!text.starts_with("time_s,kinetic_j,")) return std::nullopt;
   FoundCurve curve{name, {}, {}};

@@ -36,7 +36,7 @@ struct ReportFolder {
 };
 
 /// The result folders that a folder stands for: itself where it has a timings.csv or a guide.csv; else its
-/// subfolders that have one, by name; itself where none has.
+/// subfolders that have one, by name; none where none has.
 std::vector<std::filesystem::path> result_folders(const std::filesystem::path& folder);
 
 ReportFolder read_report_folder(const std::filesystem::path& path);

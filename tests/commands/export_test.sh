@@ -13,7 +13,7 @@ succeed run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies
 succeed run --scene jeans1k --threads 1 --fps 5 --trace garment.h5
 for trace in cloth double bodies garment; do
   succeed export "$trace.h5" --format vtkhdf --frames all
-  [ "$(cat err)" = "mssim: wrote $trace.vtkhdf" ] || fail "export says $(cat err)"
+  [ "$(cat err)" = "mssim: wrote ./$trace.vtkhdf" ] || fail "export says $(cat err)"
   for format in obj ply; do succeed export "$trace.h5" --format "$format" --frames all; done
   succeed export "$trace.h5" --format vtkhdf --out "$trace-last.vtkhdf"
 done
@@ -45,8 +45,10 @@ expect 2 'no such file' export nope.h5 --format obj
 expect 2 'give the trace, cloth.h5' export cloth.xdmf --format obj
 expect 2 'cloth.vtkhdf: it is an HDF5 file, but no H5MD trace' export cloth.vtkhdf --format obj --out never/a.obj
 expect 2 'the same file' export cloth.h5 --format vtkhdf --out ./cloth.h5
-cp cloth.h5 same-000001.h5
-expect 2 'the same file' export same-000001.h5 --format ply --frames 0,1 --out same.h5
+cp cloth.h5 same-000001.ply
+expect 2 'the same file' export same-000001.ply --format ply --frames 0,1 --out same.ply
+expect 2 '--out is never/a.ply, .*OBJ: give a.obj' export cloth.h5 --format obj --out never/a.ply
+expect 2 '--out is cloth.xdmf, .*VTKHDF: give cloth.vtkhdf' export cloth.h5 --format vtkhdf --out cloth.xdmf
 expect 4 'cannot write no/such/a.ply' export cloth.h5 --format ply --out no/such/a.ply
 expect 4 'cannot write no/such/a.vtkhdf' export cloth.h5 --format vtkhdf --out no/such/a.vtkhdf
 expect 4 'never' export cloth.h5 --format vtkhdf --out never

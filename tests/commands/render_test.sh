@@ -77,10 +77,20 @@ expect 2 '"3-1" ends before it begins' render t.h5 --frames 3-1
 expect 2 '7 s is after the last frame' render t.h5 --time 7
 expect 2 '"3" is no number of pictures' render t.h5 --sheet 3
 expect 2 'exclude each other' render t.h5 --movie --sheet 2x2
-expect 2 'the same file' render t.h5 --out t.h5
+cp t.h5 same.png
+expect 2 'the same file' render same.png --out ./same.png
+expect 2 '--out is t.jpg, .*PNG: give t.png' render t.h5 --out t.jpg
+expect 2 '--out is t.xdmf, .*PNG: give t.png' render t.h5 --out t.xdmf
 expect 4 'cannot write' render t.h5 --out no/folder/t.png
 cp "$2/scenes/cloth2500.json" mine.json
-expect 2 'the same file' render --scene mine.json --out mine.json
+cp mine.json mine.png.json
+expect 2 '--out is mine.json, .*PNG: give mine.png' render --scene mine.json --out mine.json
+# Links are followed, also where they lead to what is not there yet; where the system is, nothing is replaced.
+mkdir linked
+ln -s ../drawn.png linked/link.png
+succeed render t.h5 --size 80x60 --out linked/link.png
+[ -L linked/link.png ] && cmp drawn.png linked/link.png || fail "a link was replaced: $(ls -l linked)"
+for place in /dev/stdout /dev/fd/1 /proc/self/fd/1; do expect 4 "cannot write $place: .*choose another file name" render t.h5 --out "$place"; done
 cmp -s "$2/scenes/cloth2500.json" mine.json || fail "the scene is written over"
 expect 2 'a movie has 0.1 to 1000' render t.h5 --movie --fps 5000
 expect 2 '--backend' render t.h5 --backend serial

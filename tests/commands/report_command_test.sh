@@ -146,9 +146,11 @@ has 'What is missing or damaged'
 has '1 row left out, '
 has 'samples.csv'
 has 'malformed JSON'
-mkdir "$work/empty"
-report "$work/empty" "$work/damaged"
-has 'There are no rows'
+mkdir -p "$work/empty/further"
+cp -r "$work/damaged" "$work/empty/further/down"
+echo before >"$work/kept.html"
+expect 2 'empty has no results: give .*further$' report "$work/empty" --out "$work/kept.html"
+[ "$(cat "$work/kept.html")" = before ] || fail "a refused report has replaced a page"
 head -c 4000 /dev/urandom >"$work/empty/timings.csv"
 cp "$work/empty/timings.csv" "$work/empty/samples.csv"
 cp "$work/empty/timings.csv" "$work/empty/provenance.json"
@@ -201,6 +203,9 @@ expect 2 '^mssim: there is no folder /no/such: give folders that mssim bench --o
 expect 2 'there is no folder .*timings.csv' report "$results/table1/zen5/timings.csv"
 expect 4 'cannot write' report "$work/base" --out "$work/no/such/page.html"
 expect 4 'cannot write' report "$work/base" --out "$work/empty"
+expect 2 'timings.csv, .*HTML: give timings.html' report "$work/base" --out "$work/base/timings.csv"
+ln -s base/timings.csv "$work/alias.html"
+expect 2 'timings.csv, .*HTML: give timings.html' report "$work/base" --out "$work/alias.html"
 [ ! -e "$work/page.html.part" ] || fail "a temporary file stays"
 (cd "$work" && "$mssim" report base 2>/dev/null && [ -s report.html ]) || fail "--out is not report.html"
 [ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -40,12 +40,24 @@ expect 2 'the XDMF beside --trace and --energy-curve are the same file' "${fall[
 cp "$source/scenes/cloth2500.json" mine.json
 expect 2 '--energy-curve and a file of the scene are the same file' run --scene ./mine.json --energy-curve mine.json
 cmp -s mine.json "$source/scenes/cloth2500.json" || fail "a scene was overwritten"
+expect 2 '--trace and --pictures are the same file, x.h5' "${fall[@]}" --trace x.h5 --pictures x.h5
 [ -z "$(find . -name 'x.*')" ] || fail "a refused run leaves a file"
+
+# A link in the place of the temporary file could lead to any file: refused. One in the place of the trace is followed.
+echo mine >victim
+ln -s victim x.h5.part
+expect 4 'cannot write x.h5: x.h5.part is a link; remove it' "${fall[@]}" --duration 0.01 --trace x.h5
+[ "$(cat victim)" = mine ] || fail "a file that a link leads to was written"
+mkdir elsewhere
+ln -s elsewhere/real.h5 link.h5
+succeed "${fall[@]}" --duration 0.01 --trace link.h5
+[ -L link.h5 ] && [ -s elsewhere/real.xdmf ] && [ "$(frames elsewhere/real.h5)" -ge 1 ] || fail "a link is not followed: $(ls -l . elsewhere)"
 
 # Pictures while it runs: one a frame, into a folder of their own, and the last is what the trace shows at the end.
 succeed "${fall[@]}" --duration 0.1 --fps 20 --pictures new/shots --size 160x120 --view side --trace shots.h5
 [ "$(ls new/shots | tr '\n' ' ')" = 'frame-000000.png frame-000001.png frame-000002.png ' ] ||
   fail "the folder of pictures holds $(ls new/shots)"
+[ "$(cat err)" = $'mssim: wrote shots.h5 and shots.xdmf\nmssim: wrote 3 pictures into new/shots' ] || fail "a run says it wrote $(cat err)"
 succeed render shots.h5 --frames 0 --size 160x120 --view side --out start.png
 cmp -s start.png new/shots/frame-000000.png || fail "the first picture is not the trace's first frame"
 expect 4 'new/shots, which is not empty; empty it or choose another folder' \
@@ -84,6 +96,9 @@ script -qec "'$mssim' run --scene cloth2500 --threads 1 --duration 1" /dev/null 
 grep -q 'cloth2500  \[.*\]  about 0:[0-9][0-9] left  step [0-9]* of 20000' terminal || fail "no progress: $(head -c 500 terminal)"
 script -qec "'$mssim' run --scene jeans1k --threads 1" /dev/null </dev/null >terminal
 grep -q 'jeans1k  \[ *\]  draping, [0-9.]* s simulated of at most 4' terminal || fail "no progress of a dressing"
+script -qec "stty cols 80; '$mssim' run --scene cloth2500 --threads 1 --duration 0.01" /dev/null </dev/null | tr -d '\r' >terminal
+grep -q '^integrator  *semi-euler$' terminal && grep -q '^wall_s  *[0-9.]*$' terminal || fail "the result on a terminal: $(tail -n 20 terminal)"
+! grep -q 'damping_loss_j' terminal || fail "a terminal shows what a run has not"
 "$mssim" "${fall[@]}" --duration 0.1 >out 2>err
 [ ! -s err ] || fail "a run that is no terminal's writes to stderr: $(cat err)"
 

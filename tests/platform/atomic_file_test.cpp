@@ -50,6 +50,45 @@ TEST_F(AtomicFileTest, RefusesToReplaceFoldersAndDevices) {
               ThrowsMessage<WriteError>(HasSubstr("not a regular file")));
 }
 
+TEST_F(AtomicFileTest, RefusesFoldersOfTheSystemButForSharedMemory) {
+  for (const char* file : {"/dev/new", "/proc/new", "/sys/new", "/proc/self/fd/1", "/dev/fd/../new"})
+    EXPECT_THAT([&] { require_replaceable(file); },
+                ThrowsMessage<WriteError>(AllOf(HasSubstr(file), HasSubstr("choose another file name"))));
+  EXPECT_THAT([] { target_of("/dev/stdout"); }, ThrowsMessage<WriteError>(HasSubstr("/dev/stdout")));
+  EXPECT_NO_THROW(require_replaceable("/dev/shm/new"));
+  EXPECT_NO_THROW(require_replaceable("/devices"));
+}
+
+TEST_F(AtomicFileTest, WritesThroughNoLinkInThePlaceOfItsTemporary) {
+  const auto victim = put("victim", "mine"), file = folder() / "rows.csv";
+  std::filesystem::create_symlink(victim, temporary_of(file));
+  EXPECT_THAT([&] { write_file_atomically(file, "text"); },
+              ThrowsMessage<WriteError>(
+                  AllOf(HasSubstr(temporary_of(file).string() + " is a link"), HasSubstr("remove it"))));
+  std::filesystem::remove(temporary_of(file));
+  std::filesystem::create_hard_link(victim, temporary_of(file));
+  write_file_atomically(file, "text");
+  EXPECT_EQ(text_of(file), "text");
+  EXPECT_EQ(text_of(victim), "mine");
+}
+
+TEST_F(AtomicFileTest, ReplacesALinkUnlessItsTargetIsAskedFor) {
+  const auto victim = put("there/victim", "mine"), file = folder() / "rows.csv", second = folder() / "second";
+  std::filesystem::create_symlink("there/victim", file);
+  std::filesystem::create_symlink(file, second);
+  EXPECT_EQ(target_of("rows.csv"), "rows.csv");
+  EXPECT_TRUE(std::filesystem::equivalent(target_of(second), victim));
+  write_file_atomically(target_of(second), "text");
+  EXPECT_EQ(text_of(victim), "text");
+  EXPECT_TRUE(std::filesystem::is_symlink(file));
+  write_file_atomically(file, "new");
+  EXPECT_EQ(text_of(victim), "text");
+  EXPECT_FALSE(std::filesystem::is_symlink(file));
+  std::filesystem::create_symlink("b", folder() / "a");
+  std::filesystem::create_symlink("a", folder() / "b");
+  EXPECT_THAT([&] { target_of(folder() / "a"); }, ThrowsMessage<WriteError>(HasSubstr("in a circle")));
+}
+
 TEST_F(AtomicFileTest, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
   const auto file = folder() / "rows.csv";
   write_file_atomically(file, "old\n");

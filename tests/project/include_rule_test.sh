@@ -78,7 +78,7 @@ report                text platform statistics integrators charts bench/machine 
 
 commands/arguments    text
 commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends/process backends/described backends bench/machine bench/verification output/tables output/traces output/pictures output/folders commands/arguments
-commands/run          platform model scene garment/stepping garment/fitting backends/interface backends bench bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
+commands/run          text platform model scene garment/stepping garment/fitting backends/interface backends bench bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
 commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
 commands/export       text platform output/exports output/traces commands/arguments commands/shared
 commands/guide        text platform integrators scene/spec scene backends/interface backends bench/machine guide output/tables output/guide output/folders commands/arguments commands/shared

@@ -26,10 +26,22 @@ Argument& Argument::excludes(const Argument& other) {
   return *this;
 }
 
+namespace {
+
+/// What is given empty, for example by a script whose variable is not set, would else count as not given.
+std::string filled(const std::string& text) {
+  return text.empty() ? "\"\" is empty: give a value, or leave the option out" : "";
+}
+
+}  // namespace
+
 Argument Arguments::add(const std::string& name, std::string& target, const std::string& description,
                         const ValueRule& rule) {
   return add_taken(
-      name, [&target](const std::string& text) { target = text; }, description, rule);
+      name, [&target](const std::string& text) { target = text; }, description,
+      [rule](std::string& text) { return text.empty() ? filled(text)
+                                         : rule       ? rule(text)
+                                                      : ""; });
 }
 
 Argument Arguments::add_taken(const std::string& name, const std::function<void(const std::string&)>& take,
@@ -42,12 +54,15 @@ Argument Arguments::add_taken(const std::string& name, const std::function<void(
 Argument Arguments::add_list(const std::string& name, std::vector<std::string>& target,
                              const std::string& description,
                              const std::function<std::vector<std::string>(std::string_view)>& split) {
-  if (!split) return Argument(*command_->add_option(name, target, description)->delimiter(','));
+  const CLI::Validator all_filled(filled, "");
+  if (!split)
+    return Argument(*command_->add_option(name, target, description)->delimiter(',')->check(all_filled));
   const auto take = [&target, split](const std::vector<std::string>& texts) {
     target.clear();
     for (const std::string& text : texts) std::ranges::move(split(text), std::back_inserter(target));
   };
-  return Argument(*command_->add_option_function<std::vector<std::string>>(name, take, description));
+  return Argument(
+      *command_->add_option_function<std::vector<std::string>>(name, take, description)->check(all_filled));
 }
 
 Argument Arguments::add_flag(const std::string& name, bool& target, const std::string& description) {

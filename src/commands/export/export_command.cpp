@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "commands/shared/exit_code.h"
@@ -17,6 +18,7 @@
 #include "output/exports/ply_export.h"
 #include "output/exports/vtkhdf_export.h"
 #include "output/traces/trace_reader.h"
+#include "output/traces/xdmf.h"
 #include "platform/atomic_file.h"
 #include "text/printable.h"
 
@@ -33,8 +35,14 @@ struct ExportOptions {
   FrameOptions frames;
 };
 
-std::string extension_of(ExportFormat format) {
-  return format == ExportFormat::obj ? ".obj" : format == ExportFormat::ply ? ".ply" : ".vtkhdf";
+/// Of the files that have the format; the first is the usual one.
+std::vector<std::string_view> extensions_of(ExportFormat format) {
+  if (format == ExportFormat::vtkhdf) return {".vtkhdf", ".hdf", ".h5", ".hdf5"};
+  return {format == ExportFormat::obj ? ".obj" : ".ply"};
+}
+
+std::string name_of(ExportFormat format) {
+  return format == ExportFormat::obj ? "OBJ" : format == ExportFormat::ply ? "PLY" : "VTKHDF";
 }
 
 /// fall.obj -> fall-000012.obj, numbered as in the trace.
@@ -56,12 +64,13 @@ std::vector<std::size_t> exported_frames(const FrameOptions& options, const std:
 
 /// The files for these frames: a format without times has one for each.
 std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<std::size_t>& frames) {
-  const fs::path out = options.out.empty()
-                           ? fs::path(options.trace).stem().concat(extension_of(options.format))
-                           : fs::path(options.out);
-  if (options.format == ExportFormat::vtkhdf || frames.size() == 1) return {out};
+  const fs::path out =
+      options.out.empty() ? "." / fs::path(options.trace).stem().concat(extensions_of(options.format).front())
+                          : fs::path(options.out);
+  require_extension({"--out", out}, name_of(options.format), extensions_of(options.format));
+  if (options.format == ExportFormat::vtkhdf || frames.size() == 1) return {target_of(out)};
   std::vector<fs::path> files;
-  for (const std::size_t frame : frames) files.push_back(numbered(out, frame));
+  for (const std::size_t frame : frames) files.push_back(target_of(numbered(out, frame)));
   return files;
 }
 
@@ -69,10 +78,9 @@ int run(const ExportOptions& options) {
   const TraceReader trace(options.trace);
   const std::vector<std::size_t> frames = exported_frames(options.frames, trace.content().time_s);
   const std::vector<fs::path> files = files_for(options, frames);
-  for (const fs::path& file : files) {
-    require_distinct({{"--out", file}}, {{"the trace", options.trace}});
-    require_replaceable(file);
-  }
+  for (const fs::path& file : files)
+    require_distinct({{"--out", file}},
+                     {{"the trace", options.trace}, {"the XDMF beside the trace", xdmf_of(options.trace)}});
   const bool solid = options.format == ExportFormat::vtkhdf;
   const ExportMesh mesh = solid ? solid_mesh(trace.content()) : surface_mesh(trace.content());
   if (mesh.triangles.empty() && mesh.tetrahedra.empty())

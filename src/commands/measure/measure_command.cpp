@@ -126,7 +126,7 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
   found.body.file = fs::relative(options.body, fs::absolute(scene).parent_path()).string();
   const std::string text = jeans_scene(scene, {found.body, jeans_for_body(found.profile, found.landmarks),
                                                found.landmarks.hip.girth.value_or(0)});
-  write_file_atomically(scene, text);
+  write_file_atomically(target_of(scene), text);
   try {
     build_system(load_scene(scene));
   } catch (const SceneError& error) {

@@ -19,6 +19,7 @@
 #include "garment/spec/garment_spec.h"
 #include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"
+#include "output/traces/xdmf.h"
 #include "picture/animated_png.h"
 #include "picture/png.h"
 #include "picture/sheet.h"
@@ -72,7 +73,9 @@ std::string stem_of(const RenderOptions& options) {
 fs::path output_of(const RenderOptions& options) {
   if (options.movie && !options.movie->empty()) return *options.movie;
   if (!options.out.empty()) return options.out;
-  return stem_of(options) + (options.movie ? ".apng" : options.sheet_size.empty() ? ".png" : "-sheet.png");
+  return fs::path(".") / (stem_of(options) + (options.movie                ? ".apng"
+                                              : options.sheet_size.empty() ? ".png"
+                                                                           : "-sheet.png"));
 }
 
 /// The frames that are drawn, in their order.
@@ -141,7 +144,10 @@ int render(const RenderOptions& options) {
                          ? "--movie took \"" + printable(*options.movie) +
                                "\" for the file to write; put the trace before it"
                          : std::string("give either a trace or --scene"));
-  const fs::path out = output_of(options);
+  const fs::path out = target_of(output_of(options));
+  require_extension({options.movie && !options.movie->empty() ? "--movie" : "--out", out}, "PNG",
+                    options.movie ? std::vector<std::string_view>{".apng", ".png"}
+                                  : std::vector<std::string_view>{".png", ".apng"});
   fs::path trace = options.trace;
   int code = exit_ok;
   if (trace.empty()) {
@@ -149,14 +155,15 @@ int render(const RenderOptions& options) {
     run.fps = fps_of_run(options);
     trace = temporary_folder_of_process() / "scene.h5";
     run.files.trace = trace.string();
-    require_replaceable(out);
+    run.files.temporary = true;
     std::vector<NamedFile> read;
     for (const fs::path& file : files_of(find_scene(run.scene)))
       read.push_back({"a file of the scene", file});
     require_distinct({{"--out", out}}, read);
+    AtomicFile(out).remove();  // finds what cannot be written before anything is simulated
     code = run_scene(run);
   } else {
-    require_distinct({{"--out", out}}, {{"the trace", trace}});
+    require_distinct({{"--out", out}}, {{"the trace", trace}, {"the XDMF beside the trace", xdmf_of(trace)}});
   }
   const TraceReader reader(trace);
   write_file_atomically(out, drawn_file(options, picture, reader));

@@ -1,8 +1,10 @@
 #include "commands/report/report_command.h"
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <system_error>
 
@@ -29,6 +31,16 @@ struct ReportOptions {
   bool no_runs = false;
 };
 
+/// What to give in place of a folder without results: those in it that lead to some.
+std::string below(const fs::path& folder) {
+  std::string text;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_directory(error) && !result_folders(entry->path()).empty())
+      text += (text.empty() ? "" : ", ") + printable(entry->path().string());
+  return text.empty() ? "folders that mssim bench --out wrote" : "folders in it that have some: " + text;
+}
+
 /// The result folders that the given ones stand for. Throws UsageError for one that is none.
 std::vector<fs::path> folders_of(const ReportOptions& options) {
   std::vector<fs::path> folders;
@@ -37,7 +49,9 @@ std::vector<fs::path> folders_of(const ReportOptions& options) {
     if (!fs::is_directory(given, error))
       throw UsageError("there is no folder " + printable(given) +
                        ": give folders that mssim bench --out wrote");
-    for (fs::path& folder : result_folders(given)) folders.push_back(std::move(folder));
+    std::vector<fs::path> found = result_folders(given);
+    if (found.empty()) throw UsageError(printable(given) + " has no results: give " + below(given));
+    std::ranges::move(found, std::back_inserter(folders));
   }
   return folders;
 }
@@ -54,7 +68,9 @@ std::vector<FoundCurve> reference_curves() {
 
 int report(const ReportOptions& options) {
   const std::vector<fs::path> folders = folders_of(options);
-  require_replaceable(options.out);  // before anything is read
+  const fs::path out = target_of(options.out);
+  require_extension({"--out", out}, "HTML", {".html", ".htm"});
+  AtomicFile(out).remove();  // finds what cannot be written before anything is read
   ReportInput input;
   input.made_by = "mssim " + build_info().version;
   input.legend = paper_legend();
@@ -71,11 +87,11 @@ int report(const ReportOptions& options) {
     input.pictures = std::move(simulated.pictures);
     input.curves = std::move(simulated.curves);
   }
-  write_file_atomically(options.out, report_page(input));
+  write_file_atomically(out, report_page(input));
   for (const ReportFolder& folder : input.folders)
     input.problems.insert(input.problems.end(), folder.problems.begin(), folder.problems.end());
   tell_first(input.problems);
-  std::cerr << "mssim: wrote " << printable(options.out) << '\n';
+  std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
   return exit_ok;
 }
 

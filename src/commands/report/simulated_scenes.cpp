@@ -61,7 +61,7 @@ RunOptions run_of(const ResultRow& row) {
   RunOptions run;
   run.scene = row.scene;
   run.integrator = integrator;
-  run.silent = true;
+  run.silent = run.files.temporary = true;
   return run;
 }
 

@@ -1,5 +1,7 @@
 #include "commands/run/dressing_run.h"
 
+#include <unistd.h>
+
 #include <iomanip>
 #include <iostream>
 #include <optional>
@@ -13,6 +15,7 @@
 #include "garment/fitting/fit_bounds.h"
 #include "output/tables/table_text.h"
 #include "platform/stopwatch.h"
+#include "platform/terminal.h"
 
 namespace mssim {
 
@@ -69,7 +72,8 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
                  {"value", check.value},
                  {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
                  {"within", check.within}});
-  if (!silent) std::cout << table_text(dressing) << '\n' << table_text(fitting);
+  if (!silent)
+    std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << table_text(fitting);
   if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
     std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
               << " s the garment is still moving; a longer --duration gives it more time\n";

@@ -1,10 +1,14 @@
 #include "commands/run/run_recorder.h"
 
+#include <iostream>
+
 #include "commands/shared/exit_code.h"
 #include "commands/shared/output_names.h"
 #include "platform/interruption.h"
 #include "platform/write_error.h"
 #include "scene/scene_file.h"
+#include "text/counted.h"
+#include "text/printable.h"
 
 namespace mssim {
 
@@ -15,11 +19,13 @@ void require_distinct(const RunFiles& files, const SceneSpec& scene) {
     written.push_back({"the XDMF beside --trace", xdmf_of(files.trace)});
   }
   if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
+  if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
   for (const std::filesystem::path& file : files_of(scene)) read.push_back({"a file of the scene", file});
   require_distinct(written, read);
 }
 
-RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers) {
+RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers)
+    : temporary_(files.temporary) {
   if (!files.energy_curve.empty()) {
     std::string comment = headers.command_line;
     if (const std::string_view work = energies_leave_out(scene.system); !work.empty())
@@ -61,10 +67,19 @@ void RunRecorder::finish_after(const std::function<void()>& simulation) {
 void RunRecorder::finish() {
   if (curve_) curve_->close();
   if (trace_) trace_->close();
+  if (temporary_) return;
+  const auto tell = [](const std::string& what) { std::cerr << "mssim: wrote " << what << '\n'; };
+  if (curve_) tell(printable(curve_->name().string(), 1000));
+  if (trace_)
+    tell(printable(trace_->name().string(), 1000) + " and " +
+         printable(xdmf_of(trace_->name()).string(), 1000));
+  if (pictures_)
+    tell(counted(pictures_->pictures(), "picture") + " into " + printable(pictures_->name().string(), 1000));
 }
 
 std::string RunRecorder::kept() {
   std::string text;
+  if (temporary_) return text;
   if (trace_) text += kept_in_part(trace_->name(), "frames", trace_->give_up());
   if (curve_) text += kept_in_part(curve_->name(), "energies", curve_->give_up());
   return text;

@@ -17,7 +17,8 @@ namespace mssim {
 struct RunFiles {
   std::string trace;
   std::string energy_curve;
-  std::string pictures;  ///< a folder
+  std::string pictures;    ///< a folder
+  bool temporary = false;  ///< nobody is told of them
 
   bool any() const { return !trace.empty() || !energy_curve.empty() || !pictures.empty(); }
 };
@@ -46,9 +47,9 @@ class RunRecorder {
   const std::vector<EnergySample>& energies() const { return energies_; }
 
   /// Runs `simulation`, which records, and finishes the files: also when it blows up or is interrupted,
-  /// because the frames before that are good and show what happened. Where one cannot be written any more,
-  /// files stay under their temporary names with all frames that were recorded before, and the WriteError
-  /// says so. Passes on what `simulation` throws.
+  /// because the frames before that are good and show what happened. Says on stderr what has been written.
+  /// Where a file cannot be written any more, files stay under their temporary names with all frames that
+  /// were recorded before, and the WriteError says so. Passes on what `simulation` throws.
   void finish_after(const std::function<void()>& simulation);
 
  private:
@@ -56,6 +57,7 @@ class RunRecorder {
   /// What the files hold that did not get their names, for the end of a message.
   std::string kept();
 
+  bool temporary_;
   std::optional<H5mdTrace> trace_;
   std::optional<EnergyCurve> curve_;
   std::optional<PictureFolder> pictures_;

@@ -1,5 +1,7 @@
 #include "commands/run/run_scene.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -24,7 +26,9 @@
 #include "garment/stepping/serial_dressing.h"
 #include "output/tables/table_text.h"
 #include "output/traces/trace_name.h"
+#include "platform/atomic_file.h"
 #include "platform/stopwatch.h"
+#include "platform/terminal.h"
 #include "scene/scene_file.h"
 
 namespace mssim {
@@ -174,16 +178,22 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
              {"bounce_loss_j", loss(&EnergyLosses::bounce)},
              {"integration_loss_j", loss(&EnergyLosses::integration)},
              {"energy_imbalance", losses ? Cell(energy_imbalance(curve, *losses)) : Cell()}});
-  if (!options.silent) std::cout << table_text(table);
+  if (!options.silent) std::cout << record_text(table, terminal_of(STDOUT_FILENO).width);
   return exit_ok;
 }
 
 }  // namespace
 
-int run_scene(const RunOptions& options) {
-  if (!options.files.trace.empty())
+int run_scene(RunOptions options) {
+  const auto require_trace_name = [&] {
+    if (options.files.trace.empty()) return;
     if (const auto problem = trace_name_problem(options.files.trace))
       throw UsageError("--trace: " + *problem);
+  };
+  require_trace_name();
+  for (std::string* file : {&options.files.trace, &options.files.energy_curve})
+    if (!file->empty()) *file = target_of(*file).string();
+  require_trace_name();
   pictures_of(options);  // refuses what cannot be drawn
   const Integrator& integrator = require_integrator(options.integrator);
   BackendChoice choice(table_backends(), options.own_backends, {options.scene});

@@ -39,6 +39,6 @@ void declare_stepping(Arguments& arguments, RunOptions& options, const std::stri
 /// Simulates the scene, dresses its garment until it has settled, writes the files and prints how it went.
 /// Returns an ExitCode. Throws UsageError, SceneError, Unsupported, Unavailable, MissingProgram, NotVerified
 /// where the simulation blows up, WriteError and Interrupted.
-int run_scene(const RunOptions& options);
+int run_scene(RunOptions options);
 
 }  // namespace mssim

@@ -6,6 +6,7 @@
 #include "commands/shared/exit_code.h"
 #include "platform/atomic_file.h"
 #include "text/printable.h"
+#include "text/small_letters.h"
 
 namespace mssim {
 namespace {
@@ -39,6 +40,16 @@ void require_other(const NamedFile& a, const NamedFile& b) {
 }
 
 }  // namespace
+
+void require_extension(const NamedFile& file, const std::string& content,
+                       const std::vector<std::string_view>& extensions) {
+  const std::string extension = file.path.extension().string();
+  if (extension.empty() || std::ranges::find(extensions, small_letters(extension)) != extensions.end())
+    return;
+  throw UsageError(file.role + " is " + printable(file.path.string(), 1000) + ", but what is written is " +
+                   content + ": give " + printable(file.path.stem().string(), 1000) +
+                   std::string(extensions.front()));
+}
 
 void require_distinct(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read) {
   for (auto file = written.begin(); file != written.end(); ++file) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace mssim {
@@ -16,5 +17,10 @@ struct NamedFile {
 /// whole, is another one than all others and than those that the command reads; links and "." in paths are
 /// seen through.
 void require_distinct(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read);
+
+/// Throws UsageError where the name of a file that gets `content`, for example "PNG", ends as that of
+/// another kind of file does: neither in nothing nor in one of these, the first of which is proposed.
+void require_extension(const NamedFile& file, const std::string& content,
+                       const std::vector<std::string_view>& extensions);
 
 }  // namespace mssim

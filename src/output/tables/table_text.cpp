@@ -53,4 +53,20 @@ std::string table_text(const Table& table) {
   return text;
 }
 
+std::string record_text(const Table& table, std::optional<int> width) {
+  std::string text = table_text(table);
+  if (!width || width_of(text.substr(0, text.find('\n'))) <= static_cast<std::size_t>(*width)) return text;
+  std::size_t name_width = 0;
+  for (const Column& column : table.columns) name_width = std::max(name_width, width_of(column.name));
+  text.clear();
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const auto& [name, align, unit] = table.columns[i];
+    const Cell& cell = table.rows.at(0)[i];
+    if (std::holds_alternative<std::monostate>(cell.value)) continue;
+    text += name + std::string(name_width - width_of(name) + 2, ' ') + std::visit(Shown{unit}, cell.value) +
+            cell.suffix + '\n';
+  }
+  return text;
+}
+
 }  // namespace mssim

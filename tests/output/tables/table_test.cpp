@@ -58,6 +58,19 @@ TEST(Table, AsTextIsAligned) {
   EXPECT_EQ(table_text({}), "");
 }
 
+TEST(Table, OfOneRowIsTurnedWhereItIsTooWide) {
+  Table table = made_up_table();
+  table.rows.resize(1);
+  table.rows[0][0] = "plain";
+  table.rows[0][1] = Cell();
+  EXPECT_EQ(record_text(table, {}), table_text(table));
+  EXPECT_EQ(record_text(table, 32), table_text(table));
+  EXPECT_EQ(record_text(table, 20),
+            "name   plain\n"
+            "speed  20.64× (!)\n"
+            "ok     yes\n");
+}
+
 TEST(Table, AsMarkdownGroupsRoundsAndEscapes) {
   EXPECT_EQ(markdown({made_up_table()}),
             "| name | nodes | speed | ok |\n"
