@@ -10,7 +10,7 @@ ensure_arm64_root() {
   # The last two belong to the compiler, which comes with them for this machine alone.
   local -a wanted
   mapfile -t wanted < <(packages_for library && printf '%s\n' libstdc++6 libgomp1)
-  mkdir -p "$root/build"
+  make_folder "$root/build"
   exec {lock}>"$root/build/.arm64-root.lock"
   flock "$lock"
   if [[ ! -e $folder/packages ]] || ! diff -q "$folder/packages" <(printf '%s\n' "${wanted[@]}") >/dev/null; then
@@ -37,7 +37,7 @@ ensure_arm64_root() {
     cat >"$new/host/aarch64-unknown-linux-gnu-ld" <<'END'
 #!/bin/sh
 root=${0%/host/*}
-exec /usr/bin/aarch64-linux-gnu-ld --sysroot="$root" -L"$root/usr/lib/gcc/aarch64-linux-gnu/12" -L"$root/usr/lib/aarch64-linux-gnu" "$@"
+exec /usr/bin/aarch64-linux-gnu-ld --sysroot="$root" -L"$(echo "$root"/usr/lib/gcc/aarch64-linux-gnu/*)" -L"$root/usr/lib/aarch64-linux-gnu" "$@"
 END
     chmod +x "$new/host/aarch64-unknown-linux-gnu-ld"
     rm -rf "$new/apt" "$folder"

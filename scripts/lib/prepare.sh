@@ -9,11 +9,12 @@ readonly exit_missing=3
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
-# timed COMMAND ARGUMENT...: runs it, and says how long it took.
+# timed PROGRAM ARGUMENT...: runs it, says how long it took, and returns its exit code.
 timed() {
-  local start=$SECONDS
-  "$@"
+  local start=$SECONDS code=0
+  "$@" || code=$?
   say "$* took $((SECONDS - start)) s"
+  return "$code"
 }
 
 # answer_help ARGUMENT...: if one of them is -h or --help, prints the comment at the top of the script, and exits.
@@ -26,9 +27,12 @@ answer_help() {
   done
 }
 
-# packages_for KIND...: the names of the packages of these kinds.
+# packages_for KIND...: the names of the packages of these kinds, but those of another Debian release.
 packages_for() {
-  awk -v kinds=" $* " '!/^#/ && NF && index(kinds, " " $2 " ") { print $1 }' "$root/scripts/packages.txt"
+  local release
+  release=$(. /etc/os-release && echo "${VERSION_ID-}")
+  awk -v kinds=" $* " -v release="$release" '
+    !/^#/ && NF && index(kinds, " " $2 " ") && ($3 !~ /^[0-9]+$/ || $3 == release) { print $1 }' "$root/scripts/packages.txt"
 }
 
 # missing_packages KIND...: those of them that are not installed.
@@ -41,6 +45,21 @@ missing_packages() {
       awk '$1 == "installed" { print $2 }' | sort)
 }
 
+# can_write FOLDER: whether this user can build in it, or make it.
+can_write() {
+  local folder=$1
+  [[ ! -e $folder/.lock || -w $folder/.lock ]] || return 1
+  until [[ -e $folder ]]; do folder=${folder%/*}; done
+  [[ -w $folder ]]
+}
+
+# make_folder FOLDER: makes a folder to build in, or says that this user cannot, where to build instead, and exits.
+make_folder() {
+  can_write "$1" && mkdir -p "$1" && return
+  say "$1 cannot be written by this user; to build elsewhere: cmake --preset release -S ${root@Q} -B ELSEWHERE && ninja -C ELSEWHERE mssim && ELSEWHERE/bin/mssim"
+  exit "$exit_missing"
+}
+
 # ensure_packages KIND...: installs those that are missing, or says which and exits.
 ensure_packages() {
   # Elsewhere than on Debian the libraries come from elsewhere too, and CMake names the one it does not find.
@@ -50,7 +69,15 @@ ensure_packages() {
   ((${#missing[@]})) || return 0
   ((EUID == 0)) || as_root=(sudo)
   local update install="install -y --no-install-recommends ${missing[*]}" log=$root/build/packages.log
-  mkdir -p "$root/build"
+  "${as_root[@]}" env true </dev/null &>/dev/null || {
+    local spare
+    spare=$(awk -v missing=" ${missing[*]} " '!/^#/ && $3 == "spare" && index(missing, " " $1 " ") { printf " %s", $1 }' \
+      "$root/scripts/packages.txt")
+    say "these Debian packages are missing, and this user may not install packages; ask who may for: apt-get $install" \
+      "${spare:+(mssim builds and runs without$spare: cmake --preset release -S ${root@Q} -B ELSEWHERE -D BUILD_TESTING=OFF)}"
+    exit "$exit_missing"
+  }
+  make_folder "$root/build"
   say "installing ${missing[*]} (log: $log)"
   # Lists of packages that are there often suffice, and fetching them takes seconds. An update that fails, or fails in part, is no
   # reason to stop: what decides is whether the packages can be installed.
@@ -64,13 +91,16 @@ ensure_packages() {
   exit "$exit_missing"
 }
 
+# The lines of ninja that something is compiled or linked.
+readonly compiles='^\[[^ ]*\] .*(Building|Linking)'
+
 # follow_build NAME LOG: reads ninja's output, keeps it in LOG, and says once when there is something to compile; on a
 # terminal it shows how far the build has come.
 follow_build() {
   local name=$1 log=$2 line said='' width=${COLUMNS:-80}
   while IFS= read -r line; do
     printf '%s\n' "$line"
-    [[ $line == \[*\]\ * && $line == *@(Building|Linking)* ]] || continue
+    [[ $line =~ $compiles ]] || continue
     [[ $said ]] || say "building $name (log: $log)"
     said=yes
     [[ ! -t 2 ]] || printf '\r\033[K%s' "${line:0:width-1}" >&2
@@ -87,27 +117,35 @@ fail_build() {
   exit "$exit_missing"
 }
 
+# is_configured FOLDER: whether it builds this source; one that was copied along with its repository would go on building the original.
+is_configured() { grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$1/CMakeCache.txt"; }
+
+# is_built PRESET: whether there is an mssim in build/PRESET, built here.
+is_built() {
+  [[ -x $root/build/$1/bin/mssim ]] && is_configured "$root/build/$1"
+}
+
 # build PRESET [TARGET...]: brings build/PRESET up to date. Of several at the same time one builds and the others wait.
 build() {
   # Not a name that a script may have for a folder that it removes at its end: its trap sees this one if the build fails.
   local preset=$1 build_folder=$root/build/$1 lock
   shift
-  mkdir -p "$build_folder"
+  make_folder "$build_folder"
   exec {lock}>"$build_folder/.lock"
   if ! flock --nonblock "$lock"; then
     say "waiting for another build of $build_folder"
     flock "$lock"
   fi
-  # CMake reconfigures by itself when a CMakeLists.txt changed, but not for a new preset, and a build folder that was
-  # copied along with its repository would go on building the original.
+  # CMake reconfigures by itself when a CMakeLists.txt changed, but not for a new preset.
   if [[ ! -e $build_folder/build.ninja || $root/CMakePresets.json -nt $build_folder/build.ninja ]] ||
-    ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build_folder/CMakeCache.txt"; then
+    ! is_configured "$build_folder"; then
     (cd -- "$root" && cmake --preset "$preset" --fresh) </dev/null >"$build_folder/configure.log" 2>&1 ||
       fail_build "$build_folder/configure.log"
   fi
   local start=$SECONDS
   NINJA_STATUS='[%f/%t] ' ninja -C "$build_folder" "$@" </dev/null 2>&1 |
     follow_build "mssim, $preset" "$build_folder/build.log" || fail_build "$build_folder/build.log"
-  ((SECONDS - start < 10)) || say "built mssim, $preset, in $((SECONDS - start)) s"
+  ! grep -qE "$compiles" "$build_folder/build.log" || ((SECONDS - start < 10)) ||
+    say "built mssim, $preset, in $((SECONDS - start)) s"
   exec {lock}>&-
 }

@@ -8,7 +8,7 @@ ensure_python() {
   ! cmp -s "$list" "$folder/$1.txt" || return 0
   say "installing $2 (log: $log)"
   rm -rf "$folder"
-  mkdir -p "$root/build"
+  make_folder "$root/build"
   if /usr/bin/python3 -m venv "$folder" && "$folder/bin/pip" install --only-binary :all: --no-compile -r "$list"; then
     cp "$list" "$folder"
   else

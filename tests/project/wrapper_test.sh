@@ -5,10 +5,11 @@
 set -euo pipefail
 
 place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
+trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
 repository="$place/a clone" tools="$place/tools" notes="$place/notes"
 mkdir -p "$repository" "$tools" "$place/elsewhere"
-cp -r "$2/scripts" "$2/CMakePresets.json" "$repository"
+cp -r "$2/scripts" "$2/CMakePresets.json" "$2/CMakeLists.txt" "$2/cmake" "$repository"
+mkdir "$repository/src" "$repository/kernels"
 ln -s "$repository/scripts/mssim" "$place/elsewhere/link"
 repository=$(cd "$repository" && pwd -P)
 export PATH="$tools:$PATH" MSSIM_TEST_NOTES=$notes MSSIM_TEST_PLACE=$place
@@ -39,12 +40,13 @@ chmod +x "$2/bin/mssim"
 END
 
 fail() { echo "$1"; printf 'stdout: %s\nstderr: %s\n' "$(cat "$place/out")" "$(cat "$place/err")"; exit 1; } >&2
-# runs CODE ARGUMENTS...: calls the wrapper from another folder, through a link, and expects that exit code.
+# runs CODE ARGUMENTS...: calls the wrapper from another folder, through a link, as the user in `as_user`, and expects that exit code.
+as_user=()
 runs() {
   local expected=$1 code=0
   shift
   : >"$notes"
-  (cd "$place/elsewhere" && ./link "$@") >"$place/out" 2>"$place/err" || code=$?
+  (cd "$place/elsewhere" && "${as_user[@]}" ./link "$@") >"$place/out" 2>"$place/err" || code=$?
   [[ $code == "$expected" ]] || fail "exit code $code instead of $expected"
 }
 noted() { grep -q -- "^$1" "$notes"; } # a stand-in was called so
@@ -95,3 +97,31 @@ runs 7
 for i in 1 2; do { "$place/elsewhere/link" >"$place/out$i" || echo $? >"$place/code$i"; } & done 2>"$place/err"
 wait
 [[ $(cat "$place/code1" "$place/code2") == $'7\n7' ]] || fail 'two wrappers at the same time both succeed'
+
+# Another user, to whom the folder does not belong.
+chmod -R a-w "$place/moved"
+chmod a+rx "$place"
+chmod a+rw "$notes"
+((EUID)) || as_user=(setpriv --reuid=65534 --regid=65534 --clear-groups)
+runs 7 list
+[[ $(cat "$place/out") == "<list>"* && ! -s $place/err ]] || fail 'a build that cannot be written is run as it is'
+! noted ninja || fail 'nothing is built where nothing can be written'
+touch -d '1 minute' "$place/moved/CMakeLists.txt"
+runs 7
+told "$place/moved/build/release cannot be written by this user: running what is built there, which is older" || fail 'an old build is named'
+chmod u+w "$place/moved/build/release/bin"
+rm "$place/moved/build/release/bin/mssim"
+chmod u-w "$place/moved/build/release/bin"
+runs 3
+told "$place/moved/build/release cannot be written" || fail 'the folder that cannot be written is named'
+told "cmake --preset release -S '$place/moved' -B ELSEWHERE" || fail 'the way to build elsewhere is told'
+[[ $(wc -l <"$place/err") == 1 ]] || fail 'one message'
+
+# Another user, who may not install.
+printf '%s\n' libhwy-dev gnuplot-nox >"$place/absent"
+tool sudo <<<'exit 1'
+runs 3
+told 'this user may not install packages' || fail 'who may not install is told so'
+told 'apt-get install -y --no-install-recommends gnuplot-nox libhwy-dev' || fail 'what to ask for is told'
+told 'runs without gnuplot-nox: cmake' || fail 'what mssim does without is told'
+! noted apt-get || fail 'nothing is tried that is not allowed'
