@@ -59,7 +59,8 @@ StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& requ
   limit.theory = step_theory(integrator, *request.system, request.at_start, request.on_the_way);
   StepSearch search = search_for(integrator, limit.theory, request);
   std::vector<const BackendInfo*> order = request.backends;
-  std::ranges::stable_partition(order, [](const BackendInfo* info) { return info->name == "openmp"; });
+  std::stable_partition(order.begin(), order.end(),
+                        [](const BackendInfo* info) { return info->name == "openmp"; });
   for (const BackendInfo* info : order) {
     std::string status;
     const Stopwatch watch;

@@ -110,7 +110,7 @@ std::string first_of(const std::vector<std::string>& texts) {
 void introduce(const Session& session, const Piece& piece, const std::string& crowded, Requests& requests) {
   std::vector<std::string> hosts = session.hosts();
   std::ranges::sort(hosts);
-  const auto host_count = static_cast<std::uint64_t>(std::ranges::unique(hosts).begin() - hosts.begin());
+  const auto host_count = static_cast<std::uint64_t>(std::unique(hosts.begin(), hosts.end()) - hosts.begin());
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> version{};
   int length = 0;
   MPI_Get_library_version(version.data(), &length);

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t samples = 4;
 static_assert(band_rows % samples == 0, "a band is whole rows of pixels");
 
-constexpr Light background{0.91F, 0.92F, 0.94F};
+constexpr Light backdrop{0.91F, 0.92F, 0.94F};
 
 /// Everything that the light of a sample depends on.
 struct Stage {
@@ -32,7 +32,7 @@ struct Stage {
   Light of_ground(const Vec3d& point) const {
     const float key = ground_light.key_front, rest = ground_light.rest_front;
     const float light_there = (rest + key * shadow.reaching(point)) / (rest + key);
-    return shot.ground->colour_at(point, background, light_there, camera, samples * grid.pixel);
+    return shot.ground->colour_at(point, backdrop, light_there, camera, samples * grid.pixel);
   }
 
   Light of_triangle(const Fragment& fragment, const Vec3d& point) const {
@@ -57,7 +57,7 @@ struct Stage {
     if (shot.ground)
       if (const std::optional<Vec3d> point = shot.ground->met_by(camera, x, y))
         if (!hit || dot(camera.near(), *point) > fragment.z) return of_ground(*point);
-    if (!hit) return background;
+    if (!hit) return backdrop;
     return of_triangle(fragment, x * camera.right() + y * camera.up() + fragment.z * camera.near());
   }
 };

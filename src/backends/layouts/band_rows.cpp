@@ -40,9 +40,9 @@ BandRows::BandRows(const BandLayout& layout, const std::vector<SpringConstants>&
                    ColumnsToEnd to_end) {
   std::vector<float> all;
   std::map<std::vector<float>, std::uint32_t> offset_of;
-  const auto halo = static_cast<std::ptrdiff_t>(BandLayout::halo);
+  const auto beyond = static_cast<std::ptrdiff_t>(BandLayout::halo);
   const auto height = static_cast<std::ptrdiff_t>(layout.height);
-  for (std::ptrdiff_t row = -halo; row < height + halo; ++row) {
+  for (std::ptrdiff_t row = -beyond; row < height + beyond; ++row) {
     const std::vector<float> values = values_of_row(layout, springs, gravity, to_end, row);
     const auto [found, is_new] = offset_of.try_emplace(values, static_cast<std::uint32_t>(all.size()));
     if (is_new) all.insert(all.end(), values.begin(), values.end());

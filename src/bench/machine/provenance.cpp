@@ -101,7 +101,7 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
   }
   const auto same_name = [](const FileHash& a, const FileHash& b) { return a.name == b.name; };
   std::ranges::sort(record.files, {}, &FileHash::name);
-  record.files.erase(std::ranges::unique(record.files, same_name).begin(), record.files.end());
+  record.files.erase(std::unique(record.files.begin(), record.files.end(), same_name), record.files.end());
   provenance.backend_programs.push_back(std::move(record));
   std::ranges::sort(provenance.backend_programs, {}, &BackendProgramRecord::name);
 }

@@ -19,7 +19,7 @@ Fronts::Fronts(const StepMatrix& matrix, const Dissection& dissection) : parts(d
   for (std::uint32_t part = 0; part < parts.size(); ++part) {
     std::vector<std::uint32_t>& mine = later[part];
     std::ranges::sort(mine);
-    mine.erase(std::ranges::unique(mine).begin(), mine.end());
+    mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
     border.insert(border.end(), mine.begin(), mine.end());
     first_border.push_back(border.size());
     if (parts[part].parent == Dissection::no_part) continue;
