@@ -77,23 +77,31 @@ void limit(int resource, rlim_t soft, rlim_t hard) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
+/// What a child could not do before it became the program, a text that it shares with its parent, and errno.
+struct StartError {
+  const char* action = nullptr;
+  int error = 0;
+};
+
 /// What the child does between fork and exec, where only async-signal-safe calls are allowed: this process
-/// may have threads. `group`: of processes, 0 for a new one. Returns errno when something fails.
-int become(const ChildProcess& child, char* const* arguments, char* const* environment, int output,
-           pid_t group) {
+/// may have threads. `group`: of processes, 0 for a new one. Returns when something fails.
+StartError become(const ChildProcess& child, char* const* arguments, char* const* environment, int output,
+                  pid_t group) {
   // A group of their own, so that what it starts in turn can be ended with it; and no orphan if this process
   // is killed.
-  if (::setpgid(0, group) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
+  if (::setpgid(0, group) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
+    return {"giving it a group", errno};
   const int nothing = ::open("/dev/null", O_RDONLY);
-  if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return errno;
-  if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0) return errno;
+  if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0) return {"opening /dev/null", errno};
+  if (::dup2(output, STDOUT_FILENO) < 0 || ::dup2(output, STDERR_FILENO) < 0)
+    return {"giving it an output", errno};
   limit(RLIMIT_CPU, child.cpu_seconds, child.cpu_seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
   if (child.memory_bytes > 0) limit(RLIMIT_AS, child.memory_bytes, child.memory_bytes);
   if (child.file_bytes > 0) limit(RLIMIT_FSIZE, child.file_bytes, child.file_bytes);
-  if (::chdir(child.folder.c_str()) != 0) return errno;
+  if (::chdir(child.folder.c_str()) != 0) return {"entering its folder", errno};
   ::execve(child.program.c_str(), arguments, environment);
-  return errno;
+  return {"starting it", errno};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -143,7 +151,7 @@ class Running {
     if (process_ < 0) fail(child, "fork", errno);
     if (process_ == 0) {
       interruption.release_child();
-      const int error =
+      const StartError error =
           become(child, argument_pointers.data(), environment_pointers.data(), output_.writer(), group);
       [[maybe_unused]] const ssize_t written = ::write(start_error_.writer(), &error, sizeof error);
       ::_exit(127);
@@ -184,7 +192,7 @@ class Running {
       constexpr std::chrono::milliseconds between{1};
       std::this_thread::sleep_for(between);
     }
-    if (::read(start_error_.reader(), &error_, sizeof error_) != sizeof error_) error_ = 0;
+    if (::read(start_error_.reader(), &error_, sizeof error_) != sizeof error_) error_ = {};
     if (WIFSIGNALED(status))
       result_.signal = WTERMSIG(status);
     else
@@ -198,7 +206,7 @@ class Running {
 
   /// Of one that has ended.
   const ChildResult& result() const {
-    if (error_ != 0) fail(child_, "starting it", error_);
+    if (error_.action != nullptr) fail(child_, error_.action, error_.error);
     return result_;
   }
 
@@ -217,7 +225,7 @@ class Running {
   pid_t process_ = 0, group_ = 0;
   std::optional<Clock::time_point> deadline_;
   bool ended_ = false;
-  int error_ = 0;
+  StartError error_;
   ChildResult result_;
 };
 

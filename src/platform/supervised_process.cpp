@@ -67,6 +67,8 @@ std::string why_not_started(const SupervisedProgram& program, const SupervisorAn
 /// Starts the supervisor with its end of the channel as descriptor 3, and none but that: descriptors that are
 /// not closed by exec, it closes itself.
 pid_t start_supervisor(const SupervisedProgram& program, int channel) {
+  // Of this the system would say the same as of a missing program.
+  if (::access("/dev/null", R_OK | W_OK) != 0) fail(program, "/dev/null cannot be opened" + reason(errno));
   const std::string supervisor = helper_program("supervise").string();
   std::string cpus;
   for (const int cpu : program.cpus) cpus += std::to_string(cpu) + ',';

@@ -45,6 +45,14 @@ TEST_F(ChildProcesses, ThatCannotBeStartedAreNamedWhenTheOthersHaveEnded) {
   EXPECT_THROW(run(missing), std::runtime_error);
 }
 
+// The system's reason, that there is no such file, is the same for both.
+TEST_F(ChildProcesses, ThatHaveNoFolderAreNotTakenForMissingPrograms) {
+  ChildProcess homeless = shell("");
+  homeless.folder = folder() / "gone";
+  EXPECT_THAT([&] { run(homeless); },
+              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("entering its folder")));
+}
+
 TEST_F(ChildProcesses, MayWriteMoreThanAPipeHolds) {
   const ChildProcess much = shell(
       "i=0; while [ $i -lt 3000 ]; do echo 0123456789012345678901234567890123456789; "
