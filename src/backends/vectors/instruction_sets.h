@@ -8,11 +8,12 @@
 
 // On x86-64: SSE4 (4 lanes), AVX2 (8), AVX-512 (16, "AVX3" to Highway). By SSE4 Highway means SSE4.2 with AES
 // and carry-less multiplication, which a few processors up to about 2013 lack; plain floats for them would be
-// a quarter of the time that vector code takes to compile. On arm64 NEON (4). Not Arm's SVE: a vector whose
-// length is known only at run time cannot be a member of a struct, as Lanes needs it, and the phones that
-// have SVE have vectors of 128 bits, no longer than NEON's. On any other processor what its compiler takes
-// for granted, or plain floats, one lane.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+// a quarter of the time that vector code takes to compile. Not what Highway has beyond AVX3, in lower bits:
+// newer versions of it would compile the same code for Zen 4 and for Sapphire Rapids again. On arm64 NEON
+// (4). Not Arm's SVE: a vector whose length is known only at run time cannot be a member of a struct, as
+// Lanes needs it, and the phones that have SVE have vectors of 128 bits, no longer than NEON's. On any other
+// processor what its compiler takes for granted, or plain floats, one lane.
+#define HWY_DISABLED_TARGETS ((HWY_AVX3 - 1) | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #if defined(__x86_64__) && !defined(__SSE4_2__)
 #define HWY_BASELINE_TARGETS HWY_SSE4
 #endif

@@ -1,8 +1,8 @@
 #include "bench/roofline/machine_peak.h"
 
 // Highway compiles the text up to HWY_AFTER_NAMESPACE once for every instruction set, each time into a
-// namespace of its own. AVX3_DL adds only instructions that a triad has no use for.
-#define HWY_DISABLED_TARGETS HWY_AVX3_DL
+// namespace of its own. Beyond AVX3, in lower bits, are only instructions that a triad has no use for.
+#define HWY_DISABLED_TARGETS (HWY_AVX3 - 1)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/roofline/machine_peak.cpp"
 #include <hwy/cache_control.h>
