@@ -7,7 +7,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 if ! command -v oclgrind >/dev/null; then
-  echo "skipped: there is no oclgrind"
+  echo "skipped: there is no oclgrind, which Debian 12 has and 13 has not"
   exit 77
 fi
 
