@@ -42,6 +42,13 @@ expect 2 'folder already holds results: give another --out, or --overwrite' "${t
 succeed "${tiny[@]}" --out "$work/folder" --overwrite --error 1e-9
 grep -q '^Nothing that was measured keeps the error within 1e-09 of a mean rest length' "$work/folder/guide.md" || fail "an error that nothing keeps: $(head -9 "$work/folder/guide.md")"
 
+# Stopped before there is a point it replaces nothing; what replaces it leaves none of its tables.
+cp -r "$work/folder" "$work/before"
+timeout -s INT 3 "$mssim" guide --scene cloth350k --backend openmp --out "$work/folder" --overwrite >"$work/out" 2>"$work/err" || true
+diff -r "$work/before" "$work/folder" || fail "a guide that was stopped has replaced an earlier one: $(cat "$work/err")"
+succeed bench --scene "$work/tiny.json" --backend serial --integrator semi-euler --rounds 1 --out "$work/folder" --overwrite
+[ -z "$(find "$work/folder" -name 'guide*')" ] || fail "--overwrite leaves $(ls "$work/folder")"
+
 expect 2 '^mssim: --scene NAME|FILE,... is missing; see mssim guide --help$' guide
 expect 2 'jeans1k is a garment' guide --scene jeans1k
 expect 2 'unknown integrator "rk5"' guide --scene cloth2500 --integrator rk5

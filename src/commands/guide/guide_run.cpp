@@ -160,6 +160,7 @@ int run_guide(const GuideOptions& options) {
   if (uses_device) tell_of_opencl();
 
   std::vector<SceneGuide> guides;
+  bool written = false;
   StopRequest stop;
   {
     ProgressLine progress(std::vector<double>(plan.scenes.size(), 1));
@@ -170,14 +171,18 @@ int run_guide(const GuideOptions& options) {
       const double share =
           (plan.seconds - watch.seconds()) / static_cast<double>(plan.scenes.size() - number);
       guides.push_back(measured(plan, options, number, std::max(share, least_scene_s), progress, stop));
-      if (folder) folder->write(guide_tables(guides, provenance));
+      // A guide that was stopped before it had a point replaces nothing.
+      if (!folder || (stop.requested() && guides.back().points.empty())) continue;
+      folder->write(guide_tables(guides, provenance));
+      written = true;
     }
   }
   for (const SceneGuide& guide : guides) {
     if (&guide != &guides.front()) std::cout << '\n';
     print(guide);
   }
-  if (folder) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
+  if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
+  if (folder && !written) std::cerr << "mssim: nothing was measured yet, and nothing written\n";
   stop.throw_if_requested();
   return exit_ok;
 }
