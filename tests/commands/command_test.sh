@@ -72,17 +72,20 @@ grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timi
 [ "$(column verified | grep -c true)" -eq 5 ] || fail "not 5 verified rows with copied memory"
 [ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
 
-# A device that is missing: its rows say so; asked for by name it is an error.
-status=0
-"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --out "$work/results" --overwrite >"$work/out" 2>&1 ||
-  status=$?
-[ "$status" -eq 0 ] || fail "an unavailable backend that nobody asked for gives $status"
+# Devices that are missing: rows say so, and it is an error where they were asked for.
+OCL_ICD_VENDORS=$work "$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --out "$work/results" --overwrite >"$work/out" 2>&1 ||
+  fail "unavailable backends that nobody asked for give $?"
 [ "$(grep -c 'unavailable: ' "$work/results/timings.csv")" -eq 2 ] || fail "not two unavailable rows"
 status=0
-"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --device nothing --backend opencl >"$work/out" 2>&1 ||
-  status=$?
+OCL_ICD_VENDORS=$work "$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --backend opencl >"$work/out" 2>&1 || status=$?
 [ "$status" -eq 3 ] || fail "an unavailable backend that was asked for gives $status"
 grep -q '^mssim: cloth2500, opencl, semi-euler: unavailable: ' "$work/out" || fail "stderr does not say what is unavailable: $(cat "$work/out")"
+# One that was named is missed before anything is measured.
+for command in 'bench --scene cloth2500' 'bench --scene cloth2500 --dry-run' 'bench --suite guide --dry-run' 'guide --scene cloth2500' 'list backends' 'list devices' \
+  'run --scene cloth2500 --backend hybrid'; do
+  # shellcheck disable=SC2086
+  expect 3 'no OpenCL device has "nothing".*there are: 0 (' $command --device nothing
+done
 
 # The methods to avoid the data race: those asked for, and the base of the ratios where it is one of them.
 "$mssim" bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races" >"$work/out" 2>"$work/err" ||

@@ -29,7 +29,8 @@ HostMemory host_memory_of(const cl::Device& device) {
 std::string listing(std::span<const OpenclDevice> devices) {
   std::string text;
   for (const OpenclDevice& device : devices)
-    text += (text.empty() ? "" : ", ") + std::to_string(device.number) + " (" + device.name + ")";
+    text += (text.empty() ? "" : ", ") + std::to_string(device.number) + " (" + device.name + ", " +
+            device.platform + ")";
   return text;
 }
 
@@ -122,7 +123,8 @@ OpenclDevice described(cl_device_id id, const std::string& platform, int number)
           .compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(),
           .global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
           .max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
-          .preferred_float_width = device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
+          .float_width = std::max(device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
+                                  device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()),
           .host_memory = host_memory_of(device),
           .id = id};
 }
@@ -141,23 +143,25 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
                       "; there are: " + listing(devices));
   }
 
+  const auto has_it = [part = small_letters(wanted)](const std::string& text) {
+    return small_letters(text).find(part) != std::string::npos;
+  };
   std::vector<OpenclDevice> fitting;
   for (const OpenclDevice& device : devices)
-    if (small_letters(device.name).find(small_letters(wanted)) != std::string::npos)
-      fitting.push_back(device);
+    if (has_it(device.name) || has_it(device.platform)) fitting.push_back(device);
   if (fitting.empty())
     throw Unavailable("no OpenCL device has \"" + std::string(wanted) +
-                      "\" in its name; there are: " + listing(devices));
+                      "\" in its name or its platform's; there are: " + listing(devices));
   if (fitting.size() > 1)
     throw Unavailable("several OpenCL devices have \"" + std::string(wanted) +
-                      "\" in their names, choose one by its number: " + listing(fitting));
+                      "\" in their names or platforms, choose one by its number: " + listing(fitting));
   return fitting.front();
 }
 
 int lanes_for(const OpenclDevice& device) {
   if (device.type != OpenclDeviceType::cpu) return 1;
   int lanes = 4;
-  while (lanes < 16 && static_cast<std::uint32_t>(lanes) < device.preferred_float_width) lanes *= 2;
+  while (lanes < 16 && static_cast<std::uint32_t>(lanes) < device.float_width) lanes *= 2;
   return lanes;
 }
 

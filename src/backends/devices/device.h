@@ -29,8 +29,10 @@ struct OpenclDevice {
   OpenclDeviceType type = OpenclDeviceType::other;
   std::uint32_t compute_units = 0;
   std::uint64_t global_memory_bytes = 0;
-  std::uint64_t max_allocation_bytes = 0;   ///< largest single buffer
-  std::uint32_t preferred_float_width = 0;  ///< floats in the vector that suits the device best
+  std::uint64_t max_allocation_bytes = 0;  ///< largest single buffer
+  /// Floats in the widest vector that the driver prefers or the device has: Intel's driver for processors
+  /// prefers single floats, which it packs by itself, and is slower with them.
+  std::uint32_t float_width = 0;
   HostMemory host_memory = HostMemory::none;
   cl_device_id id = nullptr;
 };
@@ -44,7 +46,8 @@ std::string trimmed(std::string text);
 /// What the device says of itself. Lets cl::Error through.
 OpenclDevice described(cl_device_id id, const std::string& platform, int number);
 
-/// The device that `wanted` names: empty for the first, its number, or a part of its name in any case.
+/// The device that `wanted` names: empty for the first, its number, or a part of its name or its platform's
+/// in any case.
 /// Throws Unavailable when there is none or when the part fits several; the sentence lists what there is.
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted);
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "platform/process_cpus.h"
+
 namespace mssim {
 namespace {
 
@@ -58,7 +60,11 @@ OpenclDevice part_of(const OpenclDevice& device, int count) {
 }
 
 int threads_of(const OpenclDevice& device) {
-  return device.type == OpenclDeviceType::cpu ? static_cast<int>(device.compute_units) : 1;
+  if (device.type != OpenclDeviceType::cpu) return 1;
+  // Some drivers have more compute units than there are processors for their threads.
+  static const std::size_t processors = process_cpus().size();
+  const auto units = static_cast<int>(device.compute_units);
+  return processors == 0 ? units : std::min(units, static_cast<int>(processors));
 }
 
 }  // namespace mssim

@@ -51,6 +51,7 @@ BenchSettings settings_of(const BenchOptions& options, const Comparison& compari
   settings.execution = complete(execution);
   settings.backends = backends_of(options, comparison, settings.execution, choice);
   require_use_of_ranks(options.execution, settings.backends);
+  require_device(options.execution, settings.backends);
   settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
   settings.windows = options.windows;
   settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);

@@ -145,7 +145,7 @@ Table list_devices(const ListOptions& /*options*/) {
                {"driver", device.driver_version},
                {"compute_units", device.compute_units},
                {"memory_bytes", device.global_memory_bytes},
-               {"float_width", device.preferred_float_width}});
+               {"float_width", device.float_width}});
   tell_of_opencl();
   if (opencl_offer().devices.empty() && opencl_offer().troubles.empty())
     std::cerr << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
@@ -167,6 +167,7 @@ constexpr std::array<Subject, 6> subjects{{{"scenes", list_scenes},
 constexpr std::string_view schema_subject = "schema";
 
 int run_list(const ListOptions& options) {
+  require_device(options.execution, table_backends());
   if (options.subject == schema_subject) std::cout << scene_schema();
   for (const Subject& subject : subjects) {
     if (subject.name != options.subject) continue;
@@ -189,7 +190,7 @@ std::function<int()> declare_list(Arguments& arguments) {
   declare_listing_format(arguments, options->format);
   arguments
       .add("--device", options->execution.device,
-           "OpenCL device that backends are checked with: its number or a part of its name")
+           "OpenCL device that backends are checked with: its number or a part of its name or platform")
       .value_name("N|NAME");
   declare_backend_folders(arguments, options->own_backends);
   return [options] { return run_list(*options); };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "backends/described/backend_description.h"
+#include "backends/devices/offer.h"
 #include "backends/process/process_backend.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
@@ -244,6 +245,11 @@ void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const
     throw UsageError(option +
                      " is for backends that run in several processes, and none of these does: add --backend "
                      "mpi, or leave it out");
+}
+
+void require_device(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
+  if (!given.device.empty() && std::ranges::any_of(rows, &BackendInfo::uses_device))
+    find_opencl_device(given.device);
 }
 
 int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution) {

@@ -88,6 +88,9 @@ void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>&
 /// ignored.
 void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
 
+/// Throws Unavailable where --device is given, one of these needs a device, and there is none of that name.
+void require_device(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows);
+
 /// Processes of the one among them that runs in most.
 int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution);
 

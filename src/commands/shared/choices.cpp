@@ -77,7 +77,7 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options) {
       .value_name("COMMAND");
   arguments
       .add("--device", options.device,
-           "OpenCL device: its number or a part of its name (see mssim list devices)")
+           "OpenCL device: its number or a part of its name or platform (see mssim list devices)")
       .value_name("N|NAME");
   arguments.add_choice<DeviceMemory>(
       "--memory", options.memory, device_memories,

@@ -23,6 +23,8 @@ std::vector<OpenclDevice> some_devices() {
   devices[0].name = "Example Processor 7";
   devices[1].name = "Example Graphics 9000";
   devices[2].name = "Another Processor";
+  for (OpenclDevice& device : devices) device.platform = "Example(R) OpenCL";
+  devices[2].platform = "Free OpenCL";
   for (int i = 0; i < 3; ++i) devices[static_cast<std::size_t>(i)].number = i;
   return devices;
 }
@@ -62,22 +64,27 @@ TEST(OpenclDevice, OfPoclHasItsThreadsBoundUnlessTheUserSaysOtherwise) {
   before != nullptr ? setenv("POCL_AFFINITY", kept.c_str(), 1) : unsetenv("POCL_AFFINITY");
 }
 
-TEST(OpenclDevice, IsChosenByNumberOrByAPartOfItsNameInAnyCase) {
+TEST(OpenclDevice, IsChosenByNumberOrByAPartOfItsNameOrPlatformInAnyCase) {
   EXPECT_EQ(choose_opencl_device(some_devices(), "").number, 0);
   EXPECT_EQ(choose_opencl_device(some_devices(), "2").number, 2);
   EXPECT_EQ(choose_opencl_device(some_devices(), "graphics").number, 1);
   EXPECT_EQ(choose_opencl_device(some_devices(), "PROCESSOR 7").number, 0);
+  EXPECT_EQ(choose_opencl_device(some_devices(), "free opencl").number, 2);
 }
 
 TEST(OpenclDevice, ThatDoesNotExistIsAnsweredWithWhatThereIs) {
-  const std::string all = "0 (Example Processor 7), 1 (Example Graphics 9000), 2 (Another Processor)";
+  const std::string all =
+      "0 (Example Processor 7, Example(R) OpenCL), 1 (Example Graphics 9000, Example(R) OpenCL), 2 (Another "
+      "Processor, Free OpenCL)";
   EXPECT_EQ(complaint(some_devices(), "3"), "no OpenCL device has the number 3; there are: " + all);
   EXPECT_EQ(complaint(some_devices(), "99999999999999999999"),
             "no OpenCL device has the number 99999999999999999999; there are: " + all);
-  EXPECT_EQ(complaint(some_devices(), "tpu"), "no OpenCL device has \"tpu\" in its name; there are: " + all);
-  EXPECT_EQ(complaint(some_devices(), "processor"),
-            "several OpenCL devices have \"processor\" in their names, choose one by its number: 0 (Example "
-            "Processor 7), 2 (Another Processor)");
+  EXPECT_EQ(complaint(some_devices(), "tpu"),
+            "no OpenCL device has \"tpu\" in its name or its platform's; there are: " + all);
+  EXPECT_EQ(
+      complaint(some_devices(), "processor"),
+      "several OpenCL devices have \"processor\" in their names or platforms, choose one by its number: "
+      "0 (Example Processor 7, Example(R) OpenCL), 2 (Another Processor, Free OpenCL)");
 }
 
 TEST(OpenclDevice, MissingAltogetherIsAnsweredWithWhatToInstall) {

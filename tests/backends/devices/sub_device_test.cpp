@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "backends/backends.h"
 #include "backends/devices/offer.h"
 #include "integrators/integrators.h"
+#include "platform/process_cpus.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/garment_system.h"
 
@@ -76,6 +78,12 @@ TEST(SubDevice, IsNotMadeOfACardWhoseThreadsAreNotThisMachines) {
   EXPECT_EQ(part_of(card, 1).id, card.id);
   EXPECT_EQ(part_of(card, 1).compute_units, 64U);
   EXPECT_EQ(threads_of(card), 1);
+}
+
+TEST(SubDevice, HasNoMoreThreadsThanThereAreProcessors) {
+  OpenclDevice device = processor();
+  device.compute_units = 1000;
+  EXPECT_EQ(threads_of(device), std::ssize(process_cpus()));
 }
 
 TEST(SubDevice, IsTheDeviceItselfWhereTheDriverRefuses) {
