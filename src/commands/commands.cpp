@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "backends/devices/driver_trial.h"
+#include "backends/driver_trial_run.h"
 #include "backends/interface/backend.h"
 #include "bench/machine/build_info.h"
 #include "commands/arguments/program_parser.h"
@@ -137,11 +139,14 @@ std::string unknown_command(std::string_view name) {
 
 int run_program(int argc, char** argv) {
   remember_arguments(argc, argv);
+  if (argc > 1 && argv[1] == driver_trial_word)
+    run_driver_trial({argv + 2, static_cast<std::size_t>(argc - 2)});
   if (argc > 1 && argv[1][0] != '-') {  // the parser would take it for a word too many
     const std::string_view word = argv[1];
     if (std::ranges::find(commands(), word, &Command::name) == commands().end())
       return fail(exit_bad_input, unknown_command(word));
   }
+  hear_of_slow_drivers([](const std::string& sentence) { std::cerr << "mssim: " + sentence + '\n'; });
   const BuildInfo& build = build_info();
   ProgramParser parser(
       "mssim", "mssim " + build.version + ": benchmark harness for parallel mass-spring simulation",

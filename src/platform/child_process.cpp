@@ -15,11 +15,13 @@
 #include <cstring>
 #include <deque>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
 #include "platform/interruption.h"
 #include "platform/process_cpus.h"
+#include "text/small_letters.h"
 
 namespace mssim {
 namespace {
@@ -230,6 +232,21 @@ class Running {
 };
 
 }  // namespace
+
+std::string failed_end(const ChildResult& result, const std::string& doing) {
+  if (result.signal == 0 && result.exit_code == 0) return "";
+  std::istringstream lines(result.output);
+  std::string cause;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    cause = ": " + line;
+    if (small_letters(line).find("error") != std::string::npos) break;
+  }
+  return "ended with " +
+         (result.signal != 0 ? "signal " + std::to_string(result.signal)
+                             : "exit code " + std::to_string(result.exit_code)) +
+         " when " + doing + cause;
+}
 
 ChildResult run(const ChildProcess& child) { return run_together({&child, 1}).front(); }
 

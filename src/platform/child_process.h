@@ -17,6 +17,10 @@ struct ChildResult {
   std::string output;          ///< what it wrote to stdout and stderr, the last 64 KiB
 };
 
+/// How a program failed, for the end of a sentence: "ended with signal 6 when DOING: " and the first line of
+/// its output that speaks of an error, or else the last one. Empty where it returned 0.
+std::string failed_end(const ChildResult& result, const std::string& doing);
+
 /// What a program is run with.
 struct ChildProcess {
   std::filesystem::path program;

@@ -39,4 +39,10 @@ std::filesystem::path helper_program(std::string_view name) {
   return own_prefix() / "libexec" / "mssim" / name;
 }
 
+std::filesystem::path mssim_program() {
+  std::error_code error;
+  const std::filesystem::path emulated = helper_program("mssim");
+  return std::filesystem::exists(emulated, error) ? emulated : own_prefix() / "bin" / "mssim";
+}
+
 }  // namespace mssim

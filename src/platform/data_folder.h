@@ -14,4 +14,8 @@ std::filesystem::path data_folder();
 /// Throws std::runtime_error when this program cannot be found.
 std::filesystem::path helper_program(std::string_view name);
 
+/// mssim itself, for a process of its own: in `bin` or, where an emulator runs it, what calls that among the
+/// helpers. Throws like helper_program.
+std::filesystem::path mssim_program();
+
 }  // namespace mssim

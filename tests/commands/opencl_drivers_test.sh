@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# OpenCL drivers that offer nothing, end the process that asks them, or cannot write their cache. $1: mssim, $2: the
+# OpenCL drivers that offer nothing, end the process that asks them or in which they compile, or cannot write their cache. $1: mssim, $2: the
 # source folder
 set -euo pipefail
 mssim=$1
@@ -46,7 +46,15 @@ devices() {
 drivers
 devices 0 'there is no OpenCL device here; Debian.s pocl-opencl-icd makes the processor one$'
 drivers missing
-devices 0 'the OpenCL driver .*/missing.so cannot be loaded, or offers nothing (.*/missing.icd registers it)$'
+missing='the OpenCL driver .*/missing.so cannot be loaded: .*/missing.so: cannot open shared object file.* (.*/missing.icd registers it)$'
+devices 0 "$missing"
+drivers missing pocl
+devices 1 "$missing"
+drivers pocl
+: >vendors/empty.icd
+devices 1 'the OpenCL driver .*/empty.icd names no library$'
+echo "$fakes/changing_layer.so" >vendors/empty.icd
+devices 1 'the OpenCL driver .*/changing_layer.so is no driver that OpenCL.s loader can use (.*/empty.icd registers it)$'
 drivers deviceless_driver
 devices 0 'the OpenCL driver "A fake driver" offers no device$'
 expect 3 'the OpenCL driver "A fake driver" offers no device$' run --scene cloth2500 --backend opencl
@@ -85,9 +93,37 @@ rm loaded
 [ ! -e loaded ] || fail "drivers are asked by commands that need no device"
 unset FAKE_OPENCL_LOADED
 
-# What was verified beside a device counts for those of its backends that need none.
+# One that ends the process in which it compiles leaves the other rows alone.
 drivers pocl
+export OPENCL_LAYERS=$fakes/changing_layer.so
 scene=(bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1)
+died='the OpenCL driver "Portable Computing Language" ended with signal 6 when it compiled the kernels of \(opencl\|hybrid\) with semi-euler: LLVM ERROR: cannot select fma'
+status=0
+FAKE_OPENCL=dies "$mssim" "${scene[@]}" --backend hybrid,openmp,opencl --out dying >out 2>err || status=$?
+[ "$status" -eq 3 ] || fail "a bench whose driver dies while it compiles exits with $status: $(cat err)"
+[ "$(column_of dying/timings.csv verified | grep -c true)" -eq 1 ] || fail "openmp is not verified: $(cat dying/timings.csv)"
+[ "$(tr -s '"' <dying/timings.csv | grep -c "unavailable: $died")" -eq 2 ] || fail "timings.csv does not say who died: $(cat dying/timings.csv)"
+FAKE_OPENCL=dies expect 3 "^mssim: $died\$" run --scene cloth2500 --backend opencl --duration 0.01
+# One that compiles for ever: mssim says what it waits for, and a signal ends both.
+FAKE_OPENCL=hangs "$mssim" "${scene[@]}" --backend opencl --out hanging >out 2>err &
+bench=$!
+for ((try = 0; try < 600; ++try)); do
+  grep -q 'the OpenCL driver "Portable Computing Language" is compiling the kernels of opencl with semi-euler' err && break
+  sleep 0.1
+done
+((try < 600)) || fail "nobody says that a driver is compiling: $(cat err)"
+compiler=$(pgrep -P "$bench" || true)
+kill -TERM $bench
+status=0
+wait $bench || status=$?
+[ "$status" -eq 143 ] || fail "a bench that is ended while a driver compiles exits with $status: $(cat err)"
+if [ -z "$compiler" ] || kill -0 "$compiler" 2>/dev/null; then fail "the process in which the driver compiles (${compiler:-none}) is left"; fi
+# Vectors are those that a device has where its driver prefers single numbers.
+FAKE_OPENCL=float-8 "$mssim" list devices --format csv >out 2>err
+[ "$(column_of out float_width)" = 8 ] || fail "float_width is not 8: $(cat out)"
+unset OPENCL_LAYERS
+
+# What was verified beside a device counts for those of its backends that need none.
 "$mssim" "${scene[@]}" --backend serial,opencl --out both >out 2>err || fail "a bench exits with $?: $(cat err)"
 "$mssim" "${scene[@]}" --backend serial --verified both --out part >out 2>err || fail "a bench of some of it exits with $?: $(cat err)"
 

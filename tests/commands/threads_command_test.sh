@@ -28,7 +28,7 @@ columns() { paste -d: <(column_of "$1" backend) <(column_of "$1" threads) <(colu
   fail "run shows no threads: $(cat out)"
 
 # A driver that cannot divide its device.
-export OPENCL_LAYERS=${mssim%/*}/../fake_opencl/undividable_layer.so
+export OPENCL_LAYERS=${mssim%/*}/../fake_opencl/changing_layer.so FAKE_OPENCL=undividable
 "$mssim" "${bench[@]}" --backend serial,openmp,opencl,hybrid --out whole >out 2>err ||
   fail "a bench on an undivided device exits with $?"
 units=$(column_of whole/timings.csv threads | sed -n 3p)

@@ -51,7 +51,7 @@ backends/hybrid       integrators model backends/interface backends/vectors back
 backends/process      text platform hdf5 integrators model backends/interface
 backends/described    text platform integrators scene/fields backends/process
 garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
-backends              integrators backends/interface backends/devices backends/spring_list backends/implicit backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
+backends              integrators model backends/interface backends/devices backends/spring_list backends/implicit backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
 backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 
@@ -90,9 +90,9 @@ commands/measure      text platform geometry mesh garment/body garment/pattern g
 commands/new_backend  text platform backends commands/arguments commands/shared
 commands/report       text platform picture render scene/spec scene bench/machine output/tables output/traces output/pictures report commands/arguments commands/shared commands/run commands/bench
 commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields backends/interface bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/guide commands/bench commands/list commands/compare commands/check commands/measure commands/new_backend commands/report commands/help
+commands              text platform geometry scene/fields backends/interface backends/devices backends bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/guide commands/bench commands/list commands/compare commands/check commands/measure commands/new_backend commands/report commands/help
 main.cpp              commands/shared
-ask_opencl.cpp
+ask_opencl.cpp        backends/devices
 supervise.cpp         platform
 mssim_mpi.cpp         ranks
 '

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <optional>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "backends/devices/pocl_settings.h"
 #include "backends/devices/registered_drivers.h"
@@ -24,45 +26,46 @@ namespace {
 constexpr const char* vendors_variable = "OCL_ICD_VENDORS";
 constexpr const char* pocl_platform = "Portable Computing Language";
 
-/// An environment variable that has a value for a while.
-class TemporaryValue {
- public:
-  TemporaryValue(const char* name, const std::string& value) : name_(name) {
-    if (const char* before = std::getenv(name); before != nullptr) before_ = before;
-    setenv(name, value.c_str(), 1);
-  }
-  ~TemporaryValue() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
-  TemporaryValue(const TemporaryValue&) = delete;
-  TemporaryValue& operator=(const TemporaryValue&) = delete;
+bool relied_on = false;
 
- private:
-  const char* name_;
-  std::optional<std::string> before_;
+/// What the process that asked has found out.
+struct Answer {
+  std::string end;  ///< how asking ended it, for the end of a sentence; empty where it did not
+  std::vector<std::string> troubles;  ///< a sentence for each driver that offers no platform
 };
-
-std::string last_line(std::string_view text) {
-  text = text.substr(0, text.find_last_not_of(" \n\r\t") + 1);
-  return std::string(text.substr(text.find_last_of('\n') + 1));
-}
-
-/// How asking ended the process that asked, for the end of a sentence; nothing where it did not.
-std::optional<std::string> end_of_asking(const std::vector<std::string>& environment) {
-  constexpr unsigned cpu_s = 60, elapsed_s = 120;
-  const ChildResult asked = run({helper_program("ask-opencl"), {}, environment, ".", cpu_s, elapsed_s});
-  if (asked.signal == 0 && asked.exit_code == 0) return std::nullopt;
-  if (asked.out_of_time)
-    return "did not answer within " + std::to_string(cpu_s) + " s of processor time or " +
-           std::to_string(elapsed_s) + " s in all when asked for devices";
-  const std::string line = last_line(asked.output);
-  return "ended with " +
-         (asked.signal != 0 ? "signal " + std::to_string(asked.signal)
-                            : "exit code " + std::to_string(asked.exit_code)) +
-         " when asked for devices" + (line.empty() ? "" : ": " + line);
-}
 
 std::string name_of(const RegisteredDriver& driver) {
   return "the OpenCL driver " +
          (driver.shared_library.empty() ? driver.file.string() : driver.shared_library);
+}
+
+/// What registers it, for the end of a sentence that has its name_of().
+std::string registration_of(const RegisteredDriver& driver) {
+  return driver.shared_library.empty() ? "" : " (" + driver.file.string() + " registers it)";
+}
+
+/// Asks the drivers in another process.
+Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
+                    const std::vector<std::string>& environment) {
+  constexpr unsigned cpu_s = 60, elapsed_s = 120;
+  std::vector<std::string> libraries;
+  for (const RegisteredDriver& driver : drivers) libraries.push_back(driver.shared_library);
+  const ChildResult asked =
+      run({helper_program("ask-opencl"), libraries, environment, ".", cpu_s, elapsed_s});
+  Answer answer{failed_end(asked, "asked for devices"), {}};
+  if (asked.out_of_time)
+    answer.end = "did not answer within " + std::to_string(cpu_s) + " s of processor time or " +
+                 std::to_string(elapsed_s) + " s in all when asked for devices";
+  std::istringstream lines(asked.output);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(obstacle_mark)) continue;
+    std::istringstream words(line.substr(std::string_view(obstacle_mark).size()));
+    std::size_t number = 0;
+    std::string obstacle;
+    if (words >> number && std::getline(words >> std::ws, obstacle) && number < drivers.size())
+      answer.troubles.push_back(name_of(drivers[number]) + ' ' + obstacle + registration_of(drivers[number]));
+  }
+  return answer;
 }
 
 /// Asks each driver alone; registers those that survive it in `folder`, and says of the others how it ended.
@@ -71,8 +74,9 @@ std::vector<std::string> keep_survivors(const std::vector<RegisteredDriver>& dri
   std::vector<std::string> troubles;
   for (const RegisteredDriver& driver : drivers) {
     const std::filesystem::path file = std::filesystem::absolute(driver.file);
-    if (const auto end = end_of_asking({std::string(vendors_variable) + '=' + file.string()}))
-      troubles.push_back(name_of(driver) + ' ' + *end);
+    const Answer answer = ask_in_child({}, {std::string(vendors_variable) + '=' + file.string()});
+    if (!answer.end.empty())
+      troubles.push_back(name_of(driver) + ' ' + answer.end);
     else
       std::filesystem::create_symlink(file, folder / file.filename());
   }
@@ -111,30 +115,34 @@ void take_devices(const cl::Platform& platform, const std::string& pocl_failure,
 }
 
 /// Loads the drivers into this process, and takes what they offer.
-void take_devices(const std::vector<RegisteredDriver>& drivers, const std::string& pocl_failure,
-                  OpenclOffer& offer) {
+void take_devices(const std::string& pocl_failure, OpenclOffer& offer) {
   const OnAllProcessCpus every;  // PoCL starts its threads here
   // The loader reports it as an error that there is no driver.
   const auto platforms =
       all_or_none<cl::Platform>([](auto& all) { cl::Platform::get(&all); }, CL_PLATFORM_NOT_FOUND_KHR);
   for (const cl::Platform& platform : platforms) take_devices(platform, pocl_failure, offer);
-  if (!platforms.empty()) return;
-  for (const RegisteredDriver& driver : drivers)
-    offer.troubles.push_back(name_of(driver) + " cannot be loaded, or offers nothing (" +
-                             driver.file.string() + " registers it)");
 }
 
-/// Loads those drivers that survive it alone, where asking all has ended the process that asked.
+/// The same, of drivers that survived being asked with that answer.
+void take_devices(Answer answer, const std::string& pocl_failure, OpenclOffer& offer) {
+  take_devices(pocl_failure, offer);
+  std::ranges::move(answer.troubles, std::back_inserter(offer.troubles));
+}
+
+/// Loads those drivers that survive it alone, where asking all has ended the process that asked. From then on
+/// they are those of this process, and of the processes that it starts.
 void take_survivors(const std::vector<RegisteredDriver>& drivers, const std::string& pocl_failure,
                     OpenclOffer& offer) {
-  const TemporaryFolder survivors;
-  offer.troubles = keep_survivors(drivers, survivors.path());
+  const std::filesystem::path survivors = temporary_folder_of_process() / "opencl-drivers";
+  std::filesystem::create_directory(survivors);
+  offer.troubles = keep_survivors(drivers, survivors);
   if (offer.troubles.size() == drivers.size()) return;
-  const TemporaryValue vendors(vendors_variable, survivors.path().string());
-  if (const auto end = end_of_asking({}))
-    offer.troubles.push_back("the OpenCL drivers " + *end + ", but each one alone survives");
+  setenv(vendors_variable, survivors.c_str(), 1);
+  Answer answer = ask_in_child(registered_drivers(), {});
+  if (!answer.end.empty())
+    offer.troubles.push_back("the OpenCL drivers " + answer.end + ", but each one alone survives");
   else
-    take_devices(registered_drivers(), pocl_failure, offer);
+    take_devices(std::move(answer), pocl_failure, offer);
 }
 
 OpenclOffer ask() {
@@ -144,17 +152,21 @@ OpenclOffer ask() {
   PoclCache cache;
   if (std::ranges::any_of(drivers, is_pocl)) cache = provide_pocl_cache();
   offer.note = cache.note;
-  if (const auto end = end_of_asking({}); !end)
-    take_devices(drivers, cache.failure, offer);
+  Answer answer = relied_on ? Answer{} : ask_in_child(drivers, {});
+  if (answer.end.empty())
+    take_devices(std::move(answer), cache.failure, offer);
   else if (drivers.size() > 1)
     take_survivors(drivers, cache.failure, offer);
   else
     offer.troubles.push_back((drivers.empty() ? "the OpenCL library" : name_of(drivers.front())) + ' ' +
-                             *end);
+                             answer.end);
   return offer;
 }
 
 }  // namespace
+
+void rely_on_opencl_drivers() { relied_on = true; }
+bool opencl_drivers_relied_on() { return relied_on; }
 
 const OpenclOffer& opencl_offer() {
   static const OpenclOffer offer = [] {

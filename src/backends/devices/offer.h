@@ -20,6 +20,10 @@ struct OpenclOffer {
 /// that asks them. Those are left out. Throws Interrupted (platform/interruption.h).
 const OpenclOffer& opencl_offer();
 
+/// From now on nothing is tried in another process first: this one is itself a process that drivers may end.
+void rely_on_opencl_drivers();
+bool opencl_drivers_relied_on();
+
 /// The device of this machine that `wanted` names (choose_opencl_device). Throws Unavailable where there is
 /// none.
 OpenclDevice find_opencl_device(std::string_view wanted);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "backends/devices/call.h"
+#include "backends/devices/driver_trial.h"
 #include "backends/devices/offer.h"
 #include "backends/devices/sub_device.h"
 #include "backends/hybrid/integrate_alike_nodes.h"
@@ -130,11 +131,11 @@ class Hybrid final : public Backend {
   Pair present_ = Pair::state;
 };
 
-}  // namespace
-
-std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
-                                     const OpenclDevice& device, int threads, int lanes,
-                                     DeviceMemory memory) {
+/// `before`: is told of what kind the system is before any program is compiled.
+template <class Before>
+std::unique_ptr<Backend> make(const System& system, const Integrator& integrator, double dt_s,
+                              const OpenclDevice& device, int threads, int lanes, DeviceMemory memory,
+                              const Before& before) {
   refuse_garment(system);
   if (threads < 1)
     throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
@@ -142,7 +143,9 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
     // With seven bodies in sixteen lanes a step takes 1.05 to 1.1 times as long as with packed springs,
     // with thirteen 0.66 times (Intel Xeon).
     constexpr double lanes_per_body = 2;
-    if (const auto alike = alike_bodies_for(system, AlikeSprings::slice_nodes, lanes_per_body))
+    const auto alike = alike_bodies_for(system, AlikeSprings::slice_nodes, lanes_per_body);
+    before(alike ? SteppedKind::alike_bodies : SteppedKind::bodies);
+    if (alike)
       return std::make_unique<Hybrid<AlikeNodes>>(AlikeNodes(system, *alike, integrator, dt_s),
                                                   alike_node_kernels().front(), system, device, threads,
                                                   lanes, memory);
@@ -151,10 +154,21 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
   });
 }
 
+}  // namespace
+
+std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int threads, int lanes,
+                                     DeviceMemory memory) {
+  return make(system, integrator, dt_s, device, threads, lanes, memory, [](SteppedKind) {});
+}
+
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
   const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
-  return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory);
+  return make(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory,
+              [&](SteppedKind kind) {
+                try_driver({"hybrid", std::string(integrator.name), kind, options}, device);
+              });
 }
 
 }  // namespace mssim

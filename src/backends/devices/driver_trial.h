@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "backends/devices/device.h"
+#include "backends/interface/backend.h"
+
+namespace mssim {
+
+// Some OpenCL drivers end the process in which they compile, or launch, what they cannot. So a process of its
+// own, mssim too, makes each kind of backend for a small system before this one makes it. Programs depend on
+// the kind alone, so that a driver that keeps what it has compiled, as PoCL does, need not compile it again.
+
+/// What a backend steps, as far as its programs differ by it.
+enum class SteppedKind : std::uint8_t { cloth, bodies, alike_bodies, garment };
+
+/// What such a process is to make.
+struct DriverTrial {
+  std::string backend;     ///< its name
+  std::string integrator;  ///< its name
+  SteppedKind kind = SteppedKind::cloth;
+  ExecutionOptions execution;
+};
+
+/// mssim's first argument where it is such a process; those of the trial follow.
+inline constexpr std::string_view driver_trial_word = "--driver-trial";
+
+/// The trial of those arguments. They are this program's own: throws std::exception for any others.
+DriverTrial driver_trial_from(std::span<char*> arguments);
+
+/// Tries it, once in a process and unless this process is a trial itself (rely_on_opencl_drivers). Throws
+/// Unavailable where the driver has ended the other process or has not come to an end in half an hour; the
+/// sentence has the driver's last words. Throws Interrupted.
+void try_driver(const DriverTrial& trial, const OpenclDevice& device);
+
+/// From now on `told` gets a sentence, from another thread, when such a trial takes longer than ten seconds.
+void hear_of_slow_drivers(std::function<void(const std::string& sentence)> told);
+
+}  // namespace mssim
