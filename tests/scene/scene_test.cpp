@@ -260,6 +260,8 @@ TEST_F(SceneFile, CutShortAnywhereIsRefusedWithoutACrash) {
   const std::size_t end = good.rfind('}');
   for (std::size_t length = 1; length <= end; ++length)
     EXPECT_THAT(error_of(write(good.substr(0, length))), HasSubstr("malformed JSON")) << length;
+  for (const std::string& rest : {std::string("{}"), std::string(1, '\0'), '\0' + good})
+    EXPECT_THAT(error_of(write(good + rest)), HasSubstr("malformed JSON")) << rest;
 }
 
 TEST(SceneNames, AreTheCommittedOnesByKindAndSize) {

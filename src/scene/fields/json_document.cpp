@@ -125,6 +125,10 @@ class Watcher final : public json::json_sax_t {
 
 nlohmann::json parse_json(const std::filesystem::path& file, const std::string& text) {
   if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
+  // The JSON library takes it for the end.
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos)
+    fail(file,
+         "malformed JSON, byte " + std::to_string(zero) + " (from 0) is zero, which no text has: remove it");
   Watcher watcher(file);
   json::sax_parse(text, &watcher);
   return json::parse(text);
