@@ -1,4 +1,9 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
 
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
@@ -8,16 +13,163 @@
 namespace mssim {
 namespace {
 
+using Corners = std::array<std::size_t, 3>;
+
+/// Triangles that fan out from the first corner.
+std::vector<Corners> fan(std::size_t corners) {
+  std::vector<Corners> triangles;
+  for (std::size_t i = 2; i < corners; ++i) triangles.push_back({0, i - 1, i});
+  return triangles;
+}
+
+/// Cuts a polygon of four corners or more as it lies in its plane, whose normal is Newell's: the sum of the
+/// cross products along its edges.
+class PolygonCutter {
+ public:
+  explicit PolygonCutter(const std::vector<Vec3d>& corners) {
+    const Vec3d& first = corners.front();
+    Vec3d normal;
+    double longest = 0, farthest = length(first);
+    for (std::size_t i = 1; i < corners.size(); ++i) {
+      normal += cross(corners[i - 1] - first, corners[i] - first);
+      longest = std::max(longest, length(corners[i] - first));
+      farthest = std::max(farthest, length(corners[i]));
+    }
+    constexpr double rounding = 1e-12, six_digits = 1e-6;
+    touching_ = rounding * longest * longest;
+    as_written_ = six_digits * longest * farthest;
+    if (length(normal) <= touching_) return;
+    normal = 1 / length(normal) * normal;
+    const bool is_level = std::abs(normal.z) >= std::max(std::abs(normal.x), std::abs(normal.y));
+    const Vec3d aside = cross(is_level ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1}, normal);
+    const Vec3d right = 1 / length(aside) * aside, up = cross(normal, right);
+    for (const Vec3d& corner : corners)
+      flat_.push_back({dot(corner - first, right), dot(corner - first, up), 0});
+  }
+
+  bool has_plane() const { return !flat_.empty(); }
+
+  /// Does the fan from the first corner cover the polygon, as it does a convex one? The other corners are
+  /// then seen one after the other from there, and not more than once round.
+  bool fan_covers() const {
+    double angle = 0;
+    for (const auto& [a, b, c] : fan(flat_.size())) {
+      if (!has_area({a, b, c})) return false;
+      angle += std::atan2(area(a, b, c), dot(flat_[b] - flat_[a], flat_[c] - flat_[a]));
+    }
+    return angle < 2 * std::numbers::pi;
+  }
+
+  bool crosses_itself() const {
+    const std::size_t n = flat_.size();
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i + 1; j < n; ++j)
+        if (cross_each_other(i, (i + 1) % n, j, (j + 1) % n, as_written_)) return true;
+    return false;
+  }
+
+  /// Ears (three corners that follow each other, with nothing of the polygon between them), one cut off after
+  /// the other. Ears without area come when there are no others: corners on a line. Nothing where there is no
+  /// ear.
+  std::optional<std::vector<Corners>> ears() const {
+    std::vector<std::size_t> left(flat_.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
+    std::vector<Corners> cut;
+    for (std::size_t begin = 0; left.size() > 3;) {
+      auto at = find_ear(left, begin, true);
+      if (!at) at = find_ear(left, begin, false);
+      if (!at) return std::nullopt;
+      cut.push_back(corners_at(left, *at));
+      left.erase(left.begin() + static_cast<std::ptrdiff_t>(*at));
+      begin = *at + 1;  // not beside it, which would make a fan of long triangles
+    }
+    cut.push_back({left[0], left[1], left[2]});
+    if (area(left[0], left[1], left[2]) < -as_written_) return std::nullopt;
+    return cut;
+  }
+
+ private:
+  /// Twice that of the triangle; positive where it runs as the polygon does.
+  double area(std::size_t a, std::size_t b, std::size_t c) const {
+    const Vec3d ab = flat_[b] - flat_[a], ac = flat_[c] - flat_[a];
+    return ab.x * ac.y - ab.y * ac.x;
+  }
+  bool has_area(const Corners& triangle) const {
+    constexpr double least = 1e-9;
+    const auto& [a, b, c] = triangle;
+    const Vec3d ab = flat_[b] - flat_[a], ac = flat_[c] - flat_[a];
+    return area(a, b, c) > least * std::max(dot(ab, ab), dot(ac, ac));
+  }
+
+  /// Does the line from a to b pass through that from c to d, and not merely touch it?
+  bool cross_each_other(std::size_t a, std::size_t b, std::size_t c, std::size_t d, double touching) const {
+    const auto on_two_sides = [&](double one, double other) {
+      return std::min(one, other) < -touching && std::max(one, other) > touching;
+    };
+    return on_two_sides(area(a, b, c), area(a, b, d)) && on_two_sides(area(c, d, a), area(c, d, b));
+  }
+
+  static Corners corners_at(const std::vector<std::size_t>& left, std::size_t at) {
+    const std::size_t n = left.size();
+    return {left[(at + n - 1) % n], left[at], left[(at + 1) % n]};
+  }
+
+  /// Can these corners be cut off what is left?
+  bool is_ear(const std::vector<std::size_t>& left, const Corners& ear, bool with_area) const {
+    const auto& [a, b, c] = ear;
+    if (with_area ? !has_area(ear) : area(a, b, c) < -as_written_) return false;
+    const double margin = with_area ? -touching_ : touching_;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const std::size_t p = left[i];
+      if (cross_each_other(a, c, p, left[(i + 1) % left.size()], touching_)) return false;
+      // A cut to a hole, and the way back, have corners at the same places.
+      if (flat_[p] == flat_[a] || flat_[p] == flat_[b] || flat_[p] == flat_[c]) continue;
+      if (area(a, b, p) >= margin && area(b, c, p) >= margin && area(c, a, p) >= margin) return false;
+    }
+    return true;
+  }
+
+  std::optional<std::size_t> find_ear(const std::vector<std::size_t>& left, std::size_t begin,
+                                      bool with_area) const {
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const std::size_t at = (begin + i) % left.size();
+      if (is_ear(left, corners_at(left, at), with_area)) return at;
+    }
+    return std::nullopt;
+  }
+
+  std::vector<Vec3d> flat_;  ///< the corners in the plane (z is 0), none where there is none
+  double touching_ = 0;      ///< twice an area that computing may make of none
+  double as_written_ = 0;    ///< twice one that a file of six digits may
+};
+
+/// Do they lie in a plane, to a thousandth of what they span?
+bool is_flat_quad(const std::vector<Vec3d>& corners) {
+  constexpr double level = 1e-3;
+  const Vec3d a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0];
+  const double longest = std::max({length(a), length(b), length(c)});
+  return std::abs(dot(a, cross(b, c))) <= level * longest * longest * longest;
+}
+
+bool on_a_line(const std::vector<Vec3d>& corners) {
+  constexpr double rounding = 1e-9;
+  const auto from_first = [&](const Vec3d& corner) { return corner - corners[0]; };
+  const Vec3d along = from_first(*std::ranges::max_element(
+      corners, {}, [&](const Vec3d& corner) { return length(from_first(corner)); }));
+  return std::ranges::all_of(corners, [&](const Vec3d& corner) {
+    return length(cross(along, from_first(corner))) <= rounding * dot(along, along);
+  });
+}
+
 class ObjReader {
  public:
-  ObjReader(const std::string& name, std::string_view text) : lines_(name, text), merger_(surface_) {}
+  ObjReader(const std::string& name, std::string_view text)
+      : lines_(name, text, {'#', '\\'}), merger_(surface_) {}
 
   Surface read() {
     while (lines_.next()) {
       const std::string_view keyword = lines_.words().front();
       if (keyword != "v" && keyword != "f") continue;
-      if (lines_.words().back() == "\\")
-        lines_.fail("the line continues after a backslash; join it with the next");
       if (keyword == "v")
         vertex();
       else
@@ -83,8 +235,36 @@ class ObjReader {
                                       "; the file is truncated or the number wrong");
       points.push_back(merger_.add(vertices_[static_cast<std::size_t>(vertex - 1)]));
     }
-    for (std::size_t i = 2; i < points.size(); ++i)
-      surface_.triangles.push_back({points[0], points[i - 1], points[i]});
+    if (points.size() > 3) leave_out_repeated(points);
+    for (const auto& [a, b, c] : triangles_of(face.line, points))
+      surface_.triangles.push_back({points[a], points[b], points[c]});
+  }
+
+  /// Of corners that follow each other at one place, one stays, unless that leaves no triangle.
+  static void leave_out_repeated(std::vector<std::uint32_t>& points) {
+    std::vector<std::uint32_t> apart = points;
+    apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
+    while (apart.size() > 1 && apart.back() == apart.front()) apart.pop_back();
+    if (apart.size() >= 3) points = std::move(apart);
+  }
+
+  std::vector<Corners> triangles_of(std::size_t line, const std::vector<std::uint32_t>& points) const {
+    if (points.size() == 3) return fan(3);
+    std::vector<Vec3d> corners;
+    for (const std::uint32_t point : points) corners.push_back(surface_.points[point]);
+    const PolygonCutter polygon(corners);
+    if (polygon.has_plane() ? polygon.fan_covers() : on_a_line(corners)) return fan(points.size());
+    const std::string which = "the polygon of " + std::to_string(points.size()) + " corners ";
+    constexpr std::string_view remedy = "; cut it into triangles where the surface was made";
+    constexpr std::size_t most = 1000;  // ears take the square of it, or more
+    if (points.size() > most)
+      lines_.fail_at(line, which + "is concave, and at most " + std::to_string(most) + " can be cut" +
+                               std::string(remedy));
+    if (polygon.has_plane() && !polygon.crosses_itself())
+      if (const auto ears = polygon.ears()) return *ears;
+    // The edges of one that is bent pass each other, so that any diagonal will do.
+    if (points.size() == 4 && !is_flat_quad(corners)) return fan(4);
+    lines_.fail_at(line, which + "crosses itself" + std::string(remedy));
   }
 
   TextLines lines_;

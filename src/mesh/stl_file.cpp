@@ -35,10 +35,15 @@ Vec3d vector_at(std::string_view content, std::size_t byte) {
 Surface parse_binary(const std::string& name, std::string_view content) {
   const std::size_t count = number_at(content, bytes_before_count);
   const std::size_t due = bytes_before_triangles + count * bytes_of_triangle;
-  if (content.size() != due)
-    throw InputError(name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
-                     counted(count, "triangle") + " in " + std::to_string(due) + " bytes, and has " +
-                     std::to_string(content.size()) + "; it is truncated or not an STL file");
+  const std::string promise = name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
+                              counted(count, "triangle") + " in " + std::to_string(due) + " bytes, and ";
+  if (content.size() < due)
+    throw InputError(promise + "has " + std::to_string(content.size()) +
+                     "; it is truncated or not an STL file");
+  // Some writers fill up the last block; a whole triangle more is one that the number leaves out.
+  if (content.size() - due >= bytes_of_triangle)
+    throw InputError(promise + std::to_string(content.size() - due) +
+                     " bytes follow the last; the number is wrong, so write the file again");
   if (count == 0) throw InputError(name + ": the file has no triangles; give a surface");
   Surface surface;
   PointMerger merger(surface);
@@ -61,7 +66,8 @@ Surface parse_binary(const std::string& name, std::string_view content) {
 
 class AsciiReader {
  public:
-  AsciiReader(const std::string& name, std::string_view text) : lines_(name, text, '\0'), merger_(surface_) {}
+  AsciiReader(const std::string& name, std::string_view text)
+      : lines_(name, text, {'\0', '\0'}), merger_(surface_) {}
 
   Surface read() {
     while (lines_.next()) {
@@ -79,16 +85,24 @@ class AsciiReader {
                       [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
   }
 
+  /// Does the line begin so? Some writers have "end loop" for "endloop".
+  bool begins(std::string_view keyword) const {
+    const auto& words = lines_.words();
+    constexpr std::string_view end = "end";
+    return equal(words[0], keyword) || (words.size() > 1 && keyword.starts_with(end) &&
+                                        equal(words[0], end) && equal(words[1], keyword.substr(end.size())));
+  }
+
   /// Goes to the next line and says whether it begins so.
   bool next_is(std::string_view keyword) {
     lines_.require_next("\"endsolid\"");
-    return equal(lines_.words().front(), keyword);
+    return begins(keyword);
   }
 
   /// The line must begin with these words (the second may be empty: anything).
   void require(std::string_view first, std::string_view second) const {
     const auto& words = lines_.words();
-    if (equal(words[0], first) && (second.empty() || (words.size() > 1 && equal(words[1], second)))) return;
+    if (begins(first) && (second.empty() || (words.size() > 1 && equal(words[1], second)))) return;
     const std::string due = std::string(first) + (second.empty() ? "" : " ") + std::string(second);
     lines_.fail("it begins with " + TextLines::quoted(words[0]) + " where \"" + due +
                 "\" is expected; the file is damaged or not an STL file");

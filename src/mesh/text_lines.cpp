@@ -12,7 +12,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\f\v";
+constexpr std::string_view blanks = " \t\f\v";
 
 }  // namespace
 
@@ -26,32 +26,44 @@ std::string read_text(const std::filesystem::path& file) {
   }
 }
 
-TextLines::TextLines(std::string file, std::string_view text, char comment)
-    : file_(std::move(file)), text_(without_byte_order_mark(text)), comment_(comment) {}
+TextLines::TextLines(std::string file, std::string_view text, const LineSigns& signs)
+    : file_(std::move(file)), text_(without_byte_order_mark(text)), signs_(signs) {}
 
 bool TextLines::next() {
   words_.clear();
   while (words_.empty()) {
     if (at_ >= text_.size()) return false;
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    std::string_view rest = text_.substr(at_, end - at_);
-    at_ = end + 1;
-    ++line_;
-    constexpr std::size_t longest_line = std::size_t{1} << 20;
-    if (rest.size() > longest_line)
-      fail("it has " + std::to_string(rest.size()) + " bytes and at most " + std::to_string(longest_line) +
-           " are read of one line; break the file into lines");
-    rest = rest.substr(0, rest.find(comment_));
-    while (true) {
-      const std::size_t first = rest.find_first_not_of(blanks);
-      if (first == std::string_view::npos) break;
-      rest.remove_prefix(first);
-      const std::size_t length = std::min(rest.find_first_of(blanks), rest.size());
-      words_.push_back(rest.substr(0, length));
-      rest.remove_prefix(length);
+    line_ = lines_ + 1;
+    begin_ = at_;
+    while (take_line() && at_ < text_.size()) {
     }
   }
   return true;
+}
+
+bool TextLines::take_line() {
+  const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+  std::string_view rest = text_.substr(at_, end - at_);
+  at_ = end + (text_.substr(end, 2) == "\r\n" ? 2 : 1);
+  ++lines_;
+  constexpr std::size_t longest_line = std::size_t{1} << 20;
+  if (end - begin_ > longest_line)
+    fail("it has " + std::to_string(end - begin_) + " bytes and at most " + std::to_string(longest_line) +
+         " are read of one line; break the file into lines");
+  rest = rest.substr(0, rest.find(signs_.comment));
+  while (true) {
+    const std::size_t first = rest.find_first_not_of(blanks);
+    if (first == std::string_view::npos) break;
+    rest.remove_prefix(first);
+    const std::size_t length = std::min(rest.find_first_of(blanks), rest.size());
+    const std::string_view word = rest.substr(0, length);
+    rest.remove_prefix(length);
+    const bool is_last = rest.find_first_not_of(blanks) == std::string_view::npos;
+    const bool is_continued = is_last && signs_.continuation != '\0' && word.back() == signs_.continuation;
+    if (!is_continued || length > 1) words_.push_back(word.substr(0, length - (is_continued ? 1 : 0)));
+    if (is_continued) return true;
+  }
+  return false;
 }
 
 void TextLines::require_next(const std::string& expected) {

@@ -12,13 +12,19 @@ namespace mssim {
 /// The whole content of a file. Throws InputError with one sentence when it cannot be read.
 std::string read_text(const std::filesystem::path& file);
 
-/// Goes through the lines of a mesh file, split into words, and turns words into numbers. Every error is a
-/// InputError that begins "FILE, line N: ".
+/// Signs of a format of lines; '\0' where it has none.
+struct LineSigns {
+  char comment = '#';        ///< what follows it on a line is left out
+  char continuation = '\0';  ///< the last of a line: the next line belongs to it
+};
+
+/// Goes through the lines of a mesh file, split into words, and turns words into numbers. Lines end in LF, CR
+/// LF or CR. Every error is a InputError that begins "FILE, line N: "; of lines that are continued, N is the
+/// first.
 class TextLines {
  public:
-  /// `text` must outlive this; what follows `comment` on a line is left out, and so is a byte-order mark of
-  /// UTF-8 at the beginning.
-  TextLines(std::string file, std::string_view text, char comment = '#');
+  /// `text` must outlive this; a byte-order mark of UTF-8 at its beginning is left out.
+  TextLines(std::string file, std::string_view text, const LineSigns& signs = {});
 
   /// Goes to the next line that has words; false at the end. Throws for one of more than a megabyte: its
   /// words would take many times that.
@@ -45,13 +51,17 @@ class TextLines {
   [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 
  private:
+  /// Adds the words of the next line to those of the statement, and says whether it is continued.
+  bool take_line();
   std::string_view word(std::size_t index, std::string_view what) const;
 
   std::string file_;
   std::string_view text_;
-  char comment_;
-  std::size_t at_ = 0;  ///< where the next line begins
-  std::size_t line_ = 0;
+  LineSigns signs_;
+  std::size_t at_ = 0;     ///< where the next line begins
+  std::size_t line_ = 0;   ///< the first of the statement
+  std::size_t lines_ = 0;  ///< up to there
+  std::size_t begin_ = 0;  ///< where the statement begins
   std::vector<std::string_view> words_;
 };
 
