@@ -1,11 +1,16 @@
 #include "geometry/openings.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
 
+#include "geometry/box.h"
 #include "geometry/geometry.h"
 #include "geometry/surface_sides.h"
 #include "text/input_error.h"
@@ -26,6 +31,18 @@ class FreeEdges {
     }
   }
 
+  std::size_t count() const {
+    std::size_t sum = 0;
+    for (const auto& ends : ends_) sum += ends.size();
+    return sum;
+  }
+  /// Is the point at the begin or the end of one?
+  std::vector<bool> touched() const {
+    std::vector<bool> is_touched(ends_.size());
+    for (std::size_t from = 0; from < ends_.size(); ++from)
+      for (const std::uint32_t to : ends_[from]) is_touched[from] = is_touched[to] = true;
+    return is_touched;
+  }
   bool any_from(std::uint32_t point) const { return !ends_[point].empty(); }
   /// The end of one of them, which is taken away.
   std::uint32_t take_from(std::uint32_t point) {
@@ -36,6 +53,73 @@ class FreeEdges {
 
  private:
   std::vector<std::vector<std::uint32_t>> ends_;
+};
+
+/// Merges points within that distance, each with the nearest of those before it.
+class Joiner {
+ public:
+  Joiner(Surface& surface, double reach)
+      : surface_(surface), reach_(reach), into_(surface.points.size()), triangles_(surface.points.size()) {
+    std::iota(into_.begin(), into_.end(), 0U);
+    const std::vector<bool> is_open = FreeEdges(surface).touched();
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      for (const std::uint32_t corner : surface.triangles[t])
+        if (is_open[corner]) triangles_[corner].push_back(t);
+    for (std::uint32_t point = 0; point < is_open.size(); ++point)
+      if (is_open[point]) place(point);
+  }
+
+  /// Leaves the merged points out of the surface; how many.
+  std::size_t finish() {
+    std::vector<std::uint32_t> number(into_.size());
+    std::uint32_t kept = 0;
+    for (std::uint32_t point = 0; point < into_.size(); ++point)
+      if (into_[point] == point) {
+        number[point] = kept;
+        surface_.points[kept++] = surface_.points[point];
+      }
+    for (auto& triangle : surface_.triangles)
+      for (std::uint32_t& corner : triangle) corner = number[into_[corner]];
+    surface_.points.resize(kept);
+    return into_.size() - kept;
+  }
+
+ private:
+  using Cell = std::array<double, 3>;
+
+  void place(std::uint32_t point) {
+    const Vec3d& at = surface_.points[point];
+    const Cell cell{std::floor(at.x / reach_), std::floor(at.y / reach_), std::floor(at.z / reach_)};
+    double nearest = reach_;
+    for (const double x : {-1, 0, 1})
+      for (const double y : {-1, 0, 1})
+        for (const double z : {-1, 0, 1}) {
+          const auto others = kept_.find({cell[0] + x, cell[1] + y, cell[2] + z});
+          if (others == kept_.end()) continue;
+          for (const std::uint32_t other : others->second)
+            if (const double distance = length(surface_.points[other] - at);
+                distance <= nearest && !share_a_triangle(point, other)) {
+              nearest = distance;
+              into_[point] = other;
+            }
+        }
+    if (into_[point] == point) kept_[cell].push_back(point);
+  }
+
+  /// Or what has been merged into the other and the point.
+  bool share_a_triangle(std::uint32_t point, std::uint32_t other) const {
+    return std::ranges::any_of(triangles_[point], [&](std::size_t t) {
+      return std::ranges::any_of(surface_.triangles[t], [&](std::uint32_t corner) {
+        return corner != point && into_[corner] == other;
+      });
+    });
+  }
+
+  Surface& surface_;
+  double reach_;
+  std::vector<std::uint32_t> into_;
+  std::vector<std::vector<std::size_t>> triangles_;  ///< of the points on open edges
+  std::map<Cell, std::vector<std::uint32_t>> kept_;
 };
 
 void measure(const Surface& surface, Opening& opening) {
@@ -137,7 +221,30 @@ std::vector<Opening> openings_of(const Surface& surface) {
   return openings;
 }
 
+std::size_t join_corners(Surface& surface) {
+  Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  for (const Vec3d& point : surface.points) extend(box, point);
+  const Vec3d size = box.size();
+  const double extent = std::max({size.x, size.y, size.z});
+  std::size_t merged = 0;
+  // The two sides of something thin find their own corners before they are within reach of each other.
+  if (extent > 0)
+    for (const double share : {1e-7, 1e-6, 1e-5}) merged += Joiner(surface, share * extent).finish();
+  return merged;
+}
+
+void require_joined(const Surface& surface) {
+  const std::size_t free = FreeEdges(surface).count();
+  const std::size_t edges = (3 * surface.triangles.size() + free) / 2;
+  if (surface.triangles.size() > 1 && 2 * free > edges)
+    throw InputError(
+        "its triangles do not join: " + std::to_string(free) + " of " + std::to_string(edges) +
+        " edges belong to one triangle only; merge the points of corners that lie beside each other "
+        "where the surface was made");
+}
+
 std::vector<Opening> close_openings(Surface& surface, double largest) {
+  require_joined(surface);
   std::vector<Opening> openings = openings_of(surface);
   for (const Opening& opening : openings) {
     if (!(opening.size <= largest))

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "geometry/geometry.h"
+#include "geometry/openings.h"
 #include "geometry/surface_sides.h"
 #include "text/counted.h"
 #include "text/input_error.h"
@@ -68,6 +69,11 @@ class Check {
   }
 
   void sides() const {
+    try {
+      require_joined(surface_);
+    } catch (const InputError& error) {
+      fail(error.what());
+    }
     const std::vector<SurfaceSide> sides = sides_by_edge(surface_);
     for (std::size_t first = 0; first < sides.size();) {
       const std::span<const SurfaceSide> of_edge = sides_of_edge(sides, first);

@@ -1,19 +1,27 @@
 #include "mesh/surface_file.h"
 
-#include <algorithm>
-
+#include "geometry/openings.h"
 #include "mesh/text_lines.h"
+#include "text/counted.h"
 #include "text/input_error.h"
+#include "text/small_letters.h"
 
 namespace mssim {
 
-Surface read_surface(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  if (extension == ".obj") return parse_obj(file.string(), read_text(file));
-  if (extension == ".stl") return parse_stl(file.string(), read_text(file));
-  throw InputError(file.string() + " ends in neither .obj nor .stl; give a surface in one of those formats");
+FileSurface read_surface(const std::filesystem::path& file) {
+  const std::string extension = small_letters(file.extension().string());
+  FileSurface read;
+  if (extension == ".obj")
+    read.surface = parse_obj(file.string(), read_text(file));
+  else if (extension == ".stl")
+    read.surface = parse_stl(file.string(), read_text(file));
+  else
+    throw InputError(file.string() +
+                     " ends in neither .obj nor .stl; give a surface in one of those formats");
+  if (const std::size_t merged = join_corners(read.surface); merged > 0)
+    read.note = file.string() + ": " + counted(merged, "point") + (merged == 1 ? " was" : " were") +
+                " merged with others within a hundred-thousandth of its size, so that its triangles join";
+  return read;
 }
 
 }  // namespace mssim

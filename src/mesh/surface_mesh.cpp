@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "geometry/geometry.h"
 #include "geometry/triangle_tree.h"
@@ -117,7 +118,7 @@ TetMesh surface_mesh(const SurfaceShape& body) {
     throw InputError(name + ": the largest volume of a tetrahedron is " + decimal(body.largest_volume_m3) +
                      " m^3; give a positive number, or 0 for no limit");
 
-  Surface surface = read_surface(body.file);
+  auto [surface, note] = read_surface(body.file);
   for (Vec3d& point : surface.points) point = body.unit_m * point;
   validate_surface(surface, name);
   // A limit far below the body's volume would fill the memory.
@@ -134,8 +135,10 @@ TetMesh surface_mesh(const SurfaceShape& body) {
   try {
     require_meshable(nodes);
     require_thick(surface);
-    return tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3),
-                          nodes - surface.points.size());
+    TetMesh mesh = tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3),
+                                  nodes - surface.points.size());
+    mesh.note = std::move(note);
+    return mesh;
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "geometry/vec3.h"
@@ -13,6 +14,7 @@ namespace mssim {
 struct TetMesh {
   std::vector<Vec3d> nodes;  ///< m
   std::vector<Tetrahedron> tetrahedra;
+  std::string note = {};  ///< what a reader should know of how it was made, in a sentence; or empty
 };
 
 /// The unique edges of the tetrahedra, the lower node first, ascending.

@@ -17,6 +17,7 @@
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"
 #include "text/input_error.h"
+#include "text/note.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -122,6 +123,13 @@ class MeshedShapes {
       counts.springs_unique += shapes_[shape].edges.size();
     }
     return counts;
+  }
+
+  /// What is to be known of how they were made, in sentences; or empty.
+  std::string note() const {
+    std::string all;
+    for (const MeshedShape& shape : shapes_) add_to_note(all, shape.mesh.note);
+    return all;
   }
 
  private:
@@ -259,7 +267,9 @@ SceneParts read_bodies(const SceneSpec& spec) {
   const auto shapes = std::make_shared<const MeshedShapes>(spec);
   return {shapes->counts(),
           stated_counts_of(spec, [&](std::size_t body) { return shapes->of_body(body).own; }),
-          [shapes](const SceneSpec& of) { return BuiltScene{build_bodies(of, *shapes)}; }};
+          [shapes](const SceneSpec& of) {
+            return BuiltScene{build_bodies(of, *shapes), shapes->note()};
+          }};
 }
 
 }  // namespace mssim

@@ -92,6 +92,10 @@ measure 0 "$work/scan.obj" --format json
 measure 0 jeans4k
 grep -q '^hip_girth  *0.98 ' "$work/out" || fail "the mannequin of a scene: $(cat "$work/out")"
 
+person 0.1 +x+y+z >"$work/makehuman.obj"
+measure 0 "$work/makehuman.obj" --format csv
+[ "$(of_listing "$work/out" unit)" = 0.1 ] && ! grep -q 'not certain' "$work/err" || fail "decimetres: $(cat "$work/out" "$work/err")"
+
 # What is given beats what is found.
 measure 0 "$work/scan.obj" --unit mm --up z --facing -y --format csv
 [ "$(of_listing "$work/out" facing)" = -y ] || fail "a facing that is given"
@@ -124,9 +128,11 @@ measure 4 "$work/scan.obj" --scene "$work/none/my.json"
 says 'cannot write'
 expect 2 'b.obj: there is no such file' measure "$work/b.obj"
 expect 2 'no scene is named' measure jeans4
+echo binary >"$work/t.h5"
+for file in "$work/t.h5" "$work/scan.ply" "$work/scan"; do expect 2 "$file ends in neither .obj nor .stl: give .* \.json" measure "$file"; done
 expect 2 'cloth2500 is a scene without a body to dress' measure cloth2500
 expect 2 'leave out --unit' measure jeans4k --unit mm
-expect 2 '--unit is "mile": give m, cm, mm, inch, foot, or the metres' measure "$work/scan.obj" --unit mile
+expect 2 '--unit is "mile": give m, dm, cm, mm, inch, foot, or the metres' measure "$work/scan.obj" --unit mile
 expect 2 'cannot look along z' measure "$work/scan.obj" --up z --facing +z
 
 # Openings: a neck is closed, a waist is not.
@@ -141,6 +147,42 @@ grep -q '^opening_1 .*24 edges around (.*, closed' "$work/out" || fail "the clos
 grep -q '"close_holes_m": 0.2' "$work/neck.json" || fail "the scene does not close the hole: $(cat "$work/neck.json")"
 measure 2 "$work/waist.obj" --close-holes --unit cm
 says 'the opening of 24 edges around (.* is 0.2[0-9]* m across, and at most 0.2 m are closed'
+
+# Triangles of an STL file whose corners differ in their last digits join; farther apart they are no openings to close.
+loose() {
+  /usr/bin/python3 - "$1" "$2" <<'PYTHON'
+import random, sys
+random.seed(1)
+points = []
+print("solid person")
+for words in map(str.split, open(sys.argv[1], encoding="utf-8-sig")):
+    if words[:1] == ["v"]:
+        points.append([float(x) for x in words[1:]])
+    elif words[:1] == ["f"]:
+        corners = [points[int(w) - 1] for w in words[1:]]
+        for i in range(2, len(corners)):
+            print("facet normal 0 0 0\nouter loop")
+            for p in (corners[0], corners[i - 1], corners[i]):
+                print("vertex " + " ".join(f"{x + random.uniform(-1, 1) * float(sys.argv[2]):.8f}" for x in p))
+            print("endloop\nendfacet")
+print("endsolid person")
+PYTHON
+}
+loose "$work/person.obj" 1e-6 >"$work/loose.stl"
+measure 0 "$work/person.obj" --format csv
+cp "$work/out" "$work/whole"
+measure 0 "$work/loose.stl" --format csv --scene "$work/scenes/loose.json"
+says 'loose.stl: [0-9]* points were merged with others'
+for measure in waist_girth hip_girth crotch_height knee_girth; do
+  near "$(of_listing "$work/out" "$measure")" "$(of_listing "$work/whole" "$measure")" .0002 || fail "$measure of loose triangles: $(cat "$work/out")"
+done
+loose "$work/person.obj" 1e-4 >"$work/apart.stl"
+for close in '' --close-holes; do
+  # shellcheck disable=SC2086
+  measure 2 "$work/apart.stl" $close
+  says 'its triangles do not join: '
+  ! grep -q 'close-holes' "$work/err" || fail "closing is recommended: $(cat "$work/err")"
+done
 
 # Scenes whose body is not as they say name the field.
 wrong() {

@@ -46,8 +46,24 @@ void check_surface(const Surface& surface) {
   require(std::adjacent_find(places.begin(), places.end()) == places.end(), "points stand apart");
 
   const Surface again = parse_obj("again.obj", obj_text(surface));
-  require(again.points == surface.points && again.triangles == surface.triangles,
+  const auto corner = [](const Surface& of, std::size_t t, std::size_t i) {
+    return of.points[of.triangles[t][i]];
+  };
+  require(again.points.size() == surface.points.size() && again.triangles.size() == surface.triangles.size(),
           "written surfaces read back");
+  // Points are numbered as triangles name them, and those of a polygon as it does.
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      require(corner(again, t, i) == corner(surface, t, i), "written surfaces read back");
+
+  Surface joined = surface;
+  const std::size_t merged = join_corners(joined);
+  require(joined.points.size() + merged == surface.points.size(), "points that are merged go");
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto same = [&](const Surface& of) { return of.triangles[t][i] == of.triangles[t][(i + 1) % 3]; };
+      require(same(joined) == same(surface), "corners of one triangle stay apart");
+    }
 
   unless_refused<InputError>([&] { return guess_stance(surface, {}); });
   const std::size_t openings = openings_of(surface).size();

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 
 #include "garment/body/mannequin.h"
 #include "mesh/sphere_shape.h"
@@ -162,6 +164,58 @@ TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {
   EXPECT_THAT(close_openings(point, 1), IsEmpty());
   Surface nothing;
   EXPECT_THAT(close_openings(nothing, 1), IsEmpty());
+}
+
+/// Every triangle with corners of its own, each off by up to `jitter` along every axis.
+Surface apart(const Surface& surface, double jitter) {
+  Surface loose;
+  std::mt19937 random(1);
+  const auto off = [&] { return jitter * (2 * static_cast<double>(random()) / 4294967295.0 - 1); };
+  for (const auto& triangle : surface.triangles) {
+    const auto first = static_cast<std::uint32_t>(loose.points.size());
+    for (const std::uint32_t point : triangle)
+      loose.points.push_back(surface.points[point] + Vec3d{off(), off(), off()});
+    loose.triangles.push_back({first, first + 1, first + 2});
+  }
+  return loose;
+}
+
+Surface slab(double thickness) {
+  Surface flat = unit_cube();
+  for (Vec3d& point : flat.points) point.y *= thickness;
+  return flat;
+}
+
+TEST(JoinedCorners, ThatDifferInTheirLastDigitsBecomeOne) {
+  // A body, and one that is thinner than what is merged, whose two sides stay apart.
+  for (const auto& [whole, jitter] : {std::pair{surface_of(SphereShape{1, 12}), 0.0},
+                                      {surface_of(SphereShape{1, 12}), 3e-6},
+                                      {mannequin({}, {24}), 1e-6},
+                                      {slab(5e-6), 2e-8}}) {
+    Surface loose = apart(whole, jitter);
+    EXPECT_EQ(join_corners(loose), 3 * whole.triangles.size() - whole.points.size());
+    EXPECT_EQ(loose.points.size(), whole.points.size());
+    EXPECT_EQ(input_error_of([&] { validate_surface(loose, "joined"); }), "");
+    EXPECT_NEAR(volume_of(loose) / volume_of(whole), 1, 0.05);
+  }
+}
+
+TEST(JoinedCorners, OfWhatIsClosedOrOpenOrFartherApartStayAsTheyAre) {
+  for (const Surface& surface :
+       {slab(1e-6), both(unit_cube(), unit_cube({1 + 1e-6, 0, 0})), open_sphere(0.5), Surface{}}) {
+    Surface same = surface;
+    EXPECT_EQ(join_corners(same), 0U);
+    EXPECT_EQ(same.points, surface.points);
+    EXPECT_EQ(input_error_of([&] { require_joined(same); }), "");
+  }
+  const Surface whole = surface_of(SphereShape{1, 12});
+  Surface loose = apart(whole, 1e-3);
+  join_corners(loose);
+  const auto says_so = AllOf(HasSubstr("triangles do not join: "), HasSubstr("merge the points"));
+  EXPECT_THAT(input_error_of([&] { require_joined(loose); }), says_so);
+  EXPECT_THAT(input_error_of([&] { close_openings(loose, 1); }), says_so)
+      << "they would be closed one by one";
+  EXPECT_THAT(input_error_of([&] { validate_surface(loose, "a"); }), says_so);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <regex>
 
 #include "geometry/geometry.h"
 #include "mesh/surface_mesh.h"
@@ -37,6 +39,73 @@ TEST(ObjFile, AllFormsOfCornersAndLinesAreRead) {
       "g g1\r\nusemtl m\r\ns off\r\nv 0 1 0\r\nf 1/1/1 2//1 3/1 -1 # quad\r\nf -4//-1 -3/-1/-1 5\r\nv 2 2 2");
   EXPECT_THAT(surface.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 1, 4}));
   EXPECT_EQ(surface.points[4], (Vec3d{2, 2, 2}));
+}
+
+TEST(ObjFile, LinesGoOnAfterABackslash) {
+  const Surface plain = parse_obj("a.obj", obj_tetrahedron);
+  const Surface surface = parse_obj("a.obj",
+                                    "# C:\\\nv 0 0\\\n0\nv 1 \\ \r\n 0 0\nv 0 1 0\nv 0 0 1\ng a \\\nf 1 2\nf "
+                                    "1\\\r3\\\r\n2\nf 1 2 4 \\\n\nf 2 3 4\nf \\\n1 4 \\ # c\n3\n");
+  EXPECT_EQ(surface.points, plain.points);
+  EXPECT_EQ(surface.triangles, plain.triangles);
+}
+
+TEST(ObjFile, LinesMayEndInCrAlone) {
+  std::string text = obj_tetrahedron;
+  std::ranges::replace(text, '\n', '\r');
+  EXPECT_EQ(parse_obj("a.obj", text).triangles, parse_obj("a.obj", obj_tetrahedron).triangles);
+}
+
+using Outline = std::vector<std::array<double, 2>>;
+
+/// The file of one polygon, in a plane that is askew to all axes.
+Surface polygon(const Outline& outline, std::size_t first) {
+  std::string text, face = "f";
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const auto [x, y] = outline[(first + i) % outline.size()];
+    const Vec3d p = 1.0 / 3 * (x * Vec3d{1, 2, 2} + y * Vec3d{2, 1, -2}) + Vec3d{5, -7, 3};
+    text += "v " + decimal(p.x) + ' ' + decimal(p.y) + ' ' + decimal(p.z) + '\n';
+    face += ' ' + std::to_string(i + 1);
+  }
+  return parse_obj("a.obj", text + face + '\n');
+}
+
+TEST(ObjFile, ConcavePolygonsAreCutInTheirPlane) {
+  Outline comb{{6, 2}, {0, 2}};  // its teeth point down
+  for (double x = 0; x < 6; x += 2) comb.insert(comb.end(), {{x, 0}, {x + 1, 0}, {x + 1, 1}, {x + 2, 1}});
+  Outline spiral{{0, 0}, {5, 0}, {5, 5}, {1, 5}, {1, 2}, {3, 2},
+                 {3, 3}, {2, 3}, {2, 4}, {4, 4}, {4, 1}, {0, 1}};
+  struct Case {
+    Outline outline;
+    double area;
+  };
+  for (const auto& [outline, area] :
+       {Case{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 3}, Case{{{0, 0}, {2, 1}, {4, 0}, {2, 4}}, 6},
+        Case{{{0, 0}, {1, 0}, {1, 2}, {2, 2}, {2, 0}, {3, 0}, {3, 3}, {0, 3}}, 7}, Case{comb, 9},
+        Case{spiral, 15},
+        // A square with a corner on a side, and one with a hole that a cut leads to.
+        Case{{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}}, 4},
+        Case{{{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0}, {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}}, 8}})
+    for (std::size_t first = 0; first < outline.size(); ++first) {
+      const Surface surface = polygon(outline, first);
+      ASSERT_EQ(surface.triangles.size(), outline.size() - 2);
+      double sum = 0;
+      for (const auto& [a, b, c] : surface.triangles) {
+        const Vec3d normal =
+            0.5 * cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]);
+        EXPECT_LT(dot(normal, {2, -2, 1}), 0) << "all look to where the polygon does";
+        sum += length(normal);
+      }
+      EXPECT_NEAR(sum, area, 1e-12 * area) << outline.size() << " corners from " << first;
+    }
+}
+
+TEST(ObjFile, QuadranglesThatAreBentOrHaveACornerTwiceAreCut) {
+  // Seen along its normal its edges cross, and they pass each other.
+  EXPECT_THAT(parse_obj("a.obj", "v 0 0 0\nv 1 1 0\nv 1 0 1\nv 0 1 1.1\nf 1 2 3 4\n").triangles,
+              ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+  EXPECT_THAT(parse_obj("a.obj", obj_points + "v 1 0 0\nf 1 2 5 3\nf 4 2 3 4\n").triangles,
+              ElementsAre(Triangle{0, 1, 2}, Triangle{3, 1, 2}));
 }
 
 TEST(ObjFile, LinesThatAreNoGeometryAreLeftOut) {
@@ -101,8 +170,13 @@ INSTANTIATE_TEST_SUITE_P(
                     BrokenText{"v 0 0 0\nf 1 1 1//\n", "a.obj, line 2: ", "\"1//\""},
                     BrokenText{"v 0 0 0\nf 1 1 x\n", "a.obj, line 2: ", "\"x\" of a face cannot be read"},
                     BrokenText{"v 0 0 0\nf 1 1 99999999999999999999\n", "a.obj, line 2: ", "cannot be read"},
-                    BrokenText{"v 0 0 0\nf 1 1 \\\n1\n", "a.obj, line 2: ", "backslash"},
-                    BrokenText{"v 0 0 \\\n0\n", "a.obj, line 1: ", "backslash"},
+                    BrokenText{"v 0 0 0\r\nf 1 1\\\r\n1\rf 1 1 2\n", "a.obj, line 4: ", "vertex 2 of 1"},
+                    BrokenText{"v 0 0 0\nf 1 \\\n1 \\\n2\n", "a.obj, line 2: ", "vertex 2 of 1"},
+                    BrokenText{"v 0 0 0\nf 1 1 \\", "a.obj, line 2: ", "the face has 2 corners"},
+                    BrokenText{"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3 4\n",
+                               "a.obj, line 6: ", "4 corners crosses itself; cut it into triangles"},
+                    BrokenText{"v 0 3 0\nv 2 -3 0\nv -3 1 0\nv 3 1 0\nv -2 -3 0\nf 1 2 3 4 5\n",
+                               "a.obj, line 6: ", "5 corners crosses itself"},
                     BrokenText{"PK\x03\x04\n", "a.obj, line 1: ", "without an f line; give an OBJ file"},
                     // Bytes that are not UTF-8 went into the message where char has no sign (arm64).
                     BrokenText{"v 0 0 \xff\n", "a.obj, line 1: ", "z is \"\xef\xbf\xbd\""}));
@@ -157,13 +231,13 @@ TEST(StlFile, AsciiAndBinaryGiveTheSameSurface) {
   }
 }
 
-TEST(StlFile, KeywordsMayBeInCapitalsAndLinesEndInCrLf) {
-  std::string text;
-  for (const char c : ascii_stl()) {
-    if (c == '\n') text += '\r';
-    text += static_cast<char>(std::toupper(c));
+TEST(StlFile, KeywordsMayBeInCapitalsOrApartAndLinesEndInAnyWay) {
+  for (const char* end : {"\r\n", "\r", "\n"}) {
+    std::string text = std::regex_replace(ascii_stl(), std::regex("end(solid|facet|loop)"), "end $1");
+    text = std::regex_replace(text, std::regex("\n"), end);
+    std::ranges::transform(text, text.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
+    EXPECT_EQ(parse_stl("a.stl", text).triangles.size(), 4U);
   }
-  EXPECT_EQ(parse_stl("a.stl", text).triangles.size(), 4U);
 }
 
 TEST(StlFile, AByteOrderMarkIsLeftOut) {
@@ -183,8 +257,11 @@ TEST(StlFile, BrokenBinaryNamesTheByte) {
   };
   EXPECT_THAT(complaint(binary_stl(NAN)), StartsWith("a.stl, byte 96: a corner is at (nan, 0, 0)"));
   EXPECT_THAT(complaint(binary_stl(-2e9F)), HasSubstr("for each axis give a number from -1e9 to 1e9"));
-  EXPECT_THAT(complaint(binary_stl() + "more"),
-              StartsWith("a.stl, byte 80: the file promises 4 triangles in 284 bytes, and has 288"));
+  EXPECT_THAT(complaint(binary_stl().substr(0, 280)),
+              StartsWith("a.stl, byte 80: the file promises 4 triangles in 284 bytes, and has 280"));
+  EXPECT_EQ(parse_stl("a.stl", binary_stl() + "\r\n").triangles.size(), 4U);
+  EXPECT_THAT(complaint(binary_stl() + std::string(50, '\0')),
+              StartsWith("a.stl, byte 80: the file promises 4 triangles in 284 bytes, and 50 bytes follow"));
   std::string absurd = binary_stl();
   absurd.replace(80, 4, "\xff\xff\xff\xff");
   EXPECT_THAT(complaint(absurd), HasSubstr("promises 4294967295 triangles"));
@@ -202,14 +279,15 @@ TEST_P(BrokenStlFile, IsRefusedWithPlaceAndValue) {
 
 INSTANTIATE_TEST_SUITE_P(
     Ascii, BrokenStlFile,
-    testing::Values(BrokenText{"hello\n", "a.stl, line 1: ", "\"hello\" where \"solid\" is expected"},
-                    BrokenText{"solid a\nendsolid a\n", "a.stl, line 2: ", "no facets"},
-                    BrokenText{"solid a\nfacet\nouter\n",
-                               "a.stl, line 3: ", "where \"outer loop\" is expected"},
-                    BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0\n", "a.stl, line 4: ", "z is missing"},
-                    BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 o\n", "a.stl, line 4: ", "z is \"o\""},
-                    BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 0\nendloop\n",
-                               "a.stl, line 5: ", "where \"vertex\" is expected"}));
+    testing::Values(
+        BrokenText{"hello\n", "a.stl, line 1: ", "\"hello\" where \"solid\" is expected"},
+        BrokenText{"solid a\nend of it\n", "a.stl, line 2: ", "\"end\" where \"endsolid\" is expected"},
+        BrokenText{"solid a\nendsolid a\n", "a.stl, line 2: ", "no facets"},
+        BrokenText{"solid a\nfacet\nouter\n", "a.stl, line 3: ", "where \"outer loop\" is expected"},
+        BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0\n", "a.stl, line 4: ", "z is missing"},
+        BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 o\n", "a.stl, line 4: ", "z is \"o\""},
+        BrokenText{"solid a\nfacet\nouter loop\nvertex 0 0 0\nendloop\n",
+                   "a.stl, line 5: ", "where \"vertex\" is expected"}));
 
 using SurfaceFile = MeshTest;
 
@@ -217,8 +295,8 @@ TEST_F(SurfaceFile, IsReadByItsExtension) {
   put("a.OBJ", obj_tetrahedron);
   put("a.stl", binary_stl());
   put("a.ply", "");
-  EXPECT_EQ(read_surface(folder() / "a.OBJ").triangles.size(), 4U);
-  EXPECT_EQ(read_surface(folder() / "a.stl").triangles.size(), 4U);
+  EXPECT_EQ(read_surface(folder() / "a.OBJ").surface.triangles.size(), 4U);
+  EXPECT_EQ(read_surface(folder() / "a.stl").surface.triangles.size(), 4U);
   EXPECT_THAT(input_error_of([&] { read_surface(folder() / "a.ply"); }),
               HasSubstr("ends in neither .obj nor .stl"));
   EXPECT_THAT(input_error_of([&] { read_surface(folder() / "b.obj"); }),

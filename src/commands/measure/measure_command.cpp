@@ -46,13 +46,10 @@ struct MeasureOptions {
 
 std::optional<double> unit_given(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  std::string names;
-  for (const LengthUnit& unit : length_units()) {
+  for (const LengthUnit& unit : length_units())
     if (unit.name == text) return unit.metres;
-    names += std::string(unit.name) + ", ";
-  }
   if (const auto metres = number_in<double>(text); metres && *metres > 0 && *metres <= 1e6) return metres;
-  throw UsageError("--unit is \"" + printable(text, 100) + "\": give " + names +
+  throw UsageError("--unit is \"" + printable(text, 100) + "\": give " + unit_names() +
                    "or the metres in one unit of the file");
 }
 
@@ -88,7 +85,9 @@ void tell_of_ignored_parts(const BodyProfile& profile) {
 
 /// Measures the body of a file, printing what is found as far as it goes. Throws InputError.
 MeasuredFile measure_file(const MeasureOptions& options) {
-  Surface surface = read_surface(options.body);
+  auto [surface, note] = read_surface(options.body);
+  if (!note.empty()) std::cerr << "mssim: " << printable(note, 1000) << '\n';
+  require_joined(surface);
   const StanceGuess guess = guess_stance(surface, {unit_given(options.unit), options.up, options.facing});
   for (const std::string& doubt : guess.doubts)
     std::cerr << "mssim: not certain of " << printable(doubt, 1000) << '\n';
@@ -139,9 +138,8 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
   return exit_ok;
 }
 
-bool is_surface_file(const std::string& body) {
-  const std::string extension = small_letters(fs::path(body).extension().string());
-  return extension == ".obj" || extension == ".stl";
+std::string extension_of(const std::string& file) {
+  return small_letters(fs::path(file).extension().string());
 }
 
 int measure_scene(const MeasureOptions& options) {
@@ -166,7 +164,16 @@ int measure_scene(const MeasureOptions& options) {
 
 int run_measure(const MeasureOptions& options) {
   try {
-    if (!is_surface_file(options.body)) return measure_scene(options);
+    const std::string extension = extension_of(options.body);
+    if (extension != ".obj" && extension != ".stl") {
+      const bool is_file = !extension.empty() || is_path_of_scene(options.body);
+      if (is_file && extension != ".json")
+        throw UsageError(
+            printable(options.body, 1000) +
+            " ends in neither .obj nor .stl: give a person's surface in one of those formats, or the "
+            "scene of a garment, which ends in .json");
+      return measure_scene(options);
+    }
     if (!options.scene.empty()) require_free(options);
     MeasuredFile found = measure_file(options);
     return options.scene.empty() ? exit_ok : write_scene(options, std::move(found));
@@ -191,7 +198,7 @@ std::function<int()> declare_measure(Arguments& arguments) {
       .required();
   arguments
       .add("--unit", options->unit,
-           "Unit of the file: m, cm, mm, inch, foot, or its metres (default: found from the height)")
+           "Unit of the file: " + unit_names() + "or its metres (default: found from the height)")
       .value_name("UNIT");
   arguments.add_choice("--up", options->up, choices_of<UpAxis>(up_axis_names),
                        "Axis of the file along which the body stands: y or z (default: found)");

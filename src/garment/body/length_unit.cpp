@@ -6,8 +6,8 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<LengthUnit, 5> table{
-    {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"inch", 0.0254}, {"foot", 0.3048}}};
+constexpr std::array<LengthUnit, 6> table{
+    {{"m", 1}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"inch", 0.0254}, {"foot", 0.3048}}};
 
 /// How many times too small or too large a person of this height, m, would be; 1 for a person.
 double misfit(double height) { return std::max({1.0, shortest_person / height, height / tallest_person}); }
@@ -15,6 +15,12 @@ double misfit(double height) { return std::max({1.0, shortest_person / height, h
 }  // namespace
 
 std::span<const LengthUnit> length_units() { return table; }
+
+std::string unit_names() {
+  std::string names;
+  for (const LengthUnit& unit : table) names += std::string(unit.name) + ", ";
+  return names;
+}
 
 std::optional<UnitGuess> guess_unit(double height) {
   constexpr double largest_misfit = 1.5;

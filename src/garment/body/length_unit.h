@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace mssim {
@@ -14,6 +15,9 @@ struct LengthUnit {
 
 /// The TABLE of them.
 std::span<const LengthUnit> length_units();
+
+/// Their names, a comma after each.
+std::string unit_names();
 
 /// The heights of the people who are told apart by their unit, m.
 inline constexpr double shortest_person = 1.2, tallest_person = 2.2;

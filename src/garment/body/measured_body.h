@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "garment/body/body_profile.h"
 #include "geometry/surface.h"
 
@@ -8,6 +10,7 @@ namespace mssim {
 /// A body that has been read, or made, and measured.
 struct MeasuredBody {
   Surface surface;      ///< all of it, m, as it is drawn
+  std::string note;     ///< what a reader should know of how it was read, in a sentence; or empty
   BodyProfile profile;  ///< of trunk and legs, which patterns are cut for and garments meet
 };
 

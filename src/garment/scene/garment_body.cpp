@@ -78,11 +78,14 @@ void visit_body_file(FieldVisitor& fields, GarmentSpec& garment) {
       close_holes_m, above(0, largest_length_m));
 }
 
-Surface body_from_file(const SceneSpec& spec, const BodyFile& body) {
+FileSurface body_from_file(const SceneSpec& spec, const BodyFile& body) {
   const std::string section = "/garment/surface_file";
-  Surface surface;
+  FileSurface read;
+  Surface& surface = read.surface;
   try {
-    surface = stood_up(read_surface(spec.file.parent_path() / body.file), body.stance);
+    read = read_surface(spec.file.parent_path() / body.file);
+    require_joined(surface);
+    surface = stood_up(std::move(surface), body.stance);
   } catch (const InputError& error) {
     refuse(spec.file, section + "/file", "is not a usable body: " + printable(error.what(), 1500));
   }
@@ -102,7 +105,7 @@ Surface body_from_file(const SceneSpec& spec, const BodyFile& body) {
             shown(largest.size) +
             " m across; close the surface, or give \"close_holes_m\", the largest opening that mssim closes");
   }
-  return surface;
+  return read;
 }
 
 /// A wrong unit shows here rather than in what a pattern makes of it.
@@ -118,12 +121,12 @@ void require_person(const SceneSpec& spec, const BodyFile& body, const BodyProfi
                     : ""));
 }
 
-Surface body_of_garment(const SceneSpec& spec) {
+FileSurface body_of_garment(const SceneSpec& spec) {
   const GarmentSpec& garment = garment_of(spec);
   if (const auto* file = std::get_if<BodyFile>(&garment.body)) return body_from_file(spec, *file);
   const auto& form = std::get<MannequinBody>(garment.body);
   try {
-    return mannequin(form.measures, form.resolution);
+    return {mannequin(form.measures, form.resolution), {}};
   } catch (const InputError& error) {
     refuse(spec.file, "/garment/body", "is not a usable body: " + printable(error.what(), 1500));
   }
@@ -153,13 +156,13 @@ void check_body(const SceneSpec& spec) {
 }
 
 MeasuredBody measured_body(const SceneSpec& spec) {
-  Surface surface = body_of_garment(spec);
+  auto [surface, note] = body_of_garment(spec);
   try {
     BodyProfile profile(surface);
     const GarmentSpec& garment = garment_of(spec);
     if (const auto* file = std::get_if<BodyFile>(&garment.body); file && garment.jeans)
       require_person(spec, *file, profile);
-    return {std::move(surface), std::move(profile)};
+    return {std::move(surface), std::move(note), std::move(profile)};
   } catch (const InputError& error) {
     refuse(spec.file, "/garment/body", "cannot be measured: " + printable(error.what(), 1500));
   }

@@ -17,6 +17,7 @@
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"
+#include "text/note.h"
 #include "text/printable.h"
 
 namespace mssim {
@@ -156,7 +157,9 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
   const TrunkAndLegs& met = body->profile.trunk_and_legs();
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
   system.topology = std::move(dressed);
-  return {std::move(system), ignored_parts(met), std::move(body)};
+  std::string note = body->note;
+  add_to_note(note, ignored_parts(met));
+  return {std::move(system), std::move(note), std::move(body)};
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST(StanceGuess, WhatCannotBeIsRefused) {
   EXPECT_THAT(input_error_of([&] { guess_stance(lying, {}); }),
               HasSubstr("it stands upright neither in y nor in z; turn it"));
   Surface huge = form();
-  for (Vec3d& point : huge.points) point = 17.0 * point;
+  for (Vec3d& point : huge.points) point = 300.0 * point;
   EXPECT_THAT(input_error_of([&] { guess_stance(huge, {}); }), HasSubstr("m; give the unit with --unit"));
   EXPECT_EQ(guess_stance(huge, {0.1, {}, {}}).stance.unit_m, 0.1);
 }
@@ -174,7 +174,7 @@ TEST(LengthUnits, APersonIsOneInOneUnitAlone) {
       EXPECT_EQ(guess->unit.name, unit.name) << height;
     }
   EXPECT_FALSE(guess_unit(2.5)->certain);
-  EXPECT_FALSE(guess_unit(17));
+  EXPECT_FALSE(guess_unit(450));
   EXPECT_FALSE(guess_unit(0));
   EXPECT_FALSE(guess_unit(std::nan("")));
 }
