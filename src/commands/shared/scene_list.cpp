@@ -10,30 +10,30 @@
 namespace mssim {
 namespace {
 
-bool is_scene_file(std::string_view path) {
+bool is_file(std::string_view path) {
   std::error_code error;  // a name too long for a file is none
   return is_path_of_scene(path) && std::filesystem::exists(path, error);
 }
 
-/// Length of the scene that the text begins with.
+/// Length of the name that the text begins with.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
        end = text.rfind(',', end - 1))
-    if (is_scene_file(text.substr(0, end))) return end;
+    if (is_file(text.substr(0, end))) return end;
   return shortest;
 }
 
 }  // namespace
 
-std::vector<std::string> scenes_in(std::string_view argument) {
-  std::vector<std::string> scenes;
+std::vector<std::string> names_and_files_in(std::string_view argument) {
+  std::vector<std::string> names;
   while (!argument.empty()) {
     const std::size_t length = length_of_first(argument);
-    if (length > 0) scenes.emplace_back(argument.substr(0, length));
+    if (length > 0) names.emplace_back(argument.substr(0, length));
     argument.remove_prefix(std::min(length + 1, argument.size()));
   }
-  return scenes;
+  return names;
 }
 
 }  // namespace mssim
