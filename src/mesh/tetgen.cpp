@@ -90,7 +90,10 @@ class Run {
       throw InputError("TetGen was stopped after " + std::to_string(cpu_seconds) +
                        " s of processor time or " + std::to_string(elapsed_seconds) + " s in all" +
                        std::string(remedy));
-    if (ended.out_of_memory || ended.signal == SIGKILL)
+    if (ended.signal == SIGKILL && !ended.out_of_memory)
+      throw InputError("TetGen was stopped by signal 9, as the system does where memory runs out" +
+                       std::string(remedy));
+    if (ended.out_of_memory)
       throw InputError("TetGen needs more memory than the " +
                        shown(std::round(1e-8 * static_cast<double>(memory_bytes_)) / 10) +
                        " GB that were available" + std::string(remedy));
