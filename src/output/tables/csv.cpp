@@ -14,7 +14,9 @@ namespace mssim {
 namespace {
 
 std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  // A byte-order mark at the start of a file would be taken for the file's, unless it is quoted.
+  if (field.find_first_of(",\"\r\n") == std::string::npos && without_byte_order_mark(field) == field)
+    return field;
   std::string result = "\"";
   for (const char character : field) {
     if (character == '"') result += '"';
