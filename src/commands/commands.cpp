@@ -37,6 +37,7 @@
 #include "platform/temporary_folder.h"
 #include "platform/write_error.h"
 #include "scene/fields/scene_error.h"
+#include "scene/scene_file.h"
 #include "text/nearest_name.h"
 #include "text/printable.h"
 
@@ -74,6 +75,9 @@ constexpr std::string_view exit_codes =
     "does not fit, or a comparison found a regression; 2 bad usage or input; 3 a\n"
     "device or program that was asked for is missing; 4 a file could not be read or\n"
     "written.";
+
+/// A user may name a scene without --scene before it.
+std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }
 
 int fail(int code, const std::string& sentence) {
   std::cerr << "mssim: " << escaped(sentence) << '\n';  // names in it may hold anything
@@ -132,9 +136,10 @@ int run_guarded(const std::function<int()>& run) {
 std::span<const Command> commands() { return table; }
 
 std::string unknown_command(std::string_view name) {
+  constexpr std::array<OtherName, 1> others{{{"version", "--version"}}};
   std::vector<std::string_view> known;
   for (const Command& command : commands()) known.push_back(command.name);
-  return unknown_name("command", name, known) + "; see mssim --help";
+  return unknown_name("command", name, known, others) + "; see mssim --help";
 }
 
 int run_program(int argc, char** argv) {
@@ -162,7 +167,7 @@ int run_program(int argc, char** argv) {
   }
   parser.end_help_with("mssim help COMMAND explains a command and its options.\n\nExamples:" + examples +
                        "\n\n" + std::string(exit_codes));
-  const ProgramParser::Request request = parser.parse(argc, argv);
+  const ProgramParser::Request request = parser.parse(argc, argv, option_of_scene);
   if (!request.refusal.empty()) return fail(exit_bad_input, request.refusal);
   int code = exit_ok;
   if (!request.page.empty()) {

@@ -171,17 +171,20 @@ bool is_path_of_scene(std::string_view name_or_path) {
   return name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".json");
 }
 
+bool is_scene(std::string_view name_or_path) {
+  std::error_code error;  // a name too long for a file is none
+  if (is_path_of_scene(name_or_path)) return std::filesystem::exists(name_or_path, error);
+  const std::vector<std::string> names = names_in_folder();
+  return std::find(names.begin(), names.end(), name_or_path) != names.end();
+}
+
 SceneSpec find_scene(std::string_view name_or_path) {
   if (is_path_of_scene(name_or_path)) return load_scene(name_or_path);
+  if (is_scene(name_or_path)) return load_scene(file_of(name_or_path));
   const std::vector<std::string> names = names_in_folder();
-  if (std::find(names.begin(), names.end(), name_or_path) != names.end())
-    return load_scene(file_of(name_or_path));
-  const std::vector<std::string> sorted_names = scene_names();
-  const std::vector<std::string_view> known(sorted_names.begin(), sorted_names.end());
-  const std::string_view nearest = nearest_name(name_or_path, known);
   throw SceneError("no scene is named \"" + printable(name_or_path) + '"' +
-                   (nearest.empty() ? "" : ", did you mean \"" + std::string(nearest) + '"') +
-                   ": give a path to a scene file, or a name: " + listed(known, "or"));
+                   did_you_mean(name_or_path, std::vector<std::string_view>(names.begin(), names.end())) +
+                   ": give the path of a scene file, or one of the names that mssim list scenes shows");
 }
 
 }  // namespace mssim

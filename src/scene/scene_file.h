@@ -28,6 +28,9 @@ std::vector<std::filesystem::path> files_of(const SceneSpec& spec);
 /// Is it a path, which contains a slash or ends in .json, rather than the name of a scene?
 bool is_path_of_scene(std::string_view name_or_path);
 
+/// Is there a scene of that name, or a file at that path?
+bool is_scene(std::string_view name_or_path);
+
 /// The scene of that name (NAME.json in the data folder's scenes/), or of that file when it is a path. Throws
 /// SceneError; for an unknown name it lists the known ones.
 SceneSpec find_scene(std::string_view name_or_path);

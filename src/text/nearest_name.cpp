@@ -29,6 +29,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// Whether a user who knows half of `candidate` may have typed `name`.
+bool are_akin(std::string_view name, std::string_view candidate) {
+  constexpr std::size_t telling_length = 4;
+  return candidate.starts_with(name) || (candidate.size() >= telling_length && name.starts_with(candidate)) ||
+         ('-' + std::string(candidate) + '-').find('-' + std::string(name) + '-') != std::string::npos;
+}
+
+std::vector<std::string_view> likely_names(std::string_view name,
+                                           std::span<const std::string_view> candidates,
+                                           std::span<const OtherName> others) {
+  constexpr std::size_t most = 4;
+  for (const OtherName& other : others)
+    if (edit_distance(name, other.typed) == 0) return {other.meant};
+  if (const std::string_view nearest = nearest_name(name, candidates); !nearest.empty()) return {nearest};
+  std::vector<std::string_view> akin;
+  for (const std::string_view candidate : candidates)
+    if (are_akin(name, candidate)) akin.push_back(candidate);
+  return name.empty() || akin.size() > most ? std::vector<std::string_view>() : akin;
+}
+
 }  // namespace
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
@@ -46,6 +66,12 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
   return nearest;
 }
 
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates,
+                         std::span<const OtherName> others) {
+  const std::vector<std::string_view> likely = likely_names(name, candidates, others);
+  return likely.empty() ? "" : " (did you mean " + listed(likely, "or") + "?)";
+}
+
 std::string listed(std::span<const std::string_view> names, std::string_view last_word) {
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -61,12 +87,9 @@ std::string listed(const std::vector<std::string>& names, std::string_view last_
 }
 
 std::string unknown_name(std::string_view what, std::string_view name,
-                         std::span<const std::string_view> known) {
-  std::string sentence = "unknown ";
-  sentence.append(what).append(" \"").append(printable(name)).append("\"");
-  if (const std::string_view nearest = nearest_name(name, known); !nearest.empty())
-    sentence.append(" (did you mean ").append(nearest).append("?)");
-  return sentence + ": known are " + listed(known);
+                         std::span<const std::string_view> known, std::span<const OtherName> others) {
+  return "unknown " + std::string(what) + " \"" + printable(name) + '"' + did_you_mean(name, known, others) +
+         ": known are " + listed(known);
 }
 
 }  // namespace mssim

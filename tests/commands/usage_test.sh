@@ -49,6 +49,14 @@ expect 2 '^mssim: --scene NAME|FILE is missing; see mssim run --help$' run
 expect 2 '^mssim: --scene needs a value: give --scene NAME|FILE; see mssim run --help$' run --scene
 expect 2 '^mssim: --scene is given 2 times: give it once;' run --scene cloth2500 --scene cloth4900
 expect 2 '^mssim: --dry-run takes no value: leave it out;' bench --scene cloth2500 --dry-run=perhaps
+expect 2 'mssim bench has no option "--output" (did you mean --out?)' bench --scene cloth2500 --output x
+expect 2 'mssim bench has no option "-o" (did you mean .*--out' bench --scene cloth2500 -o x
+expect 2 'mssim has no option "-v" (did you mean --version?)' -v
+expect 2 'unknown command "version" (did you mean --version?)' version
+expect 2 'mssim run has no option "--suite", which is one of mssim bench;' run --suite table1
+expect 2 '^mssim: unexpected argument "cloth350k" of mssim bench (did you mean --scene cloth350k?);' bench cloth350k
+expect 2 '^mssim: unexpected argument "cloth2500" of mssim run (did you mean --scene cloth2500?);' run cloth2500
+expect 2 '^mssim: "jeans4k" is a scene, not a trace: did you mean --scene jeans4k?' render jeans4k
 expect 2 '^mssim: WHAT is missing: give what to list: scenes, ' list
 expect 2 '^mssim: unexpected argument "twice" of mssim list: ' list scenes twice
 expect 2 '^mssim: --resume and --overwrite exclude each other: leave out one of them;' bench --scene cloth2500 --resume --overwrite
@@ -61,7 +69,12 @@ expect 2 '^mssim: --duration: "-1" is not a positive number;' run --scene cloth2
 expect 2 '^mssim: --format: unknown value "tabel" (did you mean table?): known are csv, json and table;' list scenes --format tabel
 expect 2 '^mssim: WHAT: unknown word "scnes" (did you mean scenes?): known are ' list scnes
 expect 2 '^mssim: --precision: unknown precision "half": known are single and double;' run --scene cloth2500 --precision half
-expect 2 '^mssim: --suite: unknown suite "all": known are table1, .* and tables;' bench --suite all
+expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all
+expect 2 '^mssim: unknown integrator "euler" (did you mean .*semi-euler.*explicit-euler' bench --scene cloth2500 --integrator euler
+expect 2 'unknown backend "gpu" (did you mean opencl?)' bench --scene cloth2500 --backend gpu
+touch "$work/mine.py"
+(cd "$work" && expect 2 'unknown backend "mine.py": .*\./mine.py$' bench --scene cloth2500 --backend mine.py)
+expect 2 'no scene is named "cloth350" (did you mean cloth350k?): .*mssim list scenes' bench --scene cloth350
 "$mssim" bench --suite tables --dry-run >"$work/out" 2>"$work/err" || fail "--suite tables: $(cat "$work/err")"
 [ "$(grep -c '^\(cloth\|bodies\)[0-9]' "$work/out")" -eq 12 ] || fail "--suite tables is not the tables: $(cat "$work/out")"
 "$mssim" list scenes --format JSON >"$work/out" 2>&1 || fail "capital letters: $(cat "$work/out")"

@@ -59,11 +59,12 @@ Arguments ProgramParser::add_command(const std::string& name, const std::string&
 
 void ProgramParser::end_help_with(const std::string& text) { program_->footer(text); }
 
-ProgramParser::Request ProgramParser::parse(int argc, const char* const* argv) {
+ProgramParser::Request ProgramParser::parse(int argc, const char* const* argv,
+                                            const OptionOfWord& option_of) {
   try {
     program_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) return {"", usage_sentence(error, *program_), ""};
+    if (error.get_exit_code() != 0) return {"", usage_sentence(error, *program_, option_of), ""};
     std::ostringstream page;  // --help, --version
     program_->exit(error, page);
     return {page.str(), "", ""};

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "commands/arguments/arguments.h"
 
 namespace mssim {
+
+/// Says which option a word without one was probably meant for, such as "--scene"; empty where none.
+using OptionOfWord = std::function<std::string(const std::string& word)>;
 
 /// Reads the command line of a program with commands: `mssim COMMAND ARGUMENTS`.
 class ProgramParser {
@@ -26,7 +30,7 @@ class ProgramParser {
     std::string refusal;  ///< one sentence on what is wrong with the command line, with the remedy
     std::string command;  ///< name of the command to run; its targets are set
   };
-  Request parse(int argc, const char* const* argv);
+  Request parse(int argc, const char* const* argv, const OptionOfWord& option_of);
 
   std::string help_page() const;
 

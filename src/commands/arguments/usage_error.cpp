@@ -35,21 +35,26 @@ std::string unknown_option(const std::string& typed, const CLI::App& command) {
   std::vector<std::string> known;
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-  const std::vector<std::string_view> names(known.begin(), known.end());
-  const std::string_view nearest = nearest_name(long_form(typed), names);
-  return typed_name(command) + " has no option \"" + printable(typed.substr(0, typed.find('='))) + '"' +
-         (nearest.empty() ? "" : " (did you mean " + std::string(nearest) + "?)");
+  const std::string name = long_form(typed);
+  std::string sentence =
+      typed_name(command) + " has no option \"" + printable(typed.substr(0, typed.find('='))) + '"';
+  if (command.get_parent() && !command.get_option_no_throw(name))
+    for (const CLI::App* other : command.get_parent()->get_subcommands({}))
+      if (other->get_option_no_throw(name)) return sentence + ", which is one of " + typed_name(*other);
+  return sentence + did_you_mean(name, std::vector<std::string_view>(known.begin(), known.end()));
 }
 
 /// What is left over: an option that there is not, or a word too many.
-std::optional<std::string> leftover(const CLI::App& command) {
+std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord& option_of) {
   const std::vector<std::string> rest = command.remaining();
   const auto option =
       std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   if (option != rest.end()) return unknown_option(*option, command);
   if (rest.empty()) return std::nullopt;
-  return "unexpected argument \"" + printable(rest.front()) + "\" of " + typed_name(command) +
-         ": an option begins with --";
+  const std::string word = printable(rest.front()), forgotten = option_of(rest.front());
+  return "unexpected argument \"" + word + "\" of " + typed_name(command) +
+         (command.get_option_no_throw(forgotten) ? " (did you mean " + forgotten + ' ' + word + "?)"
+                                                 : ": an option begins with --");
 }
 
 /// What a parser's sentence begins with: the name of the option that it is about.
@@ -101,10 +106,10 @@ std::string problem(const CLI::ParseError& error, const CLI::App& command) {
 
 }  // namespace
 
-std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app) {
+std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app, const OptionOfWord& option_of) {
   const CLI::App& command = command_of(app);
   // A misspelt option also leaves the right one missing; it is the one to be told.
-  const std::optional<std::string> surplus = leftover(command);
+  const std::optional<std::string> surplus = leftover(command, option_of);
   return surplus.value_or(problem(error, command)) + "; see " + typed_name(command) + " --help";
 }
 

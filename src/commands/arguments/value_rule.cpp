@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "text/nearest_name.h"
 #include "text/number_in.h"
 #include "text/printable.h"
 #include "text/small_letters.h"
@@ -44,11 +43,12 @@ ValueRule whole_number(std::int64_t low, std::int64_t high) {
       [low, high](std::int64_t number) { return number >= low && number <= high; });
 }
 
-ValueRule one_of(std::string what, std::vector<std::string> words) {
-  return [what = std::move(what), words = std::move(words)](std::string& text) -> std::string {
+ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others) {
+  return [what = std::move(what), words = std::move(words),
+          others = std::move(others)](std::string& text) -> std::string {
     const auto match = std::ranges::find(words, small_letters(text));
     if (match == words.end())
-      return unknown_name(what, text, std::vector<std::string_view>(words.begin(), words.end()));
+      return unknown_name(what, text, std::vector<std::string_view>(words.begin(), words.end()), others);
     text = *match;
     return "";
   };

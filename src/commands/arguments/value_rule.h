@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "text/nearest_name.h"
+
 namespace mssim {
 
 /// What the value of an argument must be. It says in words what a value is not ("\"x\" is not a positive
@@ -17,7 +19,8 @@ ValueRule positive_number();
 /// From `low` to `high`.
 ValueRule number_between(double low, double high);
 ValueRule whole_number(std::int64_t low, std::int64_t high);
-/// One of these words, in any case; the text becomes the word as it stands here. `what` is what they name.
-ValueRule one_of(std::string what, std::vector<std::string> words);
+/// One of these words, in any case; the text becomes the word as it stands here. `what` is what they name,
+/// `others` are words that users type for one of them.
+ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others = {});
 
 }  // namespace mssim

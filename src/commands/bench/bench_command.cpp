@@ -151,7 +151,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
       .add("--suite", options->suite,
            "Scenes and what is compared on them: " + listed(suites, "or") +
                " (see mssim list suites); tables stands for table1, table2 and table3",
-           one_of("suite", names))
+           one_of("suite", names, {{"all", "tables"}}))
       .value_name("NAME");
   arguments
       .add_list(

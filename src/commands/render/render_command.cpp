@@ -144,11 +144,14 @@ int render(const RenderOptions& options) {
                          ? "--movie took \"" + printable(*options.movie) +
                                "\" for the file to write; put the trace before it"
                          : std::string("give either a trace or --scene"));
+  fs::path trace = options.trace;
+  if (is_scene(options.trace) && (trace.extension() == ".json" || !fs::exists(trace)))
+    throw UsageError('"' + printable(options.trace) + "\" is a scene, not a trace: did you mean --scene " +
+                     printable(options.trace) + '?');
   const fs::path out = target_of(output_of(options));
   require_extension({options.movie && !options.movie->empty() ? "--movie" : "--out", out}, "PNG",
                     options.movie ? std::vector<std::string_view>{".apng", ".png"}
                                   : std::vector<std::string_view>{".png", ".apng"});
-  fs::path trace = options.trace;
   int code = exit_ok;
   if (trace.empty()) {
     RunOptions run = options.run;

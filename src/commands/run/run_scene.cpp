@@ -34,7 +34,10 @@
 namespace mssim {
 namespace {
 
-constexpr double default_fps = 60;
+/// Unless asked otherwise 60 frames a simulated second, or one a step where steps are longer.
+double frames_per_second(const RunOptions& options, double dt_s) {
+  return options.fps.value_or(std::min(60.0, 1 / dt_s));
+}
 
 PictureOptions pictures_of(const RunOptions& options) {
   return picture_options(options.look, usual_picture_size, complete(options.execution).threads);
@@ -118,7 +121,7 @@ int run_garment(const RunOptions& options, const BackendInfo& info, const Prepar
   // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
   // file.
   StopRequest stop;
-  const FrameGrid frames = frame_grid(options.fps.value_or(default_fps), scene.dt_s);
+  const FrameGrid frames = frame_grid(frames_per_second(options, scene.dt_s), scene.dt_s);
   const SettlingRule rule = settling_rule(options, plan);
   RunRecorder recorder(options.files, scene, headers);
   return run_dressing(scene, *backend, std::string(info.name), rule, frames, recorder, stop, options.silent);
@@ -204,7 +207,7 @@ int run_scene(RunOptions options) {
   require_distinct(options.files, scene.spec);
   if (options.dt_s) scene.dt_s = *options.dt_s;
   const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
-                            options.fps.value_or(default_fps), options.losses};
+                            frames_per_second(options, scene.dt_s), options.losses};
   return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
                                   : run_simulation(options, info, scene, integrator, plan);
 }

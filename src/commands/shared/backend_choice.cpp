@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <iterator>
 #include <system_error>
@@ -124,7 +125,11 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   for (const BackendInfo* info : known_) names.push_back(info->name);
   for (const BackendInfo* info : described()) names.push_back(info->name);
   for (const BackendInfo* info : shipped()) names.push_back(info->name);
-  throw UsageError(unknown_name("backend", name, names));
+  if (is_file(name))
+    throw UsageError("unknown backend \"" + printable(name) +
+                     "\": a program of your own is a path with a slash, ./" + printable(name));
+  constexpr std::array<OtherName, 2> others{{{"gpu", "opencl"}, {"cuda", "opencl"}}};
+  throw UsageError(unknown_name("backend", name, names, others));
 }
 
 std::optional<BackendProgram> BackendChoice::in_ranks_of(const std::string& name) {

@@ -2,25 +2,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
-#include <system_error>
 
 #include "scene/scene_file.h"
 
 namespace mssim {
 namespace {
 
-bool is_scene_file(std::string_view path) {
-  std::error_code error;  // a name too long for a file is none
-  return is_path_of_scene(path) && std::filesystem::exists(path, error);
-}
-
 /// Length of the scene that the text begins with.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
        end = text.rfind(',', end - 1))
-    if (is_scene_file(text.substr(0, end))) return end;
+    if (is_scene(text.substr(0, end))) return end;
   return shortest;
 }
 

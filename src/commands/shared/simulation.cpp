@@ -32,7 +32,7 @@ FrameGrid frame_grid(double frames_per_second, double dt_s) {
   if (!(steps_per_frame >= 1)) {
     std::ostringstream text;
     text << "--fps " << frames_per_second << " is more than one frame a step of " << dt_s << " s; take --fps "
-         << std::floor(1 / dt_s) << " or less";
+         << (dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s)) << " or less";
     throw UsageError(text.str());
   }
   return {steps_per_frame};
