@@ -1,9 +1,13 @@
 #include <hdf5.h>
 
+#include <csignal>
+
 #include "commands/shared/command.h"
 
 int main(int argc, char** argv) {
   // First of all: after a failed flush HDF5's own exit handler would crash.
   H5dont_atexit();
+  // Beyond `ulimit -f` a write then fails, and a sentence names the file.
+  std::signal(SIGXFSZ, SIG_IGN);
   return mssim::run_program(argc, argv);
 }

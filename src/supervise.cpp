@@ -5,6 +5,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <poll.h>
 #include <sched.h>
 #include <sys/prctl.h>
@@ -54,17 +55,18 @@ class Output {
   std::size_t end_ = 0;
 };
 
-/// Where mssim is gone, nobody hears it, and nothing happens.
-void say(const void* bytes, std::size_t count) {
+/// False where mssim is gone: nobody hears it.
+bool say(const void* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t sent = ::send(channel, bytes, count, MSG_NOSIGNAL);
-    if (sent <= 0) return;
+    if (sent <= 0) return false;
     bytes = static_cast<const char*>(bytes) + sent;
     count -= static_cast<std::size_t>(sent);
   }
+  return true;
 }
 
-void say(const SupervisorAnswer& answer) { say(&answer, sizeof answer); }
+bool say(const SupervisorAnswer& answer) { return say(&answer, sizeof answer); }
 
 /// Numbers of processes. More than fit here are looked at in parts.
 struct Processes {
@@ -199,6 +201,12 @@ int end_all(pid_t program, int deaths) {
   }
 }
 
+/// For nftw: goes on whatever cannot be removed.
+int remove_entry(const char* path, const struct stat*, int, FTW*) {
+  std::remove(path);
+  return 0;
+}
+
 /// In the child: becomes the program, or returns why not.
 SupervisorAnswer become(char** arguments, int output, const char* folder, const char* cpus,
                         pid_t supervisor) {
@@ -268,14 +276,17 @@ void attend(pid_t program, Output& output, int signals) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count < 5) return 2;
+  if (count < 6) return 2;
+  const int paths = std::atoi(arguments[1]);
+  char** const removed = arguments + 2;
+  arguments += 1 + paths;
   const int variables = std::atoi(arguments[3]);
   for (int i = 0; i < variables; ++i) ::putenv(arguments[4 + i]);
   ::closefrom(channel + 1);
   ::fcntl(channel, F_SETFD, FD_CLOEXEC);
   sigset_t heard;
   ::sigemptyset(&heard);
-  constexpr int signals_heard[] = {SIGCHLD, SIGTERM, SIGINT, SIGHUP};
+  constexpr int signals_heard[] = {SIGCHLD, SIGTERM, SIGINT, SIGHUP, SIGQUIT};
   for (const int signal : signals_heard) ::sigaddset(&heard, signal);
   ::sigprocmask(SIG_BLOCK, &heard, nullptr);
   const int signals = ::signalfd(-1, &heard, SFD_CLOEXEC | SFD_NONBLOCK);
@@ -294,7 +305,9 @@ int main(int count, char** arguments) {
   const int ending = end_all(program, signals);
   while (output.take()) {
   }
-  say({SupervisorWord::ended, ending, processor_seconds(), output.size()});
+  const SupervisorAnswer last{SupervisorWord::ended, ending, processor_seconds(), output.size()};
+  if (!say(last))  // mssim was killed, and removes nothing any more
+    for (int i = 0; i < paths; ++i) ::nftw(removed[i], remove_entry, 16, FTW_DEPTH | FTW_PHYS);
   say(output.last(), output.size());
   return 0;
 }

@@ -19,6 +19,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "platform/find_program.h"
 #include "platform/interruption.h"
 #include "platform/process_cpus.h"
 #include "text/small_letters.h"
@@ -26,9 +27,12 @@
 namespace mssim {
 namespace {
 
+[[noreturn]] void fail(const ChildProcess& child, const std::string& why) {
+  throw std::runtime_error("cannot run " + child.program.string() + ": " + why);
+}
+
 [[noreturn]] void fail(const ChildProcess& child, const std::string& action, int error) {
-  throw std::runtime_error("cannot run " + child.program.string() + ": " + action + " failed (" +
-                           std::strerror(error) + ")");
+  fail(child, action + " failed (" + std::strerror(error) + ")");
 }
 
 /// The two ends of a pipe; the child inherits neither but as stdout and stderr.
@@ -85,6 +89,9 @@ struct StartError {
   int error = 0;
 };
 
+/// The last action, of which it can be said why it failed.
+constexpr const char* execution = "starting it";
+
 /// What the child does between fork and exec, where only async-signal-safe calls are allowed: this process
 /// may have threads. `group`: of processes, 0 for a new one. Returns when something fails.
 StartError become(const ChildProcess& child, char* const* arguments, char* const* environment, int output,
@@ -100,10 +107,11 @@ StartError become(const ChildProcess& child, char* const* arguments, char* const
   limit(RLIMIT_CPU, child.cpu_seconds, child.cpu_seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
   if (child.memory_bytes > 0) limit(RLIMIT_AS, child.memory_bytes, child.memory_bytes);
+  std::signal(SIGXFSZ, SIG_DFL);  // which mssim itself ignores
   if (child.file_bytes > 0) limit(RLIMIT_FSIZE, child.file_bytes, child.file_bytes);
   if (::chdir(child.folder.c_str()) != 0) return {"entering its folder", errno};
   ::execve(child.program.c_str(), arguments, environment);
-  return {"starting it", errno};
+  return {execution, errno};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -208,6 +216,7 @@ class Running {
 
   /// Of one that has ended.
   const ChildResult& result() const {
+    if (error_.action == execution) fail(child_, why_not_executed(child_.program, error_.error));
     if (error_.action != nullptr) fail(child_, error_.action, error_.error);
     return result_;
   }

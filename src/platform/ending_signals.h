@@ -5,8 +5,8 @@
 
 namespace mssim {
 
-/// The signals by which a user ends a program: Ctrl-C, kill, a closed terminal.
-inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
+/// The signals by which a user ends a program: Ctrl-C, kill, a closed terminal, Ctrl-\.
+inline constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
 /// Notes that such a signal has come, for those who look. Async-signal-safe.
 void note_ending_signal(int signal);

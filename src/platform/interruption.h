@@ -19,7 +19,7 @@ struct Interrupted {
 /// Throws Interrupted with the noted signal (ending_signals.h), which it takes, where there is one.
 void throw_if_ending_signal_noted();
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP end the processes of one group instead of this one, and wait to
+/// While it lives, the ending signals end the processes of one group instead of this one, and wait to
 /// be asked for. Signals that are ignored (nohup) stay so. One at a time.
 class InterruptionGuard {
  public:

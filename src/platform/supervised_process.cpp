@@ -12,11 +12,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 #include <system_error>
 
 #include "platform/data_folder.h"
+#include "platform/find_program.h"
 #include "platform/process_cpus.h"
 
 namespace mssim {
@@ -31,25 +31,7 @@ std::string reason(int error) { return " (" + std::string(std::strerror(error)) 
   throw std::runtime_error("cannot run " + program.program.string() + ": " + why);
 }
 
-/// Why execve failed. For a missing interpreter it says the same as for a missing program.
-std::string why_not_executed(const SupervisedProgram& program, int error) {
-  const std::filesystem::path file = program.folder / program.program;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) return "it is a folder";
-  if (error == ENOENT && !std::filesystem::exists(file, ignored)) return "there is no such file";
-  if (error == EACCES && ::access(file.c_str(), X_OK) != 0) return "it is not executable (chmod +x)";
-  if (error == ENOEXEC)
-    return "it is neither a program for this machine nor a script whose first line names an interpreter "
-           "(#!/usr/bin/env python3)";
-  std::string line;
-  std::getline(std::ifstream(file), line);
-  if (!line.starts_with("#!")) return "the system does not start it" + reason(error);
-  if (line.ends_with('\r'))
-    return "its lines end as Windows has it (CR LF), also the name of its interpreter";
-  line = line.substr(std::min(line.find_first_not_of(" \t", 2), line.size()), 200);
-  return "its interpreter " + line.substr(0, line.find_first_of(" \t")) + " cannot be started" +
-         reason(error);
-}
+std::filesystem::path file_of(const SupervisedProgram& program) { return program.folder / program.program; }
 
 std::string why_not_started(const SupervisedProgram& program, const SupervisorAnswer& answer) {
   switch (answer.word) {
@@ -58,7 +40,7 @@ std::string why_not_started(const SupervisedProgram& program, const SupervisorAn
     case SupervisorWord::no_processors:
       return "it cannot be bound to its processors" + reason(answer.value);
     case SupervisorWord::no_program:
-      return why_not_executed(program, answer.value);
+      return why_not_executed(file_of(program), answer.value);
     default:
       return "the system has no room for it" + reason(answer.value);
   }
@@ -72,8 +54,9 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   const std::string supervisor = helper_program("supervise").string();
   std::string cpus;
   for (const int cpu : program.cpus) cpus += std::to_string(cpu) + ',';
-  std::vector<std::string> words{supervisor, program.folder.string(), cpus,
-                                 std::to_string(program.environment.size())};
+  std::vector<std::string> words{supervisor, std::to_string(program.removed.size())};
+  words.insert(words.end(), program.removed.begin(), program.removed.end());
+  words.insert(words.end(), {program.folder.string(), cpus, std::to_string(program.environment.size())});
   words.insert(words.end(), program.environment.begin(), program.environment.end());
   words.push_back(program.program.string());
   words.insert(words.end(), program.arguments.begin(), program.arguments.end());
@@ -143,6 +126,8 @@ std::string describe(const ProgramEnd& end) {
 }
 
 SupervisedProcess::SupervisedProcess(const SupervisedProgram& program) {
+  // The system would start it, where it only asks `env` for "python3\r".
+  if (names_interpreter_with_return(file_of(program))) fail(program, why_not_executed(file_of(program), 0));
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     fail(program, "opening a socket failed" + reason(errno));
@@ -191,9 +176,22 @@ bool SupervisedProcess::ask(SupervisorRequest request) const {
   return hear(answer);
 }
 
+/// Waits until the supervisor says something, and continues it where somebody has stopped it: what the
+/// program is may reach its parent. False where it says nothing.
+bool SupervisedProcess::says_something() const {
+  constexpr std::chrono::milliseconds look{500};
+  for (std::chrono::milliseconds waited{0}; waited < supervisor_patience; waited += look) {
+    if (readable(channel_.get(), look)) return true;
+    int status = 0;
+    if (::waitpid(supervisor_, &status, WUNTRACED | WNOHANG) == supervisor_ && WIFSTOPPED(status))
+      ::kill(supervisor_, SIGCONT);
+  }
+  return false;
+}
+
 /// Takes an answer. False where it is that the program has ended, or where there is none.
 bool SupervisedProcess::hear(SupervisorAnswer& answer) const {
-  if (!readable(channel_.get(), supervisor_patience)) {
+  if (!says_something()) {
     lose(
         "was given up, because mssim's program supervise did not answer (a process that SIGKILL does not "
         "end?)");
@@ -224,6 +222,7 @@ void SupervisedProcess::take_end(const SupervisorAnswer& answer) const {
 void SupervisedProcess::lose(const std::string& trouble) const {
   if (program_ > 0) ::kill(-program_, SIGKILL);
   ::shutdown(channel_.get(), SHUT_RDWR);
+  ::kill(supervisor_, SIGCONT);  // it may have been stopped again; it ends by itself now
   ::waitpid(supervisor_, nullptr, WNOHANG);
   end_.signal = SIGKILL;
   end_.trouble = trouble;

@@ -19,6 +19,9 @@ struct SupervisedProgram {
   std::vector<std::string> environment;  ///< NAME=VALUE, added to mssim's or replacing what it has
   std::filesystem::path folder;          ///< the folder it runs in
   std::vector<int> cpus;                 ///< the logical CPUs it is bound to; empty: those that mssim may use
+  /// Files and folders that are removed with all that is in them where mssim ends before the program does, as
+  /// by SIGKILL. Else they are the caller's to remove.
+  std::vector<std::filesystem::path> removed = {};
 };
 
 /// How a program ended.
@@ -36,9 +39,10 @@ std::string describe(const ProgramEnd& end);
 
 /// A program that runs beside mssim, which does not trust it: whatever it does, it and all that it started
 /// are gone when this object is, or when mssim is, however that ends. Between the two stands
-/// libexec/mssim/supervise, which also takes what the program writes. The program has an empty stdin, a
-/// process group and session that no key of mssim's terminal reaches, no descriptor of mssim's, and leaves no
-/// core file. Several may be started at the same time; each is used by one thread at a time.
+/// libexec/mssim/supervise, which also takes what the program writes; a program that stops it is not left
+/// alone by that: it is continued. The program has an empty stdin, a process group and session that no key of
+/// mssim's terminal reaches, no descriptor of mssim's, and leaves no core file. Several may be started at the
+/// same time; each is used by one thread at a time.
 class SupervisedProcess {
  public:
   /// Throws std::runtime_error with one sentence when the program cannot be started.
@@ -65,6 +69,7 @@ class SupervisedProcess {
 
  private:
   bool ask(SupervisorRequest request) const;
+  bool says_something() const;
   bool hear(SupervisorAnswer& answer) const;
   void take_end(const SupervisorAnswer& answer) const;
   void lose(const std::string& trouble) const;

@@ -5,8 +5,9 @@
 namespace mssim {
 
 // What mssim (supervised_process.cpp) and libexec/mssim/supervise (src/supervise.cpp) say to each other. The
-// supervisor's arguments: FOLDER CPUS COUNT NAME=VALUE... PROGRAM ARGUMENT..., where CPUS is as "0,1," or
-// empty, and COUNT is the number of variables. Descriptor 3 is its end of the channel, a stream.
+// supervisor's arguments: COUNT PATH... FOLDER CPUS COUNT NAME=VALUE... PROGRAM ARGUMENT..., where COUNT is
+// the number of what follows, PATHs are removed where mssim has ended before the program, and CPUS is as
+// "0,1," or empty. Descriptor 3 is its end of the channel, a stream.
 
 /// One byte from mssim. Each is answered. When mssim closes its end, the supervisor ends everything.
 enum class SupervisorRequest : char { pause, resume, processor_time };

@@ -27,7 +27,9 @@ std::filesystem::path system_folder() {
 TemporaryFolder::TemporaryFolder() : TemporaryFolder(system_folder()) {}
 
 TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
-  std::string name = (parent / "mssim-XXXXXX").string();
+  std::error_code none;  // where this process's folder is gone, the name stays as it is, and nothing is made
+  const std::filesystem::path whole = std::filesystem::absolute(parent, none);
+  std::string name = ((none ? parent : whole) / "mssim-XXXXXX").string();
   if (!::mkdtemp(name.data()))
     throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +
                              std::strerror(errno) + "); set TMPDIR to a writable folder");

@@ -15,6 +15,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  /// Absolute, so that it can be told to a program that runs elsewhere.
   const std::filesystem::path& path() const { return path_; }
 
  private:

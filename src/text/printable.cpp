@@ -77,4 +77,11 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
+bool has_words(std::string_view line) {
+  return std::ranges::any_of(line, [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte >= 0x80 || (byte >= '0' && byte <= '9') || ((byte | 0x20U) >= 'a' && (byte | 0x20U) <= 'z');
+  });
+}
+
 }  // namespace mssim

@@ -15,4 +15,8 @@ std::string printable(std::string_view text, std::size_t length = 80);
 /// written as \xHH; all else stays as it is.
 std::string escaped(std::string_view text);
 
+/// Whether a line says anything: it has a letter, a digit or a byte beyond ASCII. The frames that programs
+/// draw around what they say have none.
+bool has_words(std::string_view line);
+
 }  // namespace mssim

@@ -155,7 +155,6 @@ grep -q 'standard output could not be written' err || fail "a closed stdout: $(c
 # A disk that is full, as a limit on the size of files: the sentence names the file, and no part of one is left.
 status=0
 (
-  trap '' XFSZ
   ulimit -f 8
   exec "$mssim" "${bench[@]}" --out full >out 2>err
 ) || status=$?

@@ -11,6 +11,7 @@
 #include "mesh/shape_mesh.h"
 #include "mesh/tetrahedralise.h"
 #include "platform/child_process.h"
+#include "platform/ending_signals.h"
 #include "platform/interruption.h"
 #include "platform/missing_program.h"
 #include "tests/support/mesh_fixture.h"
@@ -39,7 +40,7 @@ TEST(ChildProcess, ReturnsHowItEndedAndWhatItWrote) {
 }
 
 TEST(ChildProcess, IsEndedWithAllThatItStartedWhenThisProcessIsToldToEnd) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : ending_signals) {
     const std::string script = "sleep 60 & kill -" + std::to_string(signal) + " $PPID; wait";
     const auto before = std::chrono::steady_clock::now();
     try {

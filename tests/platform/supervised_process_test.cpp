@@ -68,6 +68,7 @@ TEST_F(SupervisedProcesses, SayInOneSentenceThatTheyCannotBeStarted) {
       failure_of("./lost", "#! /no/such/python3 -u\n", true),
       "cannot run ./lost: its interpreter /no/such/python3 cannot be started (No such file or directory)");
   EXPECT_THAT(failure_of("./windows", "#!/bin/sh\r\n", true), HasSubstr("CR LF"));
+  EXPECT_THAT(failure_of("./windows2", "#!/usr/bin/env sh\r\n", true), HasSubstr("CR LF"));  // env starts
   EXPECT_THAT(failure_of("./text", "print(1)\n", true),
               HasSubstr("neither a program for this machine nor a "));
   EXPECT_THAT(failure_of("./elf", "\177ELF", true), HasSubstr("neither a program for this machine nor a "));
@@ -96,6 +97,15 @@ TEST_F(SupervisedProcesses, MayWriteWithoutEnd) {
   EXPECT_THAT(end.output, EndsWith(std::string(1, '\0') + "end\n"));
   EXPECT_GT(most_kib, 0);
   EXPECT_LT(most_kib, 32 * 1024);
+}
+
+TEST_F(SupervisedProcesses, ThatStopTheirSupervisorStillObey) {
+  SupervisedProcess process(shell("kill -STOP $PPID; touch stopped; exec sleep 1000"));
+  ASSERT_TRUE(soon([&] { return exists(folder() / "stopped"); }));
+  process.pause();
+  EXPECT_TRUE(all_stopped(true));
+  EXPECT_EQ(describe(process.end(0s)), "was ended by signal 9 (Killed)");
+  EXPECT_TRUE(processes().empty());
 }
 
 TEST_F(SupervisedProcesses, ThatIgnoreSignalsAreEnded) {

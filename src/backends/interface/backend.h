@@ -61,9 +61,10 @@ struct Unsupported : std::runtime_error {
 /// Thrown by any call of a backend behind which a program stands that failed; what() is the reason for the
 /// row.
 struct BackendFailure : std::runtime_error {
-  BackendFailure(const std::string& reason, std::string last_output)
-      : std::runtime_error(reason), output(std::move(last_output)) {}
+  BackendFailure(const std::string& reason, std::string last_output, bool is_late = false)
+      : std::runtime_error(reason), output(std::move(last_output)), late(is_late) {}
   std::string output;  ///< what the program wrote last
+  bool late;           ///< it has not answered in time: asked again, it would take as long again
 };
 
 /// The mass of every node, kg. Throws Unsupported when they differ.

@@ -22,10 +22,8 @@ constexpr std::size_t longest_line = 4096;
 /// How long a wait goes on before it looks at the clock, the program and the signals.
 constexpr int slice_ms = 100;
 
-[[noreturn]] void fail_to_listen(const std::filesystem::path& socket, const std::string& reason) {
-  throw std::runtime_error("cannot listen at " + socket.string() + " (" + reason +
-                           "); set TMPDIR to a writable folder with a short name");
-}
+/// Where the names of sockets, which have 107 bytes, are short.
+constexpr const char* folder_of_short_name = "/tmp";
 
 bool is_readable(int descriptor) {
   pollfd waiting{descriptor, POLLIN, 0};
@@ -40,13 +38,17 @@ std::string in_quotes(std::string_view line) { return '"' + printable(line) + '"
 Conversation::Conversation(const std::filesystem::path& folder) : socket_(folder / "socket") {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  if (socket_.native().size() >= sizeof address.sun_path) fail_to_listen(socket_, "its name is too long");
+  if (socket_.native().size() >= sizeof address.sun_path)
+    socket_ = short_.emplace(folder_of_short_name).path() / "socket";
   std::ranges::copy(socket_.native(), std::begin(address.sun_path));
   listener_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!listener_.is_open() ||
       ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
       ::listen(listener_.get(), 2) != 0)
-    fail_to_listen(socket_, std::strerror(errno));
+    throw std::runtime_error(
+        "cannot listen at " + socket_.string() + " (" + std::strerror(errno) +
+        "); set TMPDIR to a writable folder, and raise the limit of open files (ulimit -n) "
+        "where it is too low");
 }
 
 void Conversation::fail(ConversationFailure::Cause cause, const std::string& sentence) const {
@@ -72,6 +74,9 @@ void Conversation::accept() {
     ::poll(waiting.data(), waiting.size(), slice_ms);
     connection_ = Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (connection_.is_open()) return;
+    if (errno == EMFILE || errno == ENFILE)
+      throw std::runtime_error(std::string("cannot take the program's connection (") + std::strerror(errno) +
+                               "); raise the limit of open files (ulimit -n)");
     if (is_readable(end_descriptor_)) fail(Cause::closed, "before it connected to MSSIM_SOCKET");
     if (Clock::now() > deadline_) {
       std::ostringstream text;
@@ -115,8 +120,12 @@ std::string Conversation::answer() {
       return line;
     }
     searched = received_.size();
+    throw_if_ending_signal_noted();
     std::array<char, longest_line> bytes;
-    const ssize_t count = ::recv(connection_.get(), bytes.data(), bytes.size(), 0);
+    // Once the time is over, what has come by then counts, and nothing is waited for, however little is
+    // missing.
+    const int waiting = Clock::now() > deadline_ ? MSG_DONTWAIT : 0;
+    const ssize_t count = ::recv(connection_.get(), bytes.data(), bytes.size(), waiting);
     if (count > 0)
       received_.append(bytes.data(), static_cast<std::size_t>(count));
     else if (count == 0 || (errno != EAGAIN && errno != EINTR))

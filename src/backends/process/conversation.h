@@ -2,11 +2,13 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "platform/descriptor.h"
+#include "platform/temporary_folder.h"
 
 namespace mssim {
 
@@ -28,7 +30,8 @@ struct ConversationFailure : std::runtime_error {
 /// after the user has asked mssim to end.
 class Conversation {
  public:
-  /// Listens at a socket in this folder. Throws std::runtime_error with one sentence where that cannot be.
+  /// Listens at a socket in this folder; in one of its own in /tmp where the folder's name is too long for a
+  /// socket's. Throws std::runtime_error with one sentence where that cannot be.
   explicit Conversation(const std::filesystem::path& folder);
 
   const std::filesystem::path& socket() const { return socket_; }
@@ -56,6 +59,7 @@ class Conversation {
   /// Looks after a tenth of a second without an answer whether one can still come.
   void look_around() const;
 
+  std::optional<TemporaryFolder> short_;
   std::filesystem::path socket_;
   Descriptor listener_, connection_;
   std::chrono::duration<double> time_limit_{};

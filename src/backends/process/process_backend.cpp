@@ -41,12 +41,34 @@ constexpr std::chrono::milliseconds patience_for_reasons = 8s;
 /// Lines that a program may say of itself before it is ready.
 constexpr int most_lines = 100;
 
-/// The last line of a program's output that is not empty.
+/// The last line of a program's output that has words: no frame, and not env's advice about what it has just
+/// said.
 std::string last_line(std::string_view output) {
-  const std::size_t end = output.find_last_not_of(" \t\r\n");
-  if (end == std::string_view::npos) return "";
-  output = output.substr(0, end + 1);
-  return printable(output.substr(output.find_last_of('\n') + 1), longest_shown);
+  while (!output.empty()) {
+    const std::size_t begin = output.find_last_of('\n') + 1;
+    const std::string_view line = output.substr(begin);
+    if (has_words(line) && line.find("env: use -[v]S to pass options") == std::string_view::npos)
+      return printable(line.substr(0, line.find_last_not_of(" \t\r") + 1), longest_shown);
+    output = output.substr(0, begin == 0 ? 0 : begin - 1);
+  }
+  return "";
+}
+
+/// Calls `work`. What goes wrong there with files, sockets and processes concerns this program alone, and not
+/// those beside it: throws BackendFailure for it.
+template <class Work>
+std::invoke_result_t<Work> failing_alone(const Work& work) {
+  try {
+    return work();
+  } catch (const Unavailable&) {
+    throw;
+  } catch (const Unsupported&) {
+    throw;
+  } catch (const BackendFailure&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw BackendFailure(error.what(), "");
+  }
 }
 
 /// Throws Unsupported for what the program is known not to have.
@@ -76,11 +98,13 @@ class ProcessBackend final : public WindowBackend {
     if (!program.in_ranks || !std::holds_alternative<GridPatch>(system.topology))
       write_system(system_file, system);
     const int processors = processors_of(program, options);
-    process_.emplace(SupervisedProgram{program.program,
-                                       {program.command.begin() + 1, program.command.end()},
-                                       environment_of(program, conversation_.socket().string(), options),
-                                       program.folder,
-                                       first_cpus(processors)});
+    process_.emplace(SupervisedProgram{
+        program.program,
+        {program.command.begin() + 1, program.command.end()},
+        environment_of(program, conversation_.socket().string(), integrator, options),
+        program.folder,
+        first_cpus(processors),
+        {folder_.path(), state_file_.path().parent_path(), conversation_.socket().parent_path()}});
     std::ostringstream lines;
     lines << std::setprecision(std::numeric_limits<double>::max_digits10) << "mssim-backend 1\nscene "
           << escaped(options.scene) << "\ndt " << dt_s << "\nthreads " << processors << '\n'
@@ -104,7 +128,7 @@ class ProcessBackend final : public WindowBackend {
   ProcessBackend& operator=(const ProcessBackend&) = delete;
 
   void set_state(const State& state) override {
-    state_file_.write(state);
+    failing_alone([&] { state_file_.write(state); });
     request("set");
   }
 
@@ -159,7 +183,8 @@ class ProcessBackend final : public WindowBackend {
     try {
       return converse();
     } catch (const ConversationFailure& failure) {
-      if (failure.cause != Cause::closed) fail(failure.what(), failure.cause == Cause::silence);
+      if (failure.cause != Cause::closed)
+        fail(failure.what(), failure.cause == Cause::silence, failure.cause == Cause::silence);
       pollfd ended{process_->end_descriptor(), POLLIN, 0};
       if (::poll(&ended, 1, static_cast<int>(patience_for_reasons.count())) > 0)
         fail(describe(process_->end(patience)) + ' ' + failure.what(), true);
@@ -171,12 +196,12 @@ class ProcessBackend final : public WindowBackend {
 
   /// Ends the program and throws BackendFailure: its name, this predicate and, where it is wanted, the last
   /// thing that it wrote.
-  [[noreturn]] void fail(const std::string& predicate, bool with_last_line = false) const {
+  [[noreturn]] void fail(const std::string& predicate, bool with_last_line = false, bool late = false) const {
     const std::string output = process_->end(0ms).output;
     std::string sentence = program_.name + ' ' + predicate;
     if (const std::string line = last_line(output); with_last_line && !line.empty())
       sentence += "; its last line: " + line;
-    throw BackendFailure(sentence, output);
+    throw BackendFailure(sentence, output, late);
   }
 
   /// Takes lines until one of them is the last.
@@ -203,7 +228,7 @@ class ProcessBackend final : public WindowBackend {
 
   /// Asks for states and reads them.
   State get(const std::string& line) const {
-    state_file_.clear();
+    failing_alone([&] { state_file_.clear(); });
     request(line);
     try {
       return state_file_.read();
@@ -251,7 +276,8 @@ std::unique_ptr<ProcessBackend> start(const BackendProgram& program, const Syste
   require_support(program, system, integrator);
   // Whether or not somebody waits for these signals already: folders of this backend must not stay behind.
   const EndingSignals during_preparation(note_ending_signal, 0);
-  return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options, nodes);
+  return failing_alone(
+      [&] { return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options, nodes); });
 }
 
 }  // namespace

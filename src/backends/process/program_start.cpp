@@ -9,7 +9,7 @@
 namespace mssim {
 
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
-                                        const ExecutionOptions& options) {
+                                        const Integrator& integrator, const ExecutionOptions& options) {
   const char* path = std::getenv("PYTHONPATH");
   const std::string count = std::to_string(processors_of(program, options));
   std::vector<std::string> all{
@@ -18,6 +18,8 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
   if (program.in_ranks) {
     all.push_back("MSSIM_RANKS=" + std::to_string(ranks_of(program, options).ranks));
     all.push_back("MSSIM_LAUNCHER=" + options.launcher);
+    all.push_back("MSSIM_FOLDER=" + std::filesystem::current_path().string());
+    all.push_back("MSSIM_INTEGRATOR=" + std::string(integrator.name));
     all.push_back("MSSIM_SCENE_FILE=" + std::filesystem::absolute(options.scene_file).string());
     all.push_back(std::string("MSSIM_ROOTS=") + (options.roots == Roots::exact ? "exact" : "fast"));
   }

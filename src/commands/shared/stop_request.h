@@ -4,9 +4,9 @@
 
 namespace mssim {
 
-/// While it lives, a first SIGINT, SIGTERM or SIGHUP is remembered, and told on stderr, so that what is under
-/// way can be finished and written; a second one ends the program at once. Signals that are ignored (nohup)
-/// stay so. One at a time.
+/// While it lives, a first ending signal (platform/ending_signals.h) is remembered, and told on stderr, so
+/// that what is under way can be finished and written; a second one ends the program at once. Signals that
+/// are ignored (nohup) stay so. One at a time.
 class StopRequest {
  public:
   StopRequest();

@@ -114,6 +114,32 @@ TEST_F(ConversationTest, TellsOfSilence) {
   EXPECT_STREQ(failure.what(), "did not answer \"step 10\" within 0.2 s");
 }
 
+TEST_F(ConversationTest, TakesAnAnswerThatComesByteByByteForSilenceOnceItsTimeIsOver) {
+  const ConversationFailure failure = failure_of_step(
+      [](const Caller& program) {
+        program.line();
+        // More often than a wait looks at the clock, and far longer than the limit.
+        for (int i = 0; i < 60; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+          program.send(".");
+        program.send("\n");
+        program.line();
+      },
+      0.2);
+  EXPECT_EQ(failure.cause, Cause::silence);
+}
+
+TEST_F(ConversationTest, ListensAtAShortNameWhereTheFolderHasALongOne) {
+  const std::filesystem::path deep = folder() / std::string(120, 'x');
+  create_directory(deep);
+  std::filesystem::path socket;
+  {
+    const Conversation conversation(deep);
+    socket = conversation.socket();
+    EXPECT_TRUE(Caller(socket).is_connected());
+  }
+  EXPECT_FALSE(exists(socket.parent_path()));
+}
+
 TEST_F(ConversationTest, TellsOfAProgramThatNeverConnects) {
   try {
     conversation_.begin(std::chrono::duration<double>(0.2), -1);
