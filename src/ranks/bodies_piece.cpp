@@ -52,13 +52,18 @@ void require_same_meshes(const Session& session, const std::vector<SceneCounts>&
                         session.name_of(0) + ": install the same TetGen on both");
 }
 
-std::vector<std::vector<BodyShare>> shares_for(const Session& session,
-                                               const std::vector<std::size_t>& nodes) {
-  if (auto shares = body_shares(nodes, session.ranks())) return std::move(*shares);
+std::vector<std::vector<BodyShare>> shares_for(int ranks, const std::vector<std::size_t>& nodes) {
+  if (auto shares = body_shares(nodes, ranks)) return std::move(*shares);
   throw Unsupported((nodes.size() == 1 ? "1 body" : std::to_string(nodes.size()) + " bodies") +
-                    " cannot be cut for " + counted(static_cast<std::uint64_t>(session.ranks()), "rank") +
+                    " cannot be cut for " + counted(static_cast<std::uint64_t>(ranks), "rank") +
                     ": a part of a body has at least " + std::to_string(least_share) +
-                    " nodes, so give at most --ranks " + std::to_string(most_ranks(nodes, session.ranks())));
+                    " nodes, so give at most --ranks " + std::to_string(most_ranks(nodes, ranks)));
+}
+
+std::vector<std::size_t> nodes_of(const std::vector<SceneCounts>& bodies) {
+  std::vector<std::size_t> nodes;
+  for (const SceneCounts& body : bodies) nodes.push_back(body.nodes);
+  return nodes;
 }
 
 /// A body of which this rank has something, in the system of all such bodies.
@@ -152,14 +157,17 @@ BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHe
 
 }  // namespace
 
+void require_shares(const SceneSpec& scene, int ranks) {
+  shares_for(ranks, nodes_of(counts_of_bodies(scene)));
+}
+
 BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
     : kernel_(common_kernel(session, slice_kernels(*job.integrator), job.roots)) {
   const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
   require_same_meshes(session, counts);
-  std::vector<std::size_t> nodes;
-  for (const SceneCounts& body : counts) nodes.push_back(body.nodes);
+  const std::vector<std::size_t> nodes = nodes_of(counts);
   for (const std::size_t body : nodes) scene_nodes_ += body;
-  shares_ = shares_for(session, nodes);
+  shares_ = shares_for(session.ranks(), nodes);
   std::vector<std::size_t> numbers;
   std::vector<BodySpec> specs;
   for (std::size_t body = 0; body < shares_.size(); ++body)

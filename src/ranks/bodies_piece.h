@@ -44,4 +44,7 @@ class BodiesPiece final : public Piece {
   std::optional<GhostMessages> messages_;
 };
 
+/// Throws Unsupported where the bodies of the scene cannot be given to so many ranks.
+void require_shares(const SceneSpec& scene, int ranks);
+
 }  // namespace mssim

@@ -21,6 +21,16 @@ std::size_t columns_on_host(const Session& session, std::size_t columns) {
 
 }  // namespace
 
+void require_columns(std::size_t columns, const Integrator& integrator, int ranks) {
+  const std::size_t least = ghost_columns(integrator, 1);
+  if (ranks > 1 && columns / static_cast<std::size_t>(ranks) < least)
+    throw Unsupported(counted(columns, "column") + " cannot be cut for " +
+                      counted(static_cast<std::uint64_t>(ranks), "rank") + ": a step of " +
+                      std::string(integrator.name) + " needs " + std::to_string(least) +
+                      " columns in each, so give at most --ranks " +
+                      std::to_string(std::max<std::size_t>(1, columns / least)));
+}
+
 ClothPiece::ClothPiece(const Session& session, const RankJob& job)
     : scene_(job.scene),
       ranks_(session.ranks()),
@@ -28,13 +38,7 @@ ClothPiece::ClothPiece(const Session& session, const RankJob& job)
       columns_(std::get<ClothSpec>(job.scene.content).columns),
       integrator_(job.integrator),
       kernel_(common_kernel(session, band_kernels(*job.integrator), job.roots)) {
-  const std::size_t least = ghost_columns(*job.integrator, 1);
-  if (ranks_ > 1 && columns_ / static_cast<std::size_t>(ranks_) < least)
-    throw Unsupported(counted(columns_, "column") + " cannot be cut for " +
-                      counted(static_cast<std::uint64_t>(ranks_), "rank") + ": a step of " +
-                      std::string(job.integrator->name) + " needs " + std::to_string(least) +
-                      " columns in each, so give at most --ranks " +
-                      std::to_string(std::max<std::size_t>(1, columns_ / least)));
+  require_columns(columns_, *job.integrator, ranks_);
   make(session, job, chosen_steps(session, job));
 }
 

@@ -67,4 +67,7 @@ class ClothPiece final : public Piece {
   std::optional<NeighbourMessages> messages_;
 };
 
+/// Throws Unsupported where a cloth of so many columns cannot be cut for so many ranks.
+void require_columns(std::size_t columns, const Integrator& integrator, int ranks);
+
 }  // namespace mssim

@@ -21,13 +21,18 @@
 #include <utility>
 #include <vector>
 
+#include "backends/interface/backend.h"
+#include "integrators/all_integrators.h"
 #include "platform/descriptor.h"
 #include "platform/find_program.h"
 #include "platform/process_cpus.h"
 #include "ranks/environment.h"
 #include "ranks/launch_words.h"
 #include "ranks/launcher_output.h"
+#include "ranks/piece.h"
 #include "ranks/requests.h"
+#include "scene/scene_file.h"
+#include "text/number_in.h"
 
 namespace mssim {
 namespace {
@@ -65,6 +70,8 @@ class Launcher {
       ::dup2(written.get(), STDOUT_FILENO);
       ::dup2(written.get(), STDERR_FILENO);
       ::execv(program.c_str(), arguments.data());
+      // The only thread there is: it may do what it likes.
+      std::cerr << "cannot run " << program.string() << ": " << why_not_executed(program, errno) << std::endl;
       _exit(127);
     }
     if (process_ < 0) throw std::runtime_error(std::string("cannot fork (") + std::strerror(errno) + ')');
@@ -140,6 +147,20 @@ void set_defaults() {
   for (const char* name : {"OMP_PROC_BIND", "OMP_PLACES", "GOMP_CPU_AFFINITY"}) ::unsetenv(name);
 }
 
+/// Tells mssim why nothing is launched.
+int answer_alone(const std::string& answer) {
+  Requests requests;
+  requests.read_introduction();
+  requests.answer(in_one_line(answer));
+  return 0;
+}
+
+/// Throws Unsupported for what ranks would find out together, after all have been started.
+void require_cuttable(int ranks) {
+  const Integrator* integrator = find_integrator(variable("MSSIM_INTEGRATOR"));
+  if (integrator != nullptr) require_cut(load_scene(variable("MSSIM_SCENE_FILE")), *integrator, ranks);
+}
+
 }  // namespace
 
 int launch_ranks(bool copies) {
@@ -148,15 +169,21 @@ int launch_ranks(bool copies) {
   std::vector<std::string> words = words_of(launcher);
   try {
     if (words.empty()) throw std::runtime_error("MSSIM_LAUNCHER is empty");
+    // The user's names of files, in --launcher, are as seen from where mssim was started.
+    const std::string folder = variable("MSSIM_FOLDER", ".");
+    if (::chdir(folder.c_str()) != 0)
+      throw std::runtime_error("cannot enter " + folder + " (" + std::strerror(errno) +
+                               "), where mssim was started; start it in another folder");
     const auto program = find_program(words.front());
-    if (!program) {
-      Requests requests;
-      requests.read_introduction();
-      requests.answer("unavailable there is no " + words.front() +
-                      " in PATH: install Open MPI (Debian: openmpi-bin), or name another launcher "
-                      "(--launcher)");
-      return 0;
-    }
+    if (!program && words.front().find('/') != std::string::npos)
+      return answer_alone(
+          "unavailable " + words.front() +
+          " is no file that may be executed: name another launcher (--launcher), or chmod +x it");
+    if (!program)
+      return answer_alone("unavailable there is no " + words.front() +
+                          " in PATH: install Open MPI (Debian: openmpi-bin), or name another launcher "
+                          "(--launcher)");
+    if (!copies) require_cuttable(number_in<int>(ranks).value_or(1));
     words.insert(words.end(),
                  {"-n", ranks, std::filesystem::read_symlink("/proc/self/exe").string(), "rank"});
     if (copies) words.emplace_back(copies_word);
@@ -177,6 +204,8 @@ int launch_ranks(bool copies) {
     }
     std::cerr << (printed.ranks_started() ? "" : launcher + " has not started " + ranks + " ranks: ")
               << printed.reason() << '\n';
+  } catch (const Unsupported& unsupported) {
+    return answer_alone(std::string("unsupported ") + unsupported.what());
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
   }

@@ -1,6 +1,7 @@
 #include "ranks/launcher_output.h"
 
 #include "ranks/launch_words.h"
+#include "text/printable.h"
 
 namespace mssim {
 
@@ -35,9 +36,9 @@ void LauncherOutput::take_line(const std::string& line) {
   // reason.
   if (line.find("plm:rsh: Warning: setpgid(") != std::string::npos) return;
   const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
-  const bool is_dashes = !is_blank && line.find_first_not_of('-') == std::string::npos;
-  if (is_dashes || is_blank) {
-    framed_ = is_dashes && in_frame_.empty();
+  const bool is_frame = !is_blank && !has_words(line);
+  if (is_frame || is_blank) {
+    framed_ = is_frame && in_frame_.empty();
     if (framed_) before_frame_ = last_;
     return;
   }

@@ -19,8 +19,8 @@ class LauncherOutput {
   /// Whether a rank has said why it has failed.
   bool rank_has_failed() const { return !of_rank_.empty(); }
   /// Why they have failed, in a sentence: what a rank has said first; or else the last line of the launcher
-  /// that names one; or else what Open MPI says first between lines of dashes, behind the line before those,
-  /// which is ssh's; or else the last line.
+  /// that names one; or else what Open MPI says first between lines of dashes or asterisks, behind the line
+  /// before those, which is ssh's; or else the last line.
   std::string reason() const;
 
  private:
@@ -28,7 +28,7 @@ class LauncherOutput {
 
   std::ostream& passed_on_;
   std::string unfinished_, of_rank_, about_rank_, in_frame_, before_frame_, last_;
-  bool framed_ = false;  ///< in the first paragraph behind a line of dashes
+  bool framed_ = false;  ///< in the first paragraph behind such a line
   bool started_ = false;
 };
 

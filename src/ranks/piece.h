@@ -67,4 +67,8 @@ class Piece {
 /// cannot be cut for so many.
 std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job);
 
+/// Throws Unsupported where the scene cannot be cut for so many ranks, as make_piece does in each of them: to
+/// be asked before any are started.
+void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks);
+
 }  // namespace mssim

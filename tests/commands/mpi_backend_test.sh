@@ -58,9 +58,28 @@ expect 2 '"0" is' bench --scene cloth2500 --backend mpi --ranks 0
 # What launchers and ranks are told, unless the user has told them something else.
 printf '#!/bin/sh\nenv >"%s"\nexec mpirun "$@"\n' "$work/told" >one/telling
 chmod +x one/telling
-SLURM_OVERLAP=0 succeed bench --scene cloth2500 --backend mpi:1 --integrator semi-euler --threads 1 --rounds 1 --launcher "$work/one/telling"
+SLURM_OVERLAP=0 succeed bench --scene cloth2500 --backend mpi:1 --integrator semi-euler --threads 1 --rounds 1 --launcher one/telling
 grep -qx 'OMPI_MCA_btl_vader_eager_limit=65536' told || fail "short messages are not told from long ones: $(cat told)"
 grep -qx 'SLURM_OVERLAP=0' told || fail "what the user has told Slurm does not go before: $(cat told)"
+
+# Files of a launcher are looked for where mssim was started, and no launcher is started for more ranks than a scene can be cut for.
+echo 'localhost slots=4' >hosts
+succeed bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --threads 1 --rounds 1 --launcher 'mpirun --hostfile hosts'
+rm told
+"$mssim" bench --scene cloth2500 --backend mpi:5000 --integrator semi-euler --threads 1 --rounds 1 --launcher one/telling --out many \
+  >/dev/null 2>&1 && fail "fifty columns do for 5000 ranks"
+[ ! -e told ] || fail "ranks that have no columns are started"
+grep -q 'unsupported: 50 columns cannot be cut for 5000 ranks: .* at most --ranks ' many/timings.csv || fail "5000 ranks: $(cat many/timings.csv)"
+"$mssim" bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --rounds 1 --launcher ./hosts --out hostless >/dev/null 2>&1 &&
+  fail "a launcher that may not be executed starts ranks"
+grep -q 'unavailable: ./hosts is no file that may be executed' hostless/timings.csv || fail "./hosts: $(cat hostless/timings.csv)"
+
+# A guide has it, and its larger cloths.
+succeed guide --scene cloth2500 --backend openmp,mpi --ranks 2 --threads 1 --integrator semi-euler --horizon 0.01 --time-budget 15 --error 1e-2 \
+  --out guide
+[ "$(column_of guide/guide.csv backend | grep -c '^mpi$')" -ge 2 ] || fail "a guide has no points of mpi: $(cat guide/guide.csv)"
+! grep 'failed:' guide/*.csv || fail "mpi fails in a guide"
+[ "$(grep -c ',mpi,' guide/guide-sizes.csv)" -ge 2 ] || fail "a guide has no cloths of mpi: $(cat guide/guide-sizes.csv)"
 
 # Names that say how many ranks: rows of their own.
 succeed bench --scene cloth2500 --backend openmp,mpi:3,mpi:1 --integrator semi-euler --threads 1 --ranks 7 --rounds 1 --out counts

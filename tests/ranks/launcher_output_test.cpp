@@ -33,6 +33,12 @@ TEST(LauncherOutput, SaysThatTheRanksHaveStartedAndPassesOnTheRest) {
   EXPECT_TRUE(heard("mssim-mpi: rank 1 on a: it is broken\n").failed);
 }
 
+TEST(LauncherOutput, TakesNoFrameForAReason) {
+  const std::string asterisks(74, '*');
+  EXPECT_EQ(heard("sh: mpirunx: not found\n" + asterisks + "\n").reason, "sh: mpirunx: not found");
+  EXPECT_EQ(heard(asterisks + "\nno slots are left\n" + asterisks + "\n").reason, "no slots are left");
+}
+
 TEST(LauncherOutput, TakesWhatARankSaysFirst) {
   EXPECT_EQ(heard("mssim-mpi: rank 1 on a: it is broken\n" + dashes +
                   "\nMPI_ABORT was invoked on rank 1 in communicator MPI_COMM_WORLD\n" + dashes +
