@@ -32,16 +32,21 @@ double where_one(double x_a, double y_a, double x_b, double y_b) {
 }
 
 /// A sample of this cloth; none where the backend does not run, and curve.status says why.
-std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const System& system,
-                                           const ExecutionOptions& execution) {
+std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& cloth,
+                                           ExecutionOptions execution) {
   constexpr double enough_s = 0.02;
   constexpr int most_steps = 200;
-  const auto backend =
-      try_to_make(*curve.backend, system, *curve.integrator, curve.dt_s, execution, curve.status);
-  if (!backend) return std::nullopt;
+  execution.scene_file = cloth.file;
   // As many steps as a frame has, so that solvers meet what they meet there.
   const int steps = std::min(most_steps, steps_a_frame(curve.dt_s, frame_rates.front()));
-  return SizeCurve::Sample{system.nodes(), time_steps(*backend, system, steps, enough_s).seconds};
+  SizeCurve::Sample sample{cloth.system.nodes(), 0};
+  std::vector<LateProgram> late;  // whose curve ends here
+  const auto measure = [&] {
+    const auto backend = make_backend(*curve.backend, cloth.system, *curve.integrator, curve.dt_s, execution);
+    sample.seconds_a_step = time_steps(*backend, cloth.system, steps, enough_s).seconds;
+  };
+  if (!succeeds(*curve.backend, curve.status, late, measure)) return std::nullopt;
+  return sample;
 }
 
 }  // namespace
@@ -76,7 +81,7 @@ void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const Ex
     if (curve.status.empty()) active.push_back(&curve);
   for (std::size_t size = 0; size < cloth_sides.size() && !active.empty(); ++size) {
     const std::uint64_t nodes = std::uint64_t{cloth_sides[size]} * cloth_sides[size];
-    std::optional<System> system;
+    std::optional<FamilyCloth> cloth;
     std::vector<SizeCurve*> still_active;
     for (SizeCurve* curve : active) {
       const std::string activity = counted(nodes, "node") + ": " + std::string(curve->integrator->name) +
@@ -85,8 +90,8 @@ void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const Ex
         curve->status = "no time was left for larger cloths";
         continue;
       }
-      if (!system) system = make(cloth_sides[size]);
-      const auto sample = sample_of(*curve, *system, execution);
+      if (!cloth) cloth = make(cloth_sides[size]);
+      const auto sample = sample_of(*curve, *cloth, execution);
       if (!sample) continue;
       curve->samples.push_back(*sample);
       if (size == 0 || holds_any(*curve, size - 1)) still_active.push_back(curve);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -47,8 +48,14 @@ std::optional<double> crossover(const SizeCurve& a, const SizeCurve& b);
 /// four times the nodes of the one before.
 inline constexpr std::array<std::uint32_t, 7> cloth_sides{16, 32, 64, 128, 256, 512, 724};
 
-/// Makes a square cloth of the family, with so many nodes along a side.
-using ClothMaker = std::function<System(std::uint32_t side)>;
+/// A cloth of a family, and the file of its scene, from which processes build it for themselves.
+struct FamilyCloth {
+  System system;
+  std::filesystem::path file = {};
+};
+
+/// Makes a square cloth of the family, with so many nodes along a side. The file stays while the maker does.
+using ClothMaker = std::function<FamilyCloth(std::uint32_t side)>;
 
 /// Times every curve's method on ever larger cloths, each until two in a row do not hold the slowest frame
 /// rate.

@@ -26,7 +26,11 @@ constexpr double share_of_trust = 0.2, share_of_limits = 0.2, until_limits = 0.4
 class GuideClock {
  public:
   explicit GuideClock(double seconds) : seconds_(seconds) {}
-  double spent() const { return watch_.seconds(); }
+  double spent() const { return watch_.seconds() - forgiven_; }
+  /// What was lost in waiting for programs is not taken from the others.
+  void forgive(const std::vector<LateProgram>& programs) {
+    for (const LateProgram& program : programs) forgiven_ += program.seconds;
+  }
   double fraction() const { return std::min(1.0, spent() / seconds_); }
   /// Seconds after the guide's start at which a part ends that begins now: it leaves `later` to what follows.
   double end_of_part(double share, double later) const {
@@ -34,7 +38,7 @@ class GuideClock {
   }
 
  private:
-  double seconds_;
+  double seconds_, forgiven_ = 0;
   Stopwatch watch_;
 };
 
@@ -52,8 +56,7 @@ void find_trusted_state(SceneGuide& guide, const GuideRequest& request, const Gu
                                                   .stop = watch.stop});
 }
 
-void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
-                 const GuideClock& clock) {
+void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch, GuideClock& clock) {
   constexpr double patience = 1.5;  // shares that an integrator may take until it has a stable step
   LimitRequest limits{.system = request.system,
                       .backends = request.backends,
@@ -63,6 +66,7 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
                       .seconds = 0,
                       .stop = {}};
   const double end = clock.end_of_part(share_of_limits, 1 - until_limits);
+  std::string given_up;  // why there is no backend left
   for (std::size_t i = 0; i < request.integrators.size(); ++i) {
     const Integrator& integrator = *request.integrators[i];
     watch.progress("largest stable step: " + std::string(integrator.name), clock.fraction());
@@ -72,14 +76,20 @@ void find_limits(SceneGuide& guide, const GuideRequest& request, const GuideWatc
     limits.stop = [&, last = begin + patience * limits.seconds] {
       return watch.stop() || clock.spent() > std::min(last, end);
     };
-    guide.limits.push_back(find_step_limit(integrator, limits));
+    StepLimit& limit = guide.limits.emplace_back(find_step_limit(integrator, limits));
+    if (limits.backends.empty()) limit.status = given_up;
+    clock.forgive(limit.late);
+    for (const LateProgram& program : limit.late) {
+      std::erase(limits.backends, program.backend);
+      given_up = program.status;
+    }
   }
 }
 
 /// The point that takes the least time goes first: fast methods reach the wished error whatever the slow ones
 /// take, and all curves have begun before one goes on.
 void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideWatch& watch,
-                    const GuideClock& clock) {
+                    GuideClock& clock) {
   const double later = request.make_cloth ? share_of_sizes : 0;
   const double end = clock.end_of_part(share_of_points, later + share_of_exact_steps);
   std::vector<ImplicitEnd> ends;
@@ -91,6 +101,12 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
       curves.emplace_back(*request.system, guide.trusted, limit, method, request.execution,
                           request.wish.error);
     }
+  const auto give_up = [&](const std::vector<LateProgram>& programs) {
+    for (const LateProgram& program : programs)
+      for (std::size_t i = 0; i < curves.size(); ++i)
+        if (guide.methods[i].backend == program.backend) curves[i].end(program.status);
+  };
+  for (const StepLimit& limit : guide.limits) give_up(limit.late);
   while (true) {
     const auto next = std::ranges::min_element(curves, {}, [](const WorkCurve& curve) {
       return curve.has_next() ? curve.next_seconds() : std::numeric_limits<double>::infinity();
@@ -105,6 +121,8 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
                        std::string(method.backend->name),
                    clock.fraction());
     auto measured = next->next();
+    clock.forgive(method.late);
+    give_up(method.late);
     if (!measured) continue;
     if (is_implicit(*method.integrator) && !measured->point.diverged)
       ends.push_back({guide.points.size(), std::move(measured->state)});
@@ -158,7 +176,7 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
 }  // namespace
 
 SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
-  const GuideClock clock(request.seconds);
+  GuideClock clock(request.seconds);
   SceneGuide guide;
   guide.scene = request.scene;
   guide.nodes = request.system->nodes();

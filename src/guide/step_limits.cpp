@@ -51,43 +51,53 @@ bool fit(StepSearch& search, double seconds_a_step, double seconds) {
   return runs * steps >= fewest_steps;
 }
 
+/// Finds the limit with this backend, whose failures it throws.
+void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& request, StepLimit& limit) {
+  const Integrator& integrator = *limit.integrator;
+  const Stopwatch watch;
+  const StepMaker make = [&](double dt_s) {
+    return make_backend(info, *request.system, integrator, dt_s, request.execution);
+  };
+  const auto backend = make(search.first_s);
+  limit.backend = info.name;
+  limit.first_seconds = watch.seconds();
+  limit.step_seconds = step_seconds(*backend, *request.system);
+  if (!fit(search, limit.step_seconds, request.seconds)) {
+    limit.measured.finished = false;
+    return;
+  }
+  limit.measured = largest_stable_step(*request.system, make, search);
+  if (is_shorter_than_theory(limit.measured, limit.theory)) {
+    const System in_the_air = without_floor(*request.system);
+    const double dt_s = limit.measured.unstable_s;
+    // Processes that read the scene's file would find the floor there.
+    const bool reads_scene = info.program != nullptr && info.program->in_ranks;
+    const BackendInfo& floorless = reads_scene ? *find_backend("openmp") : info;
+    limit.floor_is_why = is_stable(*make_backend(floorless, in_the_air, integrator, dt_s, request.execution),
+                                   in_the_air, dt_s, search);
+  }
+  limit.why = why_they_differ(integrator, limit.measured, limit.theory, limit.floor_is_why);
+}
+
 }  // namespace
 
 StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& request) {
   StepLimit limit;
   limit.integrator = &integrator;
   limit.theory = step_theory(integrator, *request.system, request.at_start, request.on_the_way);
-  StepSearch search = search_for(integrator, limit.theory, request);
+  const StepSearch search = search_for(integrator, limit.theory, request);
   std::vector<const BackendInfo*> order = request.backends;
   std::stable_partition(order.begin(), order.end(),
                         [](const BackendInfo* info) { return info->name == "openmp"; });
   for (const BackendInfo* info : order) {
+    StepLimit found = limit;
     std::string status;
-    const Stopwatch watch;
-    const auto backend =
-        try_to_make(*info, *request.system, integrator, search.first_s, request.execution, status);
+    if (succeeds(*info, status, limit.late, [&] { find_with(*info, search, request, found); })) {
+      found.status.clear();
+      found.late = limit.late;
+      return found;
+    }
     if (limit.status.empty()) limit.status = status;
-    if (!backend) continue;
-    limit.status.clear();
-    limit.backend = info->name;
-    limit.first_seconds = watch.seconds();
-    limit.step_seconds = step_seconds(*backend, *request.system);
-    if (!fit(search, limit.step_seconds, request.seconds)) {
-      limit.measured.finished = false;
-      break;
-    }
-    const StepMaker make = [&](double dt_s) {
-      return make_backend(*info, *request.system, integrator, dt_s, request.execution);
-    };
-    limit.measured = largest_stable_step(*request.system, make, search);
-    if (is_shorter_than_theory(limit.measured, limit.theory)) {
-      const System in_the_air = without_floor(*request.system);
-      const double dt_s = limit.measured.unstable_s;
-      limit.floor_is_why = is_stable(*make_backend(*info, in_the_air, integrator, dt_s, request.execution),
-                                     in_the_air, dt_s, search);
-    }
-    limit.why = why_they_differ(integrator, limit.measured, limit.theory, limit.floor_is_why);
-    break;
   }
   return limit;
 }

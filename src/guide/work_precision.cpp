@@ -102,17 +102,19 @@ std::optional<MeasuredPoint> WorkCurve::next() {
   point.steps = steps_;
   point.dt_s = trusted_.horizon_s / steps_;
   has_next_ = false;
-  const auto backend =
-      try_to_make(*method_.backend, system_, *method_.integrator, point.dt_s, execution_, method_.status);
-  if (!backend) return std::nullopt;
-  const StepTime time = time_steps(*backend, system_, steps_, enough_s);
-  point.seconds_a_step = time.seconds;
-  point.samples = time.runs;
+  State state;
+  const auto measure = [&] {
+    const auto backend = make_backend(*method_.backend, system_, *method_.integrator, point.dt_s, execution_);
+    const StepTime time = time_steps(*backend, system_, steps_, enough_s);
+    point.seconds_a_step = time.seconds;
+    point.samples = time.runs;
+    state = backend->state();
+    point.note = backend->note();
+  };
+  if (!succeeds(*method_.backend, method_.status, method_.late, measure)) return std::nullopt;
   point.evaluations = evaluations_of(*method_.integrator, system_);
-  State state = backend->state();
   take_state(point, system_, trusted_, state);
   point.within_limit = point.dt_s <= stable_s_ * (1 + 1e-9);
-  point.note = backend->note();
   ++points_;
   has_next_ = goes_on_after(point);
   last_error_ = point.counts() ? point.position_error : std::nullopt;

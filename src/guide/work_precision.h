@@ -30,8 +30,8 @@ class WorkCurve {
   bool has_next() const { return has_next_; }
   /// Takes no more points, for this reason.
   void end(std::string_view why);
-  /// Measures the next point, with half the step of the one before. None where the backend does not run;
-  /// method.status says why.
+  /// Measures the next point, with half the step of the one before. None where the backend does not run, or
+  /// fails; method.status says why.
   std::optional<MeasuredPoint> next();
 
  private:

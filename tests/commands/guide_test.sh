@@ -49,6 +49,19 @@ diff -r "$work/before" "$work/folder" || fail "a guide that was stopped has repl
 succeed bench --scene "$work/tiny.json" --backend serial --integrator semi-euler --rounds 1 --out "$work/folder" --overwrite
 [ -z "$(find "$work/folder" -name 'guide*')" ] || fail "--overwrite leaves $(ls "$work/folder")"
 
+# Programs: one that fails, and one that hangs, cost their own points, and the status says why.
+program=$(realpath "${mssim%/*}/../bin/own_backend")  # tests/support/own_backend.cpp
+for mistake in exits hangs; do printf '{"command": ["%s", "%s"]}' "$program" "$mistake" >"$work/$mistake.json"; done
+status=0
+"$mssim" guide --scene "$work/tiny.json" --backend serial,exits,hangs --backend-limit 1 --integrator semi-euler,rk4 --threads 1 \
+  --horizon 0.01 --time-budget 8 --error 1e-2 --out "$work/programs" >"$work/out" 2>"$work/err" || status=$?
+[ "$status" -eq 1 ] || fail "a guide in which programs fail exits with $status: $(cat "$work/err")"
+grep -q '^mssim: tiny, exits, semi-euler: failed: exits ended with exit code 3' "$work/err" || fail "stderr says: $(cat "$work/err")"
+for text in ',semi-euler,exits,.*failed: exits ended with exit code 3' ',semi-euler,hangs,.*failed: hangs did not answer ""step '; do
+  grep -q "$text" "$work/programs/guide.csv" || fail "guide.csv does not say $text: $(cat "$work/programs/guide.csv")"
+done
+grep -q '^Take \(semi-euler\|rk4\) on serial with a step of ' "$work/programs/guide.md" || fail "other programs cost serial its points"
+
 expect 2 '^mssim: --scene NAME|FILE,... is missing; see mssim guide --help$' guide
 expect 2 'jeans1k is a garment' guide --scene jeans1k
 expect 2 'unknown integrator "rk5"' guide --scene cloth2500 --integrator rk5

@@ -111,25 +111,55 @@ echo mine >again/programs/mine/file
 succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --overwrite
 [ "$(find again/programs -type f)" = again/programs/mine/file ] || fail "--overwrite leaves, of programs and the user: $(find again/programs)"
 
-# Ctrl-C ends a wait, without --backend-limit of two minutes, and leaves nothing.
+# Ctrl-C and Ctrl-\ end a wait, without --backend-limit of two minutes, and leave nothing; nor does SIGKILL.
 describe hangs
-env --default-signal=INT "$mssim" "${bench[@]}" --backend serial,hangs --backend-folder backends --out stopped >out 2>err </dev/null &
-process=$!
-for ((i = 0; i < 100; ++i)); do
-  pgrep -f "^$work/spring_list hangs" >/dev/null && break
-  sleep 0.1
+for signal in INT:130 QUIT:131 KILL:137; do
+  env --default-signal=INT,QUIT "$mssim" "${bench[@]}" --backend serial,hangs --backend-folder backends --out "stopped$signal" \
+    >out 2>err </dev/null &
+  process=$!
+  for ((i = 0; i < 100; ++i)); do
+    pgrep -f "^$work/spring_list hangs" >/dev/null && break
+    sleep 0.1
+  done
+  sleep 0.5
+  state=$(tr '\0' '\n' <"/proc/$(pgrep -f "^[^ ]*/supervise .*$work/spring_list hangs")/cmdline" | grep -m 1 '^/dev/shm/mssim-' || true)
+  kill "-${signal%:*}" "$process"
+  for ((i = 0; i < 50; ++i)); do
+    kill -0 "$process" 2>/dev/null || break
+    sleep 0.1
+  done
+  ! kill -9 "$process" 2>/dev/null || fail "SIG${signal%:*} does not end a wait"
+  status=0
+  wait "$process" || status=$?
+  [ "$status" -eq "${signal#*:}" ] || fail "SIG$signal gives exit status $status: $(cat err)"
+  for ((i = 0; i < 20; ++i)); do
+    [ -e "$state" ] || [ -n "$(ls tmp)" ] || break
+    sleep 0.1
+  done
+  nothing_left "SIG$signal"
+  [ ! -e "$state" ] || fail "SIG$signal leaves $state"
 done
-sleep 0.5
-kill -INT "$process"
-for ((i = 0; i < 50; ++i)); do
-  kill -0 "$process" 2>/dev/null || break
-  sleep 0.1
-done
-! kill -9 "$process" 2>/dev/null || fail "Ctrl-C does not end a wait"
+
+# A program that cannot be started fails alone; a comma may be part of a path; folders of mssim's may have long or relative names.
+printf '#!/usr/bin/env python3\r\n' >crlf
+printf '#!/no/such/python\n' >lost
+printf 'print(1)\n' >bare
+chmod +x crlf lost bare
+ln -s spring_list a,b
 status=0
-wait "$process" || status=$?
-[ "$status" -eq 130 ] || fail "Ctrl-C gives exit status $status: $(cat err)"
-nothing_left "Ctrl-C"
+"$mssim" "${bench[@]}" --backend serial,./crlf,./a,b,./lost,./bare --out unstarted >out 2>err || status=$?
+[ "$status" -eq 1 ] || fail "programs that cannot be started give exit status $status: $(cat err)"
+[ "$(grep -c '\(,serial,\|,"a,b",\).*,true,ok,' unstarted/timings.csv)" -eq 2 ] || fail "beside them there is: $(cat unstarted/timings.csv)"
+for reason in 'crlf: .*CR LF' 'lost: its interpreter /no/such/python' 'bare: it is neither'; do
+  grep -q ",failed: cannot run .*$reason" unstarted/timings.csv || fail "not \"$reason\": $(cat unstarted/timings.csv)"
+done
+mkdir "$(printf 'long%.0s' {1..25})"
+for folder in tmp "$PWD"/long*; do
+  TMPDIR=$folder succeed "${bench[@]}" --backend serial,floods --backend-folder backends
+  [ -z "$(ls "$folder")" ] || fail "$folder holds $(ls "$folder")"
+done
+TMPDIR=$work/none "$mssim" "${bench[@]}" --backend serial,./spring_list --out nowhere >out 2>err && fail "a missing TMPDIR is not told"
+grep -q '^cloth2500,[0-9,]*,serial,.*,true,ok,' nowhere/timings.csv || fail "a missing TMPDIR costs serial: $(cat err)"
 
 mkdir twin
 printf '{"command": ["true"]}' >twin/serial.json

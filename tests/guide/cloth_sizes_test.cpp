@@ -47,7 +47,7 @@ TEST(ClothSizes, AreMeasuredUntilAFrameTakesTooLong) {
   std::vector<SizeCurve> curves{size_curve({}, 1e-9), size_curve({}, 1e-9)};
   curves[1].status = "left out";
   measure_sizes(
-      curves, [](std::uint32_t side) { return cloth_system(side, side); }, {.threads = 1},
+      curves, [](std::uint32_t side) { return FamilyCloth{cloth_system(side, side)}; }, {.threads = 1},
       [](const std::string&, double) { return true; });
   ASSERT_EQ(curves[0].samples.size(), 2U);
   EXPECT_EQ(curves[0].samples[0].nodes, 256U);
@@ -58,7 +58,7 @@ TEST(ClothSizes, AreMeasuredUntilAFrameTakesTooLong) {
 TEST(ClothSizes, SayThatTheTimeWasOver) {
   std::vector<SizeCurve> curves{size_curve({})};
   measure_sizes(
-      curves, [](std::uint32_t side) { return cloth_system(side, side); }, {.threads = 1},
+      curves, [](std::uint32_t side) { return FamilyCloth{cloth_system(side, side)}; }, {.threads = 1},
       [](const std::string&, double) { return false; });
   EXPECT_TRUE(curves[0].samples.empty());
   EXPECT_NE(curves[0].status, "");

@@ -22,6 +22,7 @@
 #include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
 #include "commands/shared/prepared_scene.h"
+#include "commands/shared/scene_list.h"
 #include "commands/shared/stop_request.h"
 #include "commands/shared/tell_first.h"
 #include "output/tables/result_table.h"
@@ -91,12 +92,11 @@ int run_guide_suite(const BenchOptions& options) {
   refuse(options.windows.has_value(), "--windows");
   refuse(!options.verified.empty(), "--verified");
   refuse(options.output.format != SummaryFormat::table, "--format");
-  refuse(!options.own_backends.folders.empty(), "--backend-folder");
-  refuse(options.own_backends.limit_s.has_value(), "--backend-limit");
   GuideOptions guide;
   guide.scenes = scenes_of_suite(options.suite, true);
   guide.scenes.insert(guide.scenes.end(), options.scenes.begin(), options.scenes.end());
   guide.backends = options.backends;
+  guide.own_backends = options.own_backends;
   guide.integrators = options.integrators;
   guide.execution = options.execution;
   guide.time_budget_s = options.time_budget_s;
@@ -157,7 +157,8 @@ std::function<int()> declare_bench(Arguments& arguments) {
       .add_list(
           "--backend", options->backends,
           "Backends, or methods with --suite races (default: all of mssim's); a path with a slash, or a "
-          "described name, is a program of your own")
+          "described name, is a program of your own",
+          names_and_files_in)
       .value_name("NAME|FILE,...");
   declare_backend_folders(arguments, options->own_backends);
   declare_backend_limit(arguments, options->own_backends);

@@ -13,6 +13,7 @@
 #include "commands/compare/ab_rounds.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/exit_code.h"
+#include "commands/shared/scene_list.h"
 #include "commands/shared/tell_first.h"
 #include "output/tables/comparison_table.h"
 #include "text/counted.h"
@@ -130,7 +131,8 @@ std::function<int()> declare_compare(Arguments& arguments) {
   add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
   arguments
       .add_list("--backend", options->ab.backends,
-                "With --ab: backends, which may be programs of your own (default: openmp)")
+                "With --ab: backends, which may be programs of your own (default: openmp)",
+                names_and_files_in)
       .needs(ab)
       .value_name("NAME|FILE,...");
   declare_backend_folders(arguments, options->ab.own_backends).needs(ab);

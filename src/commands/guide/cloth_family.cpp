@@ -1,16 +1,29 @@
 #include "commands/guide/cloth_family.h"
 
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "platform/atomic_file.h"
+#include "platform/temporary_folder.h"
 #include "scene/scene_kinds.h"
 
 namespace mssim {
 namespace {
 
+/// With that many nodes along a side; its text says so too.
 SceneSpec with_side(SceneSpec spec, std::uint32_t side) {
   auto& cloth = std::get<ClothSpec>(spec.content);
   const double height = cloth.ceiling_height_m - spec.floor.height;
   cloth.ceiling_height_m = spec.floor.height + height * (side - 1) / (cloth.rows - 1);
   cloth.rows = cloth.columns = side;
   if (cloth.pins) cloth.pins->row = 0;
+  nlohmann::json text = nlohmann::json::parse(spec.source);
+  nlohmann::json& fields = text.at("cloth");
+  fields["rows"] = fields["columns"] = side;
+  fields["ceiling_height_m"] = cloth.ceiling_height_m;
+  if (cloth.pins) fields["pins"]["row"] = 0;
+  spec.source = text.dump();
   return spec;
 }
 
@@ -19,7 +32,12 @@ SceneSpec with_side(SceneSpec spec, std::uint32_t side) {
 ClothMaker cloth_family(const SceneSpec& spec) {
   const auto* cloth = std::get_if<ClothSpec>(&spec.content);
   if (cloth == nullptr || cloth->rows < 2) return {};
-  return [spec](std::uint32_t side) { return build_system(with_side(spec, side)); };
+  return [spec, folder = std::make_shared<TemporaryFolder>()](std::uint32_t side) {
+    const SceneSpec one = with_side(spec, side);
+    FamilyCloth made{build_system(one), folder->path() / (std::to_string(side) + ".json")};
+    write_file_atomically(made.file, one.source);
+    return made;
+  };
 }
 
 bool same_family(const SceneSpec& a, const SceneSpec& b) {

@@ -4,6 +4,7 @@
 
 #include "commands/guide/guide_run.h"
 #include "commands/shared/choices.h"
+#include "commands/shared/scene_list.h"
 
 namespace mssim {
 
@@ -29,8 +30,12 @@ std::function<int()> declare_guide(Arguments& arguments) {
       .value_name("SECONDS");
   arguments
       .add_list("--backend", options->backends,
-                "Backends (default: serial, openmp and opencl; see mssim list backends)")
-      .value_name("NAME,...");
+                "Backends, which may be programs of your own (default: serial, openmp and opencl; see mssim "
+                "list backends)",
+                names_and_files_in)
+      .value_name("NAME|FILE,...");
+  declare_backend_folders(arguments, options->own_backends);
+  declare_backend_limit(arguments, options->own_backends);
   arguments
       .add_list("--integrator", options->integrators,
                 "Integrators (default: all; see mssim list integrators)")

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
+#include "commands/shared/backend_choice.h"
 #include "guide/recommendation.h"
 
 namespace mssim {
@@ -13,7 +14,8 @@ namespace mssim {
 struct GuideOptions {
   std::vector<std::string> scenes;
   Wish wish;
-  std::vector<std::string> backends;     ///< none: guide_backends
+  std::vector<std::string> backends;  ///< none: guide_backends
+  OwnBackendOptions own_backends;
   std::vector<std::string> integrators;  ///< none, or "all": every one
   ExecutionOptions execution;
   double horizon_s = 0.1;               ///< errors are measured so long after the start, at most

@@ -16,6 +16,7 @@
 #include "commands/shared/progress_line.h"
 #include "commands/shared/run_provenance.h"
 #include "commands/shared/stop_request.h"
+#include "commands/shared/tell_first.h"
 #include "guide/scene_guide.h"
 #include "output/folders/result_folder.h"
 #include "output/guide/guide_page.h"
@@ -112,6 +113,7 @@ SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::siz
                        .longest_horizon_s = options.horizon_s,
                        .make_cloth = {}};
   request.execution.scene = spec.name;
+  request.execution.scene_file = spec.file;
   // Once for every family.
   const auto earlier = plan.scenes.begin() + static_cast<std::ptrdiff_t>(number);
   if (std::none_of(plan.scenes.begin(), earlier, [&](const SceneSpec& s) { return same_family(s, spec); }))
@@ -119,6 +121,17 @@ SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::siz
   return guide_scene(request, {.progress = [&](const std::string& activity,
                                                double done) { progress.update(activity, done); },
                                .stop = [&] { return stop.requested(); }});
+}
+
+/// What programs have failed with.
+std::vector<std::string> failures(const std::vector<SceneGuide>& guides) {
+  std::vector<std::string> sentences;
+  for (const SceneGuide& guide : guides)
+    for (const GuidedMethod& method : guide.methods)
+      if (method.status.starts_with("failed"))
+        sentences.push_back(guide.scene + ", " + std::string(method.backend->name) + ", " +
+                            std::string(method.integrator->name) + ": " + method.status);
+  return sentences;
 }
 
 void tell(const GuidePlan& plan) {
@@ -139,7 +152,7 @@ std::vector<const BackendInfo*> guide_backends() {
 
 int run_guide(const GuideOptions& options) {
   GuidePlan plan;
-  BackendChoice choice(table_backends(), {}, options.scenes);
+  BackendChoice choice(table_backends(), options.own_backends, options.scenes);
   plan.backends = options.backends.empty() ? guide_backends() : choice.require_all(options.backends);
   require_use_of_ranks(options.execution, plan.backends);
   require_device(options.execution, plan.backends);
@@ -185,7 +198,9 @@ int run_guide(const GuideOptions& options) {
   if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
   if (folder && !written) std::cerr << "mssim: nothing was measured yet, and nothing written\n";
   stop.throw_if_requested();
-  return exit_ok;
+  const std::vector<std::string> failed = failures(guides);
+  tell_first(failed);
+  return failed.empty() ? exit_ok : exit_not_verified;
 }
 
 }  // namespace mssim

@@ -45,7 +45,7 @@ Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<s
   return arguments
       .add_list(name, target,
                 description + ", separated by commas (but not at a comma in the name of an existing file)",
-                scenes_in)
+                names_and_files_in)
       .value_name("NAME|FILE,...");
 }
 

@@ -8,7 +8,8 @@
 namespace mssim {
 namespace {
 
-/// Length of the scene that the text begins with.
+/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is: a
+/// path that exists.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
@@ -19,14 +20,14 @@ std::size_t length_of_first(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string> scenes_in(std::string_view argument) {
-  std::vector<std::string> scenes;
+std::vector<std::string> names_and_files_in(std::string_view argument) {
+  std::vector<std::string> names;
   while (!argument.empty()) {
     const std::size_t length = length_of_first(argument);
-    if (length > 0) scenes.emplace_back(argument.substr(0, length));
+    if (length > 0) names.emplace_back(argument.substr(0, length));
     argument.remove_prefix(std::min(length + 1, argument.size()));
   }
-  return scenes;
+  return names;
 }
 
 }  // namespace mssim
