@@ -49,6 +49,12 @@ ab() {
 says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\""; }
 warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\""; }
 
+# One that is no mssim and never says anything is given up, and named.
+printf '#!/bin/sh\nsleep 1000\n' >"$work/sleeper"
+chmod +x "$work/sleeper"
+ab 2 sleeper sleeper --time-budget 1
+warns 'sleeper bench --help has not ended within 11 s'
+
 # Times that vary a little from run to run.
 # shellcheck disable=SC2016 # for the programs' own shell
 {

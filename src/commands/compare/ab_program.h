@@ -19,12 +19,15 @@ class AbProgram {
   /// Throws MissingProgram for a file that cannot be run.
   AbProgram(const std::string& file, const AbOptions& options);
 
-  /// Whether its bench takes --verified, as its help says.
+  /// Whether its bench takes --verified, as its help says. Throws UsageError where it says nothing in a
+  /// minute.
   bool takes_verified() const;
   /// The process that verifies everything, so that what is sampled later can rest on it.
   ChildProcess verification() const;
   /// Takes what came of it: the rows of a bench of one round.
   std::vector<CombinationTime> take_verification(const ChildResult& result);
+  /// After a verification that took so long, samples may take ten times that, where that is more.
+  void allow(double verification_s);
   /// Samples of these backends and integrators, which verifies them again where no verification was taken.
   std::vector<CombinationTime> bench(const std::vector<std::string>& backends,
                                      const std::vector<std::string>& integrators) const;

@@ -125,11 +125,13 @@ std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& 
       return {};
     }
   progress.update("verify both", 0);
+  const Stopwatch watch;
   const std::array processes{programs[0].verification(), programs[1].verification()};
   // Nothing is timed, and the reference takes one processor.
   const std::vector<ChildResult> results =
       both_fit(options) ? run_together(processes) : std::vector{run(processes[0]), run(processes[1])};
   const std::array rows{programs[0].take_verification(results[0]), programs[1].take_verification(results[1])};
+  for (AbProgram& program : programs) program.allow(watch.seconds());
   std::vector<Series> series = combinations_of(rows[0], rows[1], options);
   for (Series& one : series)
     if (const CombinationTime& next = *find(rows[1], one.pairs); !next.least_ms)

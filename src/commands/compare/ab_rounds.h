@@ -26,9 +26,9 @@ struct AbOptions {
 /// them cannot rely on an earlier verification, being older, each process of both verifies again, and stderr
 /// says so. A combination is measured until it is settled (paired_times.h). Ends when all are, or before a
 /// round that would exceed the time budget, of which the verification is part. Says on stderr how many rounds
-/// there were. Throws UsageError when a program fails or there is nothing to compare, MissingProgram when one
-/// cannot be run, Unavailable when one misses a device, CsvError for results that cannot be read, and
-/// Interrupted, after the program under way has been ended.
+/// there were. Throws UsageError when a program fails, takes far longer than the budget or there is nothing
+/// to compare, MissingProgram when one cannot be run, Unavailable when one misses a device, CsvError for
+/// results that cannot be read, and Interrupted, after the program under way has been ended.
 RunComparison compare_programs(const AbOptions& options);
 
 }  // namespace mssim
