@@ -52,6 +52,10 @@ for name in '' mine.py a/b ../b 2fast 'two words' -x.y "$(printf 'a%.0s' {1..65}
 done
 expect 2 'mssim has a backend openmp already (mssim list backends): give another name' new-backend openmp --language c++
 expect 2 'numpy is the name of a module that backends need' new-backend numpy --language python
+# Modules of Python's library, which the example imports, or what it imports does.
+for name in struct tempfile hashlib; do
+  expect 2 "$name is the name of a module of python3, .*: give another name, my_$name say" new-backend "$name" --language python
+done
 expect 2 'NAME is missing' new-backend --language python
 expect 2 '^mssim: --language WORD is missing; see mssim new-backend --help$' new-backend mine
 expect 2 'unknown value "pyhton" (did you mean python?): known are c++ and python' new-backend mine --language pyhton

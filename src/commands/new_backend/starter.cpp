@@ -6,7 +6,9 @@
 
 #include "backends/backends.h"
 #include "commands/shared/exit_code.h"
+#include "platform/child_process.h"
 #include "platform/data_folder.h"
+#include "platform/find_program.h"
 #include "platform/whole_file.h"
 #include "text/printable.h"
 #include "text/shell_word.h"
@@ -21,6 +23,24 @@ constexpr std::string_view example_name = "my_backend";
 
 /// What a program of one of these names would import instead of the module that it needs.
 constexpr std::array<std::string_view, 3> needed_modules{"mssim_backend", "numpy", "h5py"};
+
+/// Whether the Python in PATH has a module of that name, of its library or installed: the program's folder
+/// goes before those, so that what the example imports, and all that this imports, would get the program
+/// instead. False where there is no Python, which would run no such program either.
+bool is_module_of_python(const std::string& name) {
+  const auto python = find_program("python3");
+  if (!python || name.find('-') != std::string::npos) return false;  // `import a-b` is none
+  const ChildResult result = run({*python,
+                                  {"-I", "-c",
+                                   "import importlib.util, sys; "
+                                   "print('module', importlib.util.find_spec(sys.argv[1]) is not None)",
+                                   name},
+                                  {},
+                                  "/",
+                                  60,
+                                  60});
+  return result.output.find("module True") != std::string::npos;
+}
 
 void require_usable(const std::string& name) {
   constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
@@ -56,6 +76,9 @@ Starter starter_of(const std::string& name, StarterLanguage language, const fs::
   require_usable(name);
   const fs::path program = folder / name;
   if (language == StarterLanguage::python) {
+    if (is_module_of_python(name))
+      throw UsageError(name + " is the name of a module of python3, which would be imported from " + name +
+                       ".py by all that needs it: give another name, my_" + name + " say");
     const std::string file = name + ".py";
     return {{{file, example_for(name, ".py"), true}}, {bench_command(folder / file)}};
   }
