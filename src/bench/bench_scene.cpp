@@ -24,6 +24,7 @@
 #include "platform/process_cpus.h"
 #include "statistics/statistics.h"
 #include "text/counted.h"
+#include "text/decimal.h"
 #include "text/note.h"
 
 namespace mssim {
@@ -72,6 +73,11 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
   row.gigabytes_per_second = cost.bytes / seconds / 1e9;
   if (const auto peak = peaks.find(peak_key(combination, size)); combination.on_host && peak != peaks.end())
     row.roofline_fraction = roofline_fraction(cost, seconds, peak->second);
+  if (row.roofline_fraction && *row.roofline_fraction > 1)
+    add_to_note(row.note,
+                three_digits(100 * *row.roofline_fraction) +
+                    " % of the roofline: faster than this machine was seen to do the work of a step; "
+                    "does it take all steps, or was the machine busy when its peak was measured?");
 }
 
 /// Compares a backend with the reference.

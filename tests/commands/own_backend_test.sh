@@ -151,7 +151,7 @@ status=0
 [ "$status" -eq 1 ] || fail "programs that cannot be started give exit status $status: $(cat err)"
 [ "$(grep -c '\(,serial,\|,"a,b",\).*,true,ok,' unstarted/timings.csv)" -eq 2 ] || fail "beside them there is: $(cat unstarted/timings.csv)"
 for reason in 'crlf: .*CR LF' 'lost: its interpreter /no/such/python' 'bare: it is neither'; do
-  grep -q ",failed: cannot run .*$reason" unstarted/timings.csv || fail "not \"$reason\": $(cat unstarted/timings.csv)"
+  grep -q "failed: cannot run .*$reason" unstarted/timings.csv || fail "not \"$reason\": $(cat unstarted/timings.csv)"
 done
 mkdir "$(printf 'long%.0s' {1..25})"
 for folder in tmp "$PWD"/long*; do
