@@ -26,7 +26,7 @@ std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize
   const auto nodes = static_cast<double>(size.nodes);
   const double system =
       nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
-  double running = 0, serial = 0, held = system;
+  double running = 0, serial = 0, held = system + state_node * nodes;  // a round's start
   for (const Integrator* integrator : settings.integrators) {
     const MemoryUse reference = reference_memory(*integrator, size.grid);
     running = std::max(running, reference.bytes(*integrator, size.nodes, size.springs, 1) +

@@ -6,6 +6,7 @@
 #include <functional>
 #include <future>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -17,6 +18,7 @@
 #include "bench/job/combination.h"
 #include "bench/roofline/machine_peak.h"
 #include "bench/roofline/step_cost.h"
+#include "bench/verification/sample_check.h"
 #include "bench/windows/window_verification.h"
 #include "garment/bench/dressing_record.h"
 #include "garment/bench/garment_verification.h"
@@ -95,12 +97,17 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
     };
   if (job.windowed)
     return [&job, &integrator,
-            reference = run_window_references(*job.windowed, integrator, job.dt_s,
-                                              static_cast<std::size_t>(job.execution.threads))](
+            reference = std::make_shared<const WindowReferences>(run_window_references(
+                *job.windowed, integrator, job.dt_s, static_cast<std::size_t>(job.execution.threads)))](
                Combination& combination) {
       Verification found =
-          verify_windows(*combination.windows, *job.windowed, integrator, reference, job.dt_s);
-      if (!found.failure) add_to_note(combination.row.note, share_seen(*job.windowed));
+          verify_windows(*combination.windows, *job.windowed, integrator, *reference, job.dt_s);
+      if (found.failure) return found;
+      add_to_note(combination.row.note, share_seen(*job.windowed));
+      combination.most_steps = reference->steps;
+      combination.compare_windows = [&job, &integrator, reference](WindowBackend& backend, int steps) {
+        return compare_windows(backend, *job.windowed, integrator, *reference, steps, job.dt_s);
+      };
       return found;
     };
   return [&job, reference = run_reference(*job.system, integrator, job.dt_s)](Combination& combination) {
@@ -108,49 +115,70 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
   };
 }
 
-/// The backend as job.verified or else the comparison with the reference finds it.
-Combination make_verified(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
-                          const State& start, const Verifier& verifier) {
-  Combination combination = make_combination(job, info, integrator, start);
-  if (combination.backend && job.verified)
-    take_verification(combination, *job.verified);
-  else if (combination.backend)
-    attempt(combination, [&] { take_verification(combination, verifier(combination)); });
-  return combination;
+/// Steps that a sample takes at most, so that where it ends can be compared with the reference.
+int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
+  if (job.garment) return max_sample_steps;  // its ends are not compared
+  if (job.windowed) return verification_steps;
+  const int checkable =
+      checkable_steps(integrator, {job.system->nodes(), job.system->springs.size(), false, false});
+  return comparable_steps(*job.system, integrator, job.dt_s, checkable);
 }
 
 /// What an integrator's reference leaves.
 struct AfterReference {
-  Verifier verifier;
-  std::optional<Combination> serial;  ///< verified, if it is among the job's backends
+  int most_steps = max_sample_steps;  ///< of a sample
+  Verifier verifier = {};
+  std::optional<Combination> serial = {};  ///< verified, if it is among the job's backends
 };
 
-/// Runs the references of all integrators and verifies `serial` with each. Both take one thread: as many run
-/// at the same time as the other backends have threads. The results have the integrators' order.
-std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
-                                           const State& start) {
-  std::vector<AfterReference> results(job.integrators.size());
-  const auto serial =
-      std::ranges::find_if(job.backends, [](const BackendInfo* info) { return info->name == "serial"; });
-  // Those that take longer begin first.
-  std::vector<std::size_t> order(results.size());
+/// The backend as job.verified or else the comparison with the reference finds it.
+Combination make_verified(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
+                          const State& start, const AfterReference& reference) {
+  Combination combination = make_combination(job, info, integrator, start);
+  combination.most_steps = reference.most_steps;
+  if (combination.most_steps < verification_steps)
+    add_to_note(combination.row.note,
+                "compared and timed in " +
+                    counted(static_cast<std::uint64_t>(combination.most_steps), "step") +
+                    ", in which the integrator doubles a rounding");
+  if (combination.backend && job.verified)
+    take_verification(combination, *job.verified);
+  else if (combination.backend)
+    attempt(combination, [&] { take_verification(combination, reference.verifier(combination)); });
+  return combination;
+}
+
+/// Does what takes one thread for each of the job's integrators, by their number: as many at the same time as
+/// the backends have threads, and first those that take longer.
+void for_each_integrator(const SceneJob& job, const std::function<void(std::size_t i)>& work) {
+  std::vector<std::size_t> order(job.integrators.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(),
                            [&](std::size_t i) { return expected_evaluations(*job.integrators[i]); });
-  const auto run = [&](const Integrator& integrator, AfterReference& result) {
-    result.verifier = make_verifier(job, integrator, draped);
-    if (serial != job.backends.end())
-      result.serial = make_verified(job, **serial, integrator, start, result.verifier);
-  };
   std::atomic<std::size_t> next = 0;
   const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
   std::vector<std::future<void>> threads;
   for (std::size_t thread = 0; thread < (job.windowed ? 1 : references_at_once(job)); ++thread)
     threads.push_back(std::async(std::launch::async, [&] {
-      for (std::size_t i = next++; i < order.size(); i = next++)
-        run(*job.integrators[order[i]], results[order[i]]);
+      for (std::size_t i = next++; i < order.size(); i = next++) work(order[i]);
     }));
   for (std::future<void>& thread : threads) thread.get();
+}
+
+/// Runs the references of all integrators and verifies `serial` with each, but for job.verified. The results
+/// have the integrators' order.
+std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
+                                           const State& start) {
+  std::vector<AfterReference> results(job.integrators.size());
+  const auto serial =
+      std::ranges::find_if(job.backends, [](const BackendInfo* info) { return info->name == "serial"; });
+  for_each_integrator(job, [&](std::size_t i) {
+    results[i].most_steps = most_sample_steps(job, *job.integrators[i]);
+    if (job.verified) return;
+    results[i].verifier = make_verifier(job, *job.integrators[i], draped);
+    if (serial != job.backends.end())
+      results[i].serial = make_verified(job, **serial, *job.integrators[i], start, results[i]);
+  });
   return results;
 }
 
@@ -166,6 +194,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);
     summarise_costs(combination, row);
     compare_with_peaks(combination, size, peaks, row);
+    require_finite(row);
   }
   return rows;
 }
@@ -214,9 +243,85 @@ void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, c
                  job.preparation + (1 - job.preparation) * done);
 }
 
-/// One sample of every combination, in this order. False when it was stopped, and then without a trace.
+/// Which samples start where, and which of them are checked. Programs cannot know it: what they are asked is
+/// the same for every sample, and the check waits until no sample follows.
+class SampleSecrets {
+ public:
+  /// `start`: of all samples, where their ends are not checked. Must outlive it.
+  SampleSecrets(const SceneJob& job, const State& start)
+      : job_(job), start_(start), checks_(!job.garment && !job.windowed && !job.verified) {}
+
+  /// Chooses the round that is checked, of those that there may be.
+  void choose(const FirstRound& first) {
+    if (job_.deadline)
+      checked_from_ = first.start + std::chrono::duration_cast<Clock::duration>(
+                                        between_0_and_1() * (*job_.deadline - first.start));
+    else
+      checked_round_ = first.number + static_cast<int>(between_0_and_1() * (job_.rounds - first.number));
+  }
+
+  /// The start of a round's samples.
+  const State& begin_round(int round) {
+    if (!checks_) return start_;
+    present_ = static_cast<std::uint32_t>(random_());
+    of_round_ = sample_start(*job_.system, present_);
+    checks_this_ = !has_checked_ && (job_.deadline ? Clock::now() >= checked_from_ : round == checked_round_);
+    if (checks_this_) check();
+    return of_round_;
+  }
+  /// Checks the round that has begun, whatever was chosen.
+  void check() {
+    checks_this_ = has_checked_ = true;
+    checked_ = present_;
+  }
+
+  bool is_due() const { return checks_ && !has_checked_; }
+  /// The node to look at first, in a round that is checked.
+  std::optional<std::size_t> first_node() const {
+    return checks_this_ ? std::optional<std::size_t>(first_) : std::nullopt;
+  }
+
+  /// Compares the ends of the samples that were checked. The backends have been ended.
+  void compare(std::vector<Combination>& combinations) const {
+    if (!has_checked_) return;
+    const State start = sample_start(*job_.system, checked_);
+    for_each_integrator(job_, [&](std::size_t i) {
+      std::vector<Combination*> checked;
+      std::vector<SampleEnd> ends;
+      for (Combination& combination : combinations)
+        if (combination.integrator == job_.integrators[i] && combination.row.status == "ok" &&
+            combination.checked) {
+          checked.push_back(&combination);
+          ends.push_back(*std::exchange(combination.checked, std::nullopt));
+        }
+      const std::vector<std::string> reasons =
+          check_samples(*job_.system, *job_.integrators[i], job_.dt_s, start, first_, ends);
+      for (std::size_t j = 0; j < reasons.size(); ++j)
+        if (!reasons[j].empty()) fail(*checked[j], "failed: " + reasons[j]);
+    });
+  }
+
+ private:
+  double between_0_and_1() { return static_cast<double>(random_()) / 0x1p32; }
+
+  const SceneJob& job_;
+  const State& start_;
+  const bool checks_;
+  std::mt19937 random_{std::random_device{}()};
+  const std::size_t first_ = random_();
+  State of_round_;
+  int checked_round_ = 0;
+  Clock::time_point checked_from_;
+  bool checks_this_ = false, has_checked_ = false;
+  std::uint32_t present_ = 0, checked_ = 0;  ///< of which round's start
+};
+
+/// One sample of every combination, in this order, from `start`. False when it was stopped, and then without
+/// a trace.
 bool take_round(std::vector<Combination>& combinations, const std::vector<std::size_t>& order, int round,
-                const FirstRound& first, const SceneJob& job, const BenchWatch& watch) {
+                const FirstRound& first, const SceneJob& job, const State& start,
+                std::optional<std::size_t> first_node, bool kept, const BenchWatch& watch) {
+  for (Combination& combination : combinations) combination.start = &start;
   std::vector<std::pair<Combination*, std::optional<double>>> samples;
   for (std::size_t place = 0; place < order.size(); ++place) {
     const std::size_t i = order[place];
@@ -224,10 +329,10 @@ bool take_round(std::vector<Combination>& combinations, const std::vector<std::s
     if (watch.stop()) return false;
     tell_sample(combinations[i].row, round + static_cast<double>(place) / static_cast<double>(order.size()),
                 first, job, watch);
-    samples.emplace_back(&combinations[i], sample_ms(combinations[i], job));
+    samples.emplace_back(&combinations[i], sample_ms(combinations[i], job, first_node));
   }
   for (const auto& [combination, ms] : samples) {
-    if (!ms) continue;
+    if (!ms || !kept) continue;
     combination->row.samples_ms.push_back(*ms);
     combination->row.sample_steps.push_back(combination->steps);
   }
@@ -247,12 +352,9 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     if (!draped) return {};
   }
   const State& start = draped ? *draped : job.system->start;
-  std::vector<AfterReference> references(job.integrators.size());
-  if (!job.verified) {
-    watch.progress("references", 0);
-    if (watch.stop()) return {};
-    references = run_references(job, draped, start);
-  }
+  if (!job.verified) watch.progress("references", 0);
+  if (watch.stop()) return {};
+  std::vector<AfterReference> references = run_references(job, draped, start);
   for (std::size_t i = 0; i < job.integrators.size(); ++i) {
     const Integrator* integrator = job.integrators[i];
     for (const BackendInfo* info : job.backends) {
@@ -260,11 +362,11 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
                          std::string(info->name),
                      done());
       if (watch.stop()) return {};
-      auto& [verifier, serial] = references[i];
+      std::optional<Combination>& serial = references[i].serial;
       Combination& combination =
           all.emplace_back(serial && info->name == serial->row.backend
                                ? std::move(*serial)
-                               : make_verified(job, *info, *integrator, start, verifier));
+                               : make_verified(job, *info, *integrator, start, references[i]));
       if (combination.backend && job.garment && !job.verified) {
         watch.progress("dress with " + std::string(info->name), done());
         if (!dress_combination(combination, job, watch.stop)) return {};
@@ -281,6 +383,14 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(20160101);  // any fixed seed: a run can be repeated
   const FirstRound first{restore(all, job.earlier)};
+  SampleSecrets secrets(job, start);
+  secrets.choose(first);
+  const auto take = [&](int round, bool kept) {
+    const State& from = secrets.begin_round(round);
+    if (!kept) secrets.check();
+    return take_round(all, order, round, first, job, from, secrets.first_node(), kept, watch);
+  };
+  bool stopped = false, measured_any = false;
   for (int round = 0; round < job.rounds; ++round) {
     std::ranges::shuffle(order, random);
     if (round < first.number) continue;
@@ -288,13 +398,23 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     if (job.deadline && measured > 0 &&
         Clock::now() + (Clock::now() - first.start) / measured > *job.deadline)
       break;
-    if (!take_round(all, order, round, first, job, watch)) {
+    if (!take(round, true)) {
       if (round == 0) return {};
+      stopped = true;
       break;
     }
     watch.after_round(rows_of(all, size, peaks));
+    measured_any = true;
   }
-  std::ranges::for_each(all, end);
+  // Fewer rounds than the deadline let expect: one more, whose times do not count.
+  if (measured_any && !stopped && secrets.is_due()) take(job.rounds - 1, false);
+  for (Combination& combination : all) {
+    if (combination.backend) require_prompt_steps(combination);
+    end(combination);
+    combination.backend.reset();
+  }
+  watch.progress("check of the samples", 1);
+  secrets.compare(all);
   return rows_of(all, size, peaks);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/job/sample_length.h"
 #include "bench/verification/verification.h"
 #include "garment/stepping/dressing_backend.h"
 
@@ -50,6 +51,12 @@ double expected_evaluations(const Integrator& integrator) {
   return 0;
 }
 
+int checkable_steps(const Integrator& integrator, const SceneSize& size) {
+  constexpr double patience_s = 5, references = 2;
+  return static_cast<int>(std::clamp<double>(patience_s / (references * list_step_time(integrator, size)),
+                                             verification_steps, max_sample_steps));
+}
+
 ExpectedTime total(std::span<const ExpectedTime> scenes) {
   ExpectedTime sum;
   for (const ExpectedTime& scene : scenes) {
@@ -74,13 +81,18 @@ ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size)
         settings.verified ? 0 : verification_steps * (size.garment ? verified_garment : 1);
     time.preparation += verification * list_step + (size.garment || settings.verified ? 0 : peaks_s);
     if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_backends;
+    const int checkable = checkable_steps(*integrator, size);
+    double checked = 0;  // steps of the longest sample
     for (const BackendInfo* backend : settings.backends) {
       const double step = step_time(*backend, list_step);
       const double sample = std::max(settings.sample_seconds, step) + 2 * nodes * moved_node_s;
       time.preparation += verification * step + samples_to_calibrate * sample;
       if (size.garment && !settings.verified) time.preparation += dressing_steps(nodes) * step;
       time.round += sample;
+      if (!size.garment && !settings.verified)
+        checked = std::max(checked, std::min<double>(settings.sample_seconds / step, checkable));
     }
+    time.preparation += checked * list_step * (checked > verification_steps ? 2 : 1);
   }
   return time;
 }

@@ -27,6 +27,10 @@ double rounds_within(double seconds, const ExpectedTime& time);
 /// and backends for alike. A plan is made of it, no result.
 ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size);
 
+/// Steps of a sample whose end is compared with the reference, at most: the reference of so many, and what
+/// roundings make of it, shall take some seconds, or no longer than the verification.
+int checkable_steps(const Integrator& integrator, const SceneSize& size);
+
 /// Seconds that simulating `steps` steps takes a backend, as roughly; dressing a garment takes as many as it
 /// needs, but no more. Building the scene is part of it, writing files is not.
 double expected_run_time(const BackendInfo& backend, const Integrator& integrator, const SceneSize& size,

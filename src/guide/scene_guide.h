@@ -8,9 +8,9 @@
 #include "guide/cloth_sizes.h"
 #include "guide/guided_method.h"
 #include "guide/recommendation.h"
-#include "guide/spectrum.h"
 #include "guide/trusted_state.h"
 #include "guide/work_point.h"
+#include "model/spectrum.h"
 
 namespace mssim {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "guide/guided_method.h"
-#include "guide/spectrum.h"
+#include "model/spectrum.h"
 
 namespace mssim {
 

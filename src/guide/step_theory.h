@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "guide/spectrum.h"
 #include "guide/stable_step.h"
 #include "integrators/integrator.h"
+#include "model/spectrum.h"
 
 namespace mssim {
 

@@ -37,6 +37,10 @@ void take_state(WorkPoint& point, const System& system, const TrustedState& trus
     return;
   }
   const Deviation deviation = deviation_from(system, trusted.state, trusted.energy, state);
+  if (!std::isfinite(deviation.position) || !std::isfinite(deviation.energy)) {
+    point.diverged = true;
+    return;
+  }
   point.position_error = deviation.position;
   point.energy_error = deviation.energy;
   point.diverged = !(energy_of(system, state).total() <= energy_bound(system, trusted.horizon_s));

@@ -23,6 +23,10 @@ inline constexpr double tolerated_growth = 1e-6;
 /// be explicit.
 double amplification(const Integrator& integrator, double dt_s, double stiffness, double damping);
 
+/// The largest amplification of the modes of the bound: what a step multiplies an error by, once the mode
+/// that grows fastest makes up the most of it.
+double largest_amplification(const Integrator& integrator, double dt_s, const ModeBound& bound);
+
 /// The dt in s below which the integrator keeps every mode of the bound from growing by more than
 /// tolerated_growth a step; infinite where neither stiffness nor damping bounds it and for implicit
 /// integrators, 0 where it keeps none at any dt.

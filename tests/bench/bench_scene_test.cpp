@@ -3,15 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "backends/backends.h"
+#include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 
@@ -120,6 +124,71 @@ std::unique_ptr<Backend> fails_at(const System& system, const Integrator& integr
   return std::make_unique<FailsAt>(find_backend("serial")->make(system, integrator, dt_s, options));
 }
 constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, fails_at, {}, {}};
+
+/// What a program may do that wants to look fast.
+enum class Cheat : std::uint8_t {
+  stops,      ///< takes a hundred steps of any request, and none after them
+  drifts,     ///< is right for a hundred steps of a request, and then pulls too weakly
+  grows,      ///< is right until it has been asked for some states, and then gives huge ones
+  remembers,  ///< steps from the scene's start, whatever state it is given, which it need not do twice
+  postpones   ///< takes its steps when it is asked for the state
+};
+
+class Cheating final : public Backend {
+ public:
+  Cheating(const System& system, const Integrator& integrator, double dt_s, const ExecutionOptions& options)
+      : start_(system.start),
+        weak_system_(system),
+        right_(find_backend("serial")->make(system, integrator, dt_s, options)),
+        weak_(find_backend("serial")->make(weakened(weak_system_), integrator, dt_s, options)) {}
+  void set_state(const State& state) override {
+    present_.reset();
+    right_->set_state(cheat == Cheat::remembers ? start_ : state);
+  }
+  void step(int count) override {
+    const int known = std::min(count, 100), more = count - known;
+    if (cheat == Cheat::postpones) {
+      owed_ += count;
+    } else if (cheat == Cheat::grows || cheat == Cheat::remembers) {
+      right_->step(count);
+    } else {
+      right_->step(known);
+      if (cheat == Cheat::stops || more == 0) return;
+      weak_->set_state(right_->state());
+      weak_->step(more);
+      present_ = weak_->state();
+    }
+  }
+  State state() const override {
+    right_->step(std::exchange(owed_, 0));
+    State state = present_ ? *present_ : right_->state();
+    if (cheat == Cheat::grows && ++states_ > 4)
+      for (Vec3d& x : state.position) x = 1e300 * x;
+    return state;
+  }
+  std::string device() const override { return "made up"; }
+  int threads() const override { return 1; }
+
+  inline static Cheat cheat;
+
+ private:
+  static const System& weakened(System& system) {
+    system.materials[shear].stiffness *= 0.9;
+    return system;
+  }
+
+  const State start_;
+  System weak_system_;
+  std::unique_ptr<Backend> right_, weak_;
+  std::optional<State> present_;
+  mutable int owed_ = 0, states_ = 0;
+};
+
+std::unique_ptr<Backend> cheating(const System& system, const Integrator& integrator, double dt_s,
+                                  const ExecutionOptions& options) {
+  return std::make_unique<Cheating>(system, integrator, dt_s, options);
+}
+constexpr BackendInfo cheat{"cheat", "", "looks fast", false, cheating, {}, {}};
 
 class BenchScene : public testing::Test {
  protected:
@@ -302,6 +371,49 @@ TEST_F(BenchScene, SaysWhatFailedInTheMidstOfTheRounds) {
   EXPECT_EQ(rows[1].ms_per_step, std::nullopt);
   EXPECT_EQ(rows[0].note, "");
   EXPECT_EQ(rows[1].note, "tired") << "what it has come to say since it was made";
+}
+
+TEST_F(BenchScene, FindsAProgramThatIsRightOnlyWhereItIsVerified) {
+  job_.backends = {find_backend("serial"), &cheat};
+  job_.sample_seconds = 0.05;
+  const auto expect_found = [&](Cheat what, const char* sentence) {
+    Cheating::cheat = what;
+    for (const ResultRow& row : run()) {
+      const bool right = row.backend == "serial";
+      EXPECT_EQ(row.verified, right) << static_cast<int>(what) << ", " << row.integrator;
+      EXPECT_THAT(row.status, HasSubstr(right ? "ok" : sentence)) << static_cast<int>(what);
+      EXPECT_EQ(row.ms_per_step.has_value(), right);
+    }
+  };
+  expect_found(Cheat::postpones, "not done when it says so");
+  expect_found(Cheat::grows, "not finite");
+  for (const Cheat what : {Cheat::stops, Cheat::drifts, Cheat::remembers})
+    expect_found(what, "position error");
+  job_.deadline = std::chrono::steady_clock::now();
+  expect_found(Cheat::stops, "position error");
+}
+
+TEST_F(BenchScene, TimesAMethodThatGrowsForAsLongAsItCanBeCompared) {
+  system_ = cloth_system(30, 30);
+  for (SpringMaterial& material : system_.materials) material.damping *= 0.75;
+  job_.dt_s = 5e-5;
+  job_.integrators = {find_integrator("explicit-euler"), find_integrator("semi-euler")};
+  job_.sample_seconds = 0.01;
+  for (const ResultRow& row : run()) {
+    EXPECT_EQ(row.status, "ok") << row.integrator << ' ' << row.backend;
+    EXPECT_TRUE(row.verified);
+    const bool grows = row.integrator == "explicit-euler";
+    EXPECT_EQ(*std::ranges::max_element(row.sample_steps) < verification_steps, grows);
+    EXPECT_EQ(row.note.find("doubles a rounding") != std::string::npos, grows) << row.note;
+  }
+}
+
+TEST_F(BenchScene, VerifiesAClothAtRest) {
+  SceneSpec spec = cloth_spec(9, 11);
+  spec.gravity_m_per_s2 = 0;
+  std::get<ClothSpec>(spec.content).ripple = {0, 1, 0};
+  system_ = build_system(spec);
+  for (const ResultRow& row : run()) EXPECT_EQ(row.status, "ok") << row.integrator << ' ' << row.backend;
 }
 
 TEST_F(BenchScene, TellsOfAProgramThatFailsAtAnyCall) {

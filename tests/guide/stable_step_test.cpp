@@ -4,10 +4,10 @@
 
 #include "backends/backends.h"
 #include "backends/reference.h"
-#include "guide/spectrum.h"
 #include "guide/step_limits.h"
 #include "guide/step_theory.h"
 #include "integrators/all_integrators.h"
+#include "model/spectrum.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/spring_chain.h"
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <iterator>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -9,6 +12,7 @@
 
 #include "bench/job/sample_length.h"
 #include "bench/verification/blow_up.h"
+#include "bench/windows/window_reference.h"
 #include "bench/windows/window_verification.h"
 #include "integrators/all_integrators.h"
 #include "statistics/outliers.h"
@@ -23,6 +27,9 @@ namespace {
 /// filling the caches little more.
 constexpr double long_step_s = 0.01;
 
+/// No step takes less (s): a handful of nodes is more than tens of operations.
+constexpr double least_step_s = 1e-8;
+
 struct SampleTime {
   double wall_s = 0;
   double processor_s = 0;
@@ -36,9 +43,16 @@ void restart(Combination& combination) {
     combination.backend->set_state(*combination.start);
 }
 
+template <class Work>
+double seconds_of(const Work& work) {
+  using Clock = std::chrono::steady_clock;
+  const auto before = Clock::now();
+  work();
+  return std::chrono::duration<double>(Clock::now() - before).count();
+}
+
 /// Runs the steps of one sample.
 SampleTime time_sample(Combination& combination, int steps) {
-  using Clock = std::chrono::steady_clock;
   Backend& backend = *combination.backend;
   restart(combination);
   if (combination.step_seconds < long_step_s) {
@@ -46,10 +60,8 @@ SampleTime time_sample(Combination& combination, int steps) {
     restart(combination);
   }
   const double processor_before = backend.processor_seconds();
-  const auto before = Clock::now();
-  backend.step(steps);
-  const std::chrono::duration<double> wall = Clock::now() - before;
-  return {wall.count(), backend.processor_seconds() - processor_before};
+  const double wall_s = std::max(1e-9, seconds_of([&] { backend.step(steps); }));  // no clock sees less
+  return {wall_s, backend.processor_seconds() - processor_before};
 }
 
 /// What a row is about, beyond its names.
@@ -176,7 +188,12 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
   int steps = 1;
   for (;;) {
     combination.step_seconds = time_steps(steps) / steps;
-    const int fit = sample_steps(combination.step_seconds, job.sample_seconds, resolution_s);
+    if (combination.step_seconds < least_step_s)
+      return fail(combination, "failed: its steps are not done when it says so: " +
+                                   counted(static_cast<std::uint64_t>(steps), "step") +
+                                   " take less than 10 ns each");
+    const int fit =
+        sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
     if (fit <= (job.verified ? 10 : 2) * steps) {
       steps = fit;
       break;
@@ -193,7 +210,19 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
   while (trials.size() < most_warm_up_trials && !is_warm(trials)) trials.push_back(time_steps(trial_steps));
   combination.row.warm_up_trials = static_cast<int>(trials.size());
   combination.step_seconds = median(trials) / trial_steps;
-  combination.steps = sample_steps(combination.step_seconds, job.sample_seconds, resolution_s);
+  combination.steps =
+      sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
+}
+
+/// What reading a state that has just come to be takes, the shortest of some times.
+double reading_seconds_after_a_step(Combination& combination) {
+  double shortest = std::numeric_limits<double>::max();
+  for (int time = 0; time < 3; ++time) {
+    restart(combination);
+    combination.backend->step(1);
+    shortest = std::min(shortest, seconds_of([&] { combination.backend->state(); }));
+  }
+  return shortest;
 }
 
 }  // namespace
@@ -201,39 +230,57 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
 void calibrate(Combination& combination, const SceneJob& job) {
   attempt(combination, [&] {
     find_sample_steps(combination, job);
+    if (!combination.backend) return;
+    if (combination.windows)
+      combination.steps = *std::prev(std::ranges::upper_bound(window_looks, combination.steps));
+    else if (!job.verified)
+      combination.step_reading_seconds = reading_seconds_after_a_step(combination);
     combination.backend->rest();
   });
 }
 
-namespace {
-
-bool has_blown_up(const Combination& combination, const SceneJob& job) {
-  return (combination.windows ? first_bad_node(*combination.windows, *job.windowed)
-                              : first_bad_node(combination.backend->state()))
-      .has_value();
-}
-
-}  // namespace
-
-std::optional<double> sample_ms(Combination& combination, const SceneJob& job) {
+std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
+                                std::optional<std::size_t> first) {
   std::optional<double> ms;
   attempt(combination, [&] {
     combination.backend->communication();  // of what came before
     const SampleTime time = time_sample(combination, combination.steps);
     if (const auto costs = combination.backend->communication()) combination.communication.push_back(*costs);
-    if (has_blown_up(combination, job)) {
+    std::optional<State> state;
+    if (!combination.windows)
+      combination.reading_seconds.push_back(seconds_of([&] { state = combination.backend->state(); }));
+    combination.sample_seconds.push_back(time.wall_s);
+    if (combination.windows ? first_bad_node(*combination.windows, *job.windowed) : first_bad_node(*state)) {
       const std::optional<BlowUp> blow_up =
           combination.windows ? find_blow_up(*combination.windows, *job.windowed, combination.steps)
                               : find_blow_up(*combination.backend, *combination.start, combination.steps);
       fail(combination,
            "failed: " + (blow_up ? describe(*blow_up, job.dt_s) : std::string(finite_in_the_next)));
     } else {
+      if (first && state) combination.checked = sample_end(*job.system, *state, combination.steps, *first);
       combination.backend->rest();
+      if (combination.windows && combination.compare_windows)
+        if (const auto wrong = combination.compare_windows(*combination.windows, combination.steps).failure)
+          fail(combination, "failed: " + *wrong);
     }
     combination.processors.push_back(time.processor_s / time.wall_s);
     ms = 1000 * time.wall_s / combination.steps;
   });
   return ms;
+}
+
+void require_prompt_steps(Combination& combination) {
+  constexpr std::size_t fewest_samples = 3;
+  if (combination.steps == 1 || combination.windows || combination.sample_seconds.size() < fewest_samples)
+    return;
+  const double sample = median(combination.sample_seconds), reading = median(combination.reading_seconds);
+  if (reading - combination.step_reading_seconds <= sample) return;
+  std::ostringstream why;
+  why << "failed: its steps are not done when it says so: it takes " << 1e3 * sample << " ms for "
+      << counted(static_cast<std::uint64_t>(combination.steps), "step") << ", and then " << 1e3 * reading
+      << " ms to give the state, where that takes " << 1e3 * combination.step_reading_seconds
+      << " ms after one step";
+  fail(combination, why.str());
 }
 
 void summarise(ResultRow& row, const ResultRow* serial) {
@@ -253,6 +300,15 @@ void summarise(ResultRow& row, const ResultRow* serial) {
   const std::vector<Outlier> labels = outliers(row.samples_ms);
   row.outliers =
       static_cast<int>(labels.size() - static_cast<std::size_t>(std::ranges::count(labels, Outlier::no)));
+}
+
+void require_finite(ResultRow& row) {
+  for (const auto& [name, number] : row_numbers) {
+    if (!(row.*number) || std::isfinite(*(row.*number))) continue;
+    (row.*number).reset();
+    row.verified = false;
+    if (row.status == "ok") row.status = "failed: " + std::string(name) + " is not finite";
+  }
 }
 
 void take_costs(ResultRow& row, const ResultRow& earlier) {

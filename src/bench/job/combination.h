@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "backends/backends.h"
+#include "bench/job/sample_length.h"
 #include "bench/job/scene_job.h"
 #include "bench/results/result.h"
+#include "bench/verification/sample_check.h"
 #include "bench/verification/verification.h"
 
 namespace mssim {
@@ -21,14 +23,22 @@ struct Combination {
   bool on_host = true;
   int steps_per_pass = 0;
   std::optional<std::uint64_t> stored_springs;
-  const State* start = nullptr;         ///< of every sample
+  const State* start = nullptr;         ///< of every sample of a round
   std::unique_ptr<Backend> backend;     ///< null where the row has no times: it cannot run, or has failed
   DressingBackend* dressing = nullptr;  ///< the same, of a garment
   WindowBackend* windows = nullptr;     ///< the same, of a cloth that is seen in windows
   int steps = 1;                        ///< in a sample
+  int most_steps = max_sample_steps;    ///< in a sample, so that its end can be compared with the reference
   std::vector<double> processors;       ///< that each sample of this run took: processor seconds a second
   std::vector<Communication> communication;  ///< in each sample of this run, where the backend tells it
   double step_seconds = 0;                   ///< what calibrate has found; 0 before
+  std::vector<double> sample_seconds,
+      reading_seconds;               ///< of this run: of samples, and of reading their ends
+  double step_reading_seconds = 0;   ///< what reading the state takes after one step
+  std::optional<SampleEnd> checked;  ///< the end of the sample that is to be checked
+  /// What the windows say after so many steps, of a cloth that is seen in windows; empty where it was
+  /// verified by an earlier process.
+  std::function<Verification(WindowBackend& backend, int steps)> compare_windows;
 };
 
 /// Makes the backend; a reason not to becomes the row's status. `start`: of its samples; must
@@ -65,11 +75,21 @@ void calibrate(Combination& combination, const SceneJob& job);
 /// Milliseconds a step, in a sample of combination.steps from their start. Sets and warms up what is
 /// needed outside the timed region, after which the backend rests. The row has failed where the result is not
 /// finite, and where the program behind the backend fails: then there is no sample.
-std::optional<double> sample_ms(Combination& combination, const SceneJob& job);
+/// `first`: where the sample's end is to be checked, the node to look at first (sample_end).
+std::optional<double> sample_ms(Combination& combination, const SceneJob& job,
+                                std::optional<std::size_t> first);
+
+/// Fails the combination where its samples show that steps are not taken while the clock runs, but when the
+/// state is asked for: reading it then takes the longer, the more steps there were.
+void require_prompt_steps(Combination& combination);
 
 /// Computes all that follows from the row's samples. `serial`: the baseline's row of the same integrator, or
 /// null.
 void summarise(ResultRow& row, const ResultRow* serial);
+
+/// Takes numbers that are not finite out of the row, as a program may have told some that lead to them or
+/// have taken no time that a clock sees. A row that was ok has failed by the first of them.
+void require_finite(ResultRow& row);
 
 /// Takes over what an earlier run found of the same.
 void take_costs(ResultRow& row, const ResultRow& earlier);

@@ -18,11 +18,11 @@ double clock_resolution_s() {
   return std::chrono::duration<double>(smallest).count();
 }
 
-int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds) {
+int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds, int most) {
   const double seconds = std::max(step_seconds, 1e-12);
   const double enough_for_clock = std::ceil(least_clock_steps * clock_resolution_seconds / seconds);
-  const double most = std::max<double>(max_sample_steps, enough_for_clock);
-  return static_cast<int>(std::clamp(sample_seconds / seconds, 1.0, std::min(most, 1e9)));
+  const double limit = std::max<double>(most, enough_for_clock);
+  return static_cast<int>(std::clamp(sample_seconds / seconds, 1.0, std::min(limit, 1e9)));
 }
 
 bool is_warm(std::span<const double> trial_seconds) {

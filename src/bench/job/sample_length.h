@@ -17,8 +17,9 @@ inline constexpr double least_clock_steps = 1000;
 double clock_resolution_s();
 
 /// Steps of a sample that is to take `sample_seconds`, when one step takes `step_seconds`: at least 1, and at
-/// most max_sample_steps unless those were too short for the clock.
-int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds);
+/// most `most` unless those were too short for the clock.
+int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds,
+                 int most = max_sample_steps);
 
 /// Trials before a backend counts as warm, whatever they say.
 inline constexpr int most_warm_up_trials = 20;

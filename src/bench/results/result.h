@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace mssim {
@@ -72,6 +75,26 @@ struct ResultRow {
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
   std::optional<DressingRecord> dressing;  ///< of a garment
 };
+
+/// What is measured of a row or computed from it, by the names of their columns.
+inline constexpr std::array<std::pair<std::string_view, std::optional<double> ResultRow::*>, 16> row_numbers{{
+    {"position_error", &ResultRow::position_error},
+    {"energy_drift", &ResultRow::energy_drift},
+    {"ms_per_step", &ResultRow::ms_per_step},
+    {"ms_per_step_low", &ResultRow::ms_per_step_low},
+    {"ms_per_step_high", &ResultRow::ms_per_step_high},
+    {"ms_per_step_min", &ResultRow::ms_per_step_min},
+    {"springs_per_second", &ResultRow::springs_per_second},
+    {"gigabytes_per_second", &ResultRow::gigabytes_per_second},
+    {"roofline_fraction", &ResultRow::roofline_fraction},
+    {"speedup_vs_serial", &ResultRow::speedup_vs_serial},
+    {"processors_used", &ResultRow::processors_used},
+    {"waiting_share", &ResultRow::waiting_share},
+    {"packing_share", &ResultRow::packing_share},
+    {"bytes_per_step", &ResultRow::bytes_per_step},
+    {"latency_us", &ResultRow::latency_us},
+    {"link_gigabytes_per_second", &ResultRow::link_gigabytes_per_second},
+}};
 
 /// Are these, whatever is known of them, of the same scene, backend and integrator?
 template <class A, class B>

@@ -1,11 +1,17 @@
 #include "bench/verification/blow_up.h"
 
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace mssim {
 std::optional<std::size_t> first_bad_node(const State& state) {
+  const auto is_single = [](const Vec3d& a) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    return std::abs(a.x) <= largest && std::abs(a.y) <= largest && std::abs(a.z) <= largest;
+  };
   for (std::size_t i = 0; i < state.position.size(); ++i)
-    if (!is_finite(state.position[i]) || !is_finite(state.velocity[i])) return i;
+    if (!is_single(state.position[i]) || !is_single(state.velocity[i])) return i;
   return std::nullopt;
 }
 
@@ -40,7 +46,7 @@ std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_befo
   const std::int64_t step = steps_before + blow_up.step;
   std::ostringstream text;
   text << "blew up at step " << step << " (t = " << static_cast<double>(step) * dt_s << " s): node "
-       << blow_up.node << " is not finite; take a smaller dt_s or \"auto\"";
+       << blow_up.node << " is not finite in single precision; take a smaller dt_s or \"auto\"";
   return text.str();
 }
 

@@ -10,7 +10,9 @@
 
 namespace mssim {
 
-/// Where a simulation left the numbers: the first step whose result is not finite, and the first such node.
+/// Where a simulation left the numbers: the first step whose result is not finite in single precision, in
+/// which most backends compute and traces store, and the first such node. Energies of what is finite in it
+/// are finite in double precision.
 struct BlowUp {
   int step = 0;  ///< counted from 1
   std::size_t node = 0;
@@ -20,7 +22,7 @@ struct BlowUp {
 inline constexpr std::string_view finite_in_the_next =
     "not finite in one run, finite in the next: a data race";
 
-/// The first node whose position or velocity is not finite.
+/// The first node whose position or velocity is not finite in single precision.
 std::optional<std::size_t> first_bad_node(const State& state);
 
 /// Finds the first bad step of a simulation that was found bad `steps` steps after `from`, by bisection: a

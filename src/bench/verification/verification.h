@@ -11,7 +11,7 @@ namespace mssim {
 
 /// What the double-precision reference reached: the yardstick for every backend of a scene and integrator.
 struct Reference {
-  int steps = 0;  ///< taken from the start; before any node touches the floor
+  int steps = 0;  ///< taken from the start; before any node touches the floor, and comparable
   State state;
   Energy energy;
   double tolerance = 0;                ///< on the position error, in mean rest lengths
@@ -21,8 +21,16 @@ struct Reference {
 /// Steps of a verification run: enough for a wrong force to show, few enough that rounding does not.
 inline constexpr int verification_steps = 100;
 
-/// Largest allowed difference of total energy, as a share of kinetic plus elastic energy.
+/// Largest allowed difference of total energy, as a share of the energy in motion (energy_in_motion).
 inline constexpr double energy_tolerance = 0.01;
+
+/// Stages of a step that write the new position, and round it.
+int position_roundings(const Integrator& integrator);
+
+/// Steps from the start until a rounding may have doubled, at least 1 and at most `most`: beyond, a tolerance
+/// for roundings alone says nothing. From what the integrator multiplies the modes of the system by
+/// (stability.h), which lie between those of its spectrum; all that are asked for where it is stable.
+int comparable_steps(const System& system, const Integrator& integrator, double dt_s, int most);
 
 /// Largest position error, in mean rest lengths, that single precision may cause in `steps` steps.
 ///
@@ -38,8 +46,9 @@ double position_tolerance(const System& system, const Integrator& integrator, in
 /// Why there is no reference where a node touches the floor within the first steps.
 std::string touches_at_once(int steps);
 
-/// Runs the reference. Its state is taken, at a multiple of ten steps, before any node touches the floor:
-/// after a bounce, results differ by a step's worth of landing time, and a tolerance would mean nothing.
+/// Runs the reference. Its state is taken, at a multiple of ten steps or at the last of comparable_steps,
+/// before any node touches the floor: after a bounce, results differ by a step's worth of landing time, and a
+/// tolerance would mean nothing.
 Reference run_reference(const System& system, const Integrator& integrator, double dt_s);
 
 /// A backend's result against the reference.

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <future>
 #include <memory>
+#include <utility>
 
 #include "backends/layouts/band_grid.h"
 #include "backends/reference.h"
@@ -14,9 +15,8 @@
 namespace mssim {
 namespace {
 
-constexpr int stride = 10;  ///< steps between two looks at the floor
-constexpr int leg = 20;     ///< steps after which the domain is cut to what is still right
-static_assert(leg % stride == 0 && verification_steps % leg == 0);
+constexpr int leg = 20;  ///< steps after which the domain is cut to what is still right
+static_assert(std::ranges::find(window_looks, leg) != window_looks.end() && verification_steps % leg == 0);
 
 GridWindow domain_for(const GridWindow& window, int steps, const Integrator& integrator,
                       const GridPatch& grid) {
@@ -59,20 +59,22 @@ WindowReference run_window_reference(const WindowedCloth& cloth, const GridWindo
   std::unique_ptr<Backend> backend = make_reference(system, integrator, dt_s);
   State before = system.start;
   bool in_the_air = true;
+  const int comparable = comparable_steps(reference.system, integrator, dt_s, verification_steps);
   // To the end even after contact: a blow-up may only show then.
-  for (int steps = stride; steps <= verification_steps; steps += stride) {
-    backend->step(stride);
+  for (int steps = 0; const int look : window_looks) {
+    const int count = look - std::exchange(steps, look);
+    backend->step(count);
     State state = backend->state();
     const GridWindow right = domain_for(window, verification_steps - steps, integrator, cloth.grid);
     const State right_state = cut(state, domain, right);
     if (const auto node = first_bad_node(right_state)) {
-      BlowUp blow_up = find_blow_up(*backend, before, stride).value_or(BlowUp{stride, 0});
+      BlowUp blow_up = find_blow_up(*backend, before, count).value_or(BlowUp{count, 0});
       blow_up.node = node_of_cloth(right, *node, cloth.grid);
-      reference.failure = "the double-precision reference " + describe(blow_up, dt_s, steps - stride);
+      reference.failure = "the double-precision reference " + describe(blow_up, dt_s, steps - count);
       return reference;
     }
     in_the_air = in_the_air && is_in_the_air(right_state, system.floor);
-    if (in_the_air) reference.states.push_back(cut(right_state, right, window));
+    if (in_the_air && steps <= comparable) reference.states.push_back(cut(right_state, right, window));
     before = std::move(state);
     if (steps % leg != 0 || steps == verification_steps) continue;
     backend.reset();
@@ -109,13 +111,13 @@ WindowReferences run_window_references(const WindowedCloth& cloth, const Integra
       }));
     for (std::future<void>& thread : threads) thread.get();
   }
-  std::size_t looks = verification_steps / stride;
+  std::size_t looks = window_looks.size();
   for (const WindowReference& window : all.windows) {
     if (window.failure) all.failure = window.failure;
     looks = std::min(looks, window.states.size());
   }
-  all.steps = stride * static_cast<int>(looks);
-  if (!all.failure && looks == 0) all.failure = touches_at_once(stride);
+  if (looks > 0) all.steps = window_looks[looks - 1];
+  if (!all.failure && looks == 0) all.failure = touches_at_once(window_looks.front());
   return all;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/verification/verification.h"
 #include "bench/windows/windowed_cloth.h"
 #include "integrators/integrator.h"
 
@@ -13,15 +16,21 @@ namespace mssim {
 /// A window, and so many rows and columns beside it, as far as the cloth goes.
 GridWindow domain_of(const GridWindow& window, std::size_t reach, const GridPatch& grid);
 
+/// Steps after which the reference of a window has a state: a sample ends at one of them.
+inline constexpr std::array<int, 13> window_looks{1, 2, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 100};
+static_assert(window_looks.back() == verification_steps);
+
 /// What the double-precision reference reaches in one window.
 struct WindowReference {
   GridWindow window;
   System system;              ///< its nodes, and the springs between them
-  std::vector<State> states;  ///< after every tenth step, before what they follow from touches the floor
+  std::vector<State> states;  ///< at the looks before what they follow from touches the floor, and comparable
   std::optional<std::string> failure;  ///< why there is no reference
 
-  /// Its state after so many steps, a multiple of ten.
-  const State& after(int steps) const { return states.at(static_cast<std::size_t>(steps / 10 - 1)); }
+  /// Its state after so many steps, one of window_looks.
+  const State& after(int steps) const {
+    return states.at(static_cast<std::size_t>(std::ranges::find(window_looks, steps) - window_looks.begin()));
+  }
 };
 
 /// Runs the reference of a window for verification_steps, of the window's domain of dependence alone.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/verification/verification.h"
+#include "commands/shared/exit_code.h"
 #include "commands/shared/run_provenance.h"
 #include "commands/shared/simulation.h"
 #include "integrators/all_integrators.h"
@@ -41,14 +42,19 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
     const std::filesystem::path file = folder / (stems[i] + ".h5");
     if (row.status != "ok" || (keep_existing && std::filesystem::exists(file))) continue;
     if (watch.stop()) break;
+    const auto fail = [&](const char* reason) {
+      row.status = std::string("failed: ") + reason;
+      row.verified = false;
+      failed = true;
+    };
     watch.progress("trace " + row.backend + " " + row.integrator, 1);
     try {
       write_trace(file, job, scene, row, provenance);
     } catch (const BackendFailure& failure) {
-      row.status = std::string("failed: ") + failure.what();
-      row.verified = false;
+      fail(failure.what());
       row.program_output = failure.output;
-      failed = true;
+    } catch (const NotVerified& blow_up) {
+      fail(blow_up.what());
     }
   }
   return failed;

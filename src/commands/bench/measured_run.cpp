@@ -24,6 +24,9 @@ fs::path folder_of(const fs::path& path) {
   return folder;
 }
 
+/// What numbers of a row can be computed from is shorter.
+constexpr double longest_ms = 1e12;
+
 /// What is measured has a time above zero in every round.
 void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.status != "ok") return;
@@ -31,9 +34,9 @@ void require_samples(const ResultRow& row, const fs::path& folder) {
   if (row.samples_ms.empty())
     throw UsageError(where + "no samples, though timings.csv says ok; measure the folder anew");
   for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
-    if (!(row.samples_ms[round] > 0))
+    if (!(row.samples_ms[round] > 0 && row.samples_ms[round] <= longest_ms))
       throw UsageError(where + "no time above zero in round " + std::to_string(round + 1) +
-                       "; measure the folder anew");
+                       ", or one of more than 1e12 ms; measure the folder anew");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "guide/spectrum.h"
+#include "model/spectrum.h"
 
 #include <cmath>
 #include <cstddef>
