@@ -22,7 +22,7 @@ std::size_t references_at_once(const BenchSettings& settings);
 /// what the references need and of what follows: all combinations of the scene, because every round takes a
 /// sample of each, what the references have left, and one verification. Of a garment a reference leaves more
 /// states. The check of samples is left out: it follows when the backends have gone, and takes a second
-/// reference only of scenes of some hundred thousand nodes (checkable_steps).
+/// reference only of scenes of up to a million nodes.
 std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize& size);
 
 }  // namespace mssim

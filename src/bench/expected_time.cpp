@@ -92,7 +92,7 @@ ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size)
       if (!size.garment && !settings.verified)
         checked = std::max(checked, std::min<double>(settings.sample_seconds / step, checkable));
     }
-    time.preparation += checked * list_step * (checked > verification_steps ? 2 : 1);
+    time.preparation += 2 * checked * list_step;
   }
   return time;
 }

@@ -18,6 +18,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
+#include "tests/support/solid_system.h"
 
 namespace mssim {
 namespace {
@@ -173,7 +174,7 @@ class Cheating final : public Backend {
 
  private:
   static const System& weakened(System& system) {
-    system.materials[shear].stiffness *= 0.9;
+    system.materials.front().stiffness *= 0.9;
     return system;
   }
 
@@ -374,6 +375,7 @@ TEST_F(BenchScene, SaysWhatFailedInTheMidstOfTheRounds) {
 }
 
 TEST_F(BenchScene, FindsAProgramThatIsRightOnlyWhereItIsVerified) {
+  system_ = solid_block(5, 4, 3);  // in 2,000 steps a cloth folds, and roundings grow
   job_.backends = {find_backend("serial"), &cheat};
   job_.sample_seconds = 0.05;
   const auto expect_found = [&](Cheat what, const char* sentence) {
