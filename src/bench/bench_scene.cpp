@@ -19,6 +19,7 @@
 #include "bench/roofline/machine_peak.h"
 #include "bench/roofline/step_cost.h"
 #include "bench/verification/sample_check.h"
+#include "bench/verification/second_stretch.h"
 #include "bench/windows/window_verification.h"
 #include "garment/bench/dressing_record.h"
 #include "garment/bench/garment_verification.h"
@@ -128,8 +129,28 @@ int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
 struct AfterReference {
   int most_steps = max_sample_steps;  ///< of a sample
   Verifier verifier = {};
-  std::optional<Combination> serial = {};  ///< verified, if it is among the job's backends
+  std::optional<SecondStretch> second = {};  ///< where it is part of the verification
+  std::optional<Combination> serial = {};    ///< verified, if it is among the job's backends
 };
+
+/// Programs in ranks read the scene's file, whatever System they are made for.
+bool builds_scenes_itself(const BackendInfo& info) {
+  return info.program != nullptr && info.program->in_ranks;
+}
+
+/// Lets another backend of the kind step the second stretch.
+void verify_second(Combination& combination, const SceneJob& job, const BackendInfo& info,
+                   const SecondStretch& stretch) {
+  combination.backend->rest();
+  try {
+    const auto backend = make_backend(info, stretch.system, *combination.integrator, job.dt_s, job.execution);
+    if (const auto wrong = verify_second(*backend, stretch)) fail(combination, "failed: " + *wrong);
+  } catch (const Unsupported& reason) {
+    fail(combination, std::string("failed: it does not step a small scene of the kind: ") + reason.what());
+  } catch (const Unavailable& reason) {
+    fail(combination, std::string("failed: it does not step a small scene of the kind: ") + reason.what());
+  }
+}
 
 /// The backend as job.verified or else the comparison with the reference finds it.
 Combination make_verified(const SceneJob& job, const BackendInfo& info, const Integrator& integrator,
@@ -144,7 +165,11 @@ Combination make_verified(const SceneJob& job, const BackendInfo& info, const In
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)
-    attempt(combination, [&] { take_verification(combination, reference.verifier(combination)); });
+    attempt(combination, [&] {
+      take_verification(combination, reference.verifier(combination));
+      if (combination.backend && reference.second && !builds_scenes_itself(info))
+        verify_second(combination, job, info, *reference.second);
+    });
   return combination;
 }
 
@@ -176,6 +201,8 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
     results[i].most_steps = most_sample_steps(job, *job.integrators[i]);
     if (job.verified) return;
     results[i].verifier = make_verifier(job, *job.integrators[i], draped);
+    if (!job.garment && !job.windowed && !is_implicit(*job.integrators[i]))
+      results[i].second = run_second_stretch(*job.system, *job.integrators[i], job.dt_s);
     if (serial != job.backends.end())
       results[i].serial = make_verified(job, **serial, *job.integrators[i], start, results[i]);
   });

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <random>
-#include <set>
 #include <utility>
 
+#include "model/solid_block.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -21,35 +19,14 @@ inline System solid_block(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, 
   System system;
   std::mt19937 random(nx + 100 * ny + 10000 * nz);
   const auto jitter = [&] { return (static_cast<double>(random()) / 4294967296.0 - 0.5) * 0.4 * spacing; };
-  for (std::uint32_t z = 0; z < nz; ++z)
-    for (std::uint32_t y = 0; y < ny; ++y)
-      for (std::uint32_t x = 0; x < nx; ++x)
-        system.start.position.push_back(
-            {x * spacing + jitter(), height_m + y * spacing + std::abs(jitter()), z * spacing + jitter()});
-
-  TetrahedralMesh mesh;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-  const auto node = [&](std::array<std::uint32_t, 3> at) { return (at[2] * ny + at[1]) * nx + at[0]; };
-  for (std::uint32_t z = 0; z + 1 < nz; ++z)
-    for (std::uint32_t y = 0; y + 1 < ny; ++y)
-      for (std::uint32_t x = 0; x + 1 < nx; ++x) {
-        std::array<std::size_t, 3> axes{0, 1, 2};
-        do {  // the six ways from the cube's first corner to its last along edges
-          std::array<std::uint32_t, 3> at{x, y, z};
-          Tetrahedron corners{node(at)};
-          for (std::size_t i = 0; i < 3; ++i) {
-            ++at[axes[i]];
-            corners[i + 1] = node(at);
-          }
-          const bool even = axes[0] == 0 ? axes[1] == 1 : axes[0] == 1 ? axes[1] == 2 : axes[1] == 0;
-          if (!even) std::swap(corners[1], corners[2]);
-          mesh.tetrahedra.push_back(corners);
-          for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t b = a + 1; b < 4; ++b) edges.insert(std::minmax(corners[a], corners[b]));
-        } while (std::next_permutation(axes.begin(), axes.end()));
-      }
-  system.topology = std::move(mesh);
-  for (const auto& [first, second] : edges) {
+  SolidBlock block;
+  add_block(block, nx, ny, nz, spacing, {0, height_m, 0});
+  for (const Vec3d& x : block.position) {
+    const double right = jitter(), up = std::abs(jitter()), ahead = jitter();
+    system.start.position.push_back(x + Vec3d{right, up, ahead});
+  }
+  system.topology = TetrahedralMesh{std::move(block.tetrahedra)};
+  for (const auto& [first, second] : block.edges) {
     const Vec3d d = system.start.position[second] - system.start.position[first];
     system.springs.push_back({first, second, static_cast<float>(std::sqrt(dot(d, d))), 0});
   }

@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/serial.h"
 #include "bench/verification/blow_up.h"
+#include "bench/verification/deviation.h"
+#include "bench/verification/second_stretch.h"
 #include "integrators/integrators.h"
 #include "model/state_hash.h"
 #include "scene/scene_file.h"
@@ -102,6 +107,104 @@ TEST(Verification, FindsEveryMistakeWithABodyOfThePaper) {
   const SceneSpec spec = find_scene("box-small");
   ASSERT_TRUE(spec.dt_s);
   expect_found(body_mistakes, build_system(spec), *spec.dt_s);
+}
+
+struct Fault {
+  std::string name;
+  std::function<void(System&)> make = [](System& /*system*/) {};
+  double step = 1;    ///< in steps of the scene
+  bool lags = false;  ///< the node in the middle always is where it was a step before
+};
+
+/// What a wrong program may do, in one small thing.
+const std::vector<Fault> faults{
+    {"one bending spring missing",
+     [](System& s) {
+       const auto last =
+           std::ranges::find(s.springs.rbegin(), s.springs.rend(), std::uint32_t{bending}, &Spring::kind);
+       s.springs.erase(std::next(last).base());
+     }},
+    {"bending springs 1 % too stiff", [](System& s) { s.materials[bending].stiffness *= 1.01; }},
+    {"shear springs 1 % too stiff", [](System& s) { s.materials[shear].stiffness *= 1.01; }},
+    {"all springs 0.1 % too stiff",
+     [](System& s) {
+       for (SpringMaterial& m : s.materials) m.stiffness *= 1.001;
+     }},
+    {"no damping by the air", [](System& s) { s.viscous_damping = 0; }},
+    {"damping by the air doubled", [](System& s) { s.viscous_damping *= 2; }},
+    {"one node 1 % too heavy", [](System& s) { s.node_mass[s.nodes() / 2] *= 1.01; }},
+    {"gravity 1 % too strong", [](System& s) { s.gravity *= 1.01; }},
+    {.name = "steps 0.1 % too long", .step = 1.001},
+    {.name = "one node a step late", .lags = true},
+    {"no floor", [](System& s) { s.floor.height = -1e3; }},
+    {"no friction", [](System& s) { s.floor.friction = 0; }},
+    {"friction 5 % too strong", [](System& s) { s.floor.friction *= 1.05; }},
+};
+
+/// How far, in tolerances, a backend with the fault ends from where it should.
+double distance_with(const Fault& fault, const System& system, double dt_s, int steps, const State& right,
+                     double tolerance) {
+  System wrong = system;
+  fault.make(wrong);
+  const auto backend = make_serial(wrong, integrators[0], fault.step * dt_s, {});
+  const std::size_t late = wrong.nodes() / 2;
+  for (int step = 0; step < steps; ++step) {
+    const State before = fault.lags ? backend->state() : State{};
+    backend->step(1);
+    if (!fault.lags) continue;
+    State state = backend->state();
+    state.position[late] = before.position[late];
+    state.velocity[late] = before.velocity[late];
+    backend->set_state(state);
+  }
+  return position_deviation(system, right, backend->state()) / tolerance;
+}
+
+TEST(Verification, FindsTheFaultsThatDocsBenchSaysItFinds) {
+  std::ostringstream table;
+  table << "| fault | on cloth2500 | on cloth40k | in the second stretch |\n|---|---|---|---|\n";
+  std::vector<System> scenes;
+  std::vector<Reference> references;
+  const double dt_s = *find_scene("cloth2500").dt_s;
+  for (const char* name : {"cloth2500", "cloth40k"})
+    references.push_back(
+        run_reference(scenes.emplace_back(build_system(find_scene(name))), integrators[0], dt_s));
+  const SecondStretch second = run_second_stretch(scenes[1], integrators[0], dt_s);
+  for (const Fault& fault : faults) {
+    table << "| " << fault.name << " |";
+    for (std::size_t i = 0; i < scenes.size(); ++i)
+      table << (distance_with(fault, scenes[i], dt_s, references[i].steps, references[i].state,
+                              references[i].tolerance) > 1
+                    ? " found |"
+                    : " - |");
+    const double distance =
+        distance_with(fault, second.system, dt_s, second.steps, second.state, second.tolerance);
+    EXPECT_GT(distance, 5) << fault.name;
+    table << (distance > 1 ? " found |" : " - |") << '\n';
+  }
+  std::ifstream page(MSSIM_SOURCE_DIR "/docs/bench.md");
+  const std::string text(std::istreambuf_iterator<char>(page), {});
+  EXPECT_NE(text.find(table.str()), std::string::npos) << "docs/bench.md should have\n" << table.str();
+}
+
+TEST(SecondStretch, MeetsTheFloorAndPassesRightBackends) {
+  const System cloth = build_system(find_scene("cloth2500")), body = build_system(find_scene("box-small"));
+  for (const System* scene : {&cloth, &body})
+    for (const Integrator& integrator : integrators) {
+      const SecondStretch second = run_second_stretch(*scene, integrator, 5e-5);
+      EXPECT_GT(second.landed, 3U) << integrator.name << " in " << second.steps << " steps";
+      for (const auto& make : {make_serial, make_openmp}) {
+        const auto backend = make(second.system, integrator, 5e-5, {2, ""});
+        EXPECT_EQ(verify_second(*backend, second), std::nullopt) << integrator.name;
+      }
+    }
+  const SecondStretch second = run_second_stretch(body, integrators[0], 5e-5);
+  for (const Fault& fault : faults) {
+    if (fault.name.find("bending") != std::string::npos || fault.name.find("shear") != std::string::npos)
+      continue;
+    EXPECT_GT(distance_with(fault, second.system, 5e-5, second.steps, second.state, second.tolerance), 5)
+        << fault.name;
+  }
 }
 
 TEST(Verification, FindsAStepOfTheWrongLength) {
