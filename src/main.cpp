@@ -3,9 +3,11 @@
 #include <csignal>
 
 #include "commands/shared/command.h"
+#include "platform/openmp_runtime.h"
 
 int main(int argc, char** argv) {
-  // First of all: after a failed flush HDF5's own exit handler would crash.
+  mssim::start_with_short_waits(argv);
+  // Before anything else of HDF5: after a failed flush HDF5's own exit handler would crash.
   H5dont_atexit();
   // Beyond `ulimit -f` a write then fails, and a sentence names the file.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -3,11 +3,13 @@
 
 #include <cstring>
 
+#include "platform/openmp_runtime.h"
 #include "ranks/launch.h"
 #include "ranks/launch_words.h"
 #include "ranks/rank_program.h"
 
 int main(int argc, char** argv) {
+  mssim::start_with_short_waits(argv);
   if (argc > 1 && std::strcmp(argv[1], "rank") == 0) return mssim::run_rank(argc, argv);
   return mssim::launch_ranks(argc > 1 && argv[1] == mssim::copies_word);
 }

@@ -52,19 +52,27 @@ std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Int
 
 constexpr std::array<BackendInfo, 5> table{{
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
-     false, make_serial, spring_list_memory, spring_list_memory, dress_serially, make_serial_implicit,
-     serial_implicit_memory},
+     false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, dress_serially,
+     make_serial_implicit, serial_implicit_memory},
     {"threads-mutex", "multi-thread-cpu",
-     "as published: spring groups per thread, a lock around the accumulation", false, make_threads_mutex,
-     spring_list_memory, spring_list_memory},
+     "as published: spring groups per thread, a lock around the accumulation", false, ThreadStack::usual,
+     make_threads_mutex, spring_list_memory, spring_list_memory},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     make_openmp, bands, slices, dress_by_openmp, make_openmp_implicit, openmp_implicit_memory},
-    {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, make_opencl, planes, device_slices,
-     dress_by_opencl},
+     ThreadStack::openmp, make_openmp, bands, slices, dress_by_openmp, make_openmp_implicit,
+     openmp_implicit_memory},
+    {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
+     device_slices, dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
-     "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true, make_hybrid,
-     packed, packed},
+     "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true,
+     ThreadStack::openmp, make_hybrid, packed, packed},
 }};
+
+/// Throws Unavailable where the system does not make the threads that the backend would.
+void require_threads(const BackendInfo& backend, const ExecutionOptions& options) {
+  if (!backend.makes_threads) return;
+  if (const auto shortage = thread_shortage(options.threads, *backend.makes_threads))
+    throw Unavailable(*shortage);
+}
 
 }  // namespace
 
@@ -81,6 +89,7 @@ BackendInfo own_backend(const BackendProgram& program) {
           .paper_configuration = "",
           .description = program.description,
           .uses_device = false,
+          .makes_threads = std::nullopt,
           .make = nullptr,
           .grid_memory = own_program,
           .mesh_memory = own_program,
@@ -100,11 +109,10 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
   if (backend.program != nullptr)
     return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
                       integrator, dt_s);
-  if (is_implicit(integrator)) {
-    if (backend.make_implicit == nullptr)
-      throw Unsupported("implicit integrators are stepped by serial and openmp");
-    return backend.make_implicit(system, integrator, dt_s, options);
-  }
+  if (is_implicit(integrator) && backend.make_implicit == nullptr)
+    throw Unsupported("implicit integrators are stepped by serial and openmp");
+  require_threads(backend, options);
+  if (is_implicit(integrator)) return backend.make_implicit(system, integrator, dt_s, options);
   return step_ahead(backend.make(system, integrator, dt_s, options), system, integrator, dt_s);
 }
 
@@ -120,14 +128,15 @@ std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backen
                                                        const Integrator& integrator, double dt_s,
                                                        const ExecutionOptions& options) {
   if (!dresses(backend)) throw Unsupported("garments are dressed by serial, openmp and opencl");
+  require_threads(backend, options);
   return backend.make_dressing(system, integrator, dt_s, options);
 }
 
 std::string unavailable_reason(const BackendInfo& backend, const ExecutionOptions& options) {
   if (backend.program != nullptr) return backend.program->missing;
-  if (!backend.uses_device) return "";
   try {
-    find_opencl_device(options.device);
+    if (backend.uses_device) find_opencl_device(options.device);
+    require_threads(backend, options);
   } catch (const Unavailable& reason) {
     return reason.what();
   }

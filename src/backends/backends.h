@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 #include "backends/interface/window_backend.h"
 #include "backends/process/backend_program.h"
 #include "garment/stepping/dressing_backend.h"
+#include "platform/openmp_runtime.h"
 
 namespace mssim {
 
@@ -18,6 +20,8 @@ struct BackendInfo {
       paper_configuration;       ///< column of Hong et al.'s tables (`configuration` in the published CSV)
   std::string_view description;  ///< one line for `mssim list backends`
   bool uses_device;              ///< needs an OpenCL device
+  /// The stack of the threads that it makes, where it makes as many as it is asked for.
+  std::optional<ThreadStack> makes_threads;
   /// Makes a backend for a cloth or bodies and an explicit integrator, at the system's start state. `system`
   /// must outlive it. Throws Unavailable or Unsupported.
   std::unique_ptr<Backend> (*make)(const System& system, const Integrator& integrator, double dt_s,

@@ -184,7 +184,7 @@ void for_each_integrator(const SceneJob& job, const std::function<void(std::size
   const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
   std::vector<std::future<void>> threads;
   for (std::size_t thread = 0; thread < (job.windowed ? 1 : references_at_once(job)); ++thread)
-    threads.push_back(std::async(std::launch::async, [&] {
+    threads.push_back(std::async(as_the_system_can, [&] {
       for (std::size_t i = next++; i < order.size(); i = next++) work(order[i]);
     }));
   for (std::future<void>& thread : threads) thread.get();

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "platform/openmp_runtime.h"
 #include "text/decimal.h"
 
 namespace mssim {
@@ -69,7 +70,7 @@ class Raster {
   }
 
   void draw(int threads, const TakeBand& take) const {
-    const int team = threads > 0 ? threads : omp_get_max_threads();
+    const int team = openmp_team(threads);
     // One band for each thread, made here, where it may throw.
     std::vector<std::vector<Fragment>> drawn(static_cast<std::size_t>(team),
                                              std::vector<Fragment>(std::size_t{band_rows} * grid_.columns));

@@ -49,7 +49,7 @@ class HorizonWalk {
   /// Goes on by so many steps, unless the horizon ends before; false then.
   bool go_on(int steps) {
     const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
-    std::future<void> beside = std::async(std::launch::async, [&] { beside_->step(steps); });
+    std::future<void> beside = std::async(as_the_system_can, [&] { beside_->step(steps); });
     near_->step(steps);
     beside.get();
     State state = near_->state();
@@ -125,7 +125,7 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
 
   const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
   const auto out_of_time = [&] { return request.stop() || watch.seconds() > 2 * request.seconds; };
-  std::future<std::optional<State>> other = std::async(std::launch::async, [&] {
+  std::future<std::optional<State>> other = std::async(as_the_system_can, [&] {
     return independent_state(system, trusted.horizon_s, 1e-8 * mean_rest_length(system), out_of_time);
   });
   State coarse = walk.state();

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <limits>
 
+#include "platform/container_limits.h"
+
 namespace mssim {
 namespace {
 
@@ -41,7 +43,10 @@ std::string in_gigabytes(std::uint64_t bytes, int digits) {
 
 }  // namespace
 
-std::uint64_t available_memory() { return std::min(kernel_available(), limit_available()); }
+std::uint64_t available_memory() {
+  const std::uint64_t available = std::min(kernel_available(), limit_available());
+  return std::min(available, container_limits().memory_left.value_or(available));
+}
 
 std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t available) {
   if (needed <= available) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <sched.h>
 
+#include <future>
 #include <vector>
 
 namespace mssim {
@@ -24,5 +25,9 @@ class OnAllProcessCpus {
   cpu_set_t before_{};
   bool changed_ = false;
 };
+
+/// How std::async starts what should run beside the caller: in a thread, or where the system makes none, in
+/// that which waits for it.
+inline constexpr std::launch as_the_system_can = std::launch::async | std::launch::deferred;
 
 }  // namespace mssim

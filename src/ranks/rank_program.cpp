@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "integrators/all_integrators.h"
+#include "platform/openmp_runtime.h"
 #include "platform/process_cpus.h"
 #include "ranks/environment.h"
 #include "ranks/launch_words.h"
@@ -185,6 +186,9 @@ void work(Session& session, bool copies) {
     const RankJob job = job_of(session.share(text));
     const std::string crowded = take_processors(session, job.threads);
     session.share_processors(!crowded.empty());
+    const std::string shortage =
+        first_of(session.gather(thread_shortage(job.threads, ThreadStack::openmp).value_or("")));
+    if (!shortage.empty()) throw Unavailable(shortage);
     const std::unique_ptr<Piece> piece = make_piece(session, job);
     const std::string where_crowded = first_of(session.gather(crowded));
     if (requests) introduce(session, *piece, where_crowded, *requests);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "platform/openmp_runtime.h"
+
 namespace mssim {
 namespace {
 
@@ -33,7 +35,8 @@ PointLight Lights::on(const Vec3d& normal) const {
 
 std::vector<PointLight> Lights::on(const std::vector<Vec3d>& normals, int threads) const {
   std::vector<PointLight> light(normals.size());
-#pragma omp parallel for num_threads(threads)
+  const int team = openmp_team(threads);
+#pragma omp parallel for num_threads(team)
   for (std::size_t point = 0; point < normals.size(); ++point) light[point] = on(normals[point]);
   return light;
 }

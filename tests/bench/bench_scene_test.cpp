@@ -52,7 +52,7 @@ std::unique_ptr<Backend> right_for_a_while(const System& system, const Integrato
                                            const ExecutionOptions& options) {
   return std::make_unique<RightForAWhile>(find_backend("serial")->make(system, integrator, dt_s, options));
 }
-constexpr BackendInfo flaky{"flaky", "", "fails in the end", false, right_for_a_while, {}, {}};
+constexpr BackendInfo flaky{"flaky", "", "fails in the end", false, {}, right_for_a_while, {}, {}};
 
 /// What a row looks like that a verification has found wrong.
 void fail_row(ResultRow& row, const std::string& status) {
@@ -78,7 +78,7 @@ std::unique_ptr<Backend> on_two_processors(const System& system, const Integrato
                                            const ExecutionOptions& options) {
   return std::make_unique<OnTwoProcessors>(find_backend("serial")->make(system, integrator, dt_s, options));
 }
-constexpr BackendInfo undividable{"undividable", "", "takes two", false, on_two_processors, {}, {}};
+constexpr BackendInfo undividable{"undividable", "", "takes two", false, {}, on_two_processors, {}, {}};
 
 /// A right one behind which a program stands that fails at one of its calls, counted from 1. It takes note of
 /// whether it rests.
@@ -124,7 +124,7 @@ std::unique_ptr<Backend> fails_at(const System& system, const Integrator& integr
                                   const ExecutionOptions& options) {
   return std::make_unique<FailsAt>(find_backend("serial")->make(system, integrator, dt_s, options));
 }
-constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, fails_at, {}, {}};
+constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, {}, fails_at, {}, {}};
 
 /// What a program may do that wants to look fast.
 enum class Cheat : std::uint8_t {

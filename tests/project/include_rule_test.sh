@@ -13,14 +13,14 @@ statistics
 cluster
 picture               text
 platform              text
-geometry              text
-render                geometry picture
+geometry              text platform
+render                platform geometry picture
 charts                text picture platform
 hdf5                  platform
 laws                  kernels geometry
 integrators           geometry laws
 
-garment/contact       kernels text geometry laws
+garment/contact       kernels text platform geometry laws
 garment               geometry garment/contact
 model                 text geometry laws garment
 mesh                  text platform geometry model
@@ -51,7 +51,7 @@ backends/hybrid       integrators model backends/interface backends/vectors back
 backends/process      text platform hdf5 integrators model backends/interface
 backends/described    text platform integrators scene/fields backends/process
 garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
-backends              integrators model backends/interface backends/devices backends/spring_list backends/implicit backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
+backends              platform integrators model backends/interface backends/devices backends/spring_list backends/implicit backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
 backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 
@@ -59,7 +59,7 @@ ranks                 text platform integrators model scene/spec scene backends/
 
 bench/machine         mssim text platform
 bench/results         text statistics bench/machine
-bench/roofline        integrators model
+bench/roofline        platform integrators model
 bench/verification    text integrators model backends/interface backends
 bench/windows         text platform integrators model backends/interface backends/layouts backends bench/verification
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification bench/windows

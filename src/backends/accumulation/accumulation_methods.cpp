@@ -18,8 +18,12 @@ constexpr MemoryUse in_padded_rows{.pair_node = 24, .storage = Storage::separate
 /// A method that steps the plain list.
 constexpr AccumulationMethod of_list(std::string_view name, std::string_view description, auto make,
                                      const MemoryUse& memory, std::string_view extra_memory,
-                                     std::string_view springs_computed, Repeatable repeatable) {
-  return {{name, "", description, false, make, memory, memory}, extra_memory, springs_computed, repeatable};
+                                     std::string_view springs_computed, Repeatable repeatable,
+                                     ThreadStack stack = ThreadStack::openmp) {
+  return {{name, "", description, false, stack, make, memory, memory},
+          extra_memory,
+          springs_computed,
+          repeatable};
 }
 
 const std::array<AccumulationMethod, 9>& table() {
@@ -27,7 +31,8 @@ const std::array<AccumulationMethod, 9>& table() {
       {*find_backend("serial"), "none", "once", Repeatable::always},
       of_list("mutex-per-group",
               "one lock for all nodes, taken to add the forces of 512 springs (threads-mutex)",
-              make_threads_mutex, spring_list_memory, "6 KiB a thread", "once", Repeatable::never),
+              make_threads_mutex, spring_list_memory, "6 KiB a thread", "once", Repeatable::never,
+              ThreadStack::usual),
       of_list("lock-per-node", "a spinning lock of one byte a node, taken for each end of a spring",
               make_lock_per_node, spring_list_memory, "1 byte a node", "once", Repeatable::never),
       of_list("atomic", "atomic additions, three for each end of a spring", make_atomic, spring_list_memory,
@@ -42,6 +47,7 @@ const std::array<AccumulationMethod, 9>& table() {
         "",
         "vectors of a cloth's nodes sum their own springs, from rows of a layout of its own",
         false,
+        ThreadStack::openmp,
         make_gather_vectors,
         in_padded_rows,
         {}},

@@ -219,14 +219,21 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   const std::size_t begin = bands.team_gain.take_rounds(pass_alone);
   std::optional<SpinBarrier> barrier;
   const std::size_t between_meetings = passes_between_meetings(bands);
+  // Until all threads are there, and until all have ended, others wait: in a call of a few passes on a busy
+  // machine that may be all of its time.
+  using Clock = TeamGain::Clock;
+  const Clock::time_point call = Clock::now();
+  Clock::time_point first_has_ended = call;
+  TeamGain::Duration first_waited{};
   if (begin < passes)
 #pragma omp parallel num_threads(static_cast <int>(bands.inner_count))
   {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
 #pragma omp single
-    barrier.emplace(threads, bands.team_gain);
+    barrier.emplace(threads, bands.team_gain, call);
     TeamGain::Duration waited{};
+    if (threads > 1 && thread == 0) waited = Clock::now() - call;
     std::size_t before_meeting = between_meetings;
     for (std::size_t pass = begin; pass < passes; ++pass) {
       walk(thread, threads, pass, waited);
@@ -236,6 +243,14 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
       waited = {};
       before_meeting = between_meetings;
     }
+    if (threads > 1 && thread == 0) {
+      first_has_ended = Clock::now();
+      first_waited = waited;
+    }
+  }
+  if (first_has_ended != call) {
+    bands.team_gain.add_wait(first_waited + (Clock::now() - first_has_ended));
+    bands.team_gain.begins_alone(static_cast<TeamGain::Duration::rep>(bands.inner_count), &Clock::now);
   }
   if (bands.messages && passes > 0) bands.messages->finish();
   bands.passes += passes;

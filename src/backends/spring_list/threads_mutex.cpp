@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <barrier>
+#include <future>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -33,12 +36,23 @@ class ThreadsMutex final : public Backend {
 
   void step(int count) override {
     std::barrier together(static_cast<std::ptrdiff_t>(threads_));
+    std::promise<bool> complete;  // whether all threads are there: they would wait for those that are not
+    const std::shared_future<bool> all_are_there = complete.get_future();
     std::vector<std::jthread> group;
-    {
+    try {
       const OnAllProcessCpus inherited;
       for (std::size_t thread = 1; thread < threads_; ++thread)
-        group.emplace_back([&, thread] { run(thread, count, together); });
+        group.emplace_back([&, thread] {
+          if (all_are_there.get()) run(thread, count, together);
+        });
+    } catch (const std::system_error& error) {
+      complete.set_value(false);
+      throw BackendFailure("the system has made " + std::to_string(group.size() + 1) + " of " +
+                               std::to_string(threads_) + " threads (" + error.code().message() +
+                               "): ask for fewer with --threads, or end other programs",
+                           "");
     }
+    complete.set_value(true);
     run(0, count, together);
   }
 

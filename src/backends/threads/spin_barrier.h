@@ -13,9 +13,11 @@ namespace mssim {
 class SpinBarrier {
  public:
   explicit SpinBarrier(std::size_t threads) : threads_(threads) {}
-  /// `gain` lives as long, and is called by no other thread meanwhile.
-  SpinBarrier(std::size_t threads, TeamGain& gain) : threads_(threads), gain_(&gain) {
-    gain.begin(Clock::now());
+  /// `gain` lives as long, and is called by no other thread meanwhile. `begin`: since when the threads are
+  /// under way.
+  SpinBarrier(std::size_t threads, TeamGain& gain, TeamGain::Clock::time_point begin = TeamGain::Clock::now())
+      : threads_(threads), gain_(&gain) {
+    gain.begin(begin);
   }
 
   /// Returns when all threads have called it, or end_round(), as often as this one. What they wrote before is

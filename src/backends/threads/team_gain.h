@@ -12,7 +12,8 @@ namespace mssim {
 ///
 /// The time that a team gains over one thread is summed. In a time t, in which the first thread to arrive has
 /// waited for the last one for w, n threads do what one does in n (t - w). When the sum has become negative,
-/// one thread works alone, each time for twice as long, until the team has gained enough again.
+/// one thread works alone, each time for twice as long, until the team has gained as much as that time: on a
+/// busy machine threads often run beside each other for some milliseconds, and then do not for many.
 ///
 /// One object for all work of one kind, since what it has learned is worth more than one call. One thread
 /// calls it at a time.
@@ -24,8 +25,8 @@ class TeamGain {
   static constexpr Duration start = std::chrono::microseconds(1500);
   /// What is remembered of a team's gains: how much it may lose in an interruption that does not recur.
   static constexpr Duration most = std::chrono::milliseconds(3);
-  static constexpr Duration shortest = std::chrono::milliseconds(4);   ///< time alone
-  static constexpr Duration longest = std::chrono::milliseconds(100);  ///< the same
+  static constexpr Duration shortest = std::chrono::milliseconds(4);  ///< time alone
+  static constexpr Duration longest = std::chrono::seconds(1);        ///< the same
 
   /// A team begins to work, after a time that does not count.
   void begin(Clock::time_point now) { counted_ = now; }
@@ -39,14 +40,17 @@ class TeamGain {
   bool begins_alone(Duration::rep threads, Now&& now) {
     if (waited_ == Duration::zero()) return false;
     const Clock::time_point end = now();
-    gained_ = std::min(gained_ + (threads - 1) * (end - counted_) - threads * waited_, most);
+    const Duration gain = (threads - 1) * (end - counted_) - threads * waited_;
+    gained_ = std::min(gained_ + gain, most);
+    gained_together_ += gain;
     counted_ = end;
     waited_ = Duration::zero();
-    if (gained_ == most) alone_ = Duration::zero();
+    if (gained_together_ >= alone_) alone_ = Duration::zero();
     if (gained_ >= Duration::zero()) return false;
     alone_ = std::min(std::max({2 * alone_, -2 * gained_, shortest}), longest);
     end_alone_ = end + alone_;
     gained_ = start;
+    gained_together_ = Duration::zero();
     return true;
   }
 
@@ -63,7 +67,8 @@ class TeamGain {
   Clock::time_point counted_{};  // until when gained_ counts
   Duration waited_{0};           // since then
   Duration gained_ = start;
-  Duration alone_{0};  // the last time, unless the team has paid since
+  Duration gained_together_{0};  // since a thread was alone
+  Duration alone_{0};            // the last time, unless the team has gained as much since
   Clock::time_point end_alone_{};
 };
 

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "bench/machine/cpu_generation.h"
+#include "platform/container_limits.h"
 
 namespace mssim {
 namespace {
@@ -165,6 +166,9 @@ Machine read_machine(const fs::path& root) {
   machine.load_average = read_load(root / "proc/loadavg");
   machine.memory_bytes = leading_number<std::uint64_t>(value_of(root / "proc/meminfo", "MemTotal", ':'))
                          << 10;
+  const ContainerLimits limits = container_limits(root);
+  machine.cpu_quota = limits.processors;
+  machine.memory_limit_bytes = limits.memory_bytes;
   machine.operating_system = value_of(root / "etc/os-release", "PRETTY_NAME", '=');
   machine.kernel = kernel_name();
   return machine;

@@ -28,8 +28,10 @@ struct Machine {
   std::optional<bool> turbo;         ///< whether the frequency may exceed the nominal one, where it is said
   std::vector<double> load_average;  ///< over 1, 5 and 15 minutes
   std::uint64_t memory_bytes = 0;
-  std::string operating_system;  ///< the distribution's name for itself
-  std::string kernel;            ///< system, release and architecture
+  std::optional<double> cpu_quota;                  ///< processors' time that a container has
+  std::optional<std::uint64_t> memory_limit_bytes;  ///< of a container
+  std::string operating_system;                     ///< the distribution's name for itself
+  std::string kernel;                               ///< system, release and architecture
 };
 
 /// "MODEL, GENERATION", as far as they are known.

@@ -44,6 +44,12 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
   if (provenance.threads > 1 && cpus > 0 && static_cast<std::size_t>(provenance.threads) > cpus)
     noise.push_back(std::to_string(provenance.threads) + " threads share " + counted(cpus, "logical CPU") +
                     ": ask for fewer with --threads");
+  if (machine.cpu_quota && provenance.threads > *machine.cpu_quota)
+    noise.push_back(
+        "a quota of this container lets " +
+        counted(static_cast<std::uint64_t>(provenance.threads), "thread") + " run for the time of " +
+        one_decimal(*machine.cpu_quota) + " processors and then stops them: " +
+        (provenance.threads > 1 ? "ask for fewer with --threads, or raise the quota" : "raise the quota"));
   if (provenance.threads > 1 && !binds_threads(provenance))
     noise.emplace_back("threads may move from CPU to CPU: set OMP_PROC_BIND=true");
   return noise;

@@ -1,5 +1,7 @@
 #include "bench/roofline/machine_peak.h"
 
+#include "platform/openmp_runtime.h"
+
 // Highway compiles the text up to HWY_AFTER_NAMESPACE once for every instruction set, each time into a
 // namespace of its own. Beyond AVX3, in lower bits, are only instructions that a triad has no use for.
 #define HWY_DISABLED_TARGETS (HWY_AVX3 - 1)
@@ -97,7 +99,8 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
 template <class Work>
 double timed_on(int threads, const Work& work) {
   Clock::time_point first_start = Clock::time_point::max(), last_end = Clock::time_point::min();
-#pragma omp parallel num_threads(threads)
+  const int team = openmp_team(threads);
+#pragma omp parallel num_threads(team)
   {
 #pragma omp barrier
     const Clock::time_point start = Clock::now();

@@ -105,7 +105,7 @@ WindowReferences run_window_references(const WindowedCloth& cloth, const Integra
     const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
     std::vector<std::future<void>> threads;
     for (std::size_t thread = 0; thread < std::min(at_once, all.windows.size()); ++thread)
-      threads.push_back(std::async(std::launch::async, [&] {
+      threads.push_back(std::async(as_the_system_can, [&] {
         for (std::size_t i = next++; i < all.windows.size(); i = next++)
           all.windows[i] = run_window_reference(cloth, cloth.windows[i], integrator, dt_s);
       }));

@@ -98,6 +98,7 @@ int compare_runs(const CompareOptions& options) {
 int run(CompareOptions options) {
   options.ab.threshold = options.threshold_percent / 100;
   if (!options.programs) return compare_runs(options);
+  require_few_threads(options.ab.threads);
   if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
   return report(compare_programs(options.ab), options.format);
 }

@@ -3,7 +3,9 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,8 @@
 #include "commands/shared/exit_code.h"
 #include "commands/shared/scene_list.h"
 #include "integrators/all_integrators.h"
+#include "platform/container_limits.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 
 namespace mssim {
@@ -18,6 +22,13 @@ namespace {
 
 const std::map<std::string, DeviceMemory> device_memories{{"copy", DeviceMemory::copy},
                                                           {"shared", DeviceMemory::shared}};
+
+/// Those that the process may use, or as many as a container's quota of processor time amounts to.
+int usable_processors() {
+  const int processors = omp_get_num_procs();
+  const std::optional<double> quota = container_limits().processors;
+  return quota ? std::min(processors, static_cast<int>(std::ceil(*quota))) : processors;
+}
 
 }  // namespace
 
@@ -95,10 +106,22 @@ std::string name_of(DeviceMemory memory) {
   return std::ranges::find(device_memories, memory, [](const auto& choice) { return choice.second; })->first;
 }
 
+void require_few_threads(int threads) {
+  constexpr int most_a_processor = 8;
+  const int processors = omp_get_num_procs();
+  if (threads > most_a_processor * processors)
+    throw UsageError("--threads " + std::to_string(threads) + " is too many for the " +
+                     counted(static_cast<std::uint64_t>(processors), "processor") +
+                     " that this process may use; ask for at most " +
+                     std::to_string(most_a_processor * processors) + ", " + std::to_string(most_a_processor) +
+                     " for each");
+}
+
 ExecutionOptions complete(ExecutionOptions options) {
   const int limit = omp_get_thread_limit();
   options.threads_given = options.threads > 0;
-  if (!options.threads_given) options.threads = std::min(omp_get_num_procs(), limit);
+  if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
+  if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
   if (options.threads > limit)
     throw UsageError("--threads " + std::to_string(options.threads) +
                      " is more than OMP_THREAD_LIMIT allows, " + std::to_string(limit) +

@@ -40,8 +40,13 @@ void declare_execution(Arguments& arguments, ExecutionOptions& options);
 /// The word for it that --memory takes.
 std::string name_of(DeviceMemory memory);
 
-/// `threads` as given or, for 0, one for every processor that this process may use; OpenMP then gives as
-/// many, whatever OMP_DYNAMIC says. Throws UsageError where OMP_THREAD_LIMIT is lower.
+/// Throws UsageError for more threads than eight for each processor that this process may use: each step
+/// would take as long as the system needs to let all of them run.
+void require_few_threads(int threads);
+
+/// `threads` as given or, for 0, one for every processor that this process may use, as far as a container's
+/// quota lets it; OpenMP then gives as many, whatever OMP_DYNAMIC says. Throws UsageError where
+/// OMP_THREAD_LIMIT is lower, and as require_few_threads, but where a launcher starts them elsewhere.
 ExecutionOptions complete(ExecutionOptions options);
 
 }  // namespace mssim

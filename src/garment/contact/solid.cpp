@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "geometry/closed_parts.h"
+#include "platform/openmp_runtime.h"
 
 namespace mssim {
 namespace {
@@ -47,7 +48,8 @@ double Solid::depth(const Vec3d& point) const {
 
 std::vector<double> Solid::depths(std::span<const Vec3d> points, int threads) const {
   std::vector<double> depths(points.size());
-#pragma omp parallel for num_threads(threads > 0 ? threads : omp_get_max_threads()) schedule(dynamic, 256)
+  const int team = openmp_team(threads);
+#pragma omp parallel for num_threads(team) schedule(dynamic, 256)
   for (std::size_t i = 0; i < points.size(); ++i) depths[i] = depth(points[i]);
   return depths;
 }

@@ -138,6 +138,10 @@ Machine read_machine(const Place& document) {
   machine.memory_bytes = document["memory_bytes"].count<std::uint64_t>();
   machine.operating_system = document["operating_system"].text();
   machine.kernel = document["kernel"].text();
+  if (const auto quota = cpu.find("cpu_quota"); quota && !quota->is_null())
+    machine.cpu_quota = quota->number();
+  if (const auto limit = document.find("memory_limit_bytes"); limit && !limit->is_null())
+    machine.memory_limit_bytes = limit->count<std::uint64_t>();
   if (const auto turbo = cpu.find("turbo"); turbo && !turbo->is_null()) machine.turbo = turbo->truth();
   return machine;
 }
@@ -223,8 +227,10 @@ json to_json(const Provenance& provenance) {
             {"mhz", machine.cpu_mhz},
             {"governor", machine.governor ? json(*machine.governor) : json()},
             {"turbo", machine.turbo ? json(*machine.turbo) : json()},
+            {"cpu_quota", machine.cpu_quota ? json(*machine.cpu_quota) : json()},
             {"caches", caches_json(machine.caches)}}},
           {"memory_bytes", machine.memory_bytes},
+          {"memory_limit_bytes", machine.memory_limit_bytes ? json(*machine.memory_limit_bytes) : json()},
           {"load_average", machine.load_average},
           {"operating_system", machine.operating_system},
           {"kernel", machine.kernel},

@@ -80,11 +80,15 @@ TEST(TeamGain, DoublesTheTimeAloneUntilTheTeamGains) {
   constexpr auto wait = milliseconds(2);
   EXPECT_FALSE(is_alone(gain, wait, milliseconds(5))) << "4 ms";
   EXPECT_FALSE(is_alone(gain, wait, milliseconds(9))) << "8 ms";
-  for (int times = 0; times < 4; ++times) is_alone(gain, wait, milliseconds(0));
-  EXPECT_FALSE(is_alone(gain, wait, milliseconds(101))) << "100 ms at most";
+  for (int times = 0; times < 8; ++times) is_alone(gain, wait, milliseconds(0));
+  EXPECT_FALSE(is_alone(gain, wait, milliseconds(1001))) << "1 s at most";
   gain.begin(TeamGain::Clock::time_point{});
   gain.add_wait(microseconds(1));
-  EXPECT_FALSE(gain.begins_alone(2, [] { return TeamGain::Clock::time_point{} + milliseconds(10); }));
+  EXPECT_FALSE(gain.begins_alone(2, [] { return TeamGain::Clock::time_point{} + milliseconds(500); }));
+  EXPECT_TRUE(is_alone(gain, milliseconds(4), milliseconds(900))) << "1 s, of which half has been gained";
+  gain.begin(TeamGain::Clock::time_point{});
+  gain.add_wait(microseconds(1));
+  EXPECT_FALSE(gain.begins_alone(2, [] { return TeamGain::Clock::time_point{} + milliseconds(1001); }));
   EXPECT_FALSE(is_alone(gain, milliseconds(4), milliseconds(5))) << "4 ms again";
   EXPECT_TRUE(is_alone(gain, std::chrono::seconds(60), milliseconds(0)));
 }

@@ -6,6 +6,7 @@
 namespace mssim {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -38,6 +39,15 @@ TEST(Noise, ComesFromLoadGovernorTurboAndThreads) {
   provenance = quiet();
   provenance.threads = 5;
   EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("5 threads share 4 logical CPUs")));
+}
+
+TEST(Noise, ComesFromAQuotaThatThreadsExceed) {
+  Provenance provenance = quiet();
+  provenance.machine.cpu_quota = 4;
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
+  provenance.machine.cpu_quota = 2.5;
+  EXPECT_THAT(noise_of(provenance), ElementsAre(AllOf(HasSubstr("4 threads"), HasSubstr("2.5 processors"),
+                                                      HasSubstr("--threads"))));
 }
 
 TEST(Noise, ComesFromThreadsThatMayMove) {

@@ -27,6 +27,8 @@ Provenance full_provenance() {
   provenance.noise = {"turbo is on"};
   provenance.earlier_starts_utc = {"2026-01-30T12:00:00Z"};
   provenance.machine.memory_bytes = std::uint64_t{1} << 53;
+  provenance.machine.cpu_quota = 1.5;
+  provenance.machine.memory_limit_bytes = 5'000'000'000;
   provenance.machine.operating_system = "Some Linux";
   provenance.machine.kernel = "Linux 6";
   provenance.allowed_cpus = {0, 3};

@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# Threads that the system does not make, and more than make sense: one sentence, the other rows go on. $1: mssim, $2: the source folder
+set -euo pipefail
+mssim=$1
+# shellcheck source=tests/support/command_line.sh
+. "$2/tests/support/command_line.sh"
+cd "$work"
+
+# row FOLDER BACKEND: the status of its rows
+row() { awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next } $c["backend"] == name { print $c["status"] }' "$1/timings.csv" | sort -u; }
+
+# expect_shortage BACKEND: of a bench beside serial in ./BACKEND, whose exit code is $status
+expect_shortage() {
+  [ "$status" -eq 3 ] || fail "$1 without threads exits with $status instead of 3: $(cat err)"
+  [ "$(row "$1" serial)" = ok ] || fail "serial has not gone on beside $1: $(cat err)"
+  row "$1" "$1" | grep -Eq '^"?unavailable: 4 threads .* makes [1-3] .*--threads' || fail "$1 says: $(row "$1" "$1")"
+}
+
+# No thread can have such a stack: of OpenMP's, and of all others.
+# Two integrators: their references would take two threads.
+bench=(bench --scene cloth2500 --integrator "semi-euler,rk4" --rounds 1)
+status=0
+OMP_STACKSIZE=200000G timeout 120 "$mssim" "${bench[@]}" --threads 4 --backend serial,openmp --out openmp >out 2>err || status=$?
+expect_shortage openmp
+grep -q 'OMP_STACKSIZE.*200000G' err || fail "the stack's size is not named: $(cat err)"
+(
+  # shellcheck disable=SC3045
+  ulimit -s $((1 << 38)) 2>/dev/null || exit 77
+  timeout 120 "$mssim" "${bench[@]}" --threads 4 --backend serial,threads-mutex --out threads-mutex >out 2>err
+) && status=0 || status=$?
+[ "$status" -eq 77 ] || expect_shortage threads-mutex
+
+# Scenes are built and pictures are drawn all the same, by fewer threads.
+OMP_STACKSIZE=200000G succeed render --scene cloth2500 --backend serial --duration 0.001 --out picture.png
+
+# A limit of processes, which root is not subject to.
+if [ "$(id -u)" -eq 0 ] && chmod 777 . && setpriv --reuid=54321 --regid=54321 --clear-groups "$mssim" --version >/dev/null 2>&1; then
+  for backend in openmp threads-mutex; do
+    status=0
+    env HOME="$work" setpriv --reuid=54321 --regid=54321 --clear-groups bash -c \
+      'ulimit -u 4; exec timeout 120 "$@"' bash "$mssim" "${bench[@]}" --backend "serial,$backend" --threads 8 --out "limited-$backend" \
+      >out 2>err || status=$?
+    [ "$status" -eq 3 ] || fail "$backend under a limit of processes exits with $status: $(cat err)"
+    [ "$(row "limited-$backend" serial)" = ok ] || fail "serial has not gone on under a limit of processes: $(cat err)"
+  done
+fi
+
+# More than eight threads for each processor.
+most=$((8 * $(nproc)))
+for command in "bench --dry-run" "run --duration 0.001" "guide --out guide" "compare --ab $mssim $mssim" "render --out more.png"; do
+  # shellcheck disable=SC2086 # words of their own
+  expect 2 "--threads $((most + 1)) .*at most $most" $command --scene cloth2500 --threads $((most + 1))
+done
+succeed bench --scene cloth2500 --dry-run --threads $most
+[ "$failures" -eq 0 ]

@@ -1,0 +1,80 @@
+#include "platform/container_limits.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace mssim {
+namespace {
+
+class MadeUpGroups : public TemporaryFolderTest {
+ protected:
+  /// Version 2, whose group `root` is mounted.
+  void mount_unified(const std::string& root, const std::string& own) const {
+    put("proc/self/mountinfo",
+        "22 1 8:1 / / rw - ext4 /dev/root rw\n"
+        "30 22 0:26 " +
+            root + " /sys/fs/cgroup rw,nosuid shared:4 - cgroup2 cgroup2 rw\n");
+    put("proc/self/cgroup", "0::" + own + "\n");
+  }
+};
+
+TEST_F(MadeUpGroups, OfVersion2AreAskedForTheLeastOnTheWayToTheRoot) {
+  mount_unified("/", "/outer/inner");
+  put("sys/fs/cgroup/outer/cpu.max", "150000 100000\n");
+  put("sys/fs/cgroup/outer/inner/cpu.max", "max 100000\n");
+  put("sys/fs/cgroup/outer/memory.max", "2000000\n");
+  put("sys/fs/cgroup/outer/memory.current", "1900000\n");
+  put("sys/fs/cgroup/outer/memory.stat", "anon 1\ninactive_file 100000\nactive_file 50000\n");
+  put("sys/fs/cgroup/outer/inner/memory.max", "1000000\n");
+  put("sys/fs/cgroup/outer/inner/memory.current", "300000\n");
+  const ContainerLimits limits = container_limits(folder());
+  EXPECT_EQ(limits.processors, 1.5);
+  EXPECT_EQ(limits.memory_bytes, 1'000'000U);
+  EXPECT_EQ(limits.memory_left, 250'000U) << "of the outer group, whose copies of files can go";
+}
+
+TEST_F(MadeUpGroups, OfVersion2AreSeenFromWithinAContainer) {
+  mount_unified("/docker/abc", "/docker/abc/job");
+  put("sys/fs/cgroup/cpu.max", "50000 100000\n");
+  put("sys/fs/cgroup/job/cpu.max", "25000 100000\n");
+  EXPECT_EQ(container_limits(folder()).processors, 0.25);
+  mount_unified("/docker/abc", "/elsewhere");
+  EXPECT_EQ(container_limits(folder()).processors, 0.5);
+  mount_unified("/", "/../outside");
+  EXPECT_EQ(container_limits(folder()).processors, 0.5);
+}
+
+TEST_F(MadeUpGroups, OfVersion1HaveAHierarchyForEachController) {
+  put("proc/self/mountinfo",
+      "31 22 0:27 / /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n"
+      "32 22 0:28 / /sys/fs/cgroup/memory rw - cgroup cgroup rw,memory\n"
+      "33 22 0:29 / /sys/fs/cgroup/systemd rw - cgroup cgroup rw,name=systemd\n");
+  put("proc/self/cgroup", "5:cpu,cpuacct:/a\n4:memory:/b\n1:name=systemd:/c\n0::/d\n");
+  put("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
+  put("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
+  put("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_quota_us", "300000\n");
+  put("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_period_us", "100000\n");
+  put("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
+  put("sys/fs/cgroup/memory/b/memory.limit_in_bytes", "5000000\n");
+  put("sys/fs/cgroup/memory/b/memory.usage_in_bytes", "4000000\n");
+  put("sys/fs/cgroup/memory/b/memory.stat", "inactive_file 7\ntotal_inactive_file 500000\n");
+  const ContainerLimits limits = container_limits(folder());
+  EXPECT_EQ(limits.processors, 3);
+  EXPECT_EQ(limits.memory_bytes, 5'000'000U);
+  EXPECT_EQ(limits.memory_left, 1'500'000U);
+}
+
+TEST_F(MadeUpGroups, MayHaveNoLimitOrBeMissing) {
+  EXPECT_FALSE(container_limits(folder()).processors);
+  mount_unified("/", "/");
+  put("sys/fs/cgroup/cpu.max", "max 100000\n");
+  put("sys/fs/cgroup/memory.max", "max\n");
+  const ContainerLimits limits = container_limits(folder());
+  EXPECT_FALSE(limits.processors);
+  EXPECT_FALSE(limits.memory_bytes);
+  EXPECT_FALSE(limits.memory_left);
+}
+
+}  // namespace
+}  // namespace mssim
