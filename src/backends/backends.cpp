@@ -52,19 +52,19 @@ std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Int
 
 constexpr std::array<BackendInfo, 5> table{{
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
-     false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, dress_serially,
+     false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, dress_serially,
      make_serial_implicit, serial_implicit_memory},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, ThreadStack::usual,
-     make_threads_mutex, spring_list_memory, spring_list_memory},
+     make_threads_mutex, spring_list_memory, spring_list_memory, 1.2},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     ThreadStack::openmp, make_openmp, bands, slices, dress_by_openmp, make_openmp_implicit,
+     ThreadStack::openmp, make_openmp, bands, slices, 0.06, dress_by_openmp, make_openmp_implicit,
      openmp_implicit_memory},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
-     device_slices, dress_by_opencl},
+     device_slices, 0.12, dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
      "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true,
-     ThreadStack::openmp, make_hybrid, packed, packed},
+     ThreadStack::openmp, make_hybrid, packed, packed, 0.35},
 }};
 
 /// Throws Unavailable where the system does not make the threads that the backend would.

@@ -28,6 +28,9 @@ struct BackendInfo {
                                    const ExecutionOptions& options);
   MemoryUse grid_memory;  ///< for a cloth
   MemoryUse mesh_memory;  ///< for bodies
+  /// A step of a cloth or of bodies with an explicit integrator, in steps of `serial`, about, on two
+  /// processors: for plans (results/table1, results/table3).
+  double step_share = 1;
   /// Makes one that dresses a garment; null where it has not Algorithm 1.
   std::unique_ptr<DressingBackend> (*make_dressing)(const System& system, const Integrator& integrator,
                                                     double dt_s, const ExecutionOptions& options) = nullptr;

@@ -11,11 +11,11 @@ namespace mssim {
 namespace {
 
 // Seconds, as measured on two cores of a server of 2024.
-constexpr double spring_s = 7e-9;           // the force of one, in the plain list
-constexpr double other_backends = 0.3;      // their step, in steps of the plain list
-constexpr double built_spring_s = 1.5e-7;   // building the scene
-constexpr double moved_node_s = 4e-8;       // setting a state
-constexpr double peaks_s = 0.5;             // of one working set, with one thread and with all
+constexpr double spring_s = 7e-9;          // the force of one, in the plain list
+constexpr double other_methods = 0.3;      // a garment's or implicit step of others than serial, in its steps
+constexpr double built_spring_s = 1.5e-7;  // building the scene
+constexpr double moved_node_s = 4e-8;      // setting a state
+constexpr double peaks_s = 0.5;            // of one working set, with one thread and with all
 constexpr double samples_to_calibrate = 3;  // growing ones, and until the backend is warm
 constexpr double garment_step = 1.7;        // of the plain list, in steps of a cloth's
 constexpr double verified_garment = 4;      // steps of a verification, over those of a cloth's
@@ -29,8 +29,12 @@ double list_step_time(const Integrator& integrator, const SceneSize& size) {
          (size.garment ? garment_step : 1);
 }
 
-double step_time(const BackendInfo& backend, double list_step) {
-  return list_step * (backend.name == "serial" || backend.program != nullptr ? 1 : other_backends);
+/// Seconds of a step of the backend.
+double step_time(const BackendInfo& backend, const Integrator& integrator, const SceneSize& size) {
+  const double list = list_step_time(integrator, size);
+  if (size.garment || is_implicit(integrator))
+    return backend.name == "serial" || backend.program != nullptr ? list : other_methods * list;
+  return backend.step_share * list;
 }
 
 }  // namespace
@@ -80,11 +84,11 @@ ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size)
     const double verification =
         settings.verified ? 0 : verification_steps * (size.garment ? verified_garment : 1);
     time.preparation += verification * list_step + (size.garment || settings.verified ? 0 : peaks_s);
-    if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_backends;
+    if (size.garment) time.preparation += dressing_steps(nodes) * list_step * other_methods;
     const int checkable = checkable_steps(*integrator, size);
     double checked = 0;  // steps of the longest sample
     for (const BackendInfo* backend : settings.backends) {
-      const double step = step_time(*backend, list_step);
+      const double step = step_time(*backend, *integrator, size);
       const double sample = std::max(settings.sample_seconds, step) + 2 * nodes * moved_node_s;
       time.preparation += verification * step + samples_to_calibrate * sample;
       if (size.garment && !settings.verified) time.preparation += dressing_steps(nodes) * step;
@@ -101,8 +105,7 @@ double expected_run_time(const BackendInfo& backend, const Integrator& integrato
                          double steps) {
   const double taken =
       size.garment ? std::min(steps, dressing_steps(static_cast<double>(size.nodes))) : steps;
-  return static_cast<double>(size.springs) * built_spring_s +
-         taken * step_time(backend, list_step_time(integrator, size));
+  return static_cast<double>(size.springs) * built_spring_s + taken * step_time(backend, integrator, size);
 }
 
 }  // namespace mssim

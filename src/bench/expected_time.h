@@ -24,7 +24,7 @@ ExpectedTime total(std::span<const ExpectedTime> scenes);
 double rounds_within(double seconds, const ExpectedTime& time);
 
 /// The time for a scene of this size, about: by a factor of two either way, because it takes all processors
-/// and backends for alike. A plan is made of it, no result.
+/// for alike. A plan is made of it, no result.
 ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size);
 
 /// Steps of a sample whose end is compared with the reference, at most: the reference of so many, and what

@@ -6,6 +6,7 @@
 #include "commands/bench/bench_results.h"
 #include "commands/bench/measured_scenes.h"
 #include "commands/shared/exit_code.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/temporary_folder.h"
 #include "text/fnv1a.h"
@@ -39,6 +40,15 @@ TEST_F(BenchPlanTest, HoldsWhatABenchOfItsScenesTakes) {
   EXPECT_EQ(scene.memory_bytes, bench_memory_needed(plan.settings, scene.size));
   EXPECT_EQ(scene.time.round, expected_time(plan.settings, scene.size).round);
   EXPECT_FALSE(plan.uses_device);
+}
+
+TEST_F(BenchPlanTest, ExpectsOfABackendItsOwnTime) {
+  const SceneSize size = plan_of(options_).timed.front().size;
+  const auto seconds = [&](const char* backend) {
+    return expected_run_time(*find_backend(backend), *find_integrator("semi-euler"), size, 1e6);
+  };
+  EXPECT_LT(10 * seconds("openmp"), seconds("serial"));
+  EXPECT_GT(seconds("threads-mutex"), seconds("serial"));
 }
 
 TEST_F(BenchPlanTest, OutlivesTheFilesOfItsScenes) {
