@@ -47,6 +47,7 @@ std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
 }
 
 std::string what_to_take(std::span<const WorkPoint> points, const Recommendation& chosen, const Wish& wish) {
+  if (points.empty()) return "Nothing was measured: the remark of each method says why.";
   if (!chosen.best) {
     if (!chosen.nearest)
       return "Nothing that was measured can be recommended: no point is both stable and far enough from the "

@@ -42,6 +42,12 @@ expect 2 'folder already holds results: give another --out, or --overwrite' "${t
 succeed "${tiny[@]}" --out "$work/folder" --overwrite --error 1e-9
 grep -q '^Nothing that was measured keeps the error within 1e-09 of a mean rest length' "$work/folder/guide.md" || fail "an error that nothing keeps: $(head -9 "$work/folder/guide.md")"
 
+status=0
+"$mssim" guide --scene cloth40k --backend serial --integrator newton-euler --threads 1 --time-budget 0.01 >"$work/out" 2>"$work/err" || status=$?
+[ "$status" -eq 1 ] || fail "a guide without time exits with $status"
+grep -q '^mssim: cloth40k: nothing was measured in 0.01 s: give --time-budget 90 or more' "$work/err" || fail "stderr says: $(cat "$work/err")"
+grep -q '^Nothing was measured' "$work/out" || fail "a guide without time recommends $(cat "$work/out")"
+
 # Stopped before there is a point it replaces nothing; what replaces it leaves none of its tables.
 cp -r "$work/folder" "$work/before"
 timeout -s INT 3 "$mssim" guide --scene cloth350k --backend openmp --out "$work/folder" --overwrite >"$work/out" 2>"$work/err" || true

@@ -123,14 +123,20 @@ SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::siz
                                .stop = [&] { return stop.requested(); }});
 }
 
-/// What programs have failed with.
-std::vector<std::string> failures(const std::vector<SceneGuide>& guides) {
+/// What programs have failed with, and scenes for which the time, `share_s` for each, was too short.
+std::vector<std::string> failures(const std::vector<SceneGuide>& guides, double share_s) {
   std::vector<std::string> sentences;
-  for (const SceneGuide& guide : guides)
+  for (const SceneGuide& guide : guides) {
+    const auto ran_out = [](const GuidedMethod& method) { return method.status.starts_with("no time"); };
+    if (guide.points.empty() && std::ranges::any_of(guide.methods, ran_out))
+      sentences.push_back(guide.scene + ": nothing was measured in " + two_digits(share_s) +
+                          " s: give --time-budget " + two_digits(std::max(usual_guide_s, 2 * share_s)) +
+                          " or more for each scene");
     for (const GuidedMethod& method : guide.methods)
       if (method.status.starts_with("failed"))
         sentences.push_back(guide.scene + ", " + std::string(method.backend->name) + ", " +
                             std::string(method.integrator->name) + ": " + method.status);
+  }
   return sentences;
 }
 
@@ -198,7 +204,8 @@ int run_guide(const GuideOptions& options) {
   if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
   if (folder && !written) std::cerr << "mssim: nothing was measured yet, and nothing written\n";
   stop.throw_if_requested();
-  const std::vector<std::string> failed = failures(guides);
+  const std::vector<std::string> failed =
+      failures(guides, plan.seconds / static_cast<double>(plan.scenes.size()));
   tell_first(failed);
   return failed.empty() ? exit_ok : exit_not_verified;
 }
