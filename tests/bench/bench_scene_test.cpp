@@ -189,7 +189,7 @@ std::unique_ptr<Backend> cheating(const System& system, const Integrator& integr
                                   const ExecutionOptions& options) {
   return std::make_unique<Cheating>(system, integrator, dt_s, options);
 }
-constexpr BackendInfo cheat{"cheat", "", "looks fast", false, cheating, {}, {}};
+constexpr BackendInfo cheat{"cheat", "", "looks fast", false, {}, cheating, {}, {}};
 
 class BenchScene : public testing::Test {
  protected:

@@ -26,7 +26,7 @@ succeed bench --scene box-small --backend openmp,mpi --integrator rk4 --ranks 2 
 broken() {
   local bench seconds
   rm -rf broken
-  "$mssim" bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds 60 --launcher "$hosts" --out broken \
+  "$mssim" bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds 30 --launcher "$hosts" --out broken \
     >/dev/null 2>err &
   bench=$!
   rank=$(rank_of 1 "^OMPI_MCA_plm_rsh_agent=$OMPI_MCA_plm_rsh_agent")

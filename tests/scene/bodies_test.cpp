@@ -301,7 +301,7 @@ TEST_F(BodiesFile, CannotTakeTheShapeOfAnythingElse) {
   EXPECT_THAT(error_of(with_name("cloth2500")), HasSubstr("cloth2500\" has no bodies"));
   EXPECT_THAT(error_of(with_name("bodies4737")), HasSubstr("takes its shape from another scene"));
   EXPECT_THAT(error_of(with_name("box-smal")),
-              AllOf(HasSubstr("/bodies/list/0 has no mesh"), HasSubstr("did you mean \"box-small\"")));
+              AllOf(HasSubstr("/bodies/list/0 has no mesh"), HasSubstr("did you mean box-small?")));
 }
 
 }  // namespace

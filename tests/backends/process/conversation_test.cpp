@@ -231,16 +231,5 @@ TEST_F(ConversationTest, EndsAWaitWhenTheUserEndsMssim) {
   EXPECT_EQ(noted_ending_signal(), 0);
 }
 
-TEST_F(ConversationTest, NeedsAShortName) {
-  const std::filesystem::path deep = folder() / std::string(100, 'x');
-  std::filesystem::create_directory(deep);
-  try {
-    const Conversation conversation(deep);
-    FAIL() << "it listens";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("its name is too long); set TMPDIR"));
-  }
-}
-
 }  // namespace
 }  // namespace mssim

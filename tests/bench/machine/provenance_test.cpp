@@ -157,9 +157,9 @@ TEST(Provenance, HoldsTheseFactsAndNoOthers) {
   const nlohmann::json json = nlohmann::json::parse(provenance_text(gather_provenance({"mssim"}, 1)));
   for (const auto& [name, value] : json.items()) facts.push_back(name);
   EXPECT_THAT(facts, ElementsAre("backend_programs", "build", "command_line", "cpu", "device_memory",
-                                 "earlier_starts_utc", "kernel", "load_average", "memory_bytes", "noise",
-                                 "opencl_devices", "operating_system", "program_fnv1a_64", "scenes_fnv1a_64",
-                                 "started_utc", "tetgen", "threads"));
+                                 "earlier_starts_utc", "kernel", "load_average", "memory_bytes",
+                                 "memory_limit_bytes", "noise", "opencl_devices", "operating_system",
+                                 "program_fnv1a_64", "scenes_fnv1a_64", "started_utc", "tetgen", "threads"));
 }
 
 }  // namespace

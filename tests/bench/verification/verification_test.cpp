@@ -142,11 +142,11 @@ const std::vector<Fault> faults{
 };
 
 /// How far, in tolerances, a backend with the fault ends from where it should.
-double distance_with(const Fault& fault, const System& system, double dt_s, int steps, const State& right,
+double distance_with(const Fault& fault, const System& system, double step_s, int steps, const State& right,
                      double tolerance) {
   System wrong = system;
   fault.make(wrong);
-  const auto backend = make_serial(wrong, integrators[0], fault.step * dt_s, {});
+  const auto backend = make_serial(wrong, integrators[0], fault.step * step_s, {});
   const std::size_t late = wrong.nodes() / 2;
   for (int step = 0; step < steps; ++step) {
     const State before = fault.lags ? backend->state() : State{};
@@ -165,20 +165,20 @@ TEST(Verification, FindsTheFaultsThatDocsBenchSaysItFinds) {
   table << "| fault | on cloth2500 | on cloth40k | in the second stretch |\n|---|---|---|---|\n";
   std::vector<System> scenes;
   std::vector<Reference> references;
-  const double dt_s = *find_scene("cloth2500").dt_s;
+  const double step_s = *find_scene("cloth2500").dt_s;
   for (const char* name : {"cloth2500", "cloth40k"})
     references.push_back(
-        run_reference(scenes.emplace_back(build_system(find_scene(name))), integrators[0], dt_s));
-  const SecondStretch second = run_second_stretch(scenes[1], integrators[0], dt_s);
+        run_reference(scenes.emplace_back(build_system(find_scene(name))), integrators[0], step_s));
+  const SecondStretch second = run_second_stretch(scenes[1], integrators[0], step_s);
   for (const Fault& fault : faults) {
     table << "| " << fault.name << " |";
     for (std::size_t i = 0; i < scenes.size(); ++i)
-      table << (distance_with(fault, scenes[i], dt_s, references[i].steps, references[i].state,
+      table << (distance_with(fault, scenes[i], step_s, references[i].steps, references[i].state,
                               references[i].tolerance) > 1
                     ? " found |"
                     : " - |");
     const double distance =
-        distance_with(fault, second.system, dt_s, second.steps, second.state, second.tolerance);
+        distance_with(fault, second.system, step_s, second.steps, second.state, second.tolerance);
     EXPECT_GT(distance, 5) << fault.name;
     table << (distance > 1 ? " found |" : " - |") << '\n';
   }

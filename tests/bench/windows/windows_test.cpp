@@ -91,7 +91,11 @@ TEST_P(WindowOfEachIntegrator, HasTheReferenceOfTheWhole) {
     const WindowedCloth cloth = windowed(spec, {at(0, 0), at(845, 2), at(length - 10, 6), at(1000, 0)});
     const WindowReferences found = run_window_references(cloth, integrator, dt_s, 2);
     ASSERT_FALSE(found.failure) << *found.failure;
-    EXPECT_EQ(found.steps, verification_steps);
+    // The last look within the steps that can be compared, all but for explicit-euler.
+    const int comparable = comparable_steps(system, integrator, dt_s, verification_steps);
+    EXPECT_EQ(found.steps, *std::ranges::find_if(window_looks.rbegin(), window_looks.rend(),
+                                                 [&](int look) { return look <= comparable; }));
+    EXPECT_EQ(comparable == verification_steps, integrator.name != "explicit-euler");
     WholeInWindows whole(system, integrator, dt_s);
     whole.step(found.steps);
     const double tolerance = integrator.ahead == 0 ? 0 : 1e-14;
