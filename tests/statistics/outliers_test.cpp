@@ -39,6 +39,22 @@ TEST(Outliers, AreExtremeBeyondTheOuterFenceAndLabelledWhereTheyStand) {
   EXPECT_EQ(std::ranges::count(labels, Outlier::no), 87);
 }
 
+TEST(Outliers, BeginBeyondOneAndAHalfAndThreeRangesOfTheQuartiles) {
+  // Of 11 samples the quartiles are the third and the ninth: 3 and 9, which are 6 apart. The fences are 9
+  // from them, at -6 and 18, and 18 from them, at -15 and 27; a sample on a fence is within it.
+  const auto label = [](double sample) {
+    return outliers(
+        std::vector<double>{sample < 3 ? sample : 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, sample > 9 ? sample : 11});
+  };
+  for (const double sample : {18.0, 18.001, 20.999, 27.0}) {
+    const Outlier expected = sample > 18 ? Outlier::mild : Outlier::no;
+    EXPECT_EQ(label(sample).back(), expected) << sample;
+    EXPECT_EQ(label(12 - sample).front(), expected) << 12 - sample;
+  }
+  EXPECT_EQ(label(27.001).back(), Outlier::extreme);
+  EXPECT_EQ(label(-15.001).front(), Outlier::extreme);
+}
+
 TEST(Outliers, DoNotExistAmongFewOrEqualSamples) {
   for (const std::vector<double>& samples :
        {std::vector{1.0}, {1.0, 9.0}, {1.0, 2.0, 900.0}, std::vector<double>(20, 3.0)}) {
