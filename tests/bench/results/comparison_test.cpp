@@ -67,6 +67,43 @@ TEST(Verdict, OfAChangeAtTheThresholdItselfWouldNeedManySamples) {
   EXPECT_EQ(row.samples_needed, std::nullopt);
 }
 
+TEST(Verdict, IsByTheThresholdUpOrDownByTheSameFactor) {
+  // 1.05 up, 1 / 1.05 = 0.95238 down.
+  const auto verdict = [](double ratio, double low, double high, double p = 0.009) {
+    return verdict_of({ratio, low, high, true, p}, 0.05);
+  };
+  EXPECT_EQ(verdict(1.051, 1.02, 1.08), Verdict::slower);
+  EXPECT_EQ(verdict(1.049, 1.02, 1.08), Verdict::undecided);
+  EXPECT_EQ(verdict(0.952, 0.93, 0.98), Verdict::faster);
+  EXPECT_EQ(verdict(0.953, 0.93, 0.98), Verdict::undecided);
+  EXPECT_EQ(verdict(1.2, 1.1, 1.3, 0.0101), Verdict::undecided) << "a difference that is not significant";
+  EXPECT_EQ(verdict(1, 0.953, 1.049, 1), Verdict::same);
+  EXPECT_EQ(verdict(1, 0.952, 1.049, 1), Verdict::undecided);
+  EXPECT_EQ(verdict(1, 0.953, 1.051, 1), Verdict::undecided);
+  const auto certain = [](double low, double high) {
+    return is_certain({(low + high) / 2, low, high, true, 0.009}, 0.05);
+  };
+  EXPECT_TRUE(certain(1.051, 1.3));
+  EXPECT_FALSE(certain(1.049, 1.3));
+  EXPECT_TRUE(certain(0.8, 0.952));
+  EXPECT_FALSE(certain(0.8, 0.953));
+}
+
+TEST(SamplesNeeded, AreAsManyMoreAsTheIntervalIsTooWideSquared) {
+  // No change: half of the interval is ln 1.2 = 0.18232 wide and may be ln 1.05 = 0.04879: 3.7369 times too
+  // wide, which ten samples times 13.964 mend.
+  EXPECT_EQ(samples_needed({1, 1 / 1.2, 1.2, true, 1}, 10, 0.05), 140U);
+  // 1.02 leaves ln 1.05 - ln 1.02 = 0.028988 of the margin: (0.18232 / 0.028988)^2 = 39.56.
+  EXPECT_EQ(samples_needed({1.02, 1.02 / 1.2, 1.02 * 1.2, true, 1}, 10, 0.05), 396U);
+  // A change of ln 1.2 beyond the margin is significant where the interval is 1.96 / 2.58 of it wide,
+  // 0.13851: half of it is ln 1.3 = 0.26236, (0.26236 / 0.13851)^2 = 3.588.
+  EXPECT_EQ(samples_needed({1.2, 1.2 / 1.3, 1.2 * 1.3, true, 0.1}, 10, 0.05), 36U);
+  // Nobody takes more than 1,000: 71 times 13.964 is 991.5, 72 times 1005.4.
+  EXPECT_EQ(samples_needed({1, 1 / 1.2, 1.2, true, 1}, 71, 0.05), 992U);
+  EXPECT_EQ(samples_needed({1, 1 / 1.2, 1.2, true, 1}, 72, 0.05), std::nullopt);
+  EXPECT_EQ(samples_needed({1, 0.99, 1.01, true, 1}, 20, 0.05), 21U) << "one more at least";
+}
+
 TEST(Verdict, OfFewSamplesIsUndecidedHoweverFarApart) {
   const ComparedRow row = compared(row_of("openmp", 1, 0.01, 3), row_of("openmp", 2, 0.01, 3));
   EXPECT_EQ(row.verdict, Verdict::undecided);

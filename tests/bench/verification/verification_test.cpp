@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -16,7 +17,7 @@
 #include "bench/verification/blow_up.h"
 #include "bench/verification/deviation.h"
 #include "bench/verification/second_stretch.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "model/state_hash.h"
 #include "scene/scene_file.h"
 #include "tests/support/backend_step.h"
@@ -212,6 +213,57 @@ TEST(Verification, FindsAStepOfTheWrongLength) {
   const Reference reference = run_reference(system, integrators[0], backend_dt_s);
   const auto backend = make_serial(system, integrators[0], 1.01 * backend_dt_s, {});
   EXPECT_TRUE(verify(*backend, system, reference, backend_dt_s).failure);
+}
+
+/// Two nodes of 1 kg, 1 m above each other, and between them a spring of no stiffness that is 2 m long at
+/// rest.
+System two_nodes() {
+  System system;
+  system.topology = TetrahedralMesh{};
+  system.springs = {{0, 1, 2, 0}};
+  system.materials = {{0, 0}};
+  system.node_mass = {1, 1};
+  system.gravity = 10;
+  system.start.position = {{0, 0, 0}, {0, 1, 0}};
+  system.start.velocity.resize(2);
+  return system;
+}
+
+TEST(PositionTolerance, IsFourTimesTheRandomWalkOfRoundings) {
+  System system = two_nodes();
+  system.start.position[1].z = -3;
+  // Of |x| = 3 m in rest lengths of 2 m, after 100 steps that round once: 4 sqrt(100) 2^-24 3 / 2.
+  EXPECT_DOUBLE_EQ(position_tolerance(system, *find_integrator("semi-euler"), 100), 60 * 0x1p-24);
+  EXPECT_DOUBLE_EQ(position_tolerance(system, *find_integrator("newton-euler"), 100), 60 * 0x1p-24);
+  EXPECT_DOUBLE_EQ(position_tolerance(system, *find_integrator("semi-euler"), 25), 30 * 0x1p-24);
+  // rk4 writes the position in each of its four stages.
+  EXPECT_DOUBLE_EQ(position_tolerance(system, *find_integrator("rk4"), 100), 120 * 0x1p-24);
+}
+
+TEST(Deviation, IsInRestLengthsAndOverWhatIsKineticAndElastic) {
+  const System system = two_nodes();
+  State state = system.start;
+  state.position[1] += Vec3d{0.3, 0, 0.4};  // 0.5 m of 2 m
+  state.velocity[0] = {3, 0, 0};            // 4.5 J, beside 10 J of weight
+  const Deviation deviation =
+      deviation_from(system, system.start, {.kinetic = 3, .elastic = 1, .gravitational = 10}, state);
+  EXPECT_NEAR(deviation.position, 0.25, 1e-15);
+  EXPECT_NEAR(deviation.energy, (14.5 - 14) / 4, 1e-15);
+}
+
+TEST(Verification, FailsWhereTheEnergyIsOffByMoreThanAHundredth) {
+  const System system = low_cloth();
+  Reference reference = run_reference(system, integrators[0], backend_dt_s);
+  reference.tolerance = 1;
+  const double moving = reference.energy.kinetic + reference.energy.elastic,
+               weight = reference.energy.gravitational;
+  for (const double off : {-0.0105, -0.0095, 0.0095, 0.0105}) {
+    reference.energy.gravitational = weight - off * moving;
+    const auto backend = make_serial(system, integrators[0], backend_dt_s, {});
+    const Verification verification = verify(*backend, system, reference, backend_dt_s);
+    EXPECT_NEAR(verification.energy_drift, off, 2e-4);
+    EXPECT_EQ(verification.failure.has_value(), std::abs(off) > 0.01) << off;
+  }
 }
 
 TEST(Verification, StopsBeforeTheFloor) {
