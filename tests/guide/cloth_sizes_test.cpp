@@ -25,6 +25,11 @@ TEST(ClothSizes, LargestIsBetweenTheLastThatHoldsAndTheNext) {
   EXPECT_FALSE(curve.largest(60)->at_least);
 }
 
+TEST(ClothSizes, LargestIsThatOfWholeStepsAFrame) {
+  // 3 steps a frame and not 2.5: a step may take 1/180 s.
+  EXPECT_NEAR(size_curve({{100, 1e-3}, {1000, 1e-2}}, 1.0 / 150).largest(60)->nodes, 1e5 / 180, 1e-6);
+}
+
 TEST(ClothSizes, LargestMayBeBeyondOrBelowWhatWasMeasured) {
   EXPECT_FALSE(size_curve({}).largest(60));
   EXPECT_EQ(size_curve({{100, 1}, {1000, 10}}).largest(60)->nodes, 0);

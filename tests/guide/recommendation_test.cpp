@@ -57,6 +57,12 @@ TEST(StepsAFrame, AreWholeAndNoLonger) {
   EXPECT_EQ(steps_a_frame(0.99 / 60, 60), 2);
 }
 
+TEST(StepsAFrame, AreNoneMoreWhereOnlyRoundingSaysSo) {
+  for (int steps = 1; steps <= 5000; ++steps)
+    for (const double rate : {24.0, 30.0, 59.94, 60.0})
+      EXPECT_EQ(steps_a_frame(1 / (rate * steps), rate), steps) << rate;
+}
+
 TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
   const std::vector<WorkPoint> points{
       made_point("semi-euler", 1e-4, 0.2, 2e-3), made_point("verlet", 1e-4, 0.3, 5e-4),
@@ -115,6 +121,15 @@ TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
   EXPECT_FALSE(chosen.holds_frames);
   EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("120 frames a second do not hold"));
   EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("No other method"));
+}
+
+TEST(Recommendation, CountsWholeStepsForTheTimeOfAFrame) {
+  // 60 frames a second have 2.5 steps of 1/150 s each, so that 3 are taken. At 6 ms a step these take 18
+  // ms, 55.6 frames a second; 2.5 would take 15 ms, and a frame lasts 16.7 ms.
+  const Recommendation chosen =
+      recommend(std::vector{made_point("verlet", 1.0 / 150, 0.9, 5e-4)}, {60, 1e-3}, 0.05);
+  EXPECT_FALSE(chosen.holds_frames);
+  EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("60 frames a second do not hold (55.6 would)"));
 }
 
 TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator) {

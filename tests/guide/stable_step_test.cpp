@@ -142,8 +142,11 @@ TEST(StepTheory, SaysWhyAMeasuredStepIsAnotherOne) {
   const auto measured = [](double stable) {
     return StableStep{.stable_s = stable, .unstable_s = 1.01 * stable};
   };
-  EXPECT_EQ(why_they_differ(euler, measured(1.05), theory, false), "");
-  EXPECT_EQ(why_they_differ(euler, measured(0.95), theory, false), "");
+  // Within a tenth up, or down by the same factor: 1 / 1.1 = 0.9091.
+  EXPECT_EQ(why_they_differ(euler, measured(1.099), theory, false), "");
+  EXPECT_EQ(why_they_differ(euler, measured(0.91), theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(1.101), theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(0.909), theory, false), "");
   EXPECT_NE(why_they_differ(euler, measured(1.5), theory, false).find("longer"), std::string::npos);
   EXPECT_NE(why_they_differ(euler, measured(0.5), theory, false).find("shorter"), std::string::npos);
   EXPECT_NE(why_they_differ(euler, measured(0.5), theory, true).find("floor"), std::string::npos);

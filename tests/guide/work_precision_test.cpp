@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "guide/energy_criterion.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
@@ -9,11 +11,14 @@
 namespace mssim {
 namespace {
 
-/// Points of a method on serial over 10 ms, the limit taken as given.
-std::vector<WorkPoint> curve_of(std::string_view integrator, double stable_s, double wanted_error) {
+/// Points of a method on serial over 10 ms, the limit taken as given, and the trusted state's own error if it
+/// is.
+std::vector<WorkPoint> curve_of(std::string_view integrator, double stable_s, double wanted_error,
+                                double own_error = 0) {
   const System system = cloth_system(8, 8);
-  const TrustedState trusted =
+  TrustedState trusted =
       trusted_state(system, {.longest_s = 0.01, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-9});
+  trusted.own_error = std::max(trusted.own_error, own_error);
   StepLimit limit;
   limit.integrator = find_integrator(integrator);
   limit.measured = {.stable_s = stable_s, .unstable_s = 1.01 * stable_s};
@@ -48,6 +53,20 @@ TEST(WorkCurve, BeginsWithAStepThatDiverges) {
   }
 }
 
+TEST(WorkCurve, EndsWithAQuarterOfTheWishedError) {
+  const std::vector<WorkPoint> all = curve_of("semi-euler", 2.2e-4, 1e-6);
+  ASSERT_GE(all.size(), 6U);
+  const double fifth = *all[4].position_error;
+  EXPECT_EQ(curve_of("semi-euler", 2.2e-4, 4.01 * fifth).size(), 5U);
+  EXPECT_EQ(curve_of("semi-euler", 2.2e-4, 3.99 * fifth).size(), 6U);
+}
+
+TEST(WorkCurve, CountsErrorsOfFiftyTimesTheTrustedStatesOrMore) {
+  const double second = *curve_of("semi-euler", 2.2e-4, 1e-3)[2].position_error;
+  EXPECT_FALSE(curve_of("semi-euler", 2.2e-4, 1e-3, second / 50.1).at(2).beyond_trust);
+  EXPECT_TRUE(curve_of("semi-euler", 2.2e-4, 1e-3, second / 49.9).at(2).beyond_trust);
+}
+
 TEST(WorkCurve, HasNothingWhereNoStepIsStable) { EXPECT_TRUE(curve_of("explicit-euler", 0, 1e-3).empty()); }
 
 TEST(WorkCurve, CountsNoStepBeyondTheLargestStableOne) {
@@ -80,6 +99,15 @@ TEST(EnergyBound, IsWhatTheSystemHasAndGravityGives) {
   EXPECT_GT(energy_bound(system, 0.1), energy_bound(system, 0.01));
   // No more than down to the floor.
   EXPECT_DOUBLE_EQ(energy_bound(system, 10), energy_bound(system, 20));
+  // 2 kg at 3 m with 2 m/s have 4 J and 60 J. In 0.1 s they fall by 0.05 m, which gives 1 J; in 10 s to the
+  // floor.
+  system = {};
+  system.node_mass = {2};
+  system.gravity = 10;
+  system.start.position = {{0, 3, 0}};
+  system.start.velocity = {{2, 0, 0}};
+  EXPECT_NEAR(energy_bound(system, 0.1), 64 + 0.01 * (4 + 1), 1e-12);
+  EXPECT_NEAR(energy_bound(system, 10), 64 + 0.01 * (4 + 60), 1e-12);
 }
 
 }  // namespace
