@@ -1,5 +1,6 @@
 #include "report/finding.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,6 +67,28 @@ TEST(OrderFindings, NameTheSizeFromWhichOnABackendIsFaster) {
       EXPECT_EQ(finding.sentence.find("becomes faster"), std::string::npos) << finding.sentence;
 }
 
+TEST(OrderFindings, NameASizeFromWhichOnABackendIsFasterAtEveryLargerOne) {
+  constexpr double slower = 2, faster = 0.5, undecided = 1;
+  const auto sentence = [&](double at_small, double at_larger, double at_largest) {
+    std::vector<ResultRow> rows{small("serial", 1),
+                                larger("serial", 1),
+                                cloth_row(10000, 118004, "serial", 1),
+                                small("opencl", at_small),
+                                larger("opencl", at_larger),
+                                cloth_row(10000, 118004, "opencl", at_largest)};
+    for (ResultRow& row : rows)
+      if (row.backend == "opencl" && row.ms_per_step == undecided) row.samples_ms = {3, 0.25, 1.1};
+    return about(order_findings, rows).at(0).sentence;
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(sentence(slower, faster, faster), HasSubstr("It becomes faster from 4,900 nodes"));
+  EXPECT_THAT(sentence(slower, slower, faster), HasSubstr("It becomes faster from 10,000 nodes"));
+  EXPECT_THAT(sentence(slower, undecided, faster), HasSubstr("It becomes faster from 10,000 nodes"));
+  for (const std::string& none : {sentence(slower, faster, slower), sentence(slower, faster, undecided),
+                                  sentence(faster, slower, faster), sentence(slower, slower, slower)})
+    EXPECT_THAT(none, testing::Not(HasSubstr("becomes faster")));
+}
+
 TEST(OrderFindings, AreNoneForRowsThatDoNotCountOrAreNotPublished) {
   std::vector<ResultRow> rows{small("serial", 1), small("opencl", 0.5)};
   rows[1].verified = false;
@@ -122,6 +145,41 @@ TEST(TrendFindings, SayWhetherASpeedUpFallsWhereThePublishedOneDoes) {
   EXPECT_EQ(outcome(with(0.8), published + "falls, too (10.0× to 5.00×)"), Outcome::reproduced);
   EXPECT_EQ(outcome(with(0.2), published + "rises (10.0× to 20.0×)"), Outcome::not_reproduced);
   EXPECT_EQ(outcome(with(0.4), published + "does not certainly change"), Outcome::undecided);
+}
+
+TEST(TrendFindings, AreCertainOnlyWhereIntervalsAreApart) {
+  // Speed-ups at 10,000 and 40,000 nodes, as three rounds have them.
+  using Rounds = std::vector<double>;
+  const auto with = [](const Rounds& from, const Rounds& to) {
+    std::vector<ResultRow> rows{cloth_row(10000, 118004, "serial", 1), cloth_row(40000, 476004, "serial", 1),
+                                cloth_row(10000, 118004, "opencl", 1), cloth_row(40000, 476004, "opencl", 1)};
+    for (std::size_t round = 0; round < 3; ++round) {
+      rows[2].samples_ms[round] = rows[0].samples_ms[round] / from[round];
+      rows[3].samples_ms[round] = rows[1].samples_ms[round] / to[round];
+    }
+    return about(trend_findings, rows);
+  };
+  const std::string there = "There the measured one of `opencl` ";
+  EXPECT_EQ(outcome(with({10, 10, 10}, {5, 9, 4}), there + "falls, too (10.0× to 5.00×)"),
+            Outcome::reproduced);
+  EXPECT_EQ(outcome(with({10, 10, 10}, {5, 11, 4}), there + "does not certainly change (10.0× to 5.00×)"),
+            Outcome::undecided);
+  EXPECT_EQ(outcome(with({10, 6, 12}, {5, 7, 4}), there + "does not certainly change"), Outcome::undecided);
+  EXPECT_EQ(outcome(with({10, 10, 10}, {20, 11, 30}), there + "rises (10.0× to 20.0×)"),
+            Outcome::not_reproduced);
+  EXPECT_EQ(outcome(with({10, 10, 10}, {20, 9, 30}), there + "does not certainly change"),
+            Outcome::undecided);
+  EXPECT_EQ(outcome(with({10, 10, 22}, {20, 21, 30}), there + "does not certainly change"),
+            Outcome::undecided);
+}
+
+TEST(TrendFindings, TakeAPublishedFallOfAFewPercentForNone) {
+  // Published, GPU with semi-euler: 1642.693 / 67.130 = 24.5 at 200,000 nodes, 2733.484 / 115.015 = 23.8 at
+  // 350,000.
+  const auto findings = about(
+      trend_findings, {cloth_row(200000, 2391004, "serial", 1), cloth_row(350000, 4188004, "serial", 1),
+                       cloth_row(200000, 2391004, "opencl", 0.1), cloth_row(350000, 4188004, "opencl", 0.1)});
+  EXPECT_EQ(outcome(findings, "the speed-up of GPU never falls"), Outcome::reproduced);
 }
 
 TEST(TrendFindings, SayWhetherASpeedUpNeverFalls) {
