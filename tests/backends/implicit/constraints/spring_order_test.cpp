@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "tests/support/cloth_system.h"
 #include "tests/support/expect_coloured.h"
 #include "tests/support/solid_system.h"
@@ -17,6 +21,34 @@ TEST(SpringOrder, HasTwelveColoursOfAClothInWhichNoTwoSpringsShareANode) {
     EXPECT_EQ(order.colours(), 12U) << rows << " x " << columns;
     expect_coloured(order, system.springs);
   }
+}
+
+TEST(SpringOrder, GivesEachSpringTheColourOfItsPlace) {
+  using Ends = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  const auto ends = [](const System& system, ClothColour colour) {
+    const SpringColouring order = spring_order(system);
+    Ends found;
+    for (const Spring& spring : order.of_colour(colour))
+      found.emplace_back(std::minmax(spring.first, spring.second));
+    std::ranges::sort(found);
+    return found;
+  };
+  // A row or a column of seven nodes.
+  const System row = cloth_system(1, 7), column = cloth_system(7, 1);
+  EXPECT_EQ(ends(row, structural_from_even_columns), (Ends{{0, 1}, {2, 3}, {4, 5}}));
+  EXPECT_EQ(ends(row, structural_from_odd_columns), (Ends{{1, 2}, {3, 4}, {5, 6}}));
+  EXPECT_EQ(ends(row, bending_from_columns_01), (Ends{{0, 2}, {1, 3}, {4, 6}}));
+  EXPECT_EQ(ends(row, bending_from_columns_23), (Ends{{2, 4}, {3, 5}}));
+  EXPECT_EQ(ends(column, structural_below_even_rows), (Ends{{0, 1}, {2, 3}, {4, 5}}));
+  EXPECT_EQ(ends(column, structural_below_odd_rows), (Ends{{1, 2}, {3, 4}, {5, 6}}));
+  EXPECT_EQ(ends(column, bending_below_rows_01), (Ends{{0, 2}, {1, 3}, {4, 6}}));
+  EXPECT_EQ(ends(column, bending_below_rows_23), (Ends{{2, 4}, {3, 5}}));
+  // Three rows of two: 0 1 / 2 3 / 4 5.
+  const System rows = cloth_system(3, 2);
+  EXPECT_EQ(ends(rows, falling_below_even_rows), (Ends{{0, 3}}));
+  EXPECT_EQ(ends(rows, falling_below_odd_rows), (Ends{{2, 5}}));
+  EXPECT_EQ(ends(rows, rising_below_even_rows), (Ends{{1, 2}}));
+  EXPECT_EQ(ends(rows, rising_below_odd_rows), (Ends{{3, 4}}));
 }
 
 TEST(SpringOrder, FillsAllTwelveColoursOfAClothWithEqualSharesOfEachKind) {

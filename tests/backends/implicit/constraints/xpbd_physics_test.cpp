@@ -161,6 +161,18 @@ TEST(Xpbd, MovesNodesThatASmallStepMovesByLessThanARounding) {
   }
 }
 
+TEST(Xpbd, PutsWhatFallsExactlyOntoTheFloor) {
+  // What the sum of y has lost would leave the node beside it.
+  System system = one_spring({0, 0});
+  system.floor.height = 8;
+  system.start.position[2].y = 8.0000123;
+  system.start.velocity[2] = {0, -0.37, 0};
+  for (const auto& backend : all_backends(system, 1e-4)) {
+    backend->step(1);
+    EXPECT_EQ(backend->state().position[2].y, 8);
+  }
+}
+
 TEST(Xpbd, GoesOnFromAStateAsIfNothingHadHappened) {
   const System system = cloth_system(9, 11);
   auto backends = all_backends(system, 1e-4);

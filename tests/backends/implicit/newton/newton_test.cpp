@@ -297,6 +297,62 @@ TEST(NewtonEuler, SaysHowManyStepsItHasLeftUnfinished) {
   EXPECT_EQ(note_of(work), "the solver ended before its tolerance in 3 of 3 steps");
 }
 
+/// r = D w - b in two unknowns, D = diag(1, 1 + spread) and b = (1, 1), from w = 0 and without
+/// preconditioner.
+class TwoUnknowns {
+ public:
+  explicit TwoUnknowns(double spread) : diagonal_{1, 1 + spread} {}
+  void begin() {}
+  void linearise_at_state() {}
+  double linearise() {
+    for (std::size_t i = 0; i < 2; ++i) left_[i] = 1 - diagonal_[i] * w_[i];
+    return square_of_left();
+  }
+  double start_solving() {
+    solution_ = direction_ = {};
+    return square_of_left();
+  }
+  double turn(double factor) {
+    double curvature = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      direction_[i] = left_[i] + factor * direction_[i];
+      curvature += diagonal_[i] * direction_[i] * direction_[i];
+    }
+    return curvature;
+  }
+  double advance(double factor) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      solution_[i] += factor * direction_[i];
+      left_[i] -= factor * diagonal_[i] * direction_[i];
+    }
+    return square_of_left();
+  }
+  void add(double factor) {
+    for (std::size_t i = 0; i < 2; ++i) w_[i] += factor * solution_[i];
+  }
+  double along_solution() { return left_[0] * solution_[0] + left_[1] * solution_[1]; }
+  double motion() { return w_[0] * w_[0] + w_[1] * w_[1]; }
+  double change() { return motion(); }
+  void end() {}
+
+ private:
+  double square_of_left() const { return left_[0] * left_[0] + left_[1] * left_[1]; }
+  std::array<double, 2> diagonal_, left_{}, solution_{}, direction_{}, w_{};
+};
+
+TEST(NewtonEuler, SolvesLinearSystemsToAHundredthOfWhatIsLeft) {
+  // The first iteration of conjugate gradients goes 2 / (2 + spread) of (1, 1), which leaves spread / (2 +
+  // spread) of |e|, and the second nothing.
+  for (const auto& [spread, products] : {std::pair{0.0202, 1U}, {0.0203, 2U}}) {
+    EXPECT_EQ(spread / (2 + spread) <= 0.01, products == 1);
+    TwoUnknowns equation(spread);
+    SolverWork work;
+    newtons_method(equation, {.rounding = 0.1}, work);
+    EXPECT_EQ(work.newton_iterations, 1U);
+    EXPECT_EQ(work.products, products) << spread;
+  }
+}
+
 TEST(ConjugateGradients, SayWhereTheyEndBeforeTheirTolerance) {
   System system = cloth_system(30, 40);
   system.solver.tolerance = 0;  // which no sum comes to
