@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
+
+#include "mesh/mesh_defect.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {
@@ -158,6 +162,35 @@ TEST(TetMesh, TheSmallestDihedralAngleIsTheKnownOne) {
   // At the edges of its large face a corner of a cube has the angle whose cosine is 1 / sqrt(3).
   const TetMesh corner = parse("4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "1 4\n0 0 1 2 3\n");
   EXPECT_NEAR(smallest_dihedral_angle(corner), 54.735610, 1e-6);
+}
+
+TEST(TetMesh, TheSmallestDihedralAngleIsFoundAtWhicheverEdgeItIs) {
+  // Legs of 1, 2 and 3 along the axes. Three angles are right; the large face, whose normal is (1, 1/2, 1/3)
+  // of length 7/6, has those of cosines 6/7, 3/7 and 2/7 to the others. Either sense of the nodes has the
+  // same angles.
+  TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}, {{0, 1, 2, 3}}};
+  std::array<std::uint32_t, 4> order{0, 1, 2, 3};
+  do {
+    mesh.tetrahedra = {order};
+    EXPECT_NEAR(smallest_dihedral_angle(mesh), 31.0027191, 1e-6);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(MeshDefect, OfAFlatTetrahedronIsByItsLongestEdgeCubed) {
+  // Six times the volume is the height h; the longest edge is sqrt(2), so that 1e-10 of its cube
+  // is 2.828e-10.
+  const auto defect = [](double height, double size) {
+    return find_defect({{{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, height * size}}, {{0, 1, 2, 3}}});
+  };
+  for (const double size : {0.01, 1.0, 30.0}) {
+    EXPECT_FALSE(defect(2.84e-10, size)) << size;
+    for (const double height : {2.81e-10, -2.81e-10}) {
+      ASSERT_TRUE(defect(height, size)) << size;
+      EXPECT_THAT(defect(height, size)->what, HasSubstr("it is flat"));
+    }
+    ASSERT_TRUE(defect(-2.84e-10, size)) << size;
+    EXPECT_THAT(defect(-2.84e-10, size)->what, HasSubstr("in the same sense"));
+  }
 }
 
 }  // namespace
