@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "garment/body/landmarks.h"
 #include "garment/body/mannequin.h"
 #include "mesh/sphere_shape.h"
 #include "mesh/surface_file.h"
@@ -100,6 +101,17 @@ TEST(BodyProfile, TheTwoLegsAreTakenApart) {
   const BodyProfile profile(both(cylinder(-0.3, 0.1, 0.1, 0, 1), cylinder(0.4, 0.2, 0.1, 0, 1)));
   EXPECT_NEAR(profile.leg_girth(0.5, -1), 0.2 * std::numbers::pi, 1e-5);
   EXPECT_NEAR(profile.leg_girth(0.5, 1), exact_perimeter(0.2, 0.1), 1e-5);
+}
+
+TEST(BodyProfile, TheGirthOfALegIsThatOfTheThickerOne) {
+  const double thick = exact_perimeter(0.2, 0.1);
+  EXPECT_NEAR(
+      thicker_leg(BodyProfile(both(cylinder(-0.3, 0.1, 0.1, 0, 1), cylinder(0.4, 0.2, 0.1, 0, 1))), 0.5)
+          .value(),
+      thick, 1e-5);
+  const BodyProfile mirrored(both(cylinder(-0.4, 0.2, 0.1, 0, 1), cylinder(0.3, 0.1, 0.1, 0, 1)));
+  EXPECT_NEAR(thicker_leg(mirrored, 0.5).value(), thick, 1e-5);
+  EXPECT_FALSE(thicker_leg(mirrored, 1.5));
 }
 
 TEST(BodyProfile, TheCrotchIsWhereTheSectionFallsApart) {

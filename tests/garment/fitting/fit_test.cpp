@@ -153,6 +153,25 @@ TEST(Fit, MeasuresGapsElongationsAndDepths) {
   EXPECT_NEAR(around_post.deepest_face_sample, 0.004, 1e-12);  // x = 0 is a quarter of the way
 }
 
+TEST(Fit, TakesPercentilesOfElongations) {
+  // Two rows of 401 nodes: 800 springs along the rows, 401 between them and 800 across are 2,001. The k-th
+  // gap, from 1 to 400, is 0.01 % k wider, and with it its two springs along the rows; those between the rows
+  // are as they were, those across longer by about half as much. From the longest on there are so two springs
+  // a gap: 99 % of 2,001 leave 20, ten gaps; 99.9 % leave two, one gap. The middle one is the 600th beyond
+  // the 401 that are 0, up to an elongation e two springs per 0.01 % along and four across: 600 = 6 e / 0.01
+  // %, e = 1 %.
+  const System system = garment_of({{2, 401, 0.01, {0, 0, 0}}});
+  std::vector<Vec3d> position = system.start.position;
+  for (std::uint32_t row = 0; row < 2; ++row)
+    for (std::uint32_t column = 1; column <= 400; ++column)
+      position[401 * row + column].x = position[401 * row + column - 1].x + 0.01 * (1 + 0.0001 * column);
+  const Fit fit = fit_of(system, position, nobody_around({}));
+  EXPECT_NEAR(fit.elongation_50, 0.01, 1e-4);
+  EXPECT_NEAR(fit.elongation_99, 0.0390, 1e-6);
+  EXPECT_NEAR(fit.elongation_999, 0.0399, 1e-6);
+  EXPECT_NEAR(fit.elongation_max, 0.0400, 1e-6);
+}
+
 TEST(Fit, TakesTheLayerWhoseUpperEdgesAreFarthestOff) {
   System system = garment_of({{2, 3, 0.1, {0, 0, 0}}, {2, 3, 0.1, {0, 0, 0.1}}});
   std::vector<Vec3d> position = system.start.position;
