@@ -64,6 +64,12 @@ TEST(LargestStableDt, OfViscousDragAloneIsTwoOverTheDragForEveryMethodOfOrderOne
     EXPECT_NEAR(limit(name, {0, 300, 300}) * 300, 2, 1e-5) << name;
 }
 
+TEST(LargestStableDt, OfStrongDragIsThatOfTheSoftestMode) {
+  // A drag of 300 / s damps the stiffest mode, k = (300 / s)^2 / 4, critically: both its rates are 150 / s,
+  // for which |1 + z + z^2/2| = 1 at 2 / 150 s. The faster rate of the softest, k = 0, is 300 / s.
+  EXPECT_NEAR(limit("midpoint", {22500, 300, 300}) * 300, 2, 1e-5);
+}
+
 TEST(LargestStableDt, SeparatesDecayFromGrowthForEveryIntegrator) {
   const ModeBound bound{omega * omega, 0.4 * omega, 1};
   for (const Integrator& integrator : integrators) {
