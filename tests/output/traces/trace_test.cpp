@@ -45,8 +45,15 @@ TEST_F(Trace, SaysWhatItIsAndHowItCameAbout) {
   EXPECT_EQ(text_attribute(h5.get(), "/particles/cloth/box", "boundary"), "nonenonenone");
   EXPECT_EQ(text_attribute(h5.get(), "/parameters", "backend"), "openmp");
   EXPECT_EQ(text_attribute(h5.get(), "/parameters", "integrator"), "rk4");
-  EXPECT_EQ(text_attribute(h5.get(), "/parameters/units", "velocity"), "m s-1");
-
+  for (const auto& [quantity, unit] : {std::pair{"position", "m"},
+                                       {"velocity", "m s-1"},
+                                       {"time", "s"},
+                                       {"mass", "kg"},
+                                       {"energy", "J"},
+                                       {"rest_length", "m"},
+                                       {"stiffness", "N m-1"},
+                                       {"damping", "N s m-1"}})
+    EXPECT_EQ(text_attribute(h5.get(), "/parameters/units", quantity), unit) << quantity;
   EXPECT_EQ(text_in(h5.get(), "/parameters/scene"), header().scene_json);
 }
 
