@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "model/energy.h"
 #include "model/grid_patch.h"
 #include "model/system.h"
 
@@ -54,6 +55,40 @@ TEST(GridPatch, GivesInnerNodesTwelveNeighbours) {
     if (spring.second == middle) neighbours.insert(spring.first);
   }
   EXPECT_EQ(neighbours.size(), 12U);
+}
+
+/// Three nodes of 2, 0.5 and 1 kg, the first two joined by a spring of 5 m, the last two by one of 2 m.
+System three_nodes() {
+  System system;
+  system.topology = TetrahedralMesh{};
+  system.springs = {{0, 1, 4.5F, 0}, {1, 2, 2, 1}};
+  system.materials = {{100, 3}, {60, 1}};
+  system.node_mass = {2, 0.5, 1};
+  system.gravity = 10;
+  system.viscous_damping = 0.25;
+  system.floor.height = 1;
+  system.start.position = {{0, 1, 0}, {3, 1, 4}, {3, 3, 4}};
+  system.start.velocity = {{1, 0, 0}, {0, 2, 0}, {}};
+  return system;
+}
+
+TEST(StiffnessBound, IsGershgorinsOfTheNodeWithMost) {
+  // Of the middle node: 2 (100 + 60) / 0.5 and 2 (3 + 1) / 0.5, and the air's 0.25.
+  const StiffnessBound bound = stiffness_bound(three_nodes());
+  EXPECT_DOUBLE_EQ(bound.stiffness, 640);
+  EXPECT_DOUBLE_EQ(bound.damping, 16.25);
+}
+
+TEST(Energy, IsTheSumOfEachNodesAndSprings) {
+  const System system = three_nodes();
+  const Energy energy = energy_of(system, system.start);
+  EXPECT_DOUBLE_EQ(energy.kinetic, 1 + 1);     // 2 kg at 1 m/s and 0.5 kg at 2 m/s
+  EXPECT_DOUBLE_EQ(energy.elastic, 12.5);      // 100 N/m over 0.5 m
+  EXPECT_DOUBLE_EQ(energy.gravitational, 20);  // 1 kg, 2 m above the floor
+  EXPECT_DOUBLE_EQ(energy.total(), 34.5);
+  // u . d of the springs is (-1, 2, 0) . (3, 0, 4) = -3 and (0, -2, 0) . (0, 2, 0) = -4: 3 9 / 25 + 1 16 / 4;
+  // in the air 0.25 (2 1^2 + 0.5 2^2).
+  EXPECT_DOUBLE_EQ(damping_power(system, system.start), 1.08 + 4 + 1);
 }
 
 double mantissa(double value) {

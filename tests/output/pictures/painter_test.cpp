@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <utility>
+#include <vector>
 
+#include "output/traces/node_strain.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 
@@ -103,6 +106,18 @@ TEST(Painter, StandsThingsOnTheFloorThatTheSceneStates) {
     content.scene_json = text;
     EXPECT_EQ(picture(), without) << text;
   }
+}
+
+TEST(NodeStrain, IsTheMeanOfTheNodesSprings) {
+  TraceContent content;
+  content.nodes = 4;
+  content.springs = {{0, 1}, {1, 2}};
+  content.rest_length = {1, 2};
+  // Springs of 1.1 m and 2.6 m: 10 % and 30 % longer. The last node has none.
+  const std::vector<double> strain = node_strain(content, {{0, 0, 0}, {1.1, 0, 0}, {1.1, 2.6, 0}, {9, 9, 9}});
+  ASSERT_EQ(strain.size(), 4U);
+  for (const auto& [node, expected] : {std::pair{0U, 0.1}, {1U, 0.2}, {2U, 0.3}, {3U, 0.0}})
+    EXPECT_NEAR(strain[node], expected, 1e-12) << node;
 }
 
 }  // namespace

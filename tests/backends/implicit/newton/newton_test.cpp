@@ -287,6 +287,24 @@ TEST(NewtonEuler, SolvesStepsThatTangleACloth) {
   }
 }
 
+TEST(SolverGoal, IsWhatRoundedSpringsLeave) {
+  // One spring of k = 100 N/m, c = 5 N s/m and L = 1 m joins 1 kg and 0.5 kg; dt = 0.1 s. Its force is off by
+  // u k L, which in the norm of r is u dt sqrt((k L)^2 (1 / 1 + 1 / 0.5)). It adds a = dt c + dt^2 k = 1.5 kg
+  // to both masses: the columns' squares over the masses are (2.5^2 / 1 + 1.5^2 / 0.5) / 1 = 10.75 and (2^2 /
+  // 0.5 + 1.5^2 / 1) / 0.5 = 20.5.
+  System system;
+  system.topology = TetrahedralMesh{};
+  system.springs = {{0, 1, 1, 0}};
+  system.materials = {{100, 5}};
+  system.node_mass = {1, 0.5};
+  system.start.position = {{0, 0, 0}, {1, 0, 0}};
+  system.start.velocity.resize(2);
+  const SolverGoal goal = solver_goal<float>(system, 0.1, 1e-3);
+  EXPECT_EQ(goal.tolerance, 1e-3);
+  EXPECT_NEAR(goal.rounding, 0x1p-24 * 0.1 * std::sqrt(3e4), 1e-18);
+  EXPECT_NEAR(goal.rounding_of_motion, 0x1p-24 * std::sqrt(20.5), 1e-18);
+}
+
 TEST(NewtonEuler, SaysHowManyStepsItHasLeftUnfinished) {
   // A goal that rounding does not let it reach, and which is not taken for rounding's.
   const System system = stirred_cloth();
