@@ -39,6 +39,8 @@ TEST(AxisScale, LargeAndSmallPowersAreWrittenAsSuch) {
 
 TEST(AxisScale, ZeroIsShownWhereItIsNear) {
   EXPECT_EQ(linear_scale(1, 10).low, 0);
+  EXPECT_EQ(linear_scale(4.9, 10).low, 0);
+  EXPECT_GT(linear_scale(5.1, 10).low, 4);
   EXPECT_LT(linear_scale(9, 10).low, 9);
   EXPECT_GT(linear_scale(9, 10).low, 0);
   EXPECT_EQ(linear_scale(-10, -1).high, 0);

@@ -28,6 +28,14 @@ TEST(MonotoneCurve, SlopesAreWeightedHarmonicMeans) {
   EXPECT_NEAR(curve(1.5), 2.5 + (1.5 - 3) / 8, 1e-15);
 }
 
+TEST(MonotoneCurve, SlopesWeighTheNarrowerSideMore) {
+  // Fritsch and Butland: widths 1 and 3, secants 1 and 2 weigh 2 * 3 + 1 = 7 and 3 + 2 * 1 = 5: a slope of
+  // 12 / (7 / 1 + 5 / 2) = 24 / 19.
+  const MonotoneCurve curve({0, 1, 4}, {0, 1, 7});
+  EXPECT_NEAR(curve(0.5), 0.5 + (1 - 24. / 19) / 8, 1e-15);
+  EXPECT_NEAR(curve(2.5), 4 + 3 * (24. / 19 - 2) / 8, 1e-15);
+}
+
 TEST(MonotoneCurve, NeverOvershoots) {
   const MonotoneCurve curve({0, 0.1, 0.2, 1, 1.1}, {0, 0, 1, 1.01, 0.2});
   double before = curve(0);

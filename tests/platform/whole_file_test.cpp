@@ -39,6 +39,9 @@ TEST_F(WholeFile, IsReadByteByByte) {
 TEST_F(WholeFile, OfProcIsReadThoughItsStatedLengthIsZero) {
   ASSERT_EQ(std::filesystem::file_size("/proc/self/status"), 0U);
   EXPECT_THAT(read_file("/proc/self/status"), StartsWith("Name:"));
+  const std::size_t bytes = read_file("/proc/version").size();
+  EXPECT_EQ(read_file("/proc/version", bytes).size(), bytes);
+  EXPECT_THAT(refusal_of("/proc/version", bytes - 1), HasSubstr("is longer than"));
 }
 
 TEST_F(WholeFile, IsRefusedWithTheReason) {

@@ -311,6 +311,8 @@ TEST(NearestName, CountsInsertionsDeletionsReplacementsAndSwaps) {
   EXPECT_EQ(nearest_name("column", names), "columns");
   EXPECT_EQ(nearest_name("spacing", names), "spacing_m");
   EXPECT_EQ(nearest_name("colums", names), "columns");
+  EXPECT_EQ(nearest_name("colum", names), "columns");
+  EXPECT_EQ(nearest_name("colu", names), "") << "more than a third of it is missing";
   EXPECT_EQ(nearest_name("gravity", names), "");
   EXPECT_EQ(nearest_name("", names), "");
 }

@@ -8,6 +8,7 @@ namespace {
 TEST(Columns, CountCharactersOfUtf8) {
   EXPECT_EQ(width_of(""), 0U);
   EXPECT_EQ(width_of("1.00× ▏✓"), 8U);
+  EXPECT_EQ(width_of("あ日😀"), 6U);
 }
 
 TEST(Columns, ClipBetweenCharacters) {

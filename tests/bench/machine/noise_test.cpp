@@ -30,6 +30,10 @@ TEST(Noise, ComesFromLoadGovernorTurboAndThreads) {
   Provenance provenance = quiet();
   provenance.machine.load_average = {1.25, 0, 0};
   EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("load 1.2")));
+  provenance.machine.load_average = {0.25, 0, 0};
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("load 0.2")));
+  provenance.machine.load_average = {0.24, 9, 9};
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
   provenance = quiet();
   provenance.machine.governor = "powersave";
   EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("\"powersave\"")));

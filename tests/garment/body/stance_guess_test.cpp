@@ -174,7 +174,9 @@ TEST(LengthUnits, APersonIsOneInOneUnitAlone) {
       EXPECT_EQ(guess->unit.name, unit.name) << height;
     }
   EXPECT_FALSE(guess_unit(2.5)->certain);
-  EXPECT_FALSE(guess_unit(450));
+  // In centimetres 1.495 times the tallest person, and 1.505 times.
+  EXPECT_EQ(guess_unit(329)->unit.name, "cm");
+  EXPECT_FALSE(guess_unit(331));
   EXPECT_FALSE(guess_unit(0));
   EXPECT_FALSE(guess_unit(std::nan("")));
 }

@@ -27,6 +27,7 @@ TEST(PublishedBodies, AreNineWhoseSpringsCanBeDividedByThree) {
 
 const std::vector<StructureRow> structure_rows{{"box-small", 700, 4307, 12921, 3256, 4.25},
                                                {"torus-large", 1977, 13012, 39036, 10000, 1.5},
+                                               {"torus-small", 621, 3690, 11070, 2000, 2},
                                                {"my-own", 4, 6, 18, 1, 70.5}};
 
 TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
@@ -35,6 +36,7 @@ TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
             "paper_springs,same_as_paper\n"
             "box-small,700,4307,12921,3256,4.25,700,12921,true\n"
             "torus-large,1977,13012,39036,10000,1.5,1977,39033,false\n"
+            "torus-small,621,3690,11070,2000,2,620,11070,false\n"
             "my-own,4,6,18,1,70.5,,,\n");
 }
 
