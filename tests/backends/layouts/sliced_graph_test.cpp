@@ -82,6 +82,15 @@ TEST(ReverseCuthillMckee, KeepsBodiesOneAfterTheOtherAndLosesNoLoneNode) {
   EXPECT_TRUE(reverse_cuthill_mckee(0, {}).empty());
 }
 
+TEST(ReverseCuthillMckee, TellsWhereNoSpringGoesOn) {
+  // Nodes 0 to 3, of which a spring reaches over two others, 4 alone, and 5 and 6.
+  const std::vector<Spring> springs{{0, 3, 1, 0}, {1, 0, 1, 0}, {1, 2, 1, 0}, {6, 5, 1, 0}};
+  std::vector<std::uint32_t> place{0, 1, 2, 3, 4, 5, 6};
+  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(4, 5, 7));
+  std::ranges::reverse(place);
+  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(2, 3, 7));
+}
+
 /// Bodies of many shapes: among them less than a slice, one node short of a slice, several windows.
 std::vector<System> bodies() {
   std::vector<System> systems{solid_block(2, 2, 2), solid_block(3, 4, 5), solid_block(3, 3, 7),
