@@ -17,6 +17,7 @@ constexpr double built_spring_s = 1.5e-7;  // building the scene
 constexpr double moved_node_s = 4e-8;      // setting a state
 constexpr double peaks_s = 0.5;            // of one working set, with one thread and with all
 constexpr double samples_to_calibrate = 3;  // growing ones, and until the backend is warm
+constexpr double checked_step = 3.5;        // of two references that a sample is compared with, in such steps
 constexpr double garment_step = 1.7;        // of the plain list, in steps of a cloth's
 constexpr double verified_garment = 4;      // steps of a verification, over those of a cloth's
 
@@ -56,8 +57,8 @@ double expected_evaluations(const Integrator& integrator) {
 }
 
 int checkable_steps(const Integrator& integrator, const SceneSize& size) {
-  constexpr double patience_s = 5, references = 2;
-  return static_cast<int>(std::clamp<double>(patience_s / (references * list_step_time(integrator, size)),
+  constexpr double patience_s = 5;
+  return static_cast<int>(std::clamp<double>(patience_s / (checked_step * list_step_time(integrator, size)),
                                              verification_steps, max_sample_steps));
 }
 
@@ -66,12 +67,13 @@ ExpectedTime total(std::span<const ExpectedTime> scenes) {
   for (const ExpectedTime& scene : scenes) {
     sum.preparation += scene.preparation;
     sum.round += scene.round;
+    sum.check += scene.check;
   }
   return sum;
 }
 
 double rounds_within(double seconds, const ExpectedTime& time) {
-  return std::max(1.0, (seconds - time.preparation) / time.round);
+  return std::max(1.0, (seconds - time.with(0)) / time.round);
 }
 
 ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size) {
@@ -96,7 +98,7 @@ ExpectedTime expected_time(const BenchSettings& settings, const SceneSize& size)
       if (!size.garment && !settings.verified)
         checked = std::max(checked, std::min<double>(settings.sample_seconds / step, checkable));
     }
-    time.preparation += 2 * checked * list_step;
+    time.check += checked_step * checked * list_step;
   }
   return time;
 }

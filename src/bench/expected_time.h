@@ -11,6 +11,9 @@ namespace mssim {
 struct ExpectedTime {
   double preparation = 0;  ///< building the scene, references, verification, dressing, calibration, peaks
   double round = 0;        ///< one sample of every combination
+  double check = 0;        ///< after the last round: the ends of samples
+
+  double with(double rounds) const { return preparation + rounds * round + check; }
 };
 
 /// Force evaluations that a step takes as long as: of an implicit integrator about, at a dt near its limits
@@ -20,7 +23,7 @@ double expected_evaluations(const Integrator& integrator);
 /// Of several scenes together.
 ExpectedTime total(std::span<const ExpectedTime> scenes);
 
-/// How many rounds of them fit into `seconds`, at least 1.
+/// How many rounds of them fit into `seconds` with all else, at least 1.
 double rounds_within(double seconds, const ExpectedTime& time);
 
 /// The time for a scene of this size, about: by a factor of two either way, because it takes all processors

@@ -47,7 +47,8 @@ expect 2 './mine.py already exists: give another name or --out$' new-backend min
 expect 2 'a folder/mine.cpp already exists: ' new-backend mine --language c++ --out 'a folder'
 echo '// changed' >>'a folder/mssim_backend.h'
 expect 2 'a folder/mssim_backend.h is another version.s than this mssim.s: ' new-backend third --language c++ --out 'a folder'
-for name in '' mine.py a/b ../b 2fast 'two words' -x.y "$(printf 'a%.0s' {1..65})"; do
+expect 2 'NAME: "" is empty: give a value' new-backend --language python -- ''
+for name in mine.py a/b ../b 2fast 'two words' -x.y "$(printf 'a%.0s' {1..65})"; do
   expect 2 'cannot be a backend.s name: give at most 64 letters, ' new-backend --language python -- "$name"
 done
 expect 2 'mssim has a backend openmp already (mssim list backends): give another name' new-backend openmp --language c++

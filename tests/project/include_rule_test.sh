@@ -90,7 +90,7 @@ commands/measure      text platform geometry mesh garment/body garment/pattern g
 commands/new_backend  text platform backends commands/arguments commands/shared
 commands/report       text platform picture render scene/spec scene bench/machine output/tables output/traces output/pictures report commands/arguments commands/shared commands/run commands/bench
 commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields backends/interface backends/devices backends bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/guide commands/bench commands/list commands/compare commands/check commands/measure commands/new_backend commands/report commands/help
+commands              text platform geometry scene/fields scene backends/interface backends/devices backends bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/guide commands/bench commands/list commands/compare commands/check commands/measure commands/new_backend commands/report commands/help
 main.cpp              platform commands/shared
 ask_opencl.cpp        backends/devices
 supervise.cpp         platform

@@ -46,7 +46,8 @@ std::string unknown_option(const std::string& typed, const CLI::App& command) {
 
 /// What is left over: an option that there is not, or a word too many.
 std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord& option_of) {
-  const std::vector<std::string> rest = command.remaining();
+  std::vector<std::string> rest = command.remaining();
+  std::erase(rest, "--");  // which only says that no option follows
   const auto option =
       std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   if (option != rest.end()) return unknown_option(*option, command);

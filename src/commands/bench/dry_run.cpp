@@ -10,9 +10,7 @@ namespace mssim {
 void tell_plan(const BenchPlan& plan) {
   const ExpectedTime all = total(times_of(plan.timed));
   const double rounds = expected_rounds(plan);
-  const auto seconds = [&](const ExpectedTime& time) {
-    return std::lround(std::ceil(time.preparation + rounds * time.round));
-  };
+  const auto seconds = [&](const ExpectedTime& time) { return std::lround(std::ceil(time.with(rounds))); };
   Table table;
   for (const PlannedScene& scene : plan.timed)
     table.add({{"scene", scene.spec.name},

@@ -30,8 +30,7 @@ void add_scene(SceneJob& job, const PreparedScene& scene) {
 void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
   const double rounds = expected_rounds(plan);
   std::vector<double> seconds;
-  for (const ExpectedTime& time : times_of(plan.timed))
-    seconds.push_back(time.preparation + rounds * time.round);
+  for (const ExpectedTime& time : times_of(plan.timed)) seconds.push_back(time.with(rounds));
   ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
   for (PlannedScene& planned : plan.timed) {
     SceneJob job{plan.settings};
@@ -55,7 +54,7 @@ void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop
       job.windowed = WindowedCloth{
           std::get<GridPatch>(scene.system.topology), scene.counts.springs_unique, planned.windows,
           [&](const GridWindow& window) { return build_window(scene.spec, window); }};
-    job.preparation = planned.time.preparation / (planned.time.preparation + rounds * planned.time.round);
+    job.preparation = planned.time.preparation / planned.time.with(rounds);
     bool first_round = true;
     const BenchWatch watch{
         .progress = [&](const std::string& activity, double done) { progress.update(activity, done); },

@@ -24,7 +24,7 @@ TimeBudget::TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> 
     : scenes_(std::move(scenes)), present_start_(Clock::now()) {
   if (!seconds) return;
   const ExpectedTime all = total(scenes_);
-  const double least = all.preparation + all.round;
+  const double least = all.with(1);
   if (*seconds < least)
     throw UsageError("--time-budget is too short: one round of all this takes about " +
                      std::to_string(std::lround(std::ceil(least))) +

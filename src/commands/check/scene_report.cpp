@@ -37,8 +37,7 @@ BenchSettings usual_settings(std::vector<const BackendInfo*> backends,
 }
 
 double seconds_of(const BenchSettings& settings, const SceneSize& size) {
-  const ExpectedTime time = expected_time(settings, size);
-  return time.preparation + settings.rounds * time.round;
+  return expected_time(settings, size).with(settings.rounds);
 }
 
 Table scene_table(const PreparedScene& scene) {
