@@ -177,6 +177,10 @@ INSTANTIATE_TEST_SUITE_P(
                                "a.obj, line 6: ", "4 corners crosses itself; cut it into triangles"},
                     BrokenText{"v 0 3 0\nv 2 -3 0\nv -3 1 0\nv 3 1 0\nv -2 -3 0\nf 1 2 3 4 5\n",
                                "a.obj, line 6: ", "5 corners crosses itself"},
+                    // Once round its first corner and further.
+                    BrokenText{"v 0 0 0\nv 1 0 0\nv 0.34 1.05 0\nv -0.97 0.71 0\nv -1.05 -0.76 0\nv 0.43 "
+                               "-1.33 0\nv 1.5 0 0\nv 0.49 1.52 0\nf 1 2 3 4 5 6 7 8\n",
+                               "a.obj, line 9: ", "8 corners crosses itself"},
                     BrokenText{"PK\x03\x04\n", "a.obj, line 1: ", "without an f line; give an OBJ file"},
                     // Bytes that are not UTF-8 went into the message where char has no sign (arm64).
                     BrokenText{"v 0 0 \xff\n", "a.obj, line 1: ", "z is \"\xef\xbf\xbd\""}));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
@@ -176,6 +177,26 @@ TEST(BuildCloth, PlacesTheNodesRowByRowUnderTheCeiling) {
     const Vec3d d = system.start.position[spring.second] - system.start.position[spring.first];
     EXPECT_NEAR(std::sqrt(dot(d, d)), spring.rest_length, 1e-9);
   }
+}
+
+TEST(BuildCloth, StartsAsAStandingWaveThatIsHalfAsHighInThePlane) {
+  SceneSpec spec = cloth_spec(3, 5);
+  ClothSpec& cloth = std::get<ClothSpec>(spec.content);
+  cloth.pins.reset();
+  cloth.ripple = {0.004, 0.1, 3};
+  // A tenth of the wavelength a node, 0.2 pi: at row 2 and column 1 the phases are 0.2 pi along x and 0.4 pi
+  // along z further.
+  constexpr double x = 0.2 * std::numbers::pi, z = 0.4 * std::numbers::pi;
+  const System system = build_cloth(spec);
+  const auto sines = [](double of_x, double of_z) { return std::sin(x + of_x) * std::sin(z + of_z); };
+  const Vec3d moved = system.start.position[2 * 5 + 1] - Vec3d{0.01, 1, 0.02},
+              v = system.start.velocity[2 * 5 + 1];
+  EXPECT_NEAR(moved.x, 0.002 * sines(0.2, 0.9), 1e-12);
+  EXPECT_NEAR(moved.y, 0.004 * sines(1.2, 1.9), 1e-12);
+  EXPECT_NEAR(moved.z, 0.002 * sines(2.2, 2.9), 1e-12);
+  EXPECT_NEAR(v.x, 3 * sines(0.4, 1.3), 1e-12);
+  EXPECT_NEAR(v.y, 3 * sines(1.5, 2.5), 1e-12);
+  EXPECT_NEAR(v.z, 3 * sines(2.6, 0.3), 1e-12);
 }
 
 TEST(BuildCloth, TakesOverThePhysics) {

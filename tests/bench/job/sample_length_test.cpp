@@ -32,6 +32,9 @@ TEST(WarmUp, EndsWhenTwoTrialsInARowWereNotFaster) {
   EXPECT_TRUE(is_warm(std::vector{1.0, 1.0, 1.0}));
   EXPECT_TRUE(is_warm(std::vector{1.0, 0.99, 1.5}));
   EXPECT_FALSE(is_warm(std::vector{5.0, 3.0, 2.0}));
+  // Two in a hundred are no change.
+  EXPECT_TRUE(is_warm(std::vector{1.0, 0.981, 0.981}));
+  EXPECT_FALSE(is_warm(std::vector{1.0, 0.979, 0.979}));
   EXPECT_FALSE(is_warm(std::vector{5.0, 3.0, 2.0, 1.5, 1.2}));
   EXPECT_FALSE(is_warm(std::vector{5.0, 3.0, 1.0, 1.0}));
   EXPECT_TRUE(is_warm(std::vector{5.0, 3.0, 1.0, 1.0, 1.0}));
