@@ -93,7 +93,8 @@ TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
     const auto backend = make_openmp_constraints(system, long_s, 2, cloth_constraint_kernels()[GetParam()]);
     reference->step(1);
     backend->step(1);
-    EXPECT_LT(largest_distance(backend->state().velocity, reference->state().velocity), 1e-4)
+    // Roundings come to 7e-5 m/s, two colours in another order to 5e-3 or more.
+    EXPECT_LT(largest_distance(backend->state().velocity, reference->state().velocity), 5e-4)
         << rows << " x " << columns;
   }
 }
