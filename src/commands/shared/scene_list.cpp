@@ -8,8 +8,8 @@
 namespace mssim {
 namespace {
 
-/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is: a
-/// path that exists.
+/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is:
+/// a path that exists.
 std::size_t length_of_first(std::string_view text) {
   const std::size_t shortest = std::min(text.find(','), text.size());
   for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
