@@ -52,6 +52,7 @@ misfit '.--duration must give between one step and'
 
 # So does a garment that is drawn in its scene.
 dress 0 --scene skirt --backend openmp
+grep -qE '^(crotch_rise|side_distance)' "$work/out" && fail "a skirt has neither crotch nor close sides: $(cat "$work/out")"
 
 # So does it on other bodies, to the same bounds.
 dress 0 --scene jeans4k-hip88 --backend openmp

@@ -32,46 +32,79 @@ struct PersonPose {
   bool z_up = false;        ///< (x, y, z) becomes (x, -z, y): who faced +z faces -y
 };
 
-/// An upright tube through elliptic sections, from below upwards, as a DistanceField.
-class EllipticTube {
+/// A section of trunk or leg: two halves of superellipses, |x/a|^n + |z/b|^n = 1, before and behind the line
+/// in which it is widest; ellipses where n is 2.
+struct BodySection {
+  double height = 0;
+  double x = 0, half_width = 0;
+  double z = 0, front = 0, back = 0;  ///< where it is widest, and how far it reaches before and behind that
+  double front_power = 2, back_power = 2;
+};
+
+inline BodySection body_section(const EllipseSection& ellipse) {
+  return {.height = ellipse.height,
+          .x = (ellipse.x_min + ellipse.x_max) / 2,
+          .half_width = ellipse.half_width(),
+          .z = (ellipse.z_min + ellipse.z_max) / 2,
+          .front = ellipse.half_depth(),
+          .back = ellipse.half_depth()};
+}
+
+/// An upright tube through sections, from below upwards, as a DistanceField.
+class BodyTube {
  public:
-  explicit EllipticTube(const std::vector<EllipseSection>& sections)
+  explicit BodyTube(const std::vector<BodySection>& sections)
       : low_(sections.front().height),
         high_(sections.back().height),
-        x_(curve(sections, [](const EllipseSection& s) { return (s.x_min + s.x_max) / 2; })),
-        z_(curve(sections, [](const EllipseSection& s) { return (s.z_min + s.z_max) / 2; })),
-        half_width_(curve(sections, [](const EllipseSection& s) { return s.half_width(); })),
-        half_depth_(curve(sections, [](const EllipseSection& s) { return s.half_depth(); })) {}
+        x_(curve(sections, &BodySection::x)),
+        z_(curve(sections, &BodySection::z)),
+        half_width_(curve(sections, &BodySection::half_width)),
+        front_(curve(sections, &BodySection::front)),
+        back_(curve(sections, &BodySection::back)),
+        front_power_(curve(sections, &BodySection::front_power)),
+        back_power_(curve(sections, &BodySection::back_power)) {}
 
   double operator()(const Vec3d& p) const {
-    const double y = std::clamp(p.y, low_, high_);
-    const double width = half_width_(y), depth = half_depth_(y);
-    const double x = (p.x - x_(y)) / width, z = (p.z - z_(y)) / depth;
-    const double first = std::hypot(x, z), second = std::hypot(x / width, z / depth);
-    const double beside = second > 0 ? first * (first - 1) / second : -std::min(width, depth);
+    const double y = std::clamp(p.y, low_, high_), before = p.z - z_(y);
+    const double width = half_width_(y), depth = before > 0 ? front_(y) : back_(y);
+    const double x = std::abs(p.x - x_(y)) / width, z = std::abs(before) / depth;
+    // first: 1 on the surface; second: its slope times first^(n - 1)
+    const double n = before > 0 ? front_power_(y) : back_power_(y);
+    const double first = std::pow(std::pow(x, n) + std::pow(z, n), 1 / n);
+    const double second = std::hypot(std::pow(x, n - 1) / width, std::pow(z, n - 1) / depth);
+    const double beside =
+        second > 0 ? std::pow(first, n - 1) * (first - 1) / second : -std::min(width, depth);
     const double beyond = std::abs(p.y - y);
     return beyond > 0 ? std::hypot(std::max(beside, 0.0), beyond) : beside;
   }
 
  private:
-  static MonotoneCurve curve(const std::vector<EllipseSection>& sections,
-                             double (*value)(const EllipseSection&)) {
+  static MonotoneCurve curve(const std::vector<BodySection>& sections, double BodySection::*value) {
     std::vector<double> heights, values;
-    for (const EllipseSection& section : sections) {
+    for (const BodySection& section : sections) {
       heights.push_back(section.height);
-      values.push_back(value(section));
+      values.push_back(section.*value);
     }
     return {heights, values};
   }
 
   double low_, high_;
-  MonotoneCurve x_, z_, half_width_, half_depth_;
+  MonotoneCurve x_, z_, half_width_, front_, back_, front_power_, back_power_;
+};
+
+/// What a person's surface is made of: trunk and leg, from below upwards, and how much larger than a person
+/// of 1.70 m head, feet and arms are.
+struct PersonParts {
+  std::vector<BodySection> torso, leg;
+  double size = 1;
 };
 
 /// A person in formulas, as a DistanceField: smooth unions of tubes, cones and ellipsoids.
 class Person {
  public:
-  explicit Person(const PersonForm& form) : arms_(form.arms), torso_(torso_sections()), leg_(leg_sections()) {
+  explicit Person(const PersonForm& form) : Person(form, reference_parts()) {}
+  Person(const PersonForm& form, const PersonParts& parts)
+      : arms_(form.arms), size_(parts.size), torso_(parts.torso), leg_(parts.leg) {
     const double aside = form.arm_angle_degrees * std::numbers::pi / 180;
     const double before = form.arm_forward_degrees * std::numbers::pi / 180;
     along_arm_ = {std::sin(aside), -std::cos(aside) * std::cos(before), std::cos(aside) * std::sin(before)};
@@ -79,15 +112,23 @@ class Person {
 
   double operator()(const Vec3d& at) const {
     const Vec3d p{std::abs(at.x), at.y, at.z};
+    const Vec3d q = 1 / size_ * p;
     double body = joined(torso_(p), leg_(p), 0.03);
-    body = joined(body, ellipsoid(p, {0, 1.585, 0.015}, {0.075, 0.115, 0.095}), 0.03);
-    body = joined(body, ellipsoid(p, {0.135, 0.035, 0.055}, {0.042, 0.038, 0.12}), 0.02);
+    body = joined(body, size_ * ellipsoid(q, {0, 1.585, 0.015}, {0.075, 0.115, 0.095}), 0.03);
+    body = joined(body, size_ * ellipsoid(q, {0.135, 0.035, 0.055}, {0.042, 0.038, 0.12}), 0.02);
     // Rounded at the shoulder; a hand beside the hip stays apart.
-    const double rounding = std::clamp(0.1 * (p.y - 1.0), 0.004, 0.03);
-    return arms_ ? joined(body, arm(p), rounding) : body;
+    const double rounding = std::clamp(0.1 * (q.y - 1.0), 0.004, 0.03);
+    return arms_ ? joined(body, size_ * arm(q), rounding) : body;
   }
 
  private:
+  static PersonParts reference_parts() {
+    PersonParts parts;
+    std::ranges::transform(torso_sections(), std::back_inserter(parts.torso), body_section);
+    std::ranges::transform(leg_sections(), std::back_inserter(parts.leg), body_section);
+    return parts;
+  }
+
   static std::vector<EllipseSection> torso_sections() {
     const BodyMeasures m;
     const EllipseSection hip = section_of_girth(m.hip.height, m.hip.girth, m.hip_aspect, 0, -0.006);
@@ -165,29 +206,33 @@ class Person {
   }
 
   bool arms_;
-  EllipticTube torso_, leg_;
+  double size_;
+  BodyTube torso_, leg_;
   Vec3d along_arm_;  ///< of length 1, of the arm at x > 0, from the shoulder
 };
 
 /// The person standing on the floor y = 0, looking to +z, left and right of x = 0, m. Takes about as many
 /// microseconds as ten times the triangles, or a second of a debug build.
-inline Surface body_with_arms(const PersonForm& form = {}) {
-  const DistanceField field = Person(form);
+inline Surface body_with_arms(const PersonForm& form, const Person& person, double size) {
+  const DistanceField field = person;
   // A cube that the surface passes through makes about eight triangles.
   const double cell = std::min(0.024, std::sqrt(1.8 * 8 / (1.2 * static_cast<double>(form.triangles))));
   const auto cells = [&](double extent) { return static_cast<std::uint32_t>(std::ceil(extent / cell)); };
   // The arms reach 0.71 m down from the shoulders, and a hand is 0.05 m wide.
-  const auto reach = [](double degrees) { return 0.8 * std::sin(degrees * std::numbers::pi / 180); };
+  const auto reach = [&](double degrees) { return size * 0.8 * std::sin(degrees * std::numbers::pi / 180); };
   // x = 0 is a plane of corners: the legs never grow together there.
   const std::uint32_t aside = cells(0.3 + reach(form.arm_angle_degrees)), behind = cells(0.25),
                       before = cells(0.25 + reach(form.arm_forward_degrees));
-  const FieldBox box{
-      {-cell * aside, -2.3 * cell, -cell * behind}, cell, {2 * aside, cells(1.72) + 4, behind + before}};
+  const FieldBox box{{-cell * aside, -2.3 * cell, -cell * behind},
+                     cell,
+                     {2 * aside, cells(1.72 * size) + 4, behind + before}};
   Surface surface = Decimation(isosurface(field, box), field).down_to(form.triangles);
   const double lowest = std::ranges::min(surface.points, {}, &Vec3d::y).y;
   for (Vec3d& point : surface.points) point.y -= lowest;
   return surface;
 }
+
+inline Surface body_with_arms(const PersonForm& form = {}) { return body_with_arms(form, Person(form), 1); }
 
 /// As a scanner's file would have it.
 inline Surface posed(Surface surface, const PersonPose& pose) {

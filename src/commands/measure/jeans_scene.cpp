@@ -68,6 +68,7 @@ std::string jeans_scene(const std::filesystem::path& file, const MeasuredJeans& 
     section["hem_height_m"] = jeans.measures.hem_height;
     section["knee_m"] = jeans.measures.knee;
     section["hem_m"] = jeans.measures.hem;
+    section["waist_ease_m"] = jeans.measures.waist_ease;
     std::string text = scene.dump(2) + '\n';
     parse_scene(file, text);
     return text;

@@ -152,6 +152,47 @@ std::vector<PlanPoint> BodyProfile::leg_section(double y, int side) const {
   return points;
 }
 
+double BodyProfile::front_share(double y, double z) const {
+  const std::vector<PlanPoint> points = section(y);
+  const double aside = half_width(y);
+  const auto half = [&](double sign) {
+    std::vector<PlanPoint> part{{-aside, z}, {aside, z}};
+    for (const PlanPoint& point : points)
+      if (sign * (point.z - z) > 0) part.push_back(point);
+    return hull_perimeter(std::move(part)) - 2 * aside;
+  };
+  const double front = half(1), back = half(-1);
+  return front / (front + back);
+}
+
+double BodyProfile::crotch_length(double y) const {
+  const double crotch = crotch_height();
+  if (!(y > crotch && y < highest_))
+    throw InputError(name_ + ": no tape goes through its crotch, " + shown(crotch) +
+                     " m high, from the height " + shown(y) + " m; give a height from there to " +
+                     shown(highest_) + " m");
+  // In the plane, {z, y}. Where it ends above, the tape ends, too.
+  std::vector<PlanPoint> outline;
+  double front = -HUGE_VAL, back = HUGE_VAL;
+  for (const auto& triangle : body_.surface.triangles) {
+    std::vector<Vec3d> ends;
+    cut({body_.surface.points[triangle[0]], body_.surface.points[triangle[1]],
+         body_.surface.points[triangle[2]]},
+        &Vec3d::x, 0, [&](const Vec3d& point) { ends.push_back(point); });
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const Vec3d &from = ends[i], &to = ends[(i + 1) % ends.size()];
+      if (from.y >= crotch && from.y <= y) outline.push_back({from.z, from.y});
+      if ((from.y <= y) == (to.y <= y)) continue;
+      const double z = from.z + (y - from.y) / (to.y - from.y) * (to.z - from.z);
+      front = std::max(front, z);
+      back = std::min(back, z);
+    }
+  }
+  outline.push_back({front, y});
+  outline.push_back({back, y});
+  return hull_perimeter(std::move(outline)) - (front - back);
+}
+
 double BodyProfile::leg_girth(double y, int side) const { return hull_perimeter(leg_section(y, side)); }
 
 PlanPoint BodyProfile::leg_middle(double y) const {

@@ -38,6 +38,12 @@ class BodyProfile {
   /// The same of one leg: of the section's part at x < 0 for a negative `side`, else at x > 0. Throws
   /// InputError where the section reaches x = 0, as it does above the crotch, and where there is no such leg.
   double leg_girth(double y, int side) const;
+  /// The part of that girth before the plane in which z, m, is given, which passes through the section.
+  double front_share(double y, double z) const;
+  /// How long a tape is from the front of the body at the height y, m, down between the legs and up to the
+  /// back at the same height, in the plane x = 0; it bridges hollows. Throws InputError for a body without
+  /// legs, and for a height below the crotch.
+  double crotch_length(double y) const;
   /// The middle of the leg at x > 0, half way between the outermost points of its section; above the crotch
   /// that of the leg just below it.
   PlanPoint leg_middle(double y) const;

@@ -57,12 +57,12 @@ std::vector<double> elongations(const System& system, const Garment& garment,
   return elongations;
 }
 
-/// Mean height of nodes above where the pattern puts them.
+/// Mean height of nodes, one or more, above where the pattern puts them.
 double mean_rise(const Garment& garment, const std::vector<Vec3d>& position,
                  const std::vector<std::uint32_t>& nodes) {
   double rise = 0;
   for (const std::uint32_t node : nodes) rise += position[node].y - garment.flat[node].y;
-  return nodes.empty() ? 0 : rise / static_cast<double>(nodes.size());
+  return rise / static_cast<double>(nodes.size());
 }
 
 /// Of the upper edges of each layer's panels, the mean rise that is farthest off.
@@ -173,7 +173,8 @@ Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBo
   }
   measure_side_distance(garment.close, position, body, fit);
   fit.upper_edge_rise = upper_edge_rise(garment, position);
-  fit.meeting_rise = mean_rise(garment, position, where_seams_meet(garment));
+  if (const auto meeting = where_seams_meet(garment); !meeting.empty())
+    fit.meeting_rise = mean_rise(garment, position, meeting);
   for (const std::vector<std::uint32_t>& loop : sewn_rows(garment)) {
     Vec3d middle;
     for (const std::uint32_t node : loop) middle += 1 / static_cast<double>(loop.size()) * position[node];

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,13 +18,14 @@ struct Fit {
   double deepest_node = 0;         ///< m below the body's surface
   double deepest_face_sample = 0;  ///< m, of 5 x 5 samples in every cell
   /// m, the largest distance from the body of a node that is to lie close to it (CloseCloth), and the height
-  /// of that node; 0 where there is none. Hollows of the body are bridged, as taut cloth does, so that no
+  /// of that node; none where no node is to. Hollows of the body are bridged, as taut cloth does, so that no
   /// point of a face is further away than the face's nodes.
-  double side_distance = 0, side_distance_height = 0;
+  std::optional<double> side_distance = {}, side_distance_height = {};
   /// m, how far the upper edges of a layer's panels hang above where the pattern puts them, on average;
-  /// below, where negative: of the layer where that is farthest off. The same of the nodes at which seams
-  /// meet: the crotch.
-  double upper_edge_rise = 0, meeting_rise = 0;
+  /// below, where negative: of the layer where that is farthest off.
+  double upper_edge_rise = 0;
+  /// The same of the nodes at which seams meet: the crotch; none where seams do not meet.
+  std::optional<double> meeting_rise = {};
   /// Rows of two panels, sewn to each other at both ends, which do not go once around the limb between them.
   std::size_t rows = 0, rows_astray = 0;
   /// Elongation over rest length of structural and shear springs: the median, what 99 % and 99.9 % are below,

@@ -29,7 +29,8 @@ struct FitNumber {
   std::string_view unit{};     ///< there, with what goes before it
   double per_spoken_unit = 1;  ///< factor to that
   Diagnosis too_large{};
-  Diagnosis too_small{};  ///< below its bound, where it has a sign
+  Diagnosis too_small{};                 ///< below its bound, where it has a sign
+  bool (*exists)(const Fit&) = nullptr;  ///< null where every garment has the number
 };
 
 constexpr double mm = 1e3;
@@ -67,7 +68,7 @@ constexpr std::array<FitNumber, 15> numbers{{
      {"the garment was pushed up", "a higher waist (waist_height_m) or more waist_ease_m"},
      {"the garment slid down", "a lower waist (waist_height_m), less waist_ease_m or more friction"}},
     {"crotch_rise_mm",
-     [](const Fit& f) { return f.meeting_rise; },
+     [](const Fit& f) { return f.meeting_rise.value(); },
      &FitBounds::meeting_shift,
      mm,
      true,
@@ -75,7 +76,8 @@ constexpr std::array<FitNumber, 15> numbers{{
      " mm",
      mm,
      {"the crotch was drawn up", "more crotch_ease_m"},
-     {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"}},
+     {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"},
+     [](const Fit& f) { return f.meeting_rise.has_value(); }},
     {"rows", [](const Fit& f) { return static_cast<double>(f.rows); }, nullptr, 1},
     {"rows_astray",
      [](const Fit& f) { return static_cast<double>(f.rows_astray); },
@@ -97,7 +99,7 @@ constexpr std::array<FitNumber, 15> numbers{{
      {"layers went through each other",
       "layers that touch (\"layers\"), a larger thickness_m or more nodes"}},
     {"side_distance_mm",
-     [](const Fit& f) { return f.side_distance; },
+     [](const Fit& f) { return f.side_distance.value(); },
      &FitBounds::side_distance,
      mm,
      false,
@@ -105,9 +107,19 @@ constexpr std::array<FitNumber, 15> numbers{{
      " mm",
      mm,
      {"the garment stands off at the sides",
-      "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"}},
-    {"side_distance_height_m", [](const Fit& f) { return f.side_distance_height; }, nullptr, 1},
+      "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"},
+     {},
+     [](const Fit& f) { return f.side_distance.has_value(); }},
+    {.name = "side_distance_height_m",
+     .value = [](const Fit& f) { return f.side_distance_height.value(); },
+     .bound = nullptr,
+     .per_unit = 1,
+     .exists = [](const Fit& f) { return f.side_distance_height.has_value(); }},
 }};
+
+bool exists(const FitNumber& number, const Fit& fit) {
+  return number.exists == nullptr || number.exists(fit);
+}
 
 bool is_within(const FitNumber& number, const Fit& fit, const FitBounds& bounds) {
   // A number that is none keeps no bound.
@@ -130,6 +142,7 @@ const Diagnosis& diagnosis_of(const FitNumber& number, const Fit& fit) {
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
   std::vector<FitCheck> checks;
   for (const FitNumber& number : numbers) {
+    if (!exists(number, fit)) continue;
     FitCheck& check = checks.emplace_back();
     check.name = number.name;
     check.value = number.per_unit * number.value(fit);
@@ -150,7 +163,7 @@ std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, c
   if (!result.settled)
     found.emplace_back("the garment did not come to rest; try more viscous_damping_per_s or more nodes");
   for (const FitNumber& number : numbers) {
-    if (number.bound == nullptr || is_within(number, fit, bounds)) continue;
+    if (number.bound == nullptr || !exists(number, fit) || is_within(number, fit, bounds)) continue;
     const Diagnosis& diagnosis = diagnosis_of(number, fit);
     std::ostringstream text;
     text << diagnosis.happened << ": " << number.what << " is " << number.value(fit) * number.per_spoken_unit

@@ -31,7 +31,7 @@ struct FitCheck {
   std::optional<bool> within;   ///< whether it keeps it
 };
 
-/// All numbers of a fit, in one order.
+/// All numbers that the fit has, in one order.
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds);
 
 /// What is out of bounds, each what happened, the number and its bound, and what to try: that the garment was

@@ -73,11 +73,12 @@ static_assert(columns[iterations_column].name == "dressing_iterations");
 
 constexpr std::string_view within_suffix = "_within";
 
-/// The numbers that a fit has, as those of the first row that has any.
-std::vector<FitNumberRecord> fit_of_any(std::span<const ResultRow* const> rows) {
+/// The numbers of all fits: a garment that has fewer has none that the one with the most lacks.
+std::vector<FitNumberRecord> most_of_a_fit(std::span<const ResultRow* const> rows) {
+  std::vector<FitNumberRecord> most;
   for (const ResultRow* row : rows)
-    if (row->dressing && !row->dressing->fit.empty()) return row->dressing->fit;
-  return {};
+    if (row->dressing && row->dressing->fit.size() > most.size()) most = row->dressing->fit;
+  return most;
 }
 
 void add_fit(const std::vector<FitNumberRecord>& known, const ResultRow& row, std::vector<Cell>& cells) {
@@ -111,7 +112,7 @@ std::string garment_csv(std::span<const ResultRow> rows) {
   const std::vector<const ResultRow*> dressed = rows_of_dressed_scenes(rows);
   if (dressed.empty()) return "";
   Table table;
-  const std::vector<FitNumberRecord> fit = fit_of_any(dressed);
+  const std::vector<FitNumberRecord> fit = most_of_a_fit(dressed);
   for (const GarmentColumn& column : columns) table.columns.push_back({std::string(column.name)});
   for (const FitNumberRecord& number : fit) {
     table.columns.push_back({number.name});

@@ -8,6 +8,17 @@ namespace {
 
 double in_millimetres(double metres) { return std::round(1000 * metres) / 1000; }
 
+/// What the jeans are wider than the body at their upper edge, m. Where the body hardly widens from there to
+/// the hip, they hold by being narrower.
+double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
+  constexpr double usual = 0.01, least = -0.03;  // m
+  constexpr double steep = 0.7;                  // m of girth per m of height: usual from there on
+  constexpr double narrower = 0.1;               // m, by as much less for each m per m below
+  const double widening = (profile.hull_girth(jeans.hip_height) - profile.hull_girth(jeans.waist_height)) /
+                          (jeans.waist_height - jeans.hip_height);
+  return std::clamp(usual + narrower * (widening - steep), least, usual);
+}
+
 /// How much the leg, straight from hem to knee, would have to be wider to go round the body's with some air.
 double lack_of_width(const BodyProfile& profile, const JeansMeasures& jeans) {
   constexpr double air = 0.03, step = 0.01;  // m
@@ -34,6 +45,7 @@ JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& bo
   if (body.knee.girth) jeans.knee = wider_knee * *body.knee.girth;
   if (body.ankle.girth) jeans.hem = wider_hem * *body.ankle.girth;
   const double lack = lack_of_width(profile, jeans);
+  jeans.waist_ease = in_millimetres(ease_at_waist(profile, jeans));
   jeans.knee = in_millimetres(jeans.knee + lack);
   jeans.hem = in_millimetres(jeans.hem + lack);
   return jeans;

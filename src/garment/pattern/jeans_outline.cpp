@@ -15,7 +15,8 @@ namespace {
 /// How front and back differ. Proportions are those of trouser drafts as they are taught (Aldrich, "Metric
 /// Pattern Cutting"), the lengths what fitted best on the reference body.
 struct Half {
-  double width;            ///< m, added to a quarter of each girth
+  bool before;             ///< the side seams
+  double width;            ///< m, added to half of what the body has of each girth there
   double fork_share;       ///< of the hip: how far the crotch point juts out over the centre line ...
   double fork_more;        ///< m, ... and this
   double centre_share;     ///< of what the waist is narrower than the hip is taken away at the centre
@@ -25,15 +26,15 @@ struct Half {
   double inseam_hollow;    ///< m, how far the inseam's control point stands back from the crotch point
   double fork_flatness;    ///< of the fork: length of the crotch curve's lower control
 };
-constexpr Half front_half{-0.010, 1.0 / 16, 0, 0.5, -0.009, 0, 0.075, 0.018, 0.60};
-constexpr Half back_half{0.010, 1.0 / 8, 0.005, 0.8, 0.025, 0.015, 0.09, 0.040, 0.62};
+constexpr Half front_half{true, -0.007, 1.0 / 16, 0, 0.8, -0.009, 0, 0.075, 0.018, 0.60};
+constexpr Half back_half{false, 0.007, 1.0 / 8, 0.005, 1.05, 0.010, 0.015, 0.09, 0.040, 0.62};
 
 /// By how much of the body's girth jeans without ease are stretched at hip and waist. Around a body that is
 /// round both ways the cloth is too long at the side seams; without tension it stands off there.
-constexpr double hip_stretch = 0.033, waist_stretch = 0.006;
+constexpr double hip_stretch = 0.031, waist_stretch = 0.006;
 
-constexpr double side_raised = 0.006;  // m, of the waist at the side
-constexpr double side_slope = 0.2;     // by which the waist falls away from there
+constexpr double side_raised = -0.003;  // m, of the waist at the side
+constexpr double side_slope = 0.2;      // by which the waist falls away from there
 
 Curve line(const Vec3d& from, const Vec3d& to) { return Curve({from, to}); }
 
@@ -70,13 +71,13 @@ FittedCubic fit_slopes(double low, double low_value, double high, double high_va
 /// One half, with x = 0 at the outer side's hip while it is drawn.
 class Drafting {
  public:
-  Drafting(const JeansMeasures& measures, const Half& half)
+  Drafting(const JeansMeasures& measures, const Half& half, double fork_factor)
       : m_(measures),
         half_(half),
         crotch_line_(m_.crotch_height - m_.crotch_ease),
         hip_width_(width_at(m_.hip_height)),
         waist_width_(width_at(m_.waist_height)),
-        fork_(half.fork_share * m_.girth(m_.hip_height) + half.fork_more),
+        fork_(fork_factor * (half.fork_share * m_.girth(m_.hip_height) + half.fork_more)),
         crease_(0.5 * (hip_width_ + fork_) - half.crease_outwards) {}
 
   /// With the crotch point this far below the crotch line.
@@ -106,7 +107,9 @@ class Drafting {
     if (!(girth > 0.2 && girth < 5))
       throw InputError("jeans: the body's girth at the height " + shown(y) + " m is " + shown(girth) +
                        " m; give a body that has one from 0.2 to 5 m there");
-    return 0.25 * (girth + 2 * std::numbers::pi * m_.body_offset + ease) + half_.width;
+    const double front = m_.front_share ? m_.front_share(y) : 0.5;
+    const double share = half_.before ? front : 1 - front;
+    return 0.5 * share * (girth + 2 * std::numbers::pi * m_.body_offset + ease) + half_.width;
   }
 
   double centre_taken() const { return half_.centre_share * (hip_width_ - waist_width_); }
@@ -215,11 +218,9 @@ void require_measures(const JeansMeasures& m) {
   require_between(m.body_offset, 0, 0.05, "the distance between body and cloth");
 }
 
-}  // namespace
-
-JeansDraft draft_jeans(const JeansMeasures& measures) {
-  require_measures(measures);
-  const Drafting front(measures, front_half), back(measures, back_half);
+/// With the crotch curves' forks so many times as wide as the hip's girth alone has them.
+JeansDraft draft_with(const JeansMeasures& measures, double fork_factor) {
+  const Drafting front(measures, front_half, fork_factor), back(measures, back_half, fork_factor);
   const JeansOutline front_outline = front.outline(0);
   const double inseam = front_outline.inseam.length();
   double least = -0.03, most = 0.08;  // m: the back inseam shrinks from the one to the other
@@ -234,6 +235,28 @@ JeansDraft draft_jeans(const JeansMeasures& measures) {
     (back_inseam(middle) > inseam ? least : most) = middle;
   }
   return {front_outline, back.outline(most)};
+}
+
+/// How wide the forks must be for the centre seams to be as long as the body there, with some ease: a body
+/// that is deep for its girth needs wider ones.
+double fork_factor(const JeansMeasures& measures) {
+  if (!measures.crotch_length) return 1;
+  constexpr double ease = 0.05;  // m, of which the crotch's own and the raised back take a part
+  const double wanted = measures.crotch_length(measures.waist_height) + ease;
+  double least = 0.7, most = 1.6;
+  for (int halving = 0; halving < 12; ++halving) {
+    const double middle = 0.5 * (least + most);
+    const JeansDraft draft = draft_with(measures, middle);
+    (draft.front.centre.length() + draft.back.centre.length() < wanted ? least : most) = middle;
+  }
+  return 0.5 * (least + most);
+}
+
+}  // namespace
+
+JeansDraft draft_jeans(const JeansMeasures& measures) {
+  require_measures(measures);
+  return draft_with(measures, fork_factor(measures));
 }
 
 }  // namespace mssim

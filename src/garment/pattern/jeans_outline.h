@@ -11,6 +11,11 @@ namespace mssim {
 struct JeansMeasures {
   /// The body's girth at a height between hip and waist (of the convex hull: a tape measure bridges hollows).
   std::function<double(double)> girth;
+  /// The share of it before the side seams; none: half of it.
+  std::function<double(double)> front_share{};
+  /// The body's length from the front at a height through the crotch to the back
+  /// (BodyProfile::crotch_length); none: the crotch curves are as long as the girth of the hip has them.
+  std::function<double(double)> crotch_length{};
   double waist_height = 1.005;   ///< of the jeans' upper edge at the side
   double hip_height = 0.86;      ///< where the girth is largest
   double crotch_height = 0.768;  ///< of the body
@@ -18,7 +23,7 @@ struct JeansMeasures {
   double hem_height = 0.07;
   double knee = 0.42;          ///< of the jeans, all round one leg
   double hem = 0.36;           ///< of the jeans, all round one leg
-  double hip_ease = 0;         ///< what the jeans are wider than 0.967 of the body, and offset, all round
+  double hip_ease = 0;         ///< what the jeans are wider than 0.969 of the body, and offset, all round
   double waist_ease = 0.01;    ///< what they are wider than 0.994 of the body, and offset
   double crotch_ease = 0.03;   ///< how far the crotch line lies below the body's
   double body_offset = 0.004;  ///< between body and cloth: both waist and hip grow by 2 pi of it

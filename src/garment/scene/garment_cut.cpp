@@ -106,6 +106,9 @@ OfHeight remembered(OfHeight function) {
 struct AskedMeasures {
   const BodyProfile& profile;
   OfHeight girth = remembered([&of = profile](double y) { return of.hull_girth(y); });
+  /// Before the middle of the legs, above which the side seams lie.
+  OfHeight front_share = remembered(
+      [&of = profile](double y) { return of.front_share(y, of.leg_middle(of.crotch_height()).z); });
   OfHeight leg_x = remembered([&of = profile](double y) { return of.leg_middle(y).x; });
   BodyDepth depth{remembered([&of = profile](double y) { return of.front(y); }),
                   remembered([&of = profile](double y) { return of.back(y); })};
@@ -116,6 +119,8 @@ GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, 
   JeansMeasures measures = garment.jeans->measures;
   measures.body_offset = body_offset;
   measures.girth = body.girth;
+  measures.front_share = body.front_share;
+  measures.crotch_length = [&of = body.profile](double y) { return of.crotch_length(y); };
   measures.crotch_height = body.profile.crotch_height();
   return jeans_pattern(measures, garment.jeans->nodes, garment.cloth,
                        [leg_x = body.leg_x](double height) { return leg_x(height) + beside_the_leg_m; });

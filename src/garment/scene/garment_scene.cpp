@@ -37,11 +37,11 @@ void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
   visit_length(fields, {"hem_m", "Around one leg of the jeans at the hem, m."}, jeans.measures.hem);
   fields.number(
       {"hip_ease_m",
-       "How much wider than 0.967 of the body, and what lies between, the jeans are at the hip, all "
+       "How much wider than 0.969 of the body, and what lies between, the jeans are at the hip, all "
        "round, m."},
       jeans.measures.hip_ease, from(0, largest_length_m));
   fields.number({"waist_ease_m", "The same at the waist, over 0.994 of the body, m."},
-                jeans.measures.waist_ease, from(0, largest_length_m));
+                jeans.measures.waist_ease, from(-0.2, largest_length_m));
   fields.number({"crotch_ease_m", "How far the crotch of the jeans lies below the body's, m."},
                 jeans.measures.crotch_ease, from(0, largest_length_m));
 }
