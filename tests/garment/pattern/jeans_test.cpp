@@ -51,8 +51,8 @@ TEST(JeansDraft, SeamsFitTogether) {
     const JeansDraft draft = draft_jeans(JeansBody{hip}.measures());
     EXPECT_NEAR(draft.front.inseam.length(), draft.back.inseam.length(), 1e-4) << hip;
     EXPECT_NEAR(draft.front.outer.length() / draft.back.outer.length(), 1, 0.01) << hip;
-    EXPECT_NEAR(draft.front.hem.length(), 0.36 / 2 - 0.01, 1e-15);
-    EXPECT_NEAR(draft.back.hem.length(), 0.36 / 2 + 0.01, 1e-15);
+    EXPECT_NEAR(draft.front.hem.length(), 0.36 / 2 - 0.007, 1e-15);
+    EXPECT_NEAR(draft.back.hem.length(), 0.36 / 2 + 0.007, 1e-15);
   }
 }
 
