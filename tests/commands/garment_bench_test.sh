@@ -39,7 +39,7 @@ for backend in serial openmp; do
   # What was never published or cannot be counted is not made up.
   for none in springs_published gigabytes_per_second roofline_fraction paper_ms; do has jeans/timings.csv "$none" "$backend" ""; done
   awk -v ms="$(column jeans/garment.csv ms_per_iteration "$backend")" -v ns="$(column jeans/garment.csv ns_per_iteration_and_vertex "$backend")" \
-    'BEGIN { exit !(ms > 0 && ns / (ms * 1e6 / 1050) > 0.999 && ns / (ms * 1e6 / 1050) < 1.001) }' || fail "times of $backend"
+    'BEGIN { exit !(ms > 0 && ns / (ms * 1e6 / 1054) > 0.999 && ns / (ms * 1e6 / 1054) < 1.001) }' || fail "times of $backend"
 done
 has jeans/garment.csv speedup_vs_serial serial 1
 grep -q '^| with: .openmp. | \*\*[0-9.]*\*\* ([0-9.]*×) |$' jeans/figure6.md || fail "figure6.md: $(cat jeans/figure6.md)"
@@ -63,7 +63,7 @@ bench 0 "${jeans[@]}" --rounds 2 --out jeans --resume
 # What cannot dress is a row that says why, and an error only where it was asked for.
 bench 0 --scene jeans1k --rounds 1 --format csv
 [ "$(wc -l <out)" -eq 16 ] || fail "there are not fifteen rows and a header"
-[ "$(grep -Ec '^jeans1k,1050,,semi-euler,(serial|openmp),.*,true,ok$' out)" -eq 2 ] || fail "not both rows are ok: $(cat out)"
+[ "$(grep -Ec '^jeans1k,1054,,semi-euler,(serial|openmp),.*,true,ok$' out)" -eq 2 ] || fail "not both rows are ok: $(cat out)"
 [ "$(grep -Ec '^jeans1k,.*,(threads-mutex|hybrid),.*,false,"?unsupported: .*garments' out)" -eq 6 ] || fail "six rows are unsupported: $(cat out)"
 [ "$(grep -Ec '^jeans1k,.*,(midpoint|rk4),(serial|openmp),.*,false,"?unsupported: .*semi-euler only' out)" -eq 4 ] || fail "four are not semi-euler: $(cat out)"
 bench 0 --scene jeans1k --backend openmp --rounds 1 --format github
@@ -76,7 +76,7 @@ grep -q '"status": "unsupported: a garment is dressed with semi-euler only' out 
 sed 's/"correction": "bounded"/"correction": "none"/; s/"bounded": {[^}]*}/"none": {}/; s/": 200,/": 60,/' \
   "$source/scenes/jeans1k.json" >slack.json
 bench 1 --scene slack.json --backend serial --integrator semi-euler --rounds 1 --out slack
-grep -q 'failed: dressed, .*the 99.9th percentile of elongations is [0-9.]* %, beyond 8 %' slack/timings.csv || fail "slack: $(cat slack/timings.csv)"
+grep -q 'failed: dressed, .*the 99th percentile of elongations is [0-9.]* %, beyond 6 %' slack/timings.csv || fail "slack: $(cat slack/timings.csv)"
 has slack/garment.csv ms_per_iteration serial ""
 has slack/garment.csv verified serial false
 head -n 1 slack/garment.csv | grep elongation_999_within >/dev/null || fail "the fit of what does not fit is not told"
