@@ -142,13 +142,18 @@ bool builds_scenes_itself(const BackendInfo& info) {
 void verify_second(Combination& combination, const SceneJob& job, const BackendInfo& info,
                    const SecondStretch& stretch) {
   combination.backend->rest();
+  ExecutionOptions execution = job.execution;
+  execution.scene += "-small";  // a program may know scenes by their names
   try {
-    const auto backend = make_backend(info, stretch.system, *combination.integrator, job.dt_s, job.execution);
+    const auto backend = make_backend(info, stretch.system, *combination.integrator, job.dt_s, execution);
     if (const auto wrong = verify_second(*backend, stretch)) fail(combination, "failed: " + *wrong);
   } catch (const Unsupported& reason) {
     fail(combination, std::string("failed: it does not step a small scene of the kind: ") + reason.what());
   } catch (const Unavailable& reason) {
     fail(combination, std::string("failed: it does not step a small scene of the kind: ") + reason.what());
+  } catch (const BackendFailure& failure) {
+    throw BackendFailure(std::string(failure.what()) + ", on a small scene of the kind", failure.output,
+                         failure.late);
   }
 }
 

@@ -98,6 +98,9 @@ def check_system(system):
         found = (n, springs, system.threads, system.dt, system.grid.rows, system.grid.columns, system.grid.spacing)
         if found != (2500, 14502, 1, 5e-5, 50, 50, 0.01) or system.tetrahedra is not None:
             raise AssertionError(f"cloth2500 is {found}")
+    elif system.scene == "cloth2500-small":  # the second stretch of the verification
+        if (n, system.grid.rows, system.grid.columns, system.grid.spacing) != (221, 13, 17, 0.01) or system.tetrahedra is not None:
+            raise AssertionError(f"cloth2500-small is {system.grid}")
     elif system.grid is not None or system.tetrahedra.shape[1] != 4 or system.tetrahedra.max() >= n:
         raise AssertionError("a body has a grid, or no tetrahedra")
 
