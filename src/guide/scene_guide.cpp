@@ -189,6 +189,8 @@ SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
   if (guide.trusted.failure.empty()) {
     watch.progress("spectrum on the way", clock.fraction());
     guide.on_the_way = spectrum_at(*request.system, guide.trusted.state);
+  } else if (clock.spent() > request.seconds) {
+    return guide;
   }
   find_limits(guide, request, watch, clock);
   if (!guide.trusted.failure.empty()) return guide;

@@ -97,14 +97,20 @@ double seconds_a_step(const System& system, double dt_s) {
 }  // namespace
 
 TrustedState trusted_state(const System& system, const TrustedRequest& request) {
-  constexpr int looks = 40;
+  constexpr double most_looks = 40;
   // Two trajectories side by side, then half the step with the other solver beside it, which takes longer.
   constexpr double runs = 4;
   TrustedState trusted;
   const Stopwatch watch;
   const double step_seconds = seconds_a_step(system, request.first_dt_s);
-  const double affordable_s = request.seconds / runs / step_seconds * request.first_dt_s;
-  const double longest_s = std::min(request.longest_s, affordable_s);
+  const double affordable_steps = request.seconds / runs / step_seconds;
+  if (affordable_steps < 1) {
+    trusted.failure =
+        "no time is left for a reference, of which a step takes " + three_digits(step_seconds) + " s";
+    return trusted;
+  }
+  const double longest_s = std::min(request.longest_s, affordable_steps * request.first_dt_s);
+  const int looks = static_cast<int>(std::min(most_looks, affordable_steps));
   const int steps_a_look = std::max(1, static_cast<int>(std::ceil(longest_s / looks / request.first_dt_s)));
   double dt_s = longest_s / looks / steps_a_look;
   HorizonWalk walk(system, dt_s);

@@ -46,7 +46,7 @@ status=0
 "$mssim" guide --scene cloth40k --backend serial --integrator newton-euler --threads 1 --time-budget 0.01 >"$work/out" 2>"$work/err" || status=$?
 [ "$status" -eq 1 ] || fail "a guide without time exits with $status"
 grep -q '^mssim: cloth40k: nothing was measured in 0.01 s: give --time-budget 90 or more' "$work/err" || fail "stderr says: $(cat "$work/err")"
-grep -q '^Nothing was measured' "$work/out" || fail "a guide without time recommends $(cat "$work/out")"
+grep -Eq '^(Nothing was measured|No errors were measured: no time)' "$work/out" || fail "a guide without time recommends $(cat "$work/out")"
 
 # Stopped before there is a point it replaces nothing; what replaces it leaves none of its tables.
 cp -r "$work/folder" "$work/before"

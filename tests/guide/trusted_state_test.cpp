@@ -56,6 +56,12 @@ TEST(TrustedState, SaysThatThereIsNoHorizon) {
               testing::HasSubstr("no horizon"));
 }
 
+TEST(TrustedState, IsNotBegunWithoutTimeForAStep) {
+  const TrustedState trusted =
+      trusted_state(cloth_system(9, 9), {.longest_s = 0.02, .first_dt_s = 1e-4, .seconds = 1e-9});
+  EXPECT_THAT(trusted.failure, testing::HasSubstr("no time"));
+}
+
 TEST(TrustedState, EndsItsHorizonWhereNeighboursPart) {
   // Compressed springs: a node beside the line runs off, faster and faster.
   System system = spring_chain(5);

@@ -127,8 +127,9 @@ SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::siz
 std::vector<std::string> failures(const std::vector<SceneGuide>& guides, double share_s) {
   std::vector<std::string> sentences;
   for (const SceneGuide& guide : guides) {
-    const auto ran_out = [](const GuidedMethod& method) { return method.status.starts_with("no time"); };
-    if (guide.points.empty() && std::ranges::any_of(guide.methods, ran_out))
+    const auto ran_out = [](const std::string& status) { return status.starts_with("no time"); };
+    if (ran_out(guide.trusted.failure) ||
+        (guide.points.empty() && std::ranges::any_of(guide.methods, ran_out, &GuidedMethod::status)))
       sentences.push_back(guide.scene + ": nothing was measured in " + two_digits(share_s) +
                           " s: give --time-budget " + two_digits(std::max(usual_guide_s, 2 * share_s)) +
                           " or more for each scene");
