@@ -47,7 +47,7 @@ grep -q 'unsupported: it has no implicit-euler' implicit/timings.csv || fail "a 
 # What programs do wrong: each has its sentence, and the rows beside it are measured.
 mistakes=(unsupported unavailable fails-early old-protocol many-notes long-line crashes hangs-early never-connects ends-early exits
   hangs ignores-signals leaves-children nonsense binary negative-time fails closes connects-twice done-twice nan writes-nothing
-  too-few cuts-state floods tells-time idle)
+  too-few cuts-state floods tells-time idle lazy huge-costs)
 for mistake in "${mistakes[@]}"; do describe "$mistake"; done
 status=0
 "$mssim" "${bench[@]}" --backend "serial$(printf ',%s' "${mistakes[@]}")" --backend-folder backends --backend-limit 2 \
@@ -90,6 +90,8 @@ row cuts-state 'failed: cuts-state left a state file of 119976 bytes instead of 
 row floods ,true,ok,
 row tells-time ,true,ok,
 row idle 'failed: position error '
+row lazy 'failed: position error '
+row huge-costs 'failed: latency_us is not finite'
 
 # What they wrote last stays.
 [ "$(cat wrong/programs/cloth2500-exits-semi-euler.txt)" = 'out of cake' ] || fail "the output of exits is lost"

@@ -217,7 +217,7 @@ class Mistakes {
     if (is("long-line")) connection_.send(std::string(100000, 'x'));
     if (is("crashes")) std::raise(SIGSEGV);
     if (is("hangs-early")) ::pause();
-    if (is("tells-costs") || is("many-costs")) connection_.send("tells costs\n");
+    if (is("tells-costs") || is("many-costs") || is("huge-costs")) connection_.send("tells costs\n");
   }
 
   /// True where the step is not taken.
@@ -319,11 +319,14 @@ void serve(const std::string& mistake) {
       int count = 0;
       words >> count;
       if (mistakes.at_step()) continue;
+      if (mistakes.is("lazy")) count = std::min(count, 105);
       for (int i = 0; i < count && !mistakes.is("idle"); ++i) simulation.step();
     }
     if (word == "costs")
       for (int times = mistakes.is("many-costs") ? 101 : 1; times > 0; --times)
         connection.send("cost waiting 0.25\ncost bytes 96\ncost messages 2\n");
+    if (word == "costs" && mistakes.is("huge-costs"))
+      connection.send("cost bytes 1e308\ncost latency 1e305\ncost bandwidth 1e308\n");
     if (word == "set") read_state(state_file, simulation);
     if (word == "get") write_state(state_file, simulation, mistakes);
     connection.send(word == "step" && mistakes.is("tells-time") ? "done 0.25\n" : "done\n");
