@@ -4,7 +4,7 @@
 
 #include "report/finding.h"
 #include "report/times_as_fast.h"
-#include "statistics/ratio.h"
+#include "statistics/statistics.h"
 #include "text/counted.h"
 #include "text/decimal.h"
 #include "text/joined.h"

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
+#include "statistics/rank_tests.h"
+
 namespace mssim {
+
 namespace {
 
 /// P(B(n, 1/2) = k). By logarithms, because 2^-n is no double from n = 1075 on.
@@ -21,6 +25,21 @@ double fair_binomial(std::size_t n, std::size_t k) {
 double middle(const std::vector<double>& sorted) {
   const std::size_t half = sorted.size() / 2;
   return sorted.size() % 2 == 1 ? sorted[half] : std::midpoint(sorted[half - 1], sorted[half]);
+}
+
+std::vector<double> logarithms(std::span<const double> values) {
+  std::vector<double> logs;
+  for (const double value : values) {
+    if (!(value > 0) || !std::isfinite(value))
+      throw std::invalid_argument("a ratio needs finite times above zero");
+    logs.push_back(std::log(value));
+  }
+  if (logs.empty()) throw std::invalid_argument("a ratio needs at least one time");
+  return logs;
+}
+
+RatioEstimate estimate_of(const ShiftEstimate& shift, const RankTest& test) {
+  return {std::exp(shift.shift), std::exp(shift.low), std::exp(shift.high), shift.covers, test.p_two_sided()};
 }
 
 }  // namespace
@@ -74,6 +93,78 @@ MedianInterval median_ratio(std::span<const double> numerators, std::span<const 
   std::transform(numerators.begin(), numerators.end(), denominators.begin(), ratios.begin(),
                  [](double numerator, double denominator) { return numerator / denominator; });
   return median_interval(ratios);
+}
+
+double quantile(std::vector<double> values, double fraction) {
+  const auto place =
+      values.begin() + std::min(static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size())),
+                                std::ssize(values) - 1);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+Quartiles quartiles(std::span<const double> samples) {
+  const std::vector<double> sorted = ascending(samples);
+  const auto count = static_cast<double>(sorted.size());
+  const auto sample_number = [&](double number) {
+    const double at = std::clamp(number, 1.0, count) - 1;
+    const auto below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, sorted.size() - 1);
+    return std::lerp(sorted[below], sorted[above], at - static_cast<double>(below));
+  };
+  return {sample_number((count + 1) / 4), sample_number(3 * (count + 1) / 4)};
+}
+
+std::string_view name_of(Outlier outlier) {
+  switch (outlier) {
+    case Outlier::mild:
+      return "mild";
+    case Outlier::extreme:
+      return "extreme";
+    case Outlier::no:
+      break;
+  }
+  return "";
+}
+
+std::vector<Outlier> outliers(std::span<const double> samples) {
+  const Quartiles middle = quartiles(samples);
+  const double range = middle.third - middle.first;
+  std::vector<Outlier> labels;
+  std::ranges::transform(samples, std::back_inserter(labels), [&](double sample) {
+    const double outside = std::max(middle.first - sample, sample - middle.third);
+    if (outside > 3 * range) return Outlier::extreme;
+    return outside > 1.5 * range ? Outlier::mild : Outlier::no;
+  });
+  return labels;
+}
+
+RatioEstimate ratio_of(std::span<const double> base, std::span<const double> next) {
+  const std::vector<double> x = logarithms(next), y = logarithms(base);
+  return estimate_of(rank_sum_shift(x, y), rank_sum_test(x, y));
+}
+
+RatioEstimate paired_ratio(std::span<const double> base, std::span<const double> next, double fraction) {
+  if (base.size() != next.size())
+    throw std::invalid_argument("paired ratios need as many times on each side");
+  std::vector<double> differences = logarithms(next);
+  const std::vector<double> logs = logarithms(base);
+  for (std::size_t i = 0; i < logs.size(); ++i) differences[i] -= logs[i];
+  RatioEstimate estimate =
+      estimate_of(signed_rank_shift(differences, fraction * usual_error), signed_rank_test(differences));
+  estimate.p = std::min(1., estimate.p / fraction);
+  return estimate;
+}
+
+double geometric_mean(std::span<const double> ratios) {
+  const std::vector<double> logs = logarithms(ratios);
+  return std::exp(std::accumulate(logs.begin(), logs.end(), 0.) / static_cast<double>(logs.size()));
+}
+
+Look look_at(std::size_t pairs) {
+  std::size_t due = first_look_pairs, number = 1;
+  for (; due < pairs; due += due / 2) ++number;
+  return {due, 1 / static_cast<double>(number * (number + 1))};
 }
 
 }  // namespace mssim

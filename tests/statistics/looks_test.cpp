@@ -1,8 +1,8 @@
-#include "statistics/looks.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "statistics/statistics.h"
 
 namespace mssim {
 namespace {

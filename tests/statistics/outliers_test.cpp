@@ -1,11 +1,11 @@
-#include "statistics/outliers.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "statistics/statistics.h"
 
 namespace mssim {
 namespace {

@@ -1,11 +1,11 @@
-#include "statistics/rank_distribution.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "statistics/rank_tests.h"
 
 namespace mssim {
 namespace {

@@ -1,10 +1,10 @@
-#include "statistics/rank_sum.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "statistics/rank_tests.h"
 
 namespace mssim {
 namespace {

@@ -1,5 +1,3 @@
-#include "statistics/ratio.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <random>
 #include <stdexcept>
 #include <vector>
+
+#include "statistics/statistics.h"
 
 namespace mssim {
 namespace {

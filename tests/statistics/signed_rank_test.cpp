@@ -1,5 +1,3 @@
-#include "statistics/signed_rank.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "statistics/rank_tests.h"
 
 namespace mssim {
 namespace {

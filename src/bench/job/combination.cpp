@@ -15,7 +15,6 @@
 #include "bench/windows/window_reference.h"
 #include "bench/windows/window_verification.h"
 #include "integrators/all_integrators.h"
-#include "statistics/outliers.h"
 #include "statistics/statistics.h"
 #include "text/counted.h"
 #include "text/note.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/results/result.h"
-#include "statistics/ratio.h"
+#include "statistics/statistics.h"
 
 namespace mssim {
 

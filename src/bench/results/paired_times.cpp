@@ -1,6 +1,5 @@
 #include "bench/results/paired_times.h"
 
-#include "statistics/looks.h"
 #include "statistics/statistics.h"
 
 namespace mssim {

@@ -17,7 +17,7 @@ struct PairedTimes {
   std::string lost;  ///< why NEW has no verified time though BASE has; then it is not measured any further
 };
 
-/// Whether more rounds are not worth their time: a look at the pairs is due (looks.h) and finds the whole
+/// Whether more rounds are not worth their time: a look at the pairs is due (look_at) and finds the whole
 /// interval of the ratio within the threshold, or beyond it and the change significant; or NEW is lost. Where
 /// nothing has changed, at most one of a hundred comparisons ends so with a change, however many rounds there
 /// may be, and where something has, at most one of twenty with an interval that misses it.

@@ -9,7 +9,6 @@
 #include "bench/verification/blow_up.h"
 #include "garment/stepping/serial_dressing.h"
 #include "model/state_hash.h"
-#include "statistics/quantile.h"
 #include "statistics/statistics.h"
 
 namespace mssim {

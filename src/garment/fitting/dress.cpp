@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "statistics/quantile.h"
+#include "statistics/statistics.h"
 
 namespace mssim {
 namespace {

@@ -10,7 +10,7 @@
 #include "garment/layers/cloth_crossings.h"
 #include "garment/layers/panel_layers.h"
 #include "laws/host_laws.h"
-#include "statistics/quantile.h"
+#include "statistics/statistics.h"
 
 namespace mssim {
 namespace {

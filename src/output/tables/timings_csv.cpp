@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "output/tables/table_csv.h"
-#include "statistics/outliers.h"
+#include "statistics/statistics.h"
 #include "text/fnv1a.h"
 
 namespace mssim {

@@ -9,9 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "statistics/looks.h"
-#include "statistics/rank_distribution.h"
-#include "statistics/signed_rank.h"
+#include "statistics/rank_tests.h"
+#include "statistics/statistics.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {
