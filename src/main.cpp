@@ -3,7 +3,7 @@
 #include <csignal>
 
 #include "commands/shared/command.h"
-#include "platform/openmp_runtime.h"
+#include "platform/machine.h"
 
 int main(int argc, char** argv) {
   mssim::start_with_short_waits(argv);

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "platform/openmp_runtime.h"
+#include "platform/machine.h"
 #include "ranks/launch.h"
 #include "ranks/launch_words.h"
 #include "ranks/rank_program.h"

@@ -22,7 +22,7 @@
 #include <cstring>
 #include <ctime>
 
-#include "platform/supervisor_words.h"
+#include "platform/supervised_process.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "backends/interface/window_backend.h"
 #include "backends/process/backend_program.h"
 #include "garment/stepping/dressing_backend.h"
-#include "platform/openmp_runtime.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

@@ -24,11 +24,9 @@
 #include "garment/bench/dressing_record.h"
 #include "garment/bench/garment_verification.h"
 #include "garment/stepping/dressing_backend.h"
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 #include "statistics/statistics.h"
-#include "text/counted.h"
-#include "text/decimal.h"
-#include "text/note.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -60,7 +58,7 @@ Peaks measure_peaks(const SceneJob& job, const std::vector<Combination>& combina
     if (is_implicit(*combination.integrator) || !combination.backend || !combination.on_host) continue;
     const auto [threads, bytes] = peak_key(combination, size);
     if (peaks.contains({threads, bytes})) continue;
-    watch.progress("machine peak with " + counted(static_cast<std::uint64_t>(threads), "thread"),
+    watch.progress("machine peak with " + pluralize(static_cast<std::uint64_t>(threads), "thread"),
                    job.preparation);
     peaks[{threads, bytes}] = measure_peak(threads, bytes);
   }
@@ -77,10 +75,10 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
   if (const auto peak = peaks.find(peak_key(combination, size)); combination.on_host && peak != peaks.end())
     row.roofline_fraction = roofline_fraction(cost, seconds, peak->second);
   if (row.roofline_fraction && *row.roofline_fraction > 1)
-    add_to_note(row.note,
-                three_digits(100 * *row.roofline_fraction) +
-                    " % of the roofline: faster than this machine was seen to do the work of a step; "
-                    "does it take all steps, or was the machine busy when its peak was measured?");
+    append_sentence(row.note,
+                    three_digits(100 * *row.roofline_fraction) +
+                        " % of the roofline: faster than this machine was seen to do the work of a step; "
+                        "does it take all steps, or was the machine busy when its peak was measured?");
 }
 
 /// Compares a backend with the reference.
@@ -104,7 +102,7 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
       Verification found =
           verify_windows(*combination.windows, *job.windowed, integrator, *reference, job.dt_s);
       if (found.failure) return found;
-      add_to_note(combination.row.note, share_seen(*job.windowed));
+      append_sentence(combination.row.note, share_seen(*job.windowed));
       combination.most_steps = reference->steps;
       combination.compare_windows = [&job, &integrator, reference](WindowBackend& backend, int steps) {
         return compare_windows(backend, *job.windowed, integrator, *reference, steps, job.dt_s);
@@ -163,10 +161,10 @@ Combination make_verified(const SceneJob& job, const BackendInfo& info, const In
   Combination combination = make_combination(job, info, integrator, start);
   combination.most_steps = reference.most_steps;
   if (combination.most_steps < verification_steps)
-    add_to_note(combination.row.note,
-                "compared and timed in " +
-                    counted(static_cast<std::uint64_t>(combination.most_steps), "step") +
-                    ", in which the integrator doubles a rounding");
+    append_sentence(combination.row.note,
+                    "compared and timed in " +
+                        pluralize(static_cast<std::uint64_t>(combination.most_steps), "step") +
+                        ", in which the integrator doubles a rounding");
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "charts/chart_text.h"
-#include "text/columns.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

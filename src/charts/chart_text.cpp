@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "text/columns.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

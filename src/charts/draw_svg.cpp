@@ -13,12 +13,9 @@
 #include "charts/gnuplot_script.h"
 #include "charts/page_svg.h"
 #include "charts/plotted_values.h"
-#include "platform/child_process.h"
-#include "platform/find_program.h"
-#include "platform/temporary_folder.h"
-#include "platform/whole_file.h"
-#include "text/joined.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "platform/process.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -45,7 +42,7 @@ ChartWords words_of(const Chart& chart, const std::vector<std::string>& notes) {
   std::vector<std::string> names;
   for (const Series& series : chart.series) names.push_back(series.name);
   std::string description = "Along: " + axis_words(chart.x) + ". Upwards: " + axis_words(chart.y) +
-                            ". Series: " + joined(names, ", ") + '.';
+                            ". Series: " + join(names, ", ") + '.';
   for (const std::string& note : notes) description += ' ' + note + '.';
   return {chart.id, shown_text(chart.title, most), shown_text(description, most)};
 }

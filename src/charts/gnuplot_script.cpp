@@ -6,8 +6,7 @@
 
 #include "charts/chart_text.h"
 #include "charts/series_style.h"
-#include "text/decimal.h"
-#include "text/fnv1a.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -28,7 +27,7 @@ constexpr std::array<std::string_view, line_dashes> measured_dashes{"solid", "(9
 constexpr std::array<std::string_view, 4> reference_dashes{"solid", "(2,3)", "(10,3,2,3)", "(14,4)"};
 
 /// What stands for a fill until page_svg() draws its pattern.
-std::string fill_colour(std::size_t fill) { return "#0102" + hexadecimal(fill).substr(14); }
+std::string fill_colour(std::size_t fill) { return "#0102" + to_hex(fill).substr(14); }
 
 class Script {
  public:

@@ -5,8 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "text/counted.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -34,7 +33,7 @@ constexpr Interval no_range{std::numeric_limits<double>::infinity(),
                             -std::numeric_limits<double>::infinity()};
 
 std::string left_out(std::size_t some, std::size_t all, const std::string& what, const Series& series) {
-  return std::to_string(some) + " of " + counted(all, what) + " of \"" + printable(series.name) + "\"";
+  return std::to_string(some) + " of " + pluralize(all, what) + " of \"" + printable(series.name) + "\"";
 }
 
 }  // namespace

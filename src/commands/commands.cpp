@@ -11,7 +11,6 @@
 
 #include "backends/devices/driver_trial.h"
 #include "backends/driver_trial_run.h"
-#include "backends/interface/backend.h"
 #include "bench/machine/build_info.h"
 #include "commands/arguments/program_parser.h"
 #include "commands/bench/bench_command.h"
@@ -27,19 +26,12 @@
 #include "commands/report/report_command.h"
 #include "commands/run/run_command.h"
 #include "commands/shared/command.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/run_provenance.h"
-#include "output/folders/provenance_file.h"
-#include "output/tables/csv.h"
-#include "output/traces/trace_error.h"
-#include "platform/interruption.h"
-#include "platform/missing_program.h"
-#include "platform/temporary_folder.h"
-#include "platform/write_error.h"
-#include "scene/fields/scene_error.h"
+#include "platform/files.h"
+#include "platform/process.h"
 #include "scene/scene_file.h"
-#include "text/nearest_name.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -91,7 +83,7 @@ std::string sentence_of(const std::filesystem::filesystem_error& error) {
                       : file + " cannot be looked up" + reason + "check the path and its permissions";
 }
 
-/// Names the exit code of an error; the one place that does.
+/// Ends with the exit code of what was thrown, and says why.
 int run_guarded(const std::function<int()>& run) {
   try {
     return run();
@@ -100,28 +92,8 @@ int run_guarded(const std::function<int()>& run) {
     std::signal(interrupted.signal, SIG_DFL);
     std::raise(interrupted.signal);
     return 128 + interrupted.signal;  // where the signal is blocked
-  } catch (const NotVerified& error) {
-    return fail(exit_not_verified, error.what());
-  } catch (const BackendFailure& error) {
-    return fail(exit_not_verified, error.what());
-  } catch (const UsageError& error) {
-    return fail(exit_bad_input, error.what());
-  } catch (const SceneError& error) {
-    return fail(exit_bad_input, error.what());
-  } catch (const CsvError& error) {
-    return fail(exit_bad_input, error.what());
-  } catch (const ProvenanceError& error) {
-    return fail(exit_bad_input, error.what());
-  } catch (const TraceError& error) {
-    return fail(error.refused ? exit_file_error : exit_bad_input, error.what());
-  } catch (const MissingProgram& error) {
-    return fail(exit_unavailable, error.what());
-  } catch (const Unsupported& error) {
-    return fail(exit_bad_input, error.what());
-  } catch (const Unavailable& error) {
-    return fail(exit_unavailable, error.what());
-  } catch (const WriteError& error) {
-    return fail(exit_file_error, error.what());
+  } catch (const Error& error) {
+    return fail(error.exit_code, error.what());
   } catch (const std::bad_alloc&) {
     return fail(exit_bad_input, "there is not enough memory; close other programs or use a smaller scene");
   } catch (const std::filesystem::filesystem_error& error) {

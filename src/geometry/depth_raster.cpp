@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "platform/openmp_runtime.h"
-#include "text/decimal.h"
+#include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "geometry/vec3.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 

@@ -13,7 +13,7 @@
 #include "geometry/box.h"
 #include "geometry/geometry.h"
 #include "geometry/surface_sides.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

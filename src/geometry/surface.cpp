@@ -7,8 +7,8 @@
 #include "geometry/geometry.h"
 #include "geometry/openings.h"
 #include "geometry/surface_sides.h"
-#include "text/counted.h"
-#include "text/input_error.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -53,7 +53,7 @@ class Check {
       for (const std::uint32_t point : triangle) {
         if (point >= surface_.points.size())
           fail("triangle " + std::to_string(t) + " (from 0) names point " + std::to_string(point) +
-               " but there are only " + counted(surface_.points.size(), "point") + ", counted from 0");
+               " but there are only " + pluralize(surface_.points.size(), "point") + ", counted from 0");
         used[point] = true;
       }
       const Vec3d& a = surface_.points[triangle[0]];

@@ -6,7 +6,7 @@
 
 #include "guide/recommendation.h"
 #include "guide/step_timer.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -84,7 +84,7 @@ void measure_sizes(std::span<SizeCurve> curves, const ClothMaker& make, const Ex
     std::optional<FamilyCloth> cloth;
     std::vector<SizeCurve*> still_active;
     for (SizeCurve* curve : active) {
-      const std::string activity = counted(nodes, "node") + ": " + std::string(curve->integrator->name) +
+      const std::string activity = pluralize(nodes, "node") + ": " + std::string(curve->integrator->name) +
                                    ' ' + std::string(curve->backend->name);
       if (!go_on(activity, static_cast<double>(size) / static_cast<double>(cloth_sides.size()))) {
         curve->status = "no time was left for larger cloths";

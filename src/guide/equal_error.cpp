@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "integrators/all_integrators.h"
-#include "text/decimal.h"
-#include "text/nearest_name.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -8,7 +8,7 @@
 #include "guide/stable_step.h"
 #include "guide/step_theory.h"
 #include "guide/work_point.h"
-#include "platform/stopwatch.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "text/counted.h"
-#include "text/decimal.h"
-#include "text/nearest_name.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -60,7 +58,7 @@ std::string what_to_take(std::span<const WorkPoint> points, const Recommendation
   const WorkPoint& point = points[*chosen.best];
   const int steps = steps_a_frame(point.dt_s, wish.frames_per_second);
   return "Take " + named(point) + " with a step of " + two_digits(point.dt_s) + " s, which is " +
-         counted(static_cast<std::uint64_t>(steps), "step") + " a frame at " +
+         pluralize(static_cast<std::uint64_t>(steps), "step") + " a frame at " +
          decimal(wish.frames_per_second) + " frames a second.";
 }
 

@@ -12,7 +12,7 @@
 #include "guide/step_theory.h"
 #include "guide/work_precision.h"
 #include "integrators/all_integrators.h"
-#include "platform/stopwatch.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

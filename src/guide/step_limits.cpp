@@ -6,7 +6,7 @@
 #include "guide/step_timer.h"
 #include "guide/work_precision.h"
 #include "integrators/integrators.h"
-#include "platform/stopwatch.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

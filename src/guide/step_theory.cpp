@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "integrators/stability.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "platform/stopwatch.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

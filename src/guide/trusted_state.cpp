@@ -11,9 +11,8 @@
 #include "bench/verification/deviation.h"
 #include "guide/independent_solver.h"
 #include "integrators/all_integrators.h"
-#include "platform/process_cpus.h"
-#include "platform/stopwatch.h"
-#include "text/decimal.h"
+#include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

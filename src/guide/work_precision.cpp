@@ -10,7 +10,7 @@
 #include "guide/step_timer.h"
 #include "integrators/all_integrators.h"
 #include "model/energy.h"
-#include "platform/stopwatch.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

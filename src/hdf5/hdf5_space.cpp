@@ -3,8 +3,7 @@
 #include <string>
 
 #include "hdf5/hdf5_handle.h"
-#include "platform/file_space.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
 
 namespace mssim {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

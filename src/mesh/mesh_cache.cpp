@@ -5,10 +5,9 @@
 
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
-#include "platform/atomic_file.h"
-#include "platform/write_error.h"
-#include "text/fnv1a.h"
-#include "text/input_error.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -28,8 +27,7 @@ fs::path cache_folder() {
 
 /// "mssim mesh 1 BYTES HASH": bytes of the .node text, hash of both texts.
 std::string header_of(const std::string& nodes, const std::string& tetrahedra) {
-  return "mssim mesh 1 " + std::to_string(nodes.size()) + ' ' + hexadecimal(fnv1a_64(nodes + tetrahedra)) +
-         '\n';
+  return "mssim mesh 1 " + std::to_string(nodes.size()) + ' ' + to_hex(fnv1a_64(nodes + tetrahedra)) + '\n';
 }
 
 /// The mesh, or nothing for a file that is not, or no longer, what was written.
@@ -53,7 +51,7 @@ std::optional<TetMesh> read_entry(const fs::path& file) {
 }
 
 std::string file_name(std::uint64_t input, std::uint64_t program) {
-  return hexadecimal(input) + '-' + hexadecimal(program) + std::string(extension);
+  return to_hex(input) + '-' + to_hex(program) + std::string(extension);
 }
 
 }  // namespace
@@ -72,7 +70,7 @@ std::optional<TetMesh> MeshCache::find_of_any_program(std::uint64_t input) const
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (!name.starts_with(hexadecimal(input) + '-') || !name.ends_with(extension)) continue;
+    if (!name.starts_with(to_hex(input) + '-') || !name.ends_with(extension)) continue;
     std::error_code no_time;
     const fs::file_time_type time = entry->last_write_time(no_time);
     if (no_time || (newest && time <= newest_time)) continue;

@@ -8,7 +8,7 @@
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
 #include "mesh/text_lines.h"
-#include "text/number_in.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

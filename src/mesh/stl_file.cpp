@@ -6,8 +6,8 @@
 #include "mesh/point_merger.h"
 #include "mesh/surface_file.h"
 #include "mesh/text_lines.h"
-#include "text/counted.h"
-#include "text/input_error.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -36,7 +36,7 @@ Surface parse_binary(const std::string& name, std::string_view content) {
   const std::size_t count = number_at(content, bytes_before_count);
   const std::size_t due = bytes_before_triangles + count * bytes_of_triangle;
   const std::string promise = name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
-                              counted(count, "triangle") + " in " + std::to_string(due) + " bytes, and ";
+                              pluralize(count, "triangle") + " in " + std::to_string(due) + " bytes, and ";
   if (content.size() < due)
     throw InputError(promise + "has " + std::to_string(content.size()) +
                      "; it is truncated or not an STL file");
@@ -145,7 +145,7 @@ Surface parse_stl(const std::string& name, std::string_view content) {
   if (content.empty()) throw InputError(name + " is empty; give a surface");
   if (!is_binary(content)) return AsciiReader(name, content).read();
   if (content.size() < bytes_before_triangles)
-    throw InputError(name + " has " + counted(content.size(), "byte") +
+    throw InputError(name + " has " + pluralize(content.size(), "byte") +
                      ", and a binary STL file at least 84; it is truncated or not an STL file");
   return parse_binary(name, content);
 }

@@ -13,7 +13,7 @@
 #include "mesh/surface_file.h"
 #include "mesh/tetgen.h"
 #include "mesh/tetrahedralise.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -11,10 +11,10 @@
 #include "geometry/geometry.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/text_lines.h"
-#include "platform/available_memory.h"
-#include "platform/child_process.h"
-#include "platform/temporary_folder.h"
-#include "text/input_error.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "platform/process.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "mesh/text_lines.h"
-#include "platform/child_process.h"
-#include "platform/find_program.h"
-#include "text/fnv1a.h"
+#include "platform/files.h"
+#include "platform/process.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -57,7 +57,7 @@ std::optional<TetgenProgram> find_tetgen() {
   std::string hashes;
   for (const fs::path& file : files) {
     const std::string bytes = read_text(file);
-    hashes += hexadecimal(fnv1a_64(bytes));
+    hashes += to_hex(fnv1a_64(bytes));
     if (const auto version = version_in(bytes)) program.version = *version;
   }
   program.fnv1a_64 = fnv1a_64(hashes);

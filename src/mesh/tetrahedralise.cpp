@@ -4,8 +4,8 @@
 #include "mesh/tetgen.h"
 #include "mesh/tetgen_files.h"
 #include "mesh/tetgen_program.h"
-#include "platform/missing_program.h"
-#include "text/fnv1a.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 

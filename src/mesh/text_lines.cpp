@@ -3,11 +3,9 @@
 #include <algorithm>
 
 #include "geometry/geometry.h"
-#include "platform/whole_file.h"
-#include "text/byte_order_mark.h"
-#include "text/input_error.h"
-#include "text/number_in.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

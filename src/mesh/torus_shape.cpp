@@ -6,7 +6,7 @@
 
 #include "geometry/geometry.h"
 #include "mesh/shape_checks.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

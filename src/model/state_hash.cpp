@@ -4,7 +4,7 @@
 #include <bit>
 #include <string>
 
-#include "text/fnv1a.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

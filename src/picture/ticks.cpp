@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -15,11 +15,11 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "platform/data_folder.h"
-#include "platform/find_program.h"
-#include "platform/process_cpus.h"
+#include "platform/files.h"
+#include "platform/machine.h"
 
 namespace mssim {
+
 namespace {
 
 /// How long the supervisor may take for what takes it a millisecond, and to end what SIGKILL ends.
@@ -91,14 +91,14 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
 
 /// False after that time; also when the other end is closed there is something to be read.
 bool readable(int descriptor, std::chrono::milliseconds patience) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point limit = Clock::now() + patience;
+  using std::chrono::steady_clock;
+  const steady_clock::time_point limit = steady_clock::now() + patience;
   while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - steady_clock::now());
     pollfd event{descriptor, POLLIN, 0};
     if (::poll(&event, 1, static_cast<int>(std::clamp<long>(left.count(), 0, 1'000'000'000))) > 0)
       return true;
-    if (Clock::now() >= limit) return false;
+    if (steady_clock::now() >= limit) return false;
   }
 }
 

@@ -12,7 +12,7 @@
 #include "ranks/common_kernel.h"
 #include "ranks/graph_partition.h"
 #include "scene/scene_kinds.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -55,7 +55,7 @@ void require_same_meshes(const Session& session, const std::vector<SceneCounts>&
 std::vector<std::vector<BodyShare>> shares_for(int ranks, const std::vector<std::size_t>& nodes) {
   if (auto shares = body_shares(nodes, ranks)) return std::move(*shares);
   throw Unsupported((nodes.size() == 1 ? "1 body" : std::to_string(nodes.size()) + " bodies") +
-                    " cannot be cut for " + counted(static_cast<std::uint64_t>(ranks), "rank") +
+                    " cannot be cut for " + pluralize(static_cast<std::uint64_t>(ranks), "rank") +
                     ": a part of a body has at least " + std::to_string(least_share) +
                     " nodes, so give at most --ranks " + std::to_string(most_ranks(nodes, ranks)));
 }

@@ -8,7 +8,7 @@
 #include "ranks/common_kernel.h"
 #include "ranks/host_memory.h"
 #include "scene/cloth.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -24,8 +24,8 @@ std::size_t columns_on_host(const Session& session, std::size_t columns) {
 void require_columns(std::size_t columns, const Integrator& integrator, int ranks) {
   const std::size_t least = ghost_columns(integrator, 1);
   if (ranks > 1 && columns / static_cast<std::size_t>(ranks) < least)
-    throw Unsupported(counted(columns, "column") + " cannot be cut for " +
-                      counted(static_cast<std::uint64_t>(ranks), "rank") + ": a step of " +
+    throw Unsupported(pluralize(columns, "column") + " cannot be cut for " +
+                      pluralize(static_cast<std::uint64_t>(ranks), "rank") + ": a step of " +
                       std::string(integrator.name) + " needs " + std::to_string(least) +
                       " columns in each, so give at most --ranks " +
                       std::to_string(std::max<std::size_t>(1, columns / least)));
@@ -187,7 +187,7 @@ State ClothPiece::state(const GridWindow& window) const {
 }
 
 std::string ClothPiece::note() const {
-  return std::string(kernel_.instruction_set) + ", " + counted(bands_->steps_per_pass, "step") +
+  return std::string(kernel_.instruction_set) + ", " + pluralize(bands_->steps_per_pass, "step") +
          " an exchange";
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "backends/interface/backend.h"
-#include "platform/available_memory.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

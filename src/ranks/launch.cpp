@@ -23,16 +23,16 @@
 
 #include "backends/interface/backend.h"
 #include "integrators/all_integrators.h"
-#include "platform/descriptor.h"
-#include "platform/find_program.h"
-#include "platform/process_cpus.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "platform/process.h"
 #include "ranks/environment.h"
 #include "ranks/launch_words.h"
 #include "ranks/launcher_output.h"
 #include "ranks/piece.h"
 #include "ranks/requests.h"
 #include "scene/scene_file.h"
-#include "text/number_in.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -1,7 +1,7 @@
 #include "ranks/launcher_output.h"
 
 #include "ranks/launch_words.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/descriptor.h"
+#include "platform/process.h"
 
 namespace mssim {
 namespace {

@@ -18,8 +18,7 @@
 #include <vector>
 
 #include "integrators/all_integrators.h"
-#include "platform/openmp_runtime.h"
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 #include "ranks/environment.h"
 #include "ranks/launch_words.h"
 #include "ranks/piece.h"
@@ -28,8 +27,7 @@
 #include "ranks/session.h"
 #include "ranks/step_costs.h"
 #include "scene/scene_file.h"
-#include "text/counted.h"
-#include "text/number_in.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -88,8 +86,8 @@ std::string take_processors(const Session& session, int threads) {
   const auto each = static_cast<std::size_t>(threads);
   const int ranks = same ? session.ranks_on_host() : 1;
   if (cpus.size() < each * static_cast<std::size_t>(ranks))
-    return counted(static_cast<std::uint64_t>(ranks), "rank") + " of " + counted(each, "thread") + " on " +
-           counted(cpus.size(), "processor") + " of " +
+    return pluralize(static_cast<std::uint64_t>(ranks), "rank") + " of " + pluralize(each, "thread") +
+           " on " + pluralize(cpus.size(), "processor") + " of " +
            session.hosts()[static_cast<std::size_t>(session.rank())];
   if (!same) return "";
   cpu_set_t set;
@@ -117,13 +115,13 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   MPI_Get_library_version(version.data(), &length);
   std::string library(version.data(), static_cast<std::size_t>(length));
   library = library.substr(0, library.find(','));
-  if (host_count > 1) requests.answer("device " + counted(host_count, "host"));
+  if (host_count > 1) requests.answer("device " + pluralize(host_count, "host"));
   requests.answer("threads " + std::to_string(session.ranks() * piece.threads()));
   requests.answer("precision single");
   requests.answer("tells costs");
   requests.answer(in_one_line(
-      "note " + library + ", " + counted(static_cast<std::uint64_t>(session.ranks()), "rank") + " of " +
-      counted(static_cast<std::uint64_t>(piece.threads()), "thread") + ", " + piece.note()));
+      "note " + library + ", " + pluralize(static_cast<std::uint64_t>(session.ranks()), "rank") + " of " +
+      pluralize(static_cast<std::uint64_t>(piece.threads()), "thread") + ", " + piece.note()));
   if (!crowded.empty()) requests.answer(in_one_line("untimed " + crowded));
   requests.answer("ready 1");
 }
@@ -210,7 +208,7 @@ int run_rank(int argc, char** argv) {
       const int asked = number_in<int>(variable("MSSIM_RANKS")).value_or(1);
       if (asked != session->ranks())
         throw RankFailure("the launcher has started " +
-                          counted(static_cast<std::uint64_t>(session->ranks()), "rank") + " instead of " +
+                          pluralize(static_cast<std::uint64_t>(session->ranks()), "rank") + " instead of " +
                           std::to_string(asked) + ": it may be that of another MPI than this program's");
     }
     work(*session, argc > 2 && std::string_view(argv[2]) == copies_word);

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "platform/descriptor.h"
+#include "platform/process.h"
 
 namespace mssim {
 

@@ -14,8 +14,7 @@
 #include <thread>
 
 #include "ranks/launch_words.h"
-#include "text/counted.h"
-#include "text/nearest_name.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -102,7 +101,7 @@ void Session::wait(std::span<MPI_Request> requests, std::span<const int> peers) 
     for (const int peer : peers)
       if (std::ranges::find(silent, name_of(peer)) == silent.end()) silent.push_back(name_of(peer));
     throw RankFailure("it has heard nothing for " +
-                      counted(static_cast<std::uint64_t>(longest_silence_s), "second") + " from " +
+                      pluralize(static_cast<std::uint64_t>(longest_silence_s), "second") + " from " +
                       listed(silent, "or"));
   }
 }

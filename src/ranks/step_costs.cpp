@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "platform/openmp_runtime.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

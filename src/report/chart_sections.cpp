@@ -6,7 +6,7 @@
 #include "report/html.h"
 #include "report/report_charts.h"
 #include "report/sections.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -19,7 +19,7 @@ std::string figure_of(const Chart& chart) {
            ".</p>\n";
   // The chart has its title in it.
   const std::string notes =
-      drawn.notes.empty() ? "" : "<figcaption>" + html_text(joined(drawn.notes, ". ")) + ".</figcaption>";
+      drawn.notes.empty() ? "" : "<figcaption>" + html_text(join(drawn.notes, ". ")) + ".</figcaption>";
   return "<figure>" + drawn.svg + notes + "</figure>\n";
 }
 
@@ -171,8 +171,7 @@ std::string energies_of(const std::vector<FoundCurve>& curves, std::span<const F
     if (!reference_of(curve, references)) without.push_back(curve.name);
   }
   std::string text = figures_of(charts);
-  if (!without.empty())
-    text += "<p>Without a reference curve: " + html_text(joined(without, ", ")) + ".</p>\n";
+  if (!without.empty()) text += "<p>Without a reference curve: " + html_text(join(without, ", ")) + ".</p>\n";
   return text;
 }
 

@@ -5,9 +5,7 @@
 #include "report/finding.h"
 #include "report/times_as_fast.h"
 #include "statistics/statistics.h"
-#include "text/counted.h"
-#include "text/decimal.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -56,7 +54,7 @@ bool is_like(const StepCosts& measured, const StepCosts& published) {
 std::string range_of(const StepCosts& costs) {
   const std::string below = costs.cheaper == 0 ? ""
                                                : ", below 1 at " + std::to_string(costs.cheaper) + " of " +
-                                                     counted(costs.sizes, "size");
+                                                     pluralize(costs.sizes, "size");
   return three_digits(costs.mean) + " (" + three_digits(costs.least) + " to " + three_digits(costs.most) +
          below + ")";
 }
@@ -66,8 +64,8 @@ std::string suggestion(const StepCosts& published, int evaluations) {
   const double log_cost = std::log(published.mean), log_all = std::log(static_cast<double>(evaluations));
   return std::abs(log_cost) < std::abs(log_cost - log_all)
              ? "about what one force evaluation costs, though the method has " +
-                   counted(static_cast<std::uint64_t>(evaluations), "force evaluation")
-             : "about what its " + counted(static_cast<std::uint64_t>(evaluations), "force evaluation") +
+                   pluralize(static_cast<std::uint64_t>(evaluations), "force evaluation")
+             : "about what its " + pluralize(static_cast<std::uint64_t>(evaluations), "force evaluation") +
                    " cost";
 }
 
@@ -102,8 +100,8 @@ std::vector<Finding> cost_findings(const PaperScenes& scenes) {
            scenes.label() + ": with " + std::string(configuration.caption) + " a step of " +
                integrator.paper_name + " costs " + range_of(*published) + " steps of " + cheapest + ", " +
                suggestion(*published, evaluations) + ". Measured, `" + integrator.name + "` with " +
-               counted(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation") + ": " +
-               joined(costs, ", ") + "."});
+               pluralize(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation") +
+               ": " + join(costs, ", ") + "."});
     }
   }
   return findings;

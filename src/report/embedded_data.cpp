@@ -4,7 +4,7 @@
 #include "output/tables/table_json.h"
 #include "output/tables/timings_csv.h"
 #include "report/sections.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -32,7 +32,7 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
     verdict.rows.push_back({name_of(finding.outcome), finding.sentence});
   std::vector<std::string> problems;
   for (const std::string& problem : folder.problems) problems.push_back(json_string(problem));
-  return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" + joined(problems, ", ") +
+  return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" + join(problems, ", ") +
          "],\n\"verdict\": " + table_json_text(verdict) +
          ", \"timings\": " + table_json_text(timings_table(folder.rows)) +
          (folder.guide ? ", \"guide\": " + table_json_text(points_of(*folder.guide)) : "") +
@@ -44,7 +44,7 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
 std::string embedded_data(const ReportInput& input) {
   std::vector<std::string> folders;
   for (const ReportFolder& folder : input.folders) folders.push_back(json_of(folder, input));
-  return "{\"made_by\": " + json_string(input.made_by) + ", \"folders\": [\n" + joined(folders, ",\n") +
+  return "{\"made_by\": " + json_string(input.made_by) + ", \"folders\": [\n" + join(folders, ",\n") +
          "\n]}\n";
 }
 

@@ -4,8 +4,7 @@
 
 #include "report/finding.h"
 #include "report/times_as_fast.h"
-#include "text/counted.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -44,7 +43,7 @@ std::optional<Finding> parallel_finding(const std::string& backend, const std::v
                  "Figure 6 of Vassilev: an iteration takes less time with parallelisation than without. "
                  "Measured: `" +
                      backend + "` is faster than `serial` in " + std::to_string(faster) + " of " +
-                     counted(all, "size") + ", slower in " + std::to_string(slower) + "."};
+                     pluralize(all, "size") + ", slower in " + std::to_string(slower) + "."};
 }
 
 Finding dressing_finding(const std::string& backend, const ResultRow& row) {

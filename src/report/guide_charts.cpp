@@ -11,9 +11,7 @@
 #include "charts/plotted_values.h"
 #include "integrators/all_integrators.h"
 #include "report/report_charts.h"
-#include "text/counted.h"
-#include "text/decimal.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -157,7 +155,7 @@ std::vector<std::string> without_evaluations(const std::vector<GuideLine>& lines
 }
 
 void add_names(Chart& chart, const std::string& before, const std::vector<std::string>& names) {
-  if (!names.empty()) chart.remarks.push_back(before + joined(names, ", "));
+  if (!names.empty()) chart.remarks.push_back(before + join(names, ", "));
 }
 
 /// "openmp (midpoint, verlet)", "openmp and serial (rk4)": which backends the points of lines are of.
@@ -168,11 +166,11 @@ std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
     for (const GuidePoint* point : line.points)
       if (std::ranges::find(backends, point->backend) == backends.end()) backends.push_back(point->backend);
     std::ranges::sort(backends);
-    if (!backends.empty()) integrators[joined(backends, " and ")].push_back(line.integrator);
+    if (!backends.empty()) integrators[join(backends, " and ")].push_back(line.integrator);
   }
   std::vector<std::string> groups;
   for (const auto& [backends, names] : integrators)
-    groups.push_back(backends + " (" + joined(names, ", ") + ")");
+    groups.push_back(backends + " (" + join(names, ", ") + ")");
   return groups;
 }
 
@@ -206,7 +204,8 @@ void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene
   add_names(chart, "Diverged: ", crosses);
   add_names(chart, "Each point is that of the cheapest backend with its step: ", by_backends(lines));
   if (on_front > drawn_on_front)
-    chart.remarks.push_back(std::to_string(on_front - drawn_on_front) + " of " + counted(on_front, "point") +
+    chart.remarks.push_back(std::to_string(on_front - drawn_on_front) + " of " +
+                            pluralize(on_front, "point") +
                             " on the front not drawn, as their backends take longer for the same step");
   add_names(chart, "No points: ", without);
 }

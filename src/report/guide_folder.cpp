@@ -7,7 +7,7 @@
 
 #include "output/tables/csv.h"
 #include "output/tables/markdown_reader.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 #include "report/readable_records.h"
 
 namespace mssim {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "output/tables/cell_text.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

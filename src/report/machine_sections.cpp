@@ -2,9 +2,7 @@
 
 #include "report/html.h"
 #include "report/sections.h"
-#include "text/decimal.h"
-#include "text/fnv1a.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -19,7 +17,7 @@ std::string caches_of(const Machine& machine) {
   for (const Cache& cache : machine.caches)
     caches.push_back("L" + std::to_string(cache.level) + " " + cache.type + " " +
                      std::to_string(cache.count) + " × " + grouped(cache.bytes / 1024) + " KiB");
-  return joined(caches, ", ");
+  return join(caches, ", ");
 }
 
 std::string rounds_of(const ReportFolder& folder) {
@@ -39,7 +37,7 @@ std::vector<Table::NamedCell> facts_of(const ReportFolder& folder) {
           {"logical CPUs", machine.logical_cpus},
           {"threads", provenance.threads},
           {"memory", memory_of(machine)},
-          {"OpenCL devices", joined(provenance.opencl_devices, "; ")},
+          {"OpenCL devices", join(provenance.opencl_devices, "; ")},
           {"system", machine.operating_system},
           {"compiler", provenance.build.compiler + ", " + provenance.build.build_type},
           {"mssim", made_by(provenance)},
@@ -52,27 +50,27 @@ std::string provenance_of(const ReportFolder& folder) {
   std::vector<std::string> environment, scenes, load;
   for (const auto& [name, value] : provenance.thread_environment) environment.push_back(name + "=" + value);
   for (const SceneHash& scene : provenance.scenes)
-    scenes.push_back(scene.name + " " + hexadecimal(scene.fnv1a_64));
+    scenes.push_back(scene.name + " " + to_hex(scene.fnv1a_64));
   for (const double average : machine.load_average) load.push_back(fixed_decimal(average, 2));
   const auto or_nothing = [](const std::string& text) { return text.empty() ? Cell() : Cell(text); };
   Table table{{{"what"}, {"value"}}, {}};
   const auto line = [&](const char* what, Cell value) { table.rows.push_back({what, std::move(value)}); };
-  line("command", joined(provenance.command_line, " "));
+  line("command", join(provenance.command_line, " "));
   line("started", provenance.started_utc);
-  line("continues runs of", or_nothing(joined(provenance.earlier_starts_utc, ", ")));
+  line("continues runs of", or_nothing(join(provenance.earlier_starts_utc, ", ")));
   line("commit", provenance.build.commit + (provenance.build.dirty ? ", with uncommitted changes" : ""));
-  line("program", provenance.program_fnv1a_64 ? Cell(hexadecimal(*provenance.program_fnv1a_64)) : Cell());
+  line("program", provenance.program_fnv1a_64 ? Cell(to_hex(*provenance.program_fnv1a_64)) : Cell());
   line("compiler flags", provenance.build.flags);
   line("caches", or_nothing(caches_of(machine)));
   line("frequency", three_digits(machine.cpu_mhz / 1000) + " GHz");
   line("governor", machine.governor ? Cell(*machine.governor) : Cell());
   line("turbo", machine.turbo ? Cell(*machine.turbo) : Cell());
   line("kernel", machine.kernel);
-  line("load average", or_nothing(joined(load, ", ")));
-  line("environment of threads", or_nothing(joined(environment, ", ")));
+  line("load average", or_nothing(join(load, ", ")));
+  line("environment of threads", or_nothing(join(environment, ", ")));
   line("memory of devices", or_nothing(provenance.device_memory));
   line("TetGen", or_nothing(provenance.tetgen));
-  line("hashes of scenes", or_nothing(joined(scenes, ", ")));
+  line("hashes of scenes", or_nothing(join(scenes, ", ")));
   Document page{Paragraph{"Sources of noise that mssim saw when it started:"}, BulletList{provenance.noise}};
   if (provenance.noise.empty()) page = {Paragraph{"mssim saw no source of noise when it started."}};
   page.emplace_back(std::move(table));

@@ -3,9 +3,7 @@
 
 #include "report/finding.h"
 #include "report/times_as_fast.h"
-#include "text/counted.h"
-#include "text/decimal.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -69,7 +67,7 @@ OrderCount count_orders(const PaperScenes& scenes, std::string_view first, std::
 }
 
 std::string crossovers(const std::vector<std::string>& list) {
-  return list.empty() ? "" : " It becomes faster from " + joined(list, ", ") + " on.";
+  return list.empty() ? "" : " It becomes faster from " + join(list, ", ") + " on.";
 }
 
 Finding order_finding(const PaperScenes& scenes, const OrderCount& count, std::string_view first,
@@ -77,7 +75,7 @@ Finding order_finding(const PaperScenes& scenes, const OrderCount& count, std::s
                       const std::string& second_backend) {
   Finding finding;
   finding.outcome = outcome_of(count.all, count.as_published, count.contrary);
-  const std::string of_all = " of " + counted(count.all, "combination") + " of size and integrator";
+  const std::string of_all = " of " + pluralize(count.all, "combination") + " of size and integrator";
   finding.sentence = scenes.label() + ": " + std::string(caption_of(second)) + " is faster than " +
                      std::string(caption_of(first)) + " in " + std::to_string(count.published_faster) +
                      of_all + "." + crossovers(count.published_crossovers) + " Measured: `" + second_backend +

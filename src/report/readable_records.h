@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "output/tables/csv.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -37,7 +37,7 @@ std::vector<Record> readable_records(const std::filesystem::path& file, std::str
         ++lost;
       }
     }
-    problems.push_back(std::string(error.what()) + "; " + counted(lost, "row") + " left out, " +
+    problems.push_back(std::string(error.what()) + "; " + pluralize(lost, "row") + " left out, " +
                        std::to_string(records.size()) + " shown");
   }
   if (records.empty()) problems.push_back(file.string() + " has no row that can be shown");

@@ -10,10 +10,9 @@
 #include "output/folders/result_folder.h"
 #include "output/tables/csv.h"
 #include "output/tables/timings_csv.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 #include "report/readable_records.h"
-#include "text/byte_order_mark.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -72,7 +71,8 @@ void drop_incomplete_samples(const fs::path& file, ReportFolder& folder) {
     row.samples_ms.clear();
     ++without;
   }
-  if (without > 0) folder.problems.push_back(file.string() + " has no samples of " + counted(without, "row"));
+  if (without > 0)
+    folder.problems.push_back(file.string() + " has no samples of " + pluralize(without, "row"));
 }
 
 /// A time that no clock gives would only spoil what is computed of it.

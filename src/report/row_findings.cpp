@@ -4,9 +4,7 @@
 #include "output/tables/result_table.h"
 #include "report/finding.h"
 #include "report/times_as_fast.h"
-#include "text/counted.h"
-#include "text/decimal.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -25,7 +23,7 @@ const ResultRow* serial_row(std::span<const ResultRow> rows, const ResultRow& ro
 
 std::string subject(std::size_t number, const std::string& noun, const std::string& one,
                     const std::string& several) {
-  return counted(number, noun) + (number == 1 ? one : several);
+  return pluralize(number, noun) + (number == 1 ? one : several);
 }
 
 /// "`opencl` on DEVICE", of every backend that ran on one.
@@ -37,7 +35,7 @@ std::string devices_of(std::span<const ResultRow> rows, const Provenance& proven
     const std::string label = backend_label(pointers, row.backend, provenance);
     if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
   }
-  return joined(labels, "; ");
+  return join(labels, "; ");
 }
 
 Finding about_one(std::span<const ResultRow> rows) {
@@ -55,10 +53,10 @@ Finding about_one(std::span<const ResultRow> rows) {
   }
   if (all == 0)
     return {Outcome::fact, "There are no speed-ups: no row that counts stands beside one of `serial`."};
-  std::string sentence = "Of " + counted(all, "speed-up") + " over `serial`, ";
+  std::string sentence = "Of " + pluralize(all, "speed-up") + " over `serial`, ";
   if (near_one.empty()) return {Outcome::fact, sentence + "all have an interval that does not hold 1."};
   return {Outcome::fact, sentence + subject(near_one.size(), "interval", " holds 1", " hold 1") +
-                             ", so that neither is certainly the faster: " + joined(near_one, "; ") + "."};
+                             ", so that neither is certainly the faster: " + join(near_one, "; ") + "."};
 }
 
 }  // namespace
@@ -97,7 +95,7 @@ std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provena
   } else {
     findings.push_back(
         {Outcome::warning, subject(not_verified.size(), "row", " is", " are") +
-                               " not verified, and count nowhere: " + joined(not_verified, "; ") + "."});
+                               " not verified, and count nowhere: " + join(not_verified, "; ") + "."});
   }
   if (!without_time.empty())
     findings.push_back({Outcome::fact, subject(without_time.size(), "row", " has", " have") +

@@ -3,7 +3,7 @@
 
 #include "report/report_charts.h"
 #include "report/times_as_fast.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -7,8 +7,7 @@
 #include "report/report_charts.h"
 #include "report/sections.h"
 #include "report/times_as_fast.h"
-#include "text/counted.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -87,7 +86,7 @@ std::string headline_section(const ReportInput& input) {
       continue;
     }
     text += html_of(times_of(headline_rows(folder.rows), folder.rows));
-    text += "<details><summary>All " + counted(folder.rows.size(), "row") + "</summary>\n" +
+    text += "<details><summary>All " + pluralize(folder.rows.size(), "row") + "</summary>\n" +
             html_of(times_of(pointers_to(folder.rows), folder.rows)) + "</details>\n";
   }
   return text;

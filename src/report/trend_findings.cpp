@@ -2,8 +2,7 @@
 
 #include "report/finding.h"
 #include "report/times_as_fast.h"
-#include "text/counted.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -59,7 +58,7 @@ Finding trend_finding(const PaperScenes& scenes, const std::vector<SizeStep>& st
     if (!deepest || step.published_to / step.published_from < deepest->published_to / deepest->published_from)
       deepest = &step;
   }
-  const std::string caption(caption_of(configuration)), of_steps = counted(steps.size(), "step");
+  const std::string caption(caption_of(configuration)), of_steps = pluralize(steps.size(), "step");
   if (!deepest)
     return {any_falls == 0 ? Outcome::reproduced : Outcome::not_reproduced,
             scenes.label() + ": the speed-up of " + caption +

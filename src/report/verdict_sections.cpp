@@ -7,8 +7,7 @@
 #include "output/tables/comparison_table.h"
 #include "report/html.h"
 #include "report/sections.h"
-#include "text/counted.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -41,7 +40,7 @@ std::string count_of(const std::vector<Finding>& findings) {
     return finding.outcome != Outcome::fact && finding.outcome != Outcome::warning;
   });
   if (published == 0) return "<p>Nothing published stands beside these rows.</p>\n";
-  return "<p>Of " + counted(static_cast<std::uint64_t>(published), "published statement") + ", " +
+  return "<p>Of " + pluralize(static_cast<std::uint64_t>(published), "published statement") + ", " +
          number(Outcome::reproduced) + " are reproduced, " + number(Outcome::partly) + " partly, " +
          number(Outcome::not_reproduced) + " are not, and " + number(Outcome::undecided) +
          " are undecided.</p>\n";
@@ -60,7 +59,7 @@ std::vector<ResultRow> with_samples(const ReportFolder& folder) {
 }
 
 std::string names_of(const std::vector<std::string>& combinations) {
-  return html_text(joined(combinations, "; "));
+  return html_text(join(combinations, "; "));
 }
 
 }  // namespace
@@ -103,7 +102,7 @@ std::string changes_section(const ReportInput& input) {
     unlike.insert(unlike.begin(), "not both folders say where they come from");
   }
   if (!unlike.empty())
-    return text + "<p>The two runs are not comparable: " + html_text(joined(unlike, "; ")) +
+    return text + "<p>The two runs are not comparable: " + html_text(join(unlike, "; ")) +
            ".</p>\n<p><code>mssim compare --force</code> compares them anyway.</p>\n";
   const RunComparison comparison = compare(with_samples(base), with_samples(next), input.threshold);
   if (comparison.rows.empty()) return text + "<p>They have no measured combination in common.</p>\n";

@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "geometry/geometry.h"
-#include "platform/available_memory.h"
+#include "platform/machine.h"
 #include "scene/body_shapes.h"
 #include "scene/fields/material_fields.h"
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"
-#include "text/input_error.h"
-#include "text/note.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -128,7 +127,7 @@ class MeshedShapes {
   /// What is to be known of how they were made, in sentences; or empty.
   std::string note() const {
     std::string all;
-    for (const MeshedShape& shape : shapes_) add_to_note(all, shape.mesh.note);
+    for (const MeshedShape& shape : shapes_) append_sentence(all, shape.mesh.note);
     return all;
   }
 

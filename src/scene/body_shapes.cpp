@@ -10,7 +10,7 @@
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/spec/scene_spec.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -4,14 +4,12 @@
 #include <tuple>
 #include <utility>
 
-#include "platform/data_folder.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 #include "scene/fields/json_reader.h"
 #include "scene/fields/json_schema.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_kinds.h"
-#include "text/nearest_name.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

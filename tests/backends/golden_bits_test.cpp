@@ -22,7 +22,7 @@
 #include "tests/support/dressing_systems.h"
 #include "tests/support/fused_sets.h"
 #include "tests/support/solid_system.h"
-#include "text/fnv1a.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -36,7 +36,7 @@ struct Hashes {
 
 std::string hash_after_100_steps(Backend& backend) {
   backend.step(100);
-  return hexadecimal(state_hash(backend.state()));
+  return to_hex(state_hash(backend.state()));
 }
 
 const Integrator& semi_euler() { return *find_integrator("semi-euler"); }

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "charts/chart_text.h"
-#include "platform/child_process.h"
-#include "platform/find_program.h"
+#include "platform/files.h"
+#include "platform/process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

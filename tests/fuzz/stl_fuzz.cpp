@@ -3,7 +3,7 @@
 #include "fuzz_checks.h"
 #include "mesh/surface_file.h"
 #include "surface_checks.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 

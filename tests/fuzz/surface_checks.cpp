@@ -11,8 +11,8 @@
 #include "garment/body/stance_guess.h"
 #include "geometry/openings.h"
 #include "mesh/surface_file.h"
-#include "text/decimal.h"
-#include "text/input_error.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

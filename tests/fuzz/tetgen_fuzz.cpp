@@ -5,7 +5,7 @@
 
 #include "fuzz_checks.h"
 #include "mesh/tetgen_files.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -17,7 +17,7 @@
 #include "hdf5/hdf5_write.h"
 #include "output/traces/h5md_trace.h"
 #include "output/traces/trace_content.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 #include "tests/support/trace_systems.h"
 
 namespace mssim {

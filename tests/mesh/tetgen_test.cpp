@@ -10,11 +10,9 @@
 
 #include "mesh/shape_mesh.h"
 #include "mesh/tetrahedralise.h"
-#include "platform/child_process.h"
-#include "platform/ending_signals.h"
-#include "platform/interruption.h"
-#include "platform/missing_program.h"
+#include "platform/process.h"
 #include "tests/support/mesh_fixture.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "text/fnv1a.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -57,10 +57,10 @@ TEST(StateHash, ChangesWithEveryBit) {
 
 TEST(StateHash, IsWrittenInDigitsThatAreReadBack) {
   for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{0x0123456789abcdef}, UINT64_MAX})
-    EXPECT_EQ(from_hexadecimal(hexadecimal(value)), value);
+    EXPECT_EQ(from_hex(to_hex(value)), value);
   for (const char* text :
        {"", "0", "0123456789abcdeg", "0123456789ABCDEF", "00123456789abcdef", "0x23456789abcdef"})
-    EXPECT_EQ(from_hexadecimal(text), std::nullopt) << text;
+    EXPECT_EQ(from_hex(text), std::nullopt) << text;
 }
 
 }  // namespace

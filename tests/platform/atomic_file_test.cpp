@@ -1,11 +1,9 @@
-#include "platform/atomic_file.h"
-
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <csignal>
 
-#include "platform/write_error.h"
+#include "platform/files.h"
 #include "tests/support/output_fixture.h"
 
 namespace mssim {

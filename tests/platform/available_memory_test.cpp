@@ -1,6 +1,6 @@
-#include "platform/available_memory.h"
-
 #include <gtest/gtest.h>
+
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

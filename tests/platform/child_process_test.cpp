@@ -1,5 +1,3 @@
-#include "platform/child_process.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

@@ -1,7 +1,6 @@
-#include "platform/container_limits.h"
-
 #include <gtest/gtest.h>
 
+#include "platform/machine.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

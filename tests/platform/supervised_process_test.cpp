@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 #include "tests/support/supervised_fixture.h"
 
 namespace mssim {

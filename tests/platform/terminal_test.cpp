@@ -1,6 +1,6 @@
-#include "platform/terminal.h"
-
 #include <gtest/gtest.h>
+
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

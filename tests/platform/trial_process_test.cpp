@@ -1,10 +1,10 @@
-#include "platform/trial_process.h"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
+
+#include "platform/process.h"
 
 namespace mssim {
 namespace {

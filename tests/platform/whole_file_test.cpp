@@ -1,5 +1,3 @@
-#include "platform/whole_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "platform/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

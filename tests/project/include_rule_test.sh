@@ -34,7 +34,7 @@ scene/spec            platform geometry model mesh garment/body scene/fields gar
 garment/scene         text geometry garment/contact model mesh garment/body garment/pattern garment/layers scene/fields scene/spec
 scene                 text platform geometry model mesh scene/fields scene/spec garment/scene
 
-backends/interface    kernels integrators model
+backends/interface    kernels text integrators model
 backends/vectors      laws integrators backends/interface
 backends/threads
 backends/layouts      integrators model backends/interface backends/vectors backends/threads

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/data_folder.h"
+#include "platform/files.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"

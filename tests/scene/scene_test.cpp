@@ -12,8 +12,7 @@
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "tests/support/scene_files.h"
-#include "text/nearest_name.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -113,12 +113,12 @@ class Person {
   double operator()(const Vec3d& at) const {
     const Vec3d p{std::abs(at.x), at.y, at.z};
     const Vec3d q = 1 / size_ * p;
-    double body = joined(torso_(p), leg_(p), 0.03);
-    body = joined(body, size_ * ellipsoid(q, {0, 1.585, 0.015}, {0.075, 0.115, 0.095}), 0.03);
-    body = joined(body, size_ * ellipsoid(q, {0.135, 0.035, 0.055}, {0.042, 0.038, 0.12}), 0.02);
+    double body = join(torso_(p), leg_(p), 0.03);
+    body = join(body, size_ * ellipsoid(q, {0, 1.585, 0.015}, {0.075, 0.115, 0.095}), 0.03);
+    body = join(body, size_ * ellipsoid(q, {0.135, 0.035, 0.055}, {0.042, 0.038, 0.12}), 0.02);
     // Rounded at the shoulder; a hand beside the hip stays apart.
     const double rounding = std::clamp(0.1 * (q.y - 1.0), 0.004, 0.03);
-    return arms_ ? joined(body, size_ * arm(q), rounding) : body;
+    return arms_ ? join(body, size_ * arm(q), rounding) : body;
   }
 
  private:
@@ -172,7 +172,7 @@ class Person {
   }
 
   /// The smooth union of two bodies (Quilez's polynomial): rounded where they are nearer than `width`.
-  static double joined(double a, double b, double width) {
+  static double join(double a, double b, double width) {
     const double overlap = std::max(width - std::abs(a - b), 0.0) / width;
     return std::min(a, b) - overlap * overlap * width / 4;
   }
@@ -196,13 +196,13 @@ class Person {
     const Vec3d shoulder{0.172, 1.345, -0.008};
     const Vec3d elbow = shoulder + 0.28 * along_arm_, wrist = shoulder + 0.53 * along_arm_;
     const double limb =
-        joined(cone(p, shoulder, 0.052, elbow, 0.041), cone(p, elbow, 0.041, wrist, 0.028), 0.02);
+        join(cone(p, shoulder, 0.052, elbow, 0.041), cone(p, elbow, 0.041, wrist, 0.028), 0.02);
     // The hand is flat and looks to the thigh.
     const Vec3d aside{-along_arm_.y / std::hypot(along_arm_.x, along_arm_.y),
                       along_arm_.x / std::hypot(along_arm_.x, along_arm_.y), 0};
     const Vec3d d = p - (wrist + 0.085 * along_arm_);
     const Vec3d in_hand{dot(d, aside), dot(d, along_arm_), dot(d, cross(aside, along_arm_))};
-    return joined(limb, ellipsoid(in_hand, {}, {0.024, 0.095, 0.043}), 0.02);
+    return join(limb, ellipsoid(in_hand, {}, {0.024, 0.095, 0.043}), 0.02);
   }
 
   bool arms_;

@@ -12,7 +12,7 @@
 
 #include "mesh/box_shape.h"
 #include "tests/support/temporary_folder.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 

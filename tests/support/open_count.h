@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "platform/descriptor.h"
+#include "platform/process.h"
 
 namespace mssim {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "platform/whole_file.h"
+#include "platform/files.h"
 
 namespace mssim {
 

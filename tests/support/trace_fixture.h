@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "output/traces/h5md_trace.h"
-#include "platform/atomic_file.h"
+#include "platform/files.h"
 #include "tests/support/output_fixture.h"
 
 namespace mssim {

@@ -1,6 +1,6 @@
-#include "text/columns.h"
-
 #include <gtest/gtest.h>
+
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -1,6 +1,6 @@
-#include "text/fnv1a.h"
-
 #include <gtest/gtest.h>
+
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -12,7 +12,7 @@ TEST(Hash, EqualsThePublishedTestVectors) {
   EXPECT_EQ(fnv1a_64("foobar"), 0x85944171f73967e8U);
 }
 
-TEST(Hash, IsWrittenWithAllItsDigits) { EXPECT_EQ(hexadecimal(0x0123456789abcdefU), "0123456789abcdef"); }
+TEST(Hash, IsWrittenWithAllItsDigits) { EXPECT_EQ(to_hex(0x0123456789abcdefU), "0123456789abcdef"); }
 
 }  // namespace
 }  // namespace mssim

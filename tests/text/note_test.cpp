@@ -1,18 +1,18 @@
-#include "text/note.h"
-
 #include <gtest/gtest.h>
+
+#include "text/text.h"
 
 namespace mssim {
 namespace {
 
 TEST(NoteTest, JoinsSentencesAndLeavesOutEmptyOnes) {
   std::string note;
-  add_to_note(note, "");
+  append_sentence(note, "");
   EXPECT_EQ(note, "");
-  add_to_note(note, "one");
-  add_to_note(note, "");
+  append_sentence(note, "one");
+  append_sentence(note, "");
   EXPECT_EQ(note, "one");
-  add_to_note(note, "another");
+  append_sentence(note, "another");
   EXPECT_EQ(note, "one; another");
 }
 

@@ -1,9 +1,9 @@
-#include "text/number_in.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <optional>
+
+#include "text/text.h"
 
 namespace mssim {
 namespace {

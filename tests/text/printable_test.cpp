@@ -1,9 +1,9 @@
-#include "text/printable.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "text/text.h"
 
 namespace mssim {
 namespace {

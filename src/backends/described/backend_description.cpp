@@ -12,12 +12,10 @@
 #include <vector>
 
 #include "integrators/all_integrators.h"
-#include "platform/find_program.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 #include "scene/fields/json_reader.h"
 #include "scene/fields/scene_error.h"
-#include "text/nearest_name.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

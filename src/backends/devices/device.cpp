@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "text/small_letters.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -143,8 +143,8 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
                       "; there are: " + listing(devices));
   }
 
-  const auto has_it = [part = small_letters(wanted)](const std::string& text) {
-    return small_letters(text).find(part) != std::string::npos;
+  const auto has_it = [part = to_lower(wanted)](const std::string& text) {
+    return to_lower(text).find(part) != std::string::npos;
   };
   std::vector<OpenclDevice> fitting;
   for (const OpenclDevice& device : devices)

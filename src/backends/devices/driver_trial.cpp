@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "backends/devices/offer.h"
-#include "platform/child_process.h"
-#include "platform/data_folder.h"
+#include "platform/files.h"
+#include "platform/process.h"
 
 namespace mssim {
 namespace {

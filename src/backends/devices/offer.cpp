@@ -14,11 +14,10 @@
 
 #include "backends/devices/pocl_settings.h"
 #include "backends/devices/registered_drivers.h"
-#include "platform/child_process.h"
-#include "platform/data_folder.h"
-#include "platform/process_cpus.h"
-#include "platform/temporary_folder.h"
-#include "text/joined.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "platform/process.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -183,7 +182,7 @@ const OpenclOffer& opencl_offer() {
 
 OpenclDevice find_opencl_device(std::string_view wanted) {
   const OpenclOffer& offer = opencl_offer();
-  if (offer.devices.empty() && !offer.troubles.empty()) throw Unavailable(joined(offer.troubles, "; "));
+  if (offer.devices.empty() && !offer.troubles.empty()) throw Unavailable(join(offer.troubles, "; "));
   return choose_opencl_device(offer.devices, wanted);
 }
 

@@ -17,7 +17,7 @@ struct OpenclOffer {
 };
 
 /// Asks the drivers, once in a process: first in another process (src/ask_opencl.cpp), since some end the one
-/// that asks them. Those are left out. Throws Interrupted (platform/interruption.h).
+/// that asks them. Those are left out. Throws Interrupted (platform/process.h).
 const OpenclOffer& opencl_offer();
 
 /// From now on nothing is tried in another process first: this one is itself a process that drivers may end.

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "platform/process_cpus.h"
-#include "platform/temporary_folder.h"
+#include "platform/files.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

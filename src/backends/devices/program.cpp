@@ -7,8 +7,7 @@
 #include <string_view>
 
 #include "backends/interface/backend.h"
-#include "platform/data_folder.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 
 namespace mssim {
 namespace {

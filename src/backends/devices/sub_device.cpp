@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

@@ -16,6 +16,7 @@
 #include "backends/interface/communication.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
+#include "text/error.h"
 
 namespace mssim {
 
@@ -49,20 +50,20 @@ struct ExecutionOptions {
 };
 
 /// Thrown when a backend cannot run here (no device, no driver); what() is the reason for the row and `list`.
-struct Unavailable : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct Unavailable : ErrorWith<exit_unavailable> {
+  using ErrorWith::ErrorWith;
 };
 
 /// Thrown when a backend runs here but not this scene or integrator; what() is the reason.
-struct Unsupported : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct Unsupported : ErrorWith<exit_bad_input> {
+  using ErrorWith::ErrorWith;
 };
 
 /// Thrown by any call of a backend behind which a program stands that failed; what() is the reason for the
 /// row.
-struct BackendFailure : std::runtime_error {
+struct BackendFailure : Error {
   BackendFailure(const std::string& reason, std::string last_output, bool is_late = false)
-      : std::runtime_error(reason), output(std::move(last_output)), late(is_late) {}
+      : Error(exit_not_verified, reason), output(std::move(last_output)), late(is_late) {}
   std::string output;  ///< what the program wrote last
   bool late;           ///< it has not answered in time: asked again, it would take as long again
 };

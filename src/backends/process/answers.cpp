@@ -6,9 +6,7 @@
 #include <utility>
 
 #include "backends/interface/backend.h"
-#include "text/note.h"
-#include "text/number_in.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -56,9 +54,9 @@ bool take_introduction(Introduction& introduction, const std::string& line) {
   else if (word == "threads")
     introduction.threads = thread_count(line, text);
   else if (word == "precision" && !text.empty())
-    add_to_note(introduction.note, shown + " precision");
+    append_sentence(introduction.note, shown + " precision");
   else if (word == "note" && !text.empty())
-    add_to_note(introduction.note, shown);
+    append_sentence(introduction.note, shown);
   else if (word == "untimed" && !text.empty())
     introduction.untimed = shown;
   else if (line == "tells costs")

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "platform/interruption.h"
-#include "text/printable.h"
+#include "platform/process.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

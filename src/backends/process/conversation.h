@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "platform/descriptor.h"
-#include "platform/temporary_folder.h"
+#include "platform/files.h"
+#include "platform/process.h"
 
 namespace mssim {
 
@@ -26,7 +26,7 @@ struct ConversationFailure : std::runtime_error {
 
 /// Lines of text with one program over a Unix socket: mssim listens, the program connects once, and then each
 /// line that mssim asks something with is answered. What the program sends is bounded in length and in time.
-/// All calls throw ConversationFailure, and Interrupted (platform/interruption.h) within a tenth of a second
+/// All calls throw ConversationFailure, and Interrupted (platform/process.h) within a tenth of a second
 /// after the user has asked mssim to end.
 class Conversation {
  public:

@@ -23,10 +23,10 @@
 #include "backends/process/program_start.h"
 #include "backends/process/state_file.h"
 #include "backends/process/system_file.h"
-#include "platform/ending_signals.h"
+#include "platform/files.h"
+#include "platform/process.h"
 #include "platform/supervised_process.h"
-#include "platform/temporary_folder.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "backends/process/process_backend.h"
-#include "platform/data_folder.h"
-#include "platform/process_cpus.h"
+#include "platform/files.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

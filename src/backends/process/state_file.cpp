@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -104,7 +104,7 @@ State StateFile::read() const {
     struct stat status {};
     ::fstat(file_.get(), &status);
     throw StateFileFailure("left a state file of " +
-                           counted(static_cast<std::uint64_t>(status.st_size), "byte") + " instead of " +
+                           pluralize(static_cast<std::uint64_t>(status.st_size), "byte") + " instead of " +
                            std::to_string(bytes_of(nodes_)));
   }
   const auto missing = static_cast<std::size_t>(std::ranges::count_if(state.position, is_unwritten) +

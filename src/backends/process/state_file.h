@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "model/system.h"
-#include "platform/descriptor.h"
-#include "platform/temporary_folder.h"
+#include "platform/files.h"
+#include "platform/process.h"
 
 namespace mssim {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hdf5/hdf5_write.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
 
 namespace mssim {
 namespace {

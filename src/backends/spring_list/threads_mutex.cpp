@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "backends/spring_list/spring_list.h"
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

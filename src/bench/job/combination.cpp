@@ -16,8 +16,7 @@
 #include "bench/windows/window_verification.h"
 #include "integrators/all_integrators.h"
 #include "statistics/statistics.h"
-#include "text/counted.h"
-#include "text/note.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -67,7 +66,7 @@ SampleTime time_sample(Combination& combination, int steps) {
 std::string subject_of(const ResultRow& row) {
   std::ostringstream text;
   text << row.nodes << " nodes and " << row.springs_unique << " springs in steps of " << row.dt_s << " s on "
-       << row.device << " with " << counted(static_cast<std::uint64_t>(row.threads), "thread");
+       << row.device << " with " << pluralize(static_cast<std::uint64_t>(row.threads), "thread");
   return text.str();
 }
 
@@ -77,7 +76,7 @@ void end(Combination& combination) {
   if (!combination.backend) return;
   ResultRow& row = combination.row;
   const std::string note = combination.backend->note();
-  if (row.note.find(note) == std::string::npos) add_to_note(row.note, note);
+  if (row.note.find(note) == std::string::npos) append_sentence(row.note, note);
   row.program_output = combination.backend->end();
 }
 
@@ -137,8 +136,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
     }
     row.device = combination.backend->device();
     row.threads = combination.backend->threads();
-    add_to_note(row.note, combination.backend->note());
-    add_to_note(row.note, excess_of(info, *combination.backend, job.execution));
+    append_sentence(row.note, combination.backend->note());
+    append_sentence(row.note, excess_of(info, *combination.backend, job.execution));
     combination.on_host = combination.backend->runs_on_host();
     combination.steps_per_pass = combination.backend->steps_per_pass();
     combination.stored_springs = combination.backend->stored_springs();
@@ -176,7 +175,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   row.state_hash = found->state_hash;
   row.dressing = found->dressing;
   row.verified = true;
-  add_to_note(row.note, "verified by an earlier process");
+  append_sentence(row.note, "verified by an earlier process");
 }
 
 namespace {
@@ -189,7 +188,7 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
     combination.step_seconds = time_steps(steps) / steps;
     if (combination.step_seconds < least_step_s)
       return fail(combination, "failed: its steps are not done when it says so: " +
-                                   counted(static_cast<std::uint64_t>(steps), "step") +
+                                   pluralize(static_cast<std::uint64_t>(steps), "step") +
                                    " take less than 10 ns each");
     const int fit =
         sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
@@ -276,7 +275,7 @@ void require_prompt_steps(Combination& combination) {
   if (reading - combination.step_reading_seconds <= sample) return;
   std::ostringstream why;
   why << "failed: its steps are not done when it says so: it takes " << 1e3 * sample << " ms for "
-      << counted(static_cast<std::uint64_t>(combination.steps), "step") << ", and then " << 1e3 * reading
+      << pluralize(static_cast<std::uint64_t>(combination.steps), "step") << ", and then " << 1e3 * reading
       << " ms to give the state, where that takes " << 1e3 * combination.step_reading_seconds
       << " ms after one step";
   fail(combination, why.str());

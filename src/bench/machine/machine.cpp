@@ -11,7 +11,7 @@
 #include <tuple>
 
 #include "bench/machine/cpu_generation.h"
-#include "platform/container_limits.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

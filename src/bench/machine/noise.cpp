@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -42,12 +42,12 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
         "turbo is on, so that the frequency depends on temperature and neighbours: turn it off");
   const std::size_t cpus = provenance.allowed_cpus.size();
   if (provenance.threads > 1 && cpus > 0 && static_cast<std::size_t>(provenance.threads) > cpus)
-    noise.push_back(std::to_string(provenance.threads) + " threads share " + counted(cpus, "logical CPU") +
+    noise.push_back(std::to_string(provenance.threads) + " threads share " + pluralize(cpus, "logical CPU") +
                     ": ask for fewer with --threads");
   if (machine.cpu_quota && provenance.threads > *machine.cpu_quota)
     noise.push_back(
         "a quota of this container lets " +
-        counted(static_cast<std::uint64_t>(provenance.threads), "thread") + " run for the time of " +
+        pluralize(static_cast<std::uint64_t>(provenance.threads), "thread") + " run for the time of " +
         one_decimal(*machine.cpu_quota) + " processors and then stops them: " +
         (provenance.threads > 1 ? "ask for fewer with --threads, or raise the quota" : "raise the quota"));
   if (provenance.threads > 1 && !binds_threads(provenance))

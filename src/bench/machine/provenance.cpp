@@ -10,10 +10,9 @@
 #include <sstream>
 
 #include "bench/machine/noise.h"
-#include "platform/process_cpus.h"
-#include "platform/whole_file.h"
-#include "text/fnv1a.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

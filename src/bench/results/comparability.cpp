@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "text/fnv1a.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -39,8 +39,7 @@ std::vector<std::string> differences(const Provenance& before, const Provenance&
   for (const SceneHash& scene : before.scenes)
     if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);
         same != now.scenes.end())
-      add(sentences, "the hash of scene " + scene.name, hexadecimal(scene.fnv1a_64),
-          hexadecimal(same->fnv1a_64));
+      add(sentences, "the hash of scene " + scene.name, to_hex(scene.fnv1a_64), to_hex(same->fnv1a_64));
   return sentences;
 }
 

@@ -1,6 +1,6 @@
 #include "bench/roofline/machine_peak.h"
 
-#include "platform/openmp_runtime.h"
+#include "platform/machine.h"
 
 // Highway compiles the text up to HWY_AFTER_NAMESPACE once for every instruction set, each time into a
 // namespace of its own. Beyond AVX3, in lower bits, are only instructions that a triad has no use for.

@@ -13,7 +13,7 @@
 #include "bench/verification/deviation.h"
 #include "bench/verification/verification.h"
 #include "model/energy.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -135,7 +135,7 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
     way.go_to(end.steps);
     std::ostringstream why;
     const std::string after =
-        " after the " + counted(static_cast<std::uint64_t>(end.steps), "step") + " of a sample";
+        " after the " + pluralize(static_cast<std::uint64_t>(end.steps), "step") + " of a sample";
     if (first_bad_node(way.state())) {
       reasons[i] = "the double-precision reference is not finite" + after;
       continue;

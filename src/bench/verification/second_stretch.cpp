@@ -14,7 +14,7 @@
 #include "bench/verification/verification.h"
 #include "model/solid_block.h"
 #include "model/spectrum.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -168,7 +168,7 @@ std::optional<std::string> verify_second(Backend& backend, const SecondStretch& 
   if (stretch.steps == 0) return std::nullopt;
   backend.step(stretch.steps);
   const State state = backend.state();
-  const std::string after = " after " + counted(static_cast<std::uint64_t>(stretch.steps), "step") +
+  const std::string after = " after " + pluralize(static_cast<std::uint64_t>(stretch.steps), "step") +
                             " of a small scene of its kind that meets the floor";
   if (first_bad_node(state)) return "not finite" + after;
   const double error = position_deviation(stretch.system, stretch.state, state);

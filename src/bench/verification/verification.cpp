@@ -10,7 +10,7 @@
 #include "integrators/stability.h"
 #include "model/spectrum.h"
 #include "model/state_hash.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -122,10 +122,10 @@ Verification verify(Backend& backend, const System& system, const Reference& ref
   std::ostringstream why;
   if (!(result.position_error <= reference.tolerance)) {
     why << "position error " << result.position_error << " of a rest length exceeds " << reference.tolerance
-        << " after " << counted(static_cast<std::uint64_t>(reference.steps), "step");
+        << " after " << pluralize(static_cast<std::uint64_t>(reference.steps), "step");
   } else if (!(std::abs(result.energy_drift) <= energy_tolerance)) {
     why << "energy is off by " << result.energy_drift << " of the energy in motion, more than "
-        << energy_tolerance << ", after " << counted(static_cast<std::uint64_t>(reference.steps), "step");
+        << energy_tolerance << ", after " << pluralize(static_cast<std::uint64_t>(reference.steps), "step");
   }
   if (!why.str().empty()) result.failure = why.str();
   return result;

@@ -10,7 +10,7 @@
 #include "backends/reference.h"
 #include "bench/verification/blow_up.h"
 #include "bench/verification/verification.h"
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

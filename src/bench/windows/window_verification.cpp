@@ -7,7 +7,7 @@
 #include "bench/verification/blow_up.h"
 #include "bench/verification/deviation.h"
 #include "model/energy.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -43,7 +43,7 @@ Verification verify_windows(WindowBackend& backend, const WindowedCloth& cloth, 
 Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
                              const WindowReferences& reference, int steps, double dt_s) {
   Verification result;
-  const std::string after = " after " + counted(static_cast<std::uint64_t>(steps), "step");
+  const std::string after = " after " + pluralize(static_cast<std::uint64_t>(steps), "step");
   double energy_off = 0, in_motion = 0, worst = 0;  // worst: in tolerances
   std::ostringstream why;
   for (const WindowReference& one : reference.windows) {
@@ -77,7 +77,7 @@ Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth,
 std::string share_seen(const WindowedCloth& cloth) {
   std::ostringstream text;
   text.precision(2);
-  text << "verified in " << counted(static_cast<std::uint64_t>(cloth.windows.size()), "window") << ", "
+  text << "verified in " << pluralize(static_cast<std::uint64_t>(cloth.windows.size()), "window") << ", "
        << 100 * static_cast<double>(cloth.nodes_in_windows()) / static_cast<double>(cloth.nodes())
        << " % of the nodes";
   return text.str();

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "commands/arguments/value_rule.h"
-#include "text/number_in.h"
+#include "text/text.h"
 
 namespace CLI {
 class App;

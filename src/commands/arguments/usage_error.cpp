@@ -6,9 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "text/nearest_name.h"
-#include "text/printable.h"
-#include "text/small_letters.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -64,7 +62,7 @@ std::string subject_of(std::string_view message) {
 }
 
 std::string small_first(std::string text) {
-  if (!text.empty()) text.front() = small_letters(text.substr(0, 1)).front();
+  if (!text.empty()) text.front() = to_lower(text.substr(0, 1)).front();
   return text;
 }
 

@@ -7,9 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "text/number_in.h"
-#include "text/printable.h"
-#include "text/small_letters.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -46,7 +44,7 @@ ValueRule whole_number(std::int64_t low, std::int64_t high) {
 ValueRule one_of(std::string what, std::vector<std::string> words, std::vector<OtherName> others) {
   return [what = std::move(what), words = std::move(words),
           others = std::move(others)](std::string& text) -> std::string {
-    const auto match = std::ranges::find(words, small_letters(text));
+    const auto match = std::ranges::find(words, to_lower(text));
     if (match == words.end())
       return unknown_name(what, text, std::vector<std::string_view>(words.begin(), words.end()), others);
     text = *match;

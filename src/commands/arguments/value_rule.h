@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "text/nearest_name.h"
+#include "text/text.h"
 
 namespace mssim {
 

@@ -19,15 +19,14 @@
 #include "commands/bench/time_budget.h"
 #include "commands/guide/guide_run.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
 #include "commands/shared/prepared_scene.h"
 #include "commands/shared/scene_list.h"
 #include "commands/shared/stop_request.h"
 #include "commands/shared/tell_first.h"
 #include "output/tables/result_table.h"
-#include "text/nearest_name.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

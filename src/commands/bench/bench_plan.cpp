@@ -11,12 +11,12 @@
 #include "commands/bench/suites.h"
 #include "commands/bench/verified_rows.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/run_provenance.h"
 #include "output/traces/trace_name.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

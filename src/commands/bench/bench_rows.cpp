@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "commands/shared/exit_code.h"
+#include "text/error.h"
 
 namespace mssim {
 

@@ -13,8 +13,7 @@
 #include "output/tables/result_table.h"
 #include "output/tables/row_table.h"
 #include "output/tables/table_json.h"
-#include "text/columns.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -37,7 +36,7 @@ std::vector<std::string> devices_of(RowPointers rows) {
   }
   std::vector<std::string> sentences;
   for (const auto& [device, names] : backends)
-    sentences.push_back((joined(names, ", ") + " ran on ").append(device));
+    sentences.push_back((join(names, ", ") + " ran on ").append(device));
   return sentences;
 }
 

@@ -6,7 +6,7 @@
 
 #include "bench/results/result.h"
 #include "output/tables/structure_table.h"
-#include "platform/terminal.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

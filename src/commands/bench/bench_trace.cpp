@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "bench/verification/verification.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/run_provenance.h"
 #include "commands/shared/simulation.h"
 #include "integrators/all_integrators.h"
 #include "output/traces/h5md_trace.h"
-#include "platform/folder_lock.h"
+#include "platform/files.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/results/result.h"
-#include "commands/shared/exit_code.h"
+#include "text/error.h"
 
 namespace mssim {
 

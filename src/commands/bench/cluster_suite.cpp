@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "output/tables/cluster_rows.h"
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

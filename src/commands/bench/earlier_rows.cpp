@@ -5,10 +5,9 @@
 
 #include "bench/results/comparability.h"
 #include "commands/bench/measured_run.h"
-#include "commands/shared/exit_code.h"
 #include "output/folders/provenance_file.h"
-#include "text/joined.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -31,7 +30,7 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
     if (std::ranges::find(now.scenes, scene.name, &SceneHash::name) == now.scenes.end())
       left_out.push_back(printable(scene.name));
   if (!left_out.empty())
-    all.push_back("it has results of " + joined(left_out, ", ") + ", which this command leaves out");
+    all.push_back("it has results of " + join(left_out, ", ") + ", which this command leaves out");
   require_resumable(all, folder);
 }
 
@@ -39,7 +38,7 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
 
 void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
   if (!differences.empty())
-    throw UsageError("--resume cannot continue in " + folder + ": " + joined(differences, "; ") +
+    throw UsageError("--resume cannot continue in " + folder + ": " + join(differences, "; ") +
                      "; choose another --out, or --overwrite to measure anew");
 }
 

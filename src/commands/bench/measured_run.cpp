@@ -2,9 +2,9 @@
 
 #include <system_error>
 
-#include "commands/shared/exit_code.h"
 #include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

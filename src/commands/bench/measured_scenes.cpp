@@ -10,8 +10,7 @@
 #include "commands/shared/fit_body.h"
 #include "commands/shared/prepared_scene.h"
 #include "commands/shared/progress_line.h"
-#include "platform/ending_signals.h"
-#include "platform/interruption.h"
+#include "platform/process.h"
 
 namespace mssim {
 namespace {

@@ -9,11 +9,11 @@
 #include "bench/windows/window_choice.h"
 #include "bench/windows/window_reference.h"
 #include "commands/shared/backend_choice.h"
-#include "commands/shared/exit_code.h"
 #include "integrators/stability.h"
-#include "platform/available_memory.h"
+#include "platform/machine.h"
 #include "scene/cloth.h"
 #include "scene/scene_kinds.h"
+#include "text/error.h"
 
 namespace mssim {
 

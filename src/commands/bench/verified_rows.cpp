@@ -4,8 +4,8 @@
 
 #include "bench/results/comparability.h"
 #include "commands/bench/measured_run.h"
-#include "commands/shared/exit_code.h"
-#include "text/joined.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -46,7 +46,7 @@ std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance
                                      const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
   MeasuredRun earlier = read_run(folder);
   if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
-    throw UsageError("--verified cannot rely on " + folder + ": " + joined(all, "; ") +
+    throw UsageError("--verified cannot rely on " + folder + ": " + join(all, "; ") +
                      "; leave it out to verify anew");
   for (const SceneSpec& scene : scenes)
     for (const Integrator* integrator : settings.integrators)

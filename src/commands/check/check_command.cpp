@@ -9,11 +9,11 @@
 
 #include "commands/check/scene_report.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/prepared_scene.h"
 #include "output/tables/listing.h"
 #include "output/tables/table_text.h"
 #include "scene/scene_file.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

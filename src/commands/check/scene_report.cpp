@@ -18,9 +18,9 @@
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
-#include "platform/available_memory.h"
+#include "platform/machine.h"
 #include "scene/scene_kinds.h"
-#include "text/nearest_name.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

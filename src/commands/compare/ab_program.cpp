@@ -8,10 +8,8 @@
 #include <thread>
 
 #include "backends/interface/backend.h"
-#include "commands/shared/exit_code.h"
-#include "platform/missing_program.h"
-#include "text/decimal.h"
-#include "text/joined.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -86,18 +84,18 @@ ChildProcess AbProgram::bench_process(const std::vector<std::string>& backends,
   ChildProcess child = child_;
   child.arguments = {"bench",
                      "--scene",
-                     joined(options_.scenes, ","),
+                     join(options_.scenes, ","),
                      "--backend",
-                     joined(backends, ","),
+                     join(backends, ","),
                      "--integrator",
-                     joined(integrators, ","),
+                     join(integrators, ","),
                      "--rounds",
                      std::to_string(rounds),
                      "--out",
                      out.string()};
   const OwnBackendOptions& own = options_.own_backends;
   if (!own.folders.empty())
-    child.arguments.insert(child.arguments.end(), {"--backend-folder", joined(own.folders, ",")});
+    child.arguments.insert(child.arguments.end(), {"--backend-folder", join(own.folders, ",")});
   if (own.limit_s) child.arguments.insert(child.arguments.end(), {"--backend-limit", decimal(*own.limit_s)});
   if (options_.threads > 0)
     child.arguments.insert(child.arguments.end(), {"--threads", std::to_string(options_.threads)});

@@ -6,8 +6,8 @@
 
 #include "commands/compare/ab_rounds.h"
 #include "output/tables/combination_times.h"
-#include "platform/child_process.h"
-#include "platform/temporary_folder.h"
+#include "platform/files.h"
+#include "platform/process.h"
 
 namespace mssim {
 

@@ -9,12 +9,11 @@
 #include "bench/results/paired_times.h"
 #include "commands/bench/bench_plan.h"
 #include "commands/compare/ab_program.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/progress_line.h"
 #include "output/tables/combination_times.h"
-#include "platform/available_memory.h"
-#include "platform/child_process.h"
-#include "platform/stopwatch.h"
+#include "platform/machine.h"
+#include "platform/process.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -12,12 +12,11 @@
 #include "commands/bench/measured_run.h"
 #include "commands/compare/ab_rounds.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/scene_list.h"
 #include "commands/shared/tell_first.h"
 #include "output/tables/comparison_table.h"
-#include "text/counted.h"
-#include "text/joined.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -37,7 +36,7 @@ void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool f
   const std::vector<std::string> of_rows = differences(base.rows, next.rows);
   all.insert(all.end(), of_rows.begin(), of_rows.end());
   if (all.empty()) return;
-  const std::string sentence = joined(all, "; ");
+  const std::string sentence = join(all, "; ");
   if (!force)
     throw UsageError("the two runs are not comparable: " + sentence +
                      "; measure both in the same way, or compare them anyway with --force");
@@ -76,7 +75,7 @@ int report(const RunComparison& comparison, ComparisonFormat format) {
   tell_first(regressions(comparison));
   const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
   if (undecided > 0)
-    std::cerr << "mssim: " << undecided << " of " << counted(comparison.rows.size(), "combination")
+    std::cerr << "mssim: " << undecided << " of " << pluralize(comparison.rows.size(), "combination")
               << (undecided == 1 ? " is undecided\n" : " are undecided\n");
   return has_regression(comparison) ? exit_regression : exit_ok;
 }

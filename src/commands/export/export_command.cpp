@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "commands/shared/exit_code.h"
 #include "commands/shared/frame_choice.h"
 #include "commands/shared/output_names.h"
 #include "commands/shared/stop_request.h"
@@ -19,8 +18,9 @@
 #include "output/exports/vtkhdf_export.h"
 #include "output/traces/trace_reader.h"
 #include "output/traces/xdmf.h"
-#include "platform/atomic_file.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

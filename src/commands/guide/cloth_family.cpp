@@ -4,8 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "platform/atomic_file.h"
-#include "platform/temporary_folder.h"
+#include "platform/files.h"
 #include "scene/scene_kinds.h"
 
 namespace mssim {

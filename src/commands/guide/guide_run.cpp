@@ -10,7 +10,6 @@
 #include "commands/guide/cloth_family.h"
 #include "commands/shared/backend_choice.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
 #include "commands/shared/prepared_scene.h"
 #include "commands/shared/progress_line.h"
@@ -22,11 +21,11 @@
 #include "output/guide/guide_page.h"
 #include "output/guide/guide_table.h"
 #include "output/tables/table_text.h"
-#include "platform/stopwatch.h"
+#include "platform/machine.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "text/decimal.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "commands/shared/command.h"
-#include "commands/shared/exit_code.h"
+#include "text/error.h"
 
 namespace mssim {
 

@@ -16,15 +16,14 @@
 #include "commands/bench/suites.h"
 #include "commands/shared/backend_choice.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
 #include "integrators/all_integrators.h"
 #include "output/tables/listing.h"
-#include "platform/missing_program.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "text/nearest_name.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

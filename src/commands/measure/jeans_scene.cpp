@@ -6,7 +6,7 @@
 
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

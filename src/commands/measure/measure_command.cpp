@@ -10,20 +10,17 @@
 #include "commands/measure/body_listing.h"
 #include "commands/measure/jeans_scene.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "garment/body/length_unit.h"
 #include "garment/body/stance_guess.h"
 #include "garment/pattern/jeans_for_body.h"
 #include "garment/scene/garment_body.h"
 #include "mesh/surface_file.h"
-#include "platform/atomic_file.h"
+#include "platform/files.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "text/input_error.h"
-#include "text/number_in.h"
-#include "text/printable.h"
-#include "text/small_letters.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -138,9 +135,7 @@ int write_scene(const MeasureOptions& options, MeasuredFile found) {
   return exit_ok;
 }
 
-std::string extension_of(const std::string& file) {
-  return small_letters(fs::path(file).extension().string());
-}
+std::string extension_of(const std::string& file) { return to_lower(fs::path(file).extension().string()); }
 
 int measure_scene(const MeasureOptions& options) {
   if (!options.unit.empty() || options.up || options.facing || options.close_holes || !options.scene.empty())

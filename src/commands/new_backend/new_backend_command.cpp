@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "commands/new_backend/starter.h"
-#include "commands/shared/exit_code.h"
-#include "platform/atomic_file.h"
-#include "platform/whole_file.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -5,13 +5,10 @@
 #include <string_view>
 
 #include "backends/backends.h"
-#include "commands/shared/exit_code.h"
-#include "platform/child_process.h"
-#include "platform/data_folder.h"
-#include "platform/find_program.h"
-#include "platform/whole_file.h"
-#include "text/printable.h"
-#include "text/shell_word.h"
+#include "platform/files.h"
+#include "platform/process.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

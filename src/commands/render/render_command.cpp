@@ -12,7 +12,6 @@
 #include "commands/render/sheet_choice.h"
 #include "commands/run/run_scene.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/frame_choice.h"
 #include "commands/shared/output_names.h"
 #include "commands/shared/progress_line.h"
@@ -23,11 +22,10 @@
 #include "picture/animated_png.h"
 #include "picture/png.h"
 #include "picture/sheet.h"
-#include "platform/atomic_file.h"
-#include "platform/temporary_folder.h"
+#include "platform/files.h"
 #include "scene/scene_file.h"
-#include "text/decimal.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -11,14 +11,12 @@
 #include "bench/machine/build_info.h"
 #include "commands/bench/suites.h"
 #include "commands/report/simulated_scenes.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/output_names.h"
 #include "commands/shared/tell_first.h"
-#include "platform/atomic_file.h"
-#include "platform/data_folder.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 #include "report/page.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -6,16 +6,14 @@
 #include <optional>
 
 #include "commands/run/run_scene.h"
-#include "commands/shared/exit_code.h"
 #include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"
 #include "picture/png.h"
-#include "platform/temporary_folder.h"
-#include "platform/whole_file.h"
+#include "platform/files.h"
 #include "report/report_charts.h"
 #include "scene/scene_file.h"
-#include "text/decimal.h"
-#include "text/fnv1a.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "bench/verification/blow_up.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/fit_body.h"
 #include "commands/shared/progress_line.h"
 #include "garment/fitting/fit_bounds.h"
 #include "output/tables/table_text.h"
-#include "platform/stopwatch.h"
-#include "platform/terminal.h"
+#include "platform/machine.h"
+#include "text/error.h"
 
 namespace mssim {
 

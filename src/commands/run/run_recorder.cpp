@@ -2,13 +2,12 @@
 
 #include <iostream>
 
-#include "commands/shared/exit_code.h"
 #include "commands/shared/output_names.h"
-#include "platform/interruption.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
+#include "platform/process.h"
 #include "scene/scene_file.h"
-#include "text/counted.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -74,7 +73,8 @@ void RunRecorder::finish() {
     tell(printable(trace_->name().string(), 1000) + " and " +
          printable(xdmf_of(trace_->name()).string(), 1000));
   if (pictures_)
-    tell(counted(pictures_->pictures(), "picture") + " into " + printable(pictures_->name().string(), 1000));
+    tell(pluralize(pictures_->pictures(), "picture") + " into " +
+         printable(pictures_->name().string(), 1000));
 }
 
 std::string RunRecorder::kept() {

@@ -16,7 +16,6 @@
 #include "bench/expected_time.h"
 #include "commands/run/dressing_run.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
 #include "commands/shared/opencl_notes.h"
 #include "commands/shared/prepared_scene.h"
 #include "commands/shared/progress_line.h"
@@ -26,10 +25,10 @@
 #include "garment/stepping/serial_dressing.h"
 #include "output/tables/table_text.h"
 #include "output/traces/trace_name.h"
-#include "platform/atomic_file.h"
-#include "platform/stopwatch.h"
-#include "platform/terminal.h"
+#include "platform/files.h"
+#include "platform/machine.h"
 #include "scene/scene_file.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -13,13 +13,10 @@
 #include "backends/devices/offer.h"
 #include "backends/process/process_backend.h"
 #include "commands/shared/choices.h"
-#include "commands/shared/exit_code.h"
-#include "platform/data_folder.h"
-#include "platform/missing_program.h"
+#include "platform/files.h"
 #include "scene/scene_file.h"
-#include "text/nearest_name.h"
-#include "text/number_in.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -10,12 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "commands/shared/exit_code.h"
 #include "commands/shared/scene_list.h"
 #include "integrators/all_integrators.h"
-#include "platform/container_limits.h"
-#include "text/counted.h"
-#include "text/nearest_name.h"
+#include "platform/machine.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -111,7 +110,7 @@ void require_few_threads(int threads) {
   const int processors = omp_get_num_procs();
   if (threads > most_a_processor * processors)
     throw UsageError("--threads " + std::to_string(threads) + " is too many for the " +
-                     counted(static_cast<std::uint64_t>(processors), "processor") +
+                     pluralize(static_cast<std::uint64_t>(processors), "processor") +
                      " that this process may use; ask for at most " +
                      std::to_string(most_a_processor * processors) + ", " + std::to_string(most_a_processor) +
                      " for each");

@@ -5,10 +5,8 @@
 #include <cstdint>
 #include <numeric>
 
-#include "commands/shared/exit_code.h"
-#include "text/decimal.h"
-#include "text/number_in.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <system_error>
 
-#include "commands/shared/exit_code.h"
-#include "platform/atomic_file.h"
-#include "text/printable.h"
-#include "text/small_letters.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -44,8 +43,7 @@ void require_other(const NamedFile& a, const NamedFile& b) {
 void require_extension(const NamedFile& file, const std::string& content,
                        const std::vector<std::string_view>& extensions) {
   const std::string extension = file.path.extension().string();
-  if (extension.empty() || std::ranges::find(extensions, small_letters(extension)) != extensions.end())
-    return;
+  if (extension.empty() || std::ranges::find(extensions, to_lower(extension)) != extensions.end()) return;
   throw UsageError(file.role + " is " + printable(file.path.string(), 1000) + ", but what is written is " +
                    content + ": give " + printable(file.path.stem().string(), 1000) +
                    std::string(extensions.front()));

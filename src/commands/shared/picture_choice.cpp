@@ -1,8 +1,7 @@
 #include "commands/shared/picture_choice.h"
 
-#include "commands/shared/exit_code.h"
-#include "text/number_in.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 

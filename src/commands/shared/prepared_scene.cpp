@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "scene/scene_kinds.h"
-#include "text/note.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -34,7 +34,7 @@ PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
   scene.body = std::move(built.body);
   scene.counts = counts_of(scene.spec, scene.system);
   scene.note = difference(scene.spec, scene.counts, parts.stated);
-  add_to_note(scene.note, built.note);
+  append_sentence(scene.note, built.note);
   scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
   return scene;
 }

@@ -9,9 +9,8 @@
 #include <numeric>
 #include <utility>
 
-#include "platform/terminal.h"
-#include "text/columns.h"
-#include "text/printable.h"
+#include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -6,8 +6,7 @@
 #include "backends/devices/offer.h"
 #include "mesh/tetgen_program.h"
 #include "output/folders/provenance_file.h"
-#include "text/fnv1a.h"
-#include "text/shell_word.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -31,7 +30,7 @@ Provenance run_provenance(int threads, bool uses_device) {
     std::ranges::copy(offer.troubles, std::back_inserter(provenance.opencl_devices));
   }
   if (const auto tetgen = find_tetgen())
-    provenance.tetgen = tetgen->version + ", fnv1a_64 " + hexadecimal(tetgen->fnv1a_64);
+    provenance.tetgen = tetgen->version + ", fnv1a_64 " + to_hex(tetgen->fnv1a_64);
   return provenance;
 }
 

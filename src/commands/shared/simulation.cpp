@@ -6,7 +6,7 @@
 
 #include "bench/verification/blow_up.h"
 #include "bench/verification/energy_ledger.h"
-#include "commands/shared/exit_code.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "platform/interruption.h"
-#include "platform/temporary_folder.h"
+#include "platform/files.h"
+#include "platform/process.h"
 
 namespace mssim {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "platform/ending_signals.h"
+#include "platform/process.h"
 
 namespace mssim {
 
-/// While it lives, a first ending signal (platform/ending_signals.h) is remembered, and told on stderr, so
+/// While it lives, a first ending signal (platform/process.h) is remembered, and told on stderr, so
 /// that what is under way can be finished and written; a second one ends the program at once. Signals that
 /// are ignored (nohup) stay so. One at a time.
 class StopRequest {

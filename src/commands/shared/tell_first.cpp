@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <iostream>
 
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 

@@ -10,7 +10,7 @@
 #include "bench/verification/blow_up.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "integrators/all_integrators.h"
-#include "text/joined.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -73,7 +73,7 @@ bool dress_combination(Combination& combination, const SceneJob& job, const std:
                                  std::isfinite(check.value) ? std::optional(check.value) : std::nullopt,
                                  check.within});
   const std::vector<std::string> found = misfits(result, fit, job.garment->bounds);
-  if (!found.empty()) fail(combination, "failed: dressed, " + joined(found, "; "));
+  if (!found.empty()) fail(combination, "failed: dressed, " + join(found, "; "));
   return true;
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/geometry.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

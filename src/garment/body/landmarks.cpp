@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "garment/body/ellipse_tube.h"
 #include "geometry/geometry.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -9,7 +9,7 @@
 #include "garment/body/length_unit.h"
 #include "geometry/box.h"
 #include "geometry/geometry.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

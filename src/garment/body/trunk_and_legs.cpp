@@ -15,7 +15,7 @@
 #include "garment/body/section_loops.h"
 #include "garment/body/section_necks.h"
 #include "geometry/openings.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -11,7 +11,7 @@
 #include "garment/contact/side_map.h"
 #include "geometry/closed_parts.h"
 #include "geometry/vertex_normals.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "geometry/closed_parts.h"
-#include "platform/openmp_runtime.h"
+#include "platform/machine.h"
 
 namespace mssim {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "geometry/nearest_point.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

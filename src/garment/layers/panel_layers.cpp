@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

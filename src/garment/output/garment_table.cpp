@@ -7,7 +7,7 @@
 
 #include "garment/output/dressed_rows.h"
 #include "output/tables/ratio_mark.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -4,14 +4,14 @@
 #include <string>
 
 #include "geometry/geometry.h"
-#include "text/counted.h"
-#include "text/input_error.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 
 Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
   if (points_.size() < 2)
-    throw InputError("a boundary curve has " + counted(points_.size(), "point") +
+    throw InputError("a boundary curve has " + pluralize(points_.size(), "point") +
                      "; give two or more points");
   arcs_.reserve(points_.size());
   const auto point = [this](std::size_t i) {
@@ -29,7 +29,7 @@ Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
 
 Curve Curve::bezier(std::span<const Vec3d> points) {
   if (points.size() < 4 || points.size() % 3 != 1)
-    throw InputError("a chain of cubic Bezier segments has " + counted(points.size(), "point") +
+    throw InputError("a chain of cubic Bezier segments has " + pluralize(points.size(), "point") +
                      "; give 4, 7, 10 or another 3 n + 1 points");
   std::vector<Vec3d> polyline{points.front()};
   polyline.reserve(points.size() / 3 * chords + 1);

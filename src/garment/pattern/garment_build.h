@@ -11,7 +11,7 @@
 #include "garment/pattern/placement.h"
 #include "garment/pattern/seams.h"
 #include "model/spring.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 

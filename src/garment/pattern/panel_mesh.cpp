@@ -2,7 +2,7 @@
 
 #include "garment/pattern/boundary_check.h"
 #include "geometry/geometry.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

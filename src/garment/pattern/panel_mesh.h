@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "garment/pattern/curve.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 

@@ -5,7 +5,7 @@
 
 #include "geometry/geometry.h"
 #include "model/grid_patch.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

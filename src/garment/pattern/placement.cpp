@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geometry/geometry.h"
-#include "text/input_error.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "geometry/geometry.h"
-#include "text/input_error.h"
-#include "text/joined.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -29,7 +29,7 @@ std::size_t panel_named(const std::string& where, const std::string& name,
     if (panels[i].name == name) return i;
     names.push_back(panels[i].name);
   }
-  throw InputError(where + "there is no panel " + name + "; use one of " + joined(names, ", "));
+  throw InputError(where + "there is no panel " + name + "; use one of " + join(names, ", "));
 }
 
 std::size_t nearest(const std::vector<double>& arcs, double arc) {

@@ -13,8 +13,8 @@
 #include "mesh/surface_file.h"
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"
-#include "text/input_error.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

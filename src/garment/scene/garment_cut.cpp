@@ -14,8 +14,8 @@
 #include "garment/scene/garment_body.h"
 #include "geometry/geometry.h"
 #include "scene/fields/scene_error.h"
-#include "text/input_error.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

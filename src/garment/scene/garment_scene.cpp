@@ -17,8 +17,7 @@
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"
 #include "scene/spec/memory.h"
-#include "text/note.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -158,7 +157,7 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
   system.topology = std::move(dressed);
   std::string note = body->note;
-  add_to_note(note, ignored_parts(met));
+  append_sentence(note, ignored_parts(met));
   return {std::move(system), std::move(note), std::move(body)};
 }
 

@@ -2,8 +2,8 @@
 
 #include "scene/fields/material_fields.h"
 #include "scene/fields/scene_error.h"
-#include "text/input_error.h"
-#include "text/printable.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

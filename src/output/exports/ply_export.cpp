@@ -3,8 +3,7 @@
 #include <array>
 #include <bit>
 
-#include "text/decimal.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

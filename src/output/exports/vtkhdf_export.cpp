@@ -8,8 +8,7 @@
 
 #include "hdf5/hdf5_space.h"
 #include "hdf5/hdf5_write.h"
-#include "platform/file_space.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
 
 namespace mssim {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "hdf5/hdf5_handle.h"
 #include "output/exports/export_mesh.h"
-#include "platform/atomic_file.h"
+#include "platform/files.h"
 
 namespace mssim {
 

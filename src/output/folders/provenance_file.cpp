@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/whole_file.h"
-#include "text/fnv1a.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -73,9 +72,9 @@ class Place {
             "a whole number from 0 to " + std::to_string(std::numeric_limits<Number>::max()));
     return value_.get<Number>();
   }
-  /// 16 hexadecimal digits, as hexadecimal() writes them.
+  /// 16 hexadecimal digits, as to_hex() writes them.
   std::uint64_t hash() const {
-    const auto number = from_hexadecimal(value_.is_string() ? value_.get<std::string>() : std::string());
+    const auto number = from_hex(value_.is_string() ? value_.get<std::string>() : std::string());
     require(number.has_value(), "16 hexadecimal digits");
     return *number;
   }
@@ -164,7 +163,7 @@ json programs_json(const std::vector<BackendProgramRecord>& programs) {
   json all = json::object();
   for (const BackendProgramRecord& program : programs) {
     json files = json::object();
-    for (const FileHash& file : program.files) files[file.name] = hexadecimal(file.fnv1a_64);
+    for (const FileHash& file : program.files) files[file.name] = to_hex(file.fnv1a_64);
     json& record = all[program.name] = {{"command", program.command}, {"files_fnv1a_64", files}};
     if (program.ranks > 0)
       record["processes"] = {
@@ -207,43 +206,43 @@ json to_json(const Provenance& provenance) {
   const Machine& machine = provenance.machine;
   json environment = json::object(), scenes = json::object();
   for (const auto& [name, value] : provenance.thread_environment) environment[name] = value;
-  for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = hexadecimal(scene.fnv1a_64);
-  return {{"started_utc", provenance.started_utc},
-          {"earlier_starts_utc", provenance.earlier_starts_utc},
-          {"command_line", provenance.command_line},
-          {"build",
-           {{"version", build.version},
-            {"commit", build.commit},
-            {"dirty", build.dirty},
-            {"compiler", build.compiler},
-            {"flags", build.flags},
-            {"build_type", build.build_type}}},
-          {"program_fnv1a_64",
-           provenance.program_fnv1a_64 ? json(hexadecimal(*provenance.program_fnv1a_64)) : json()},
-          {"cpu",
-           {{"model", machine.cpu_model},
-            {"generation", machine.cpu_generation.empty() ? json() : json(machine.cpu_generation)},
-            {"logical_cpus", machine.logical_cpus},
-            {"mhz", machine.cpu_mhz},
-            {"governor", machine.governor ? json(*machine.governor) : json()},
-            {"turbo", machine.turbo ? json(*machine.turbo) : json()},
-            {"cpu_quota", machine.cpu_quota ? json(*machine.cpu_quota) : json()},
-            {"caches", caches_json(machine.caches)}}},
-          {"memory_bytes", machine.memory_bytes},
-          {"memory_limit_bytes", machine.memory_limit_bytes ? json(*machine.memory_limit_bytes) : json()},
-          {"load_average", machine.load_average},
-          {"operating_system", machine.operating_system},
-          {"kernel", machine.kernel},
-          {"threads",
-           {{"asked_for", provenance.threads},
-            {"allowed_cpus", provenance.allowed_cpus},
-            {"environment", environment}}},
-          {"device_memory", provenance.device_memory.empty() ? json() : json(provenance.device_memory)},
-          {"opencl_devices", provenance.opencl_devices},
-          {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
-          {"backend_programs", programs_json(provenance.backend_programs)},
-          {"noise", provenance.noise},
-          {"scenes_fnv1a_64", scenes}};
+  for (const SceneHash& scene : provenance.scenes) scenes[scene.name] = to_hex(scene.fnv1a_64);
+  return {
+      {"started_utc", provenance.started_utc},
+      {"earlier_starts_utc", provenance.earlier_starts_utc},
+      {"command_line", provenance.command_line},
+      {"build",
+       {{"version", build.version},
+        {"commit", build.commit},
+        {"dirty", build.dirty},
+        {"compiler", build.compiler},
+        {"flags", build.flags},
+        {"build_type", build.build_type}}},
+      {"program_fnv1a_64", provenance.program_fnv1a_64 ? json(to_hex(*provenance.program_fnv1a_64)) : json()},
+      {"cpu",
+       {{"model", machine.cpu_model},
+        {"generation", machine.cpu_generation.empty() ? json() : json(machine.cpu_generation)},
+        {"logical_cpus", machine.logical_cpus},
+        {"mhz", machine.cpu_mhz},
+        {"governor", machine.governor ? json(*machine.governor) : json()},
+        {"turbo", machine.turbo ? json(*machine.turbo) : json()},
+        {"cpu_quota", machine.cpu_quota ? json(*machine.cpu_quota) : json()},
+        {"caches", caches_json(machine.caches)}}},
+      {"memory_bytes", machine.memory_bytes},
+      {"memory_limit_bytes", machine.memory_limit_bytes ? json(*machine.memory_limit_bytes) : json()},
+      {"load_average", machine.load_average},
+      {"operating_system", machine.operating_system},
+      {"kernel", machine.kernel},
+      {"threads",
+       {{"asked_for", provenance.threads},
+        {"allowed_cpus", provenance.allowed_cpus},
+        {"environment", environment}}},
+      {"device_memory", provenance.device_memory.empty() ? json() : json(provenance.device_memory)},
+      {"opencl_devices", provenance.opencl_devices},
+      {"tetgen", provenance.tetgen.empty() ? json() : json(provenance.tetgen)},
+      {"backend_programs", programs_json(provenance.backend_programs)},
+      {"noise", provenance.noise},
+      {"scenes_fnv1a_64", scenes}};
 }
 
 }  // namespace

@@ -6,14 +6,15 @@
 #include <string_view>
 
 #include "bench/machine/provenance.h"
+#include "text/error.h"
 
 namespace mssim {
 
 /// Thrown for a provenance.json that cannot be read or understood; what() is one sentence that names the
 /// file, the place in it (a JSON pointer such as /cpu/model), the value and the remedy. Commands end with
 /// exit code 2.
-struct ProvenanceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct ProvenanceError : ErrorWith<exit_bad_input> {
+  using ErrorWith::ErrorWith;
 };
 
 /// Larger files are refused: a provenance has a few thousand bytes, and a wrong file should fill neither the

@@ -19,9 +19,8 @@
 #include "output/tables/table_csv.h"
 #include "output/tables/table_json.h"
 #include "output/tables/timings_csv.h"
-#include "platform/atomic_file.h"
-#include "platform/write_error.h"
-#include "text/fnv1a.h"
+#include "platform/files.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -65,7 +64,7 @@ std::vector<std::string> file_stems(std::span<const ResultRow> rows) {
   for (const ResultRow& row : rows) {
     std::string stem = row.scene + '-' + row.backend + '-' + row.integrator;
     if (stem.size() > longest || stem.find('/') != std::string::npos || taken.contains(stem)) {
-      const std::string hash = hexadecimal(fnv1a_64(row.scene + '/' + row.backend + '/' + row.integrator));
+      const std::string hash = to_hex(fnv1a_64(row.scene + '/' + row.backend + '/' + row.integrator));
       std::ranges::replace(stem, '/', '_');
       stem = beginning_of(std::move(stem), longest - 1 - hash.size()) + '-' + hash;
     }

@@ -9,7 +9,7 @@
 #include "bench/results/result.h"
 #include "output/tables/result_table.h"
 #include "output/tables/structure_table.h"
-#include "platform/folder_lock.h"
+#include "platform/files.h"
 
 namespace mssim {
 

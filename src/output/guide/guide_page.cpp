@@ -8,8 +8,7 @@
 
 #include "guide/equal_error.h"
 #include "output/guide/guide_table.h"
-#include "text/counted.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -167,7 +166,7 @@ void add_costs(Document& page, const SceneGuide& guide) {
 
 void add_scene(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
   page.emplace_back(Heading{
-      2, guide.scene + ": " + counted(guide.nodes, "node") + ", " + counted(guide.springs, "spring")});
+      2, guide.scene + ": " + pluralize(guide.nodes, "node") + ", " + pluralize(guide.springs, "spring")});
   if (!guide.trusted.failure.empty()) {
     add_sentence(page, "No errors were measured: " + guide.trusted.failure);
   } else {

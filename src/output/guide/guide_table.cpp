@@ -7,7 +7,7 @@
 
 #include "guide/equal_error.h"
 #include "output/guide/guide_page.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

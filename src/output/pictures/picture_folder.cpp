@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "picture/png.h"
-#include "platform/atomic_file.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
 
 namespace mssim {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "output/pictures/painter.h"
-#include "platform/folder_lock.h"
+#include "platform/files.h"
 
 namespace mssim {
 

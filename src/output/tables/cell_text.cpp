@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

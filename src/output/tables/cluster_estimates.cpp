@@ -8,8 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "text/counted.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -169,7 +168,7 @@ ResultTable cluster_estimates(const ClusterRows& rows, const ClusterRows::Machin
   Document page{
       Heading{1, "Estimated: many machines, larger cloths"},
       Paragraph{"Nothing on this page was measured but the speed of one machine: " + made_by(provenance) +
-                ". Its " + counted(static_cast<std::uint64_t>(measured.row->threads), "processor") +
+                ". Its " + pluralize(static_cast<std::uint64_t>(measured.row->threads), "processor") +
                 " together took " + three_digits(1e9 * measured.node_stage_s * stages) +
                 " ns a node and step of `" + measured.row->integrator + "` (`" + measured.row->backend +
                 "`, `" + measured.row->scene + "`). A machine of this page has " +

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "text/number_in.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -51,7 +51,7 @@ ClusterRows::ClusterRows(RowPointers rows, const Provenance& provenance, StageCo
                      ranks_of(row->backend, provenance)});
 }
 
-const ResultRow* ClusterRows::counted(const ClusterRow& like, std::string_view program, int ranks) const {
+const ResultRow* ClusterRows::pluralize(const ClusterRow& like, std::string_view program, int ranks) const {
   const auto found = std::ranges::find_if(rows_, [&](const ClusterRow& other) {
     return other.row->scene == like.scene.base && other.row->integrator == like.row->integrator &&
            other.program == program && other.ranks == ranks;
@@ -60,14 +60,14 @@ const ResultRow* ClusterRows::counted(const ClusterRow& like, std::string_view p
 }
 
 std::optional<double> ClusterRows::efficiency(const ClusterRow& row) const {
-  const ResultRow* one = counted(row, row.program, 1);
+  const ResultRow* one = pluralize(row, row.program, 1);
   if (!one || row.ranks == 0 || row.program == copies_backend || !counts(*row.row) || !row.row->ms_per_step)
     return std::nullopt;
   return rate(*row.row) / (row.ranks * rate(*one));
 }
 
 std::optional<double> ClusterRows::efficiency_of_copies(const ClusterRow& row) const {
-  const ResultRow* copies = counted(row, copies_backend, row.ranks);
+  const ResultRow* copies = pluralize(row, copies_backend, row.ranks);
   if (!copies || row.program == copies_backend || !counts(*row.row) || !row.row->ms_per_step)
     return std::nullopt;
   return rate(*row.row) / (row.ranks * rate(*copies));
@@ -75,7 +75,7 @@ std::optional<double> ClusterRows::efficiency_of_copies(const ClusterRow& row) c
 
 std::optional<double> ClusterRows::modelled_ms(const ClusterRow& row) const {
   const ResultRow& measured = *row.row;
-  const ResultRow* copies = counted(row, copies_backend, row.ranks);
+  const ResultRow* copies = pluralize(row, copies_backend, row.ranks);
   const std::optional<int> steps = steps_an_exchange(measured);
   if (!copies || row.program == copies_backend || row.ranks < 2 || !steps || !measured.latency_us ||
       !measured.link_gigabytes_per_second || measured.bytes_per_step.value_or(0) <= 0)

@@ -62,7 +62,7 @@ class ClusterRows {
   int stages_of(const ResultRow& row) const { return stages_.at(row.integrator); }
 
  private:
-  const ResultRow* counted(const ClusterRow& like, std::string_view program, int ranks) const;
+  const ResultRow* pluralize(const ClusterRow& like, std::string_view program, int ranks) const;
 
   std::vector<ClusterRow> rows_;
   StageCounts stages_;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "output/tables/cluster_estimates.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

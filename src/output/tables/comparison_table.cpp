@@ -6,7 +6,7 @@
 #include "output/tables/ratio_mark.h"
 #include "output/tables/table_json.h"
 #include "output/tables/table_text.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -4,11 +4,8 @@
 #include <system_error>
 #include <utility>
 
-#include "platform/whole_file.h"
-#include "text/byte_order_mark.h"
-#include "text/decimal.h"
-#include "text/number_in.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

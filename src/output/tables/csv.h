@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "text/error.h"
+
 namespace mssim {
 
 /// Comma-separated values as RFC 4180 has them, with line feeds alone as line ends.
@@ -18,8 +20,8 @@ inline constexpr std::size_t largest_csv_bytes = std::size_t{64} << 20;
 
 /// Thrown when a CSV file cannot be read; what() is one sentence that names file, line and column, the value
 /// and what to do.
-struct CsvError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct CsvError : ErrorWith<exit_bad_input> {
+  using ErrorWith::ErrorWith;
 };
 
 /// One line, each field quoted where it has to be, with its line feed.

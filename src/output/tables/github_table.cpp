@@ -3,7 +3,7 @@
 #include <string>
 
 #include "output/tables/csv.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -15,7 +15,7 @@ Table github_table(std::span<const ResultRow> rows) {
                {"unit", "ms/step"},
                {"value", *row.ms_per_step},
                {"range", csv_number(row.ms_per_step_low) + " to " + csv_number(row.ms_per_step_high)},
-               {"extra", row.device + ", " + counted(static_cast<std::uint64_t>(row.threads), "thread")}});
+               {"extra", row.device + ", " + pluralize(static_cast<std::uint64_t>(row.threads), "thread")}});
   }
   return table;
 }

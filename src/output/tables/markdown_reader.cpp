@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "text/byte_order_mark.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

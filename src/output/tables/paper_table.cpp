@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "output/tables/ratio_mark.h"
-#include "text/counted.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -125,7 +124,7 @@ class Page {
     for (const auto& integrator : legend_.integrators) {
       if (!measured_.has(integrator.name)) continue;
       const std::string evaluations =
-          counted(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation");
+          pluralize(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation");
       page.insert(page.end(), {Heading{2, integrator.name + ": " + evaluations +
                                               " a step, beside the published " + integrator.paper_name},
                                times(integrator)});

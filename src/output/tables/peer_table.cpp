@@ -8,7 +8,7 @@
 
 #include "output/tables/ratio_mark.h"
 #include "statistics/statistics.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "platform/data_folder.h"
+#include "platform/files.h"
 
 namespace mssim {
 

@@ -1,6 +1,6 @@
 #include "output/tables/published_bodies.h"
 
-#include "platform/data_folder.h"
+#include "platform/files.h"
 
 namespace mssim {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "output/tables/ratio_mark.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

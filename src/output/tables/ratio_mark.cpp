@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

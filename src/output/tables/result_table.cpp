@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "output/tables/ratio_mark.h"
-#include "text/counted.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -44,7 +43,7 @@ Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
     devices.insert(opencl_device(*row));
   }
   const auto number = [](int of, std::string_view noun) {
-    return counted(static_cast<std::uint64_t>(of), noun);
+    return pluralize(static_cast<std::uint64_t>(of), noun);
   };
   std::string text = "Measured on " + cpu_name(provenance.machine) + " (" +
                      number(provenance.machine.logical_cpus, "logical CPU") + ") with " +

@@ -7,10 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "text/columns.h"
-#include "text/decimal.h"
-#include "text/joined.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -195,7 +192,7 @@ std::string reasons_of(RowPointers rows, std::size_t width) {
   }
   std::string text;
   for (const auto& [reason, backends] : known)
-    text += "  " + wrapped(joined(backends, ", ") + ": " + escaped(reason), width - 2, "    ") + '\n';
+    text += "  " + wrapped(join(backends, ", ") + ": " + escaped(reason), width - 2, "    ") + '\n';
   return text;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "output/tables/result_table.h"
-#include "platform/terminal.h"
+#include "platform/machine.h"
 
 namespace mssim {
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <variant>
 
-#include "text/columns.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

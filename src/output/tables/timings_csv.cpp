@@ -9,7 +9,7 @@
 
 #include "output/tables/table_csv.h"
 #include "statistics/statistics.h"
-#include "text/fnv1a.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -52,10 +52,10 @@ TimingsColumn field(std::string_view name, Value ResultRow::*value) {
 }
 
 TimingsColumn hash(std::string_view name, std::optional<std::uint64_t> ResultRow::*value) {
-  return {name, [=](const ResultRow& row) { return row.*value ? Cell(hexadecimal(*(row.*value))) : Cell(); },
+  return {name, [=](const ResultRow& row) { return row.*value ? Cell(to_hex(*(row.*value))) : Cell(); },
           [=](ResultRow& row, const CsvTable& table, std::size_t r, std::size_t c) {
             if (table.text(r, c).empty()) return;
-            row.*value = from_hexadecimal(table.text(r, c));
+            row.*value = from_hex(table.text(r, c));
             if (!(row.*value)) throw table.complaint(r, c, "is not a hash of 16 hexadecimal digits");
           }};
 }

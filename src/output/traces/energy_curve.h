@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "model/energy.h"
-#include "platform/atomic_file.h"
+#include "platform/files.h"
 
 namespace mssim {
 

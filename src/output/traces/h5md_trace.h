@@ -13,7 +13,7 @@
 #include "model/system.h"
 #include "output/traces/h5md_head.h"
 #include "output/traces/xdmf.h"
-#include "platform/atomic_file.h"
+#include "platform/files.h"
 
 namespace mssim {
 

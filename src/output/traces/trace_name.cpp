@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 

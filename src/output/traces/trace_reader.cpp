@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "hdf5/hdf5_read.h"
-#include "platform/trial_process.h"
-#include "platform/whole_file.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "platform/process.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

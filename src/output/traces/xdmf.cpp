@@ -5,9 +5,8 @@
 #include <numeric>
 
 #include "hdf5/hdf5_write.h"
-#include "platform/atomic_file.h"
-#include "text/decimal.h"
-#include "text/printable.h"
+#include "platform/files.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scene/fields/scene_error.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -8,9 +8,7 @@
 
 #include "scene/fields/json_document.h"
 #include "scene/fields/scene_error.h"
-#include "text/counted.h"
-#include "text/nearest_name.h"
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -239,7 +237,7 @@ class JsonReader final : public FieldVisitor {
                       const std::string& wanted) const {
     if (!value.is_array()) fail(pointer, "is " + described(value) + ": give " + wanted);
     if (value.size() < least || value.size() > most)
-      fail(pointer, "has " + counted(value.size(), "element") + ": give " + wanted);
+      fail(pointer, "has " + pluralize(value.size(), "element") + ": give " + wanted);
   }
 
   double component(std::string_view list, const json& value, std::size_t i, const Range& each) const {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "text/printable.h"
+#include "text/text.h"
 
 namespace mssim {
 

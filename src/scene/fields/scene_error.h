@@ -5,13 +5,15 @@
 #include <string>
 #include <string_view>
 
+#include "text/error.h"
+
 namespace mssim {
 
 /// Bad input: a scene that cannot be found, read, understood or built. what() is one sentence that names the
 /// file, the place in it (a JSON pointer such as /cloth/rows), the value and the remedy. Commands print it
 /// and exit with 2.
-struct SceneError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct SceneError : ErrorWith<exit_bad_input> {
+  using ErrorWith::ErrorWith;
 };
 
 /// Throws SceneError: "FILE: POINTER PROBLEM".

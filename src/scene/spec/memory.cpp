@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "platform/available_memory.h"
+#include "platform/machine.h"
 #include "scene/fields/scene_error.h"
 
 namespace mssim {

@@ -15,7 +15,7 @@
 #include "backends/backends.h"
 #include "backends/devices/offer.h"
 #include "integrators/integrators.h"
-#include "platform/process_cpus.h"
+#include "platform/machine.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/garment_system.h"
 

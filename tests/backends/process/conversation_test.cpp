@@ -14,8 +14,7 @@
 #include <string_view>
 #include <thread>
 
-#include "platform/ending_signals.h"
-#include "platform/interruption.h"
+#include "platform/process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

@@ -16,7 +16,7 @@
 
 #include "backends/reference.h"
 #include "integrators/all_integrators.h"
-#include "platform/data_folder.h"
+#include "platform/files.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"

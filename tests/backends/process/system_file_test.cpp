@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hdf5/hdf5_read.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 #include "tests/support/temporary_folder.h"

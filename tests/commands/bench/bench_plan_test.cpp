@@ -5,11 +5,11 @@
 
 #include "commands/bench/bench_results.h"
 #include "commands/bench/measured_scenes.h"
-#include "commands/shared/exit_code.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/temporary_folder.h"
-#include "text/fnv1a.h"
+#include "text/error.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "commands/shared/exit_code.h"
 #include "integrators/all_integrators.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <thread>
 
-#include "commands/shared/exit_code.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

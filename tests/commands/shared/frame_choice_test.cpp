@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "commands/shared/exit_code.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "commands/shared/exit_code.h"
 #include "tests/support/temporary_folder.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

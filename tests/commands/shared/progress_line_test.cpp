@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "text/columns.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

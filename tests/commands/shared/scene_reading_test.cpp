@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "commands/shared/command.h"
-#include "commands/shared/exit_code.h"
 #include "garment/scene/garment_body.h"
 #include "mesh/tetgen_files.h"
 #include "scene/scene_file.h"
@@ -14,6 +13,7 @@
 #include "tests/support/open_count.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/temporary_folder.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {

@@ -12,7 +12,7 @@
 #include "mesh/sphere_shape.h"
 #include "mesh/surface_file.h"
 #include "tests/support/mesh_fixture.h"
-#include "text/decimal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

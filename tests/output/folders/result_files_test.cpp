@@ -21,7 +21,7 @@
 #include "output/tables/published.h"
 #include "output/tables/table_csv.h"
 #include "output/tables/timings_csv.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/temporary_folder.h"
 

@@ -15,7 +15,7 @@
 
 #include "output/pictures/painter.h"
 #include "picture/png.h"
-#include "platform/atomic_file.h"
+#include "platform/files.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/png_fixture.h"
 #include "tests/support/solid_system.h"

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "platform/write_error.h"
+#include "platform/files.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/png_fixture.h"
 #include "tests/support/temporary_folder.h"

@@ -11,7 +11,7 @@
 #include "output/tables/markdown.h"
 #include "output/tables/published.h"
 #include "output/tables/table_csv.h"
-#include "platform/data_folder.h"
+#include "platform/files.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "tests/support/result_fixture.h"
-#include "text/columns.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "output/traces/xdmf.h"
-#include "platform/write_error.h"
+#include "platform/files.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"
 

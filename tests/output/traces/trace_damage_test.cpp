@@ -26,7 +26,7 @@ std::string problem_of(const std::filesystem::path& trace) {
     }
     reader.observable("total_energy");
   } catch (const TraceError& error) {
-    EXPECT_FALSE(error.refused) << error.what();
+    EXPECT_EQ(error.exit_code, exit_bad_input) << error.what();
     return error.what();
   }
   return "";

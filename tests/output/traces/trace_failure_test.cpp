@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "platform/write_error.h"
+#include "platform/files.h"
 #include "tests/support/trace_fixture.h"
 
 namespace mssim {

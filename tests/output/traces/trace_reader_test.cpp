@@ -71,7 +71,7 @@ class TraceReading : public Trace {
     try {
       const TraceReader reader(trace);
     } catch (const TraceError& error) {
-      EXPECT_EQ(error.refused, by_system) << error.what();
+      EXPECT_EQ(error.exit_code == exit_file_error, by_system) << error.what();
       return error.what();
     }
     return "read";

@@ -8,7 +8,7 @@
 
 #include "backends/implicit/newton/solver_goal.h"
 #include "integrators/integrator.h"
-#include "text/counted.h"
+#include "text/text.h"
 
 namespace mssim {
 
@@ -172,7 +172,7 @@ void take_step(Equation& equation, const Integrator& integrator, const SolverGoa
 inline std::string note_of(const SolverWork& work) {
   if (work.unfinished_steps == 0) return {};
   return "the solver ended before its tolerance in " + std::to_string(work.unfinished_steps) + " of " +
-         counted(work.steps, "step");
+         pluralize(work.steps, "step");
 }
 
 }  // namespace mssim

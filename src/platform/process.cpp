@@ -1,4 +1,4 @@
-#include "platform/child_process.h"
+#include "platform/process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -19,12 +19,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "platform/find_program.h"
-#include "platform/interruption.h"
-#include "platform/process_cpus.h"
-#include "text/small_letters.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
+
 namespace {
 
 [[noreturn]] void fail(const ChildProcess& child, const std::string& why) {
@@ -249,7 +249,7 @@ std::string failed_end(const ChildResult& result, const std::string& doing) {
   for (std::string line; std::getline(lines, line);) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     cause = ": " + line;
-    if (small_letters(line).find("error") != std::string::npos) break;
+    if (to_lower(line).find("error") != std::string::npos) break;
   }
   return "ended with " +
          (result.signal != 0 ? "signal " + std::to_string(result.signal)
@@ -273,6 +273,121 @@ std::vector<ChildResult> run_together(std::span<const ChildProcess> children) {
   std::vector<ChildResult> results;
   for (const Running& one : all) results.push_back(one.result());
   return results;
+}
+
+namespace {
+
+/// Ends quietly whatever happens: without messages, a core file or the handlers of a sanitizer.
+[[noreturn]] void try_out(const std::function<void()>& work, unsigned most_seconds) {
+  const rlimit no_core{0, 0}, seconds{most_seconds, most_seconds};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  ::setrlimit(RLIMIT_CPU, &seconds);
+  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(crash, SIG_DFL);
+  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+  }
+  try {
+    work();
+  } catch (...) {  // NOLINT(bugprone-empty-catch): it will be thrown again where somebody hears it
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+bool ends_in_trial(const std::function<void()>& work, unsigned most_seconds) {
+  const pid_t trial = ::fork();
+  if (trial < 0) return true;
+  if (trial == 0) try_out(work, most_seconds);
+  int status = 0;
+  while (::waitpid(trial, &status, 0) < 0)
+    if (errno != EINTR) return true;
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+namespace {
+
+// What a signal handler may touch has to be global.
+volatile std::sig_atomic_t noted = 0;
+
+}  // namespace
+
+void note_ending_signal(int signal) { noted = signal; }
+
+int noted_ending_signal() { return noted; }
+
+int take_ending_signal() {
+  const int signal = noted;
+  noted = 0;
+  return signal;
+}
+
+EndingSignals::EndingSignals(void (*handler)(int signal), int flags) {
+  for (std::size_t i = 0; i < ending_signals.size(); ++i) {
+    ::sigaction(ending_signals[i], nullptr, &before_[i]);
+    if (before_[i].sa_handler == SIG_IGN) continue;
+    struct sigaction action {};
+    action.sa_handler = handler;
+    action.sa_flags = flags;
+    ::sigaction(ending_signals[i], &action, nullptr);
+  }
+}
+
+void EndingSignals::restore() const {
+  for (std::size_t i = 0; i < ending_signals.size(); ++i)
+    ::sigaction(ending_signals[i], &before_[i], nullptr);
+}
+
+namespace {
+
+// What a signal handler may touch has to be global.
+volatile std::sig_atomic_t watched_group = 0;
+volatile std::sig_atomic_t received_signal = 0;
+
+void end_group(int signal) {
+  received_signal = signal;
+  if (watched_group > 0) ::kill(-watched_group, SIGKILL);
+}
+
+}  // namespace
+
+void throw_if_ending_signal_noted() {
+  if (const int signal = take_ending_signal(); signal != 0) throw Interrupted{signal};
+}
+
+InterruptionGuard::InterruptionGuard() {
+  sigset_t held;
+  ::sigemptyset(&held);
+  for (const int signal : ending_signals) ::sigaddset(&held, signal);
+  ::pthread_sigmask(SIG_BLOCK, &held, &before_);
+  watched_group = 0;
+  received_signal = 0;
+  signals_.emplace(end_group, SA_RESTART);
+}
+
+InterruptionGuard::~InterruptionGuard() {
+  watched_group = 0;
+  signals_.reset();
+  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  if (received_signal != 0) std::raise(received_signal);  // came after it was asked for
+}
+
+void InterruptionGuard::release_child() const {
+  signals_->restore();
+  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+void InterruptionGuard::watch(pid_t group) {
+  watched_group = group;
+  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+void InterruptionGuard::throw_if_interrupted() {
+  if (received_signal == 0) return;
+  const int signal = received_signal;
+  received_signal = 0;
+  throw Interrupted{signal};
 }
 
 }  // namespace mssim

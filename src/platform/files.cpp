@@ -1,0 +1,429 @@
+#include "platform/files.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "platform/process.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Cause = ReadError::Cause;
+
+[[noreturn]] void fail(const std::string& what, const std::error_code& error, const std::string& remedy) {
+  throw ReadError(Cause::other, what + " (" + error.message() + "): " + remedy);
+}
+
+std::error_code last_error() { return {errno, std::generic_category()}; }
+
+[[noreturn]] void refuse_size(std::size_t most_bytes) {
+  constexpr std::size_t mebibyte = std::size_t{1} << 20;
+  throw ReadError(Cause::too_large,
+                  "is longer than " + (most_bytes < mebibyte ? std::to_string(most_bytes >> 10) + " KiB"
+                                                             : std::to_string(most_bytes >> 20) + " MiB"));
+}
+
+}  // namespace
+
+std::string ReadError::sentence(const fs::path& file, std::string_view remedy) const {
+  std::string text = printable(file.string(), 1000) + ": " + what();
+  if (cause != Cause::other) text.append(": ").append(remedy);
+  return text;
+}
+
+void require_regular_file(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) throw ReadError(Cause::missing, "there is no such file");
+  if (error) fail("cannot be looked up", error, "check the path and its permissions");
+  if (!fs::is_regular_file(status)) throw ReadError(Cause::not_regular, "is not a regular file");
+}
+
+std::string read_file(const fs::path& file, std::size_t most_bytes) {
+  require_regular_file(file);
+  const Descriptor open(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!open.is_open()) fail("cannot be opened", last_error(), "check its permissions");
+  std::error_code error;
+  if (const std::uintmax_t bytes = fs::file_size(file, error); !error && bytes > most_bytes)
+    refuse_size(most_bytes);
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  // The length is counted while reading, too, because the one that the file system states can be wrong
+  // (/proc).
+  while (true) {
+    const ssize_t bytes = ::read(open.get(), block.data(), block.size());
+    if (bytes < 0 && errno == EINTR) continue;
+    if (bytes < 0) fail("cannot be read", last_error(), "check the file and its disk");
+    if (bytes == 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(bytes));
+    if (text.size() > most_bytes) refuse_size(most_bytes);
+  }
+}
+
+namespace {
+
+const char* remedy(int error_number) {
+  switch (error_number) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space or choose another folder";
+    case EFBIG:
+      return "raise the limit on file sizes (ulimit -f) or write less";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a folder that you may write to";
+    case ENOENT:
+      return "create its folder first or choose another one";
+    case ENOTDIR:
+    case EISDIR:
+    case ENAMETOOLONG:
+      return "choose another file name";
+    default:
+      return "choose another folder";
+  }
+}
+
+}  // namespace
+
+std::string write_failure(const std::filesystem::path& file, const std::string& action, int error_number,
+                          const std::string& reason) {
+  const std::string why = !reason.empty() ? reason : std::generic_category().message(error_number);
+  return "cannot write " + file.string() + ": " + action + " failed: " + why + "; " + remedy(error_number);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, const std::string& action) {
+  throw WriteError(write_failure(file, action, errno));
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why, const char* or_do = "") {
+  throw WriteError("cannot write " + file.string() + ": " + why + "; " + or_do + "choose another file name");
+}
+
+/// What lies below these is not made of files. Shared memory is.
+void require_ordinary_folder(const fs::path& file) {
+  std::error_code ignored;
+  const fs::path folder = fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".", ignored);
+  const auto begins_with = [&](const fs::path& start) {
+    return std::mismatch(start.begin(), start.end(), folder.begin(), folder.end()).first == start.end();
+  };
+  for (const char* system : {"/dev", "/proc", "/sys"})
+    if (begins_with(system) && !begins_with("/dev/shm"))
+      refuse(file, std::string("it lies in ") + system + ", which belongs to the system");
+}
+
+/// Opens the temporary of `file` and locks it, before a byte of it changes. Follows no link, which could lead
+/// to a file of somebody else, and takes no file that has another name or owner, too.
+Descriptor open_locked(const fs::path& file) {
+  constexpr int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+  constexpr mode_t everyone_as_umask_allows = 0666;
+  const fs::path temporary = temporary_of(file);
+  while (true) {
+    Descriptor part(::open(temporary.c_str(), flags | O_CREAT | O_EXCL, everyone_as_umask_allows));
+    const bool is_new = part.is_open();
+    if (!is_new && errno == EEXIST) {
+      part = Descriptor(::open(temporary.c_str(), flags));
+      if (!part.is_open() && errno == ENOENT) continue;
+      if (!part.is_open() && errno == ELOOP)
+        refuse(file, temporary.string() + " is a link", "remove it, or ");
+    }
+    if (!part.is_open()) fail(file, "creating " + temporary.string());
+    if (!part.lock())
+      throw WriteError("another mssim is writing " + file.string() +
+                       "; wait until it has ended, or choose another file name");
+    struct stat opened {};
+    struct stat named {};
+    if (::fstat(part.get(), &opened) != 0) fail(file, "looking at " + temporary.string());
+    // Between opening and locking the writer before may have renamed or removed it.
+    if (::lstat(temporary.c_str(), &named) != 0 || opened.st_dev != named.st_dev ||
+        opened.st_ino != named.st_ino)
+      continue;
+    if (is_new) return part;
+    if (!S_ISREG(opened.st_mode))
+      refuse(file, temporary.string() + " is not a regular file", "remove it, or ");
+    if (opened.st_nlink == 1 && opened.st_uid == ::geteuid()) return part;
+    if (::unlink(temporary.c_str()) != 0) fail(file, "removing " + temporary.string());
+  }
+}
+
+void sync_folder_of(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const Descriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // A folder that may be written but not read cannot be opened, and some file systems cannot sync folders;
+  // the rename is done then, only not yet proof against a power failure.
+  if (!handle.is_open()) return;
+  if (::fsync(handle.get()) != 0 && errno != EINVAL) fail(file, "syncing folder " + folder.string());
+}
+
+}  // namespace
+
+fs::path temporary_of(const fs::path& file) {
+  fs::path temporary = file;
+  temporary += ".part";
+  return temporary;
+}
+
+std::string kept_in_part(const fs::path& file, std::string_view what, std::size_t count) {
+  if (count == 0) return "";
+  return "; " + temporary_of(file).string() + " keeps the " + std::string(what) +
+         " written before: " + std::to_string(count);
+}
+
+fs::path target_of(const fs::path& file) {
+  constexpr int most_links = 40;  // as many as Linux follows
+  fs::path target = file;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(target, error); ++links) {
+    require_ordinary_folder(target);
+    if (links == most_links) refuse(file, "its links lead round in a circle");
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) throw WriteError(write_failure(file, "following the link", error.value()));
+  }
+  require_replaceable(target);
+  return target;
+}
+
+void require_replaceable(const fs::path& file) {
+  struct stat status {};
+  if (::lstat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
+    refuse(file,
+           std::string("it exists and is ") + (S_ISDIR(status.st_mode) ? "a folder" : "not a regular file"));
+  require_ordinary_folder(file);
+}
+
+AtomicFile::AtomicFile(fs::path file) : name_(std::move(file)) {
+  require_replaceable(name_);
+  part_ = open_locked(name_);
+  if (::ftruncate(part_.get(), 0) != 0) fail(name_, "emptying " + temporary_of(name_).string());
+}
+
+void AtomicFile::remove() {
+  if (!is_under_way()) return;
+  std::error_code ignored;
+  fs::remove(temporary_of(name_), ignored);
+  part_ = Descriptor();
+}
+
+void AtomicFile::append(std::string_view text) {
+  const off_t end = ::lseek(part_.get(), 0, SEEK_END);
+  while (!text.empty()) {
+    const ssize_t written = ::write(part_.get(), text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int error = errno;
+      static_cast<void>(::ftruncate(part_.get(), end));
+      throw WriteError(write_failure(name_, "writing " + temporary_of(name_).string(), error));
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::move_into_place() {
+  const fs::path temporary = temporary_of(name_);
+  if (::fsync(part_.get()) != 0) fail(name_, "syncing " + temporary.string());
+  if (::rename(temporary.c_str(), name_.c_str()) != 0)
+    fail(name_, "renaming " + temporary.string() + " to it");
+  const bool closed = part_.close();
+  if (!closed) fail(name_, "closing it");
+  sync_folder_of(name_);
+}
+
+void write_file_atomically(const fs::path& file, std::string_view text) {
+  AtomicFile written(file);
+  written.append(text);
+  written.move_into_place();
+}
+
+int reserve_space(int descriptor, std::uint64_t bytes) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return errno;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) != 0) return errno;
+  // fallocate() heeds this limit only when it changes the file's size.
+  if (limit.rlim_cur != RLIM_INFINITY && static_cast<std::uint64_t>(status.st_size) + bytes > limit.rlim_cur)
+    return EFBIG;
+  int result = 0;
+  do {
+    result = ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, status.st_size, static_cast<off_t>(bytes));
+  } while (result != 0 && errno == EINTR);
+  if (result == 0 || errno == EOPNOTSUPP || errno == ENOSYS) return 0;
+  return errno;
+}
+
+void release_reserved_space(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto size = std::filesystem::file_size(file, ignored);
+  if (!ignored) std::filesystem::resize_file(file, size, ignored);
+}
+
+const std::filesystem::path& make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw WriteError(write_failure(folder, "creating the folder", error.value()));
+  return folder;
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (!folder_.is_open()) throw WriteError(write_failure(folder, "opening the folder", errno));
+  if (!folder_.lock())
+    throw WriteError("another mssim is writing into " + folder.string() +
+                     "; wait until it has ended, or choose another folder");
+}
+
+namespace {
+
+std::optional<TemporaryFolder>& folder_of_process() {
+  static std::optional<TemporaryFolder> folder;
+  return folder;
+}
+
+/// The system's folder for temporary files.
+std::filesystem::path system_folder() {
+  const char* chosen = std::getenv("TMPDIR");
+  return chosen && *chosen ? chosen : "/tmp";
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() : TemporaryFolder(system_folder()) {}
+
+TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
+  std::error_code none;  // where this process's folder is gone, the name stays as it is, and nothing is made
+  const std::filesystem::path whole = std::filesystem::absolute(parent, none);
+  std::string name = ((none ? parent : whole) / "mssim-XXXXXX").string();
+  if (!::mkdtemp(name.data()))
+    throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +
+                             std::strerror(errno) + "); set TMPDIR to a writable folder");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+const std::filesystem::path& temporary_folder_of_process() {
+  auto& folder = folder_of_process();
+  if (!folder) folder.emplace();
+  return folder->path();
+}
+
+void remove_temporary_folder_of_process() { folder_of_process().reset(); }
+
+namespace {
+
+std::filesystem::path own_program() {
+  std::error_code error;
+  std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error)
+    throw std::runtime_error("mssim cannot find its own program file through /proc/self/exe (" +
+                             error.message() + "), beside which its data folder lies");
+  return program;
+}
+
+/// What `bin`, which has mssim, and `libexec/mssim`, which has its helpers, lie in.
+std::filesystem::path own_prefix() {
+  const std::filesystem::path folder = own_program().parent_path();
+  return folder.parent_path().filename() == "libexec" ? folder.parent_path().parent_path()
+                                                      : folder.parent_path();
+}
+
+}  // namespace
+
+std::filesystem::path data_folder() {
+  std::error_code error;
+  std::filesystem::path folder = own_prefix() / "share" / "mssim";
+  if (!std::filesystem::is_directory(folder, error))
+    throw std::runtime_error(
+        "the data folder " + folder.string() + " of " + own_program().string() +
+        " is missing: run mssim from its build tree or from where `cmake --install` put it");
+  return folder;
+}
+
+std::filesystem::path helper_program(std::string_view name) {
+  return own_prefix() / "libexec" / "mssim" / name;
+}
+
+std::filesystem::path mssim_program() {
+  std::error_code error;
+  const std::filesystem::path emulated = helper_program("mssim");
+  return std::filesystem::exists(emulated, error) ? emulated : own_prefix() / "bin" / "mssim";
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool may_be_executed(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
+}
+
+/// Of a script: #! and the rest of its line. Empty for what is none.
+std::string first_line(const fs::path& file) {
+  std::array<char, 256> bytes{};  // no system reads more of it
+  std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size() - 1);
+  std::string line(bytes.data());
+  line.resize(std::min(line.find('\n'), line.size()));
+  return line.starts_with("#!") ? line : "";
+}
+
+}  // namespace
+
+std::optional<fs::path> find_program(const std::string& name) {
+  if (name.find('/') != std::string::npos)
+    return may_be_executed(name) ? std::optional(fs::absolute(name)) : std::nullopt;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path candidate = fs::path(folder.empty() ? "." : folder) / name;
+    if (may_be_executed(candidate)) return fs::absolute(candidate);
+  }
+  return std::nullopt;
+}
+
+bool names_interpreter_with_return(const fs::path& file) { return first_line(file).ends_with('\r'); }
+
+std::string why_not_executed(const fs::path& file, int error) {
+  const std::string reason = " (" + std::string(std::strerror(error)) + ")";
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) return "it is a folder";
+  if (names_interpreter_with_return(file))
+    return "its lines end as Windows has it (CR LF), also the name of its interpreter; save it with lines "
+           "that end in LF (sed -i 's/\\r$//')";
+  if (error == ENOENT && !fs::exists(file, ignored)) return "there is no such file";
+  if (error == EACCES && ::access(file.c_str(), X_OK) != 0) return "it is not executable (chmod +x)";
+  if (error == ENOEXEC)
+    return "it is neither a program for this machine nor a script whose first line names an interpreter "
+           "(#!/usr/bin/env python3)";
+  std::string line = first_line(file);
+  if (line.empty()) return "the system does not start it" + reason;
+  line = line.substr(std::min(line.find_first_not_of(" \t", 2), line.size()), 200);
+  return "its interpreter " + line.substr(0, line.find_first_of(" \t")) + " cannot be started" + reason;
+}
+
+}  // namespace mssim
