@@ -1,17 +1,60 @@
 #include "geometry/surface.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
 #include <span>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "geometry/geometry.h"
-#include "geometry/openings.h"
-#include "geometry/surface_sides.h"
 #include "text/error.h"
 #include "text/text.h"
 
 namespace mssim {
+
 namespace {
+
+/// One side of a triangle, in the triangle's direction of travel.
+struct SurfaceSide {
+  std::uint32_t low = 0, high = 0;  ///< its points
+  bool upwards = false;             ///< from low to high
+  std::size_t triangle = 0;
+
+  std::uint32_t from() const { return upwards ? low : high; }
+  std::uint32_t to() const { return upwards ? high : low; }
+};
+
+/// The sides of all triangles, those of one edge next to each other in the order of their triangles.
+std::vector<SurfaceSide> sides_by_edge(const Surface& surface) {
+  std::vector<SurfaceSide> sides;
+  sides.reserve(3 * surface.triangles.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t from = surface.triangles[t][corner];
+      const std::uint32_t to = surface.triangles[t][(corner + 1) % 3];
+      sides.push_back({std::min(from, to), std::max(from, to), from < to, t});
+    }
+  std::sort(sides.begin(), sides.end(), [](const SurfaceSide& a, const SurfaceSide& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return sides;
+}
+
+/// The sides of the edge that begins at `first`.
+std::span<const SurfaceSide> sides_of_edge(std::span<const SurfaceSide> sides, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < sides.size() && sides[end].low == sides[first].low && sides[end].high == sides[first].high)
+    ++end;
+  return sides.subspan(first, end - first);
+}
 
 class Check {
  public:
@@ -109,6 +152,339 @@ double volume_of(const Surface& surface) {
   for (const auto& [a, b, c] : surface.triangles)
     six_times += six_volumes(apex, surface.points[a], surface.points[b], surface.points[c]);
   return six_times / 6;
+}
+
+namespace {
+
+constexpr std::uint32_t unknown = UINT32_MAX;
+
+/// For each point, one point of the part that it belongs to, the same for the whole part.
+std::vector<std::uint32_t> representatives(const Surface& surface) {
+  DisjointSets parts(surface.points.size());
+  for (const auto& [a, b, c] : surface.triangles)
+    for (const std::uint32_t other : {b, c}) parts.unite(a, other);
+  std::vector<std::uint32_t> representative(surface.points.size());
+  for (std::uint32_t point = 0; point < representative.size(); ++point)
+    representative[point] = parts.root(point);
+  return representative;
+}
+
+}  // namespace
+
+std::vector<Surface> closed_parts(const Surface& surface) {
+  const std::vector<std::uint32_t> representative = representatives(surface);
+  std::vector<Surface> parts;
+  std::vector<std::uint32_t> part_of(surface.points.size(), unknown);
+  for (const auto& triangle : surface.triangles) {
+    std::uint32_t& part = part_of[representative[triangle[0]]];
+    if (part == unknown) {
+      part = static_cast<std::uint32_t>(parts.size());
+      parts.emplace_back();
+    }
+    parts[part].triangles.push_back(triangle);
+  }
+  std::vector<std::uint32_t> number(surface.points.size(), unknown);
+  for (std::size_t point = 0; point < surface.points.size(); ++point) {
+    const std::uint32_t part = part_of[representative[point]];
+    if (part == unknown) continue;  // of no triangle
+    number[point] = static_cast<std::uint32_t>(parts[part].points.size());
+    parts[part].points.push_back(surface.points[point]);
+  }
+  for (Surface& part : parts) {
+    for (auto& triangle : part.triangles)
+      for (std::uint32_t& point : triangle) point = number[point];
+    if (volume_of(part) < 0)
+      for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
+  }
+  return parts;
+}
+
+Surface facing_outwards(const Surface& surface) {
+  Surface all;
+  for (const Surface& part : closed_parts(surface)) {
+    const auto offset = static_cast<std::uint32_t>(all.points.size());
+    all.points.insert(all.points.end(), part.points.begin(), part.points.end());
+    for (const auto& [a, b, c] : part.triangles)
+      all.triangles.push_back({a + offset, b + offset, c + offset});
+  }
+  return all;
+}
+
+namespace {
+
+/// The edges that belong to one triangle only, as that triangle runs, by the point where they begin.
+class FreeEdges {
+ public:
+  explicit FreeEdges(const Surface& surface) : ends_(surface.points.size()) {
+    const std::vector<SurfaceSide> sides = sides_by_edge(surface);
+    for (std::size_t first = 0; first < sides.size();) {
+      const auto of_edge = sides_of_edge(sides, first);
+      const bool has_length = of_edge.front().low != of_edge.front().high;
+      if (of_edge.size() == 1 && has_length) ends_[of_edge.front().from()].push_back(of_edge.front().to());
+      first += of_edge.size();
+    }
+  }
+
+  std::size_t count() const {
+    std::size_t sum = 0;
+    for (const auto& ends : ends_) sum += ends.size();
+    return sum;
+  }
+  /// Is the point at the begin or the end of one?
+  std::vector<bool> touched() const {
+    std::vector<bool> is_touched(ends_.size());
+    for (std::size_t from = 0; from < ends_.size(); ++from)
+      for (const std::uint32_t to : ends_[from]) is_touched[from] = is_touched[to] = true;
+    return is_touched;
+  }
+  bool any_from(std::uint32_t point) const { return !ends_[point].empty(); }
+  /// The end of one of them, which is taken away.
+  std::uint32_t take_from(std::uint32_t point) {
+    const std::uint32_t end = ends_[point].back();
+    ends_[point].pop_back();
+    return end;
+  }
+
+ private:
+  std::vector<std::vector<std::uint32_t>> ends_;
+};
+
+/// Merges points within that distance, each with the nearest of those before it.
+class Joiner {
+ public:
+  Joiner(Surface& surface, double reach)
+      : surface_(surface), reach_(reach), into_(surface.points.size()), triangles_(surface.points.size()) {
+    std::iota(into_.begin(), into_.end(), 0U);
+    const std::vector<bool> is_open = FreeEdges(surface).touched();
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      for (const std::uint32_t corner : surface.triangles[t])
+        if (is_open[corner]) triangles_[corner].push_back(t);
+    for (std::uint32_t point = 0; point < is_open.size(); ++point)
+      if (is_open[point]) place(point);
+  }
+
+  /// Leaves the merged points out of the surface; how many.
+  std::size_t finish() {
+    std::vector<std::uint32_t> number(into_.size());
+    std::uint32_t kept = 0;
+    for (std::uint32_t point = 0; point < into_.size(); ++point)
+      if (into_[point] == point) {
+        number[point] = kept;
+        surface_.points[kept++] = surface_.points[point];
+      }
+    for (auto& triangle : surface_.triangles)
+      for (std::uint32_t& corner : triangle) corner = number[into_[corner]];
+    surface_.points.resize(kept);
+    return into_.size() - kept;
+  }
+
+ private:
+  using Cell = std::array<double, 3>;
+
+  void place(std::uint32_t point) {
+    const Vec3d& at = surface_.points[point];
+    const Cell cell{std::floor(at.x / reach_), std::floor(at.y / reach_), std::floor(at.z / reach_)};
+    double nearest = reach_;
+    for (const double x : {-1, 0, 1})
+      for (const double y : {-1, 0, 1})
+        for (const double z : {-1, 0, 1}) {
+          const auto others = kept_.find({cell[0] + x, cell[1] + y, cell[2] + z});
+          if (others == kept_.end()) continue;
+          for (const std::uint32_t other : others->second)
+            if (const double distance = length(surface_.points[other] - at);
+                distance <= nearest && !share_a_triangle(point, other)) {
+              nearest = distance;
+              into_[point] = other;
+            }
+        }
+    if (into_[point] == point) kept_[cell].push_back(point);
+  }
+
+  /// Or what has been merged into the other and the point.
+  bool share_a_triangle(std::uint32_t point, std::uint32_t other) const {
+    return std::ranges::any_of(triangles_[point], [&](std::size_t t) {
+      return std::ranges::any_of(surface_.triangles[t], [&](std::uint32_t corner) {
+        return corner != point && into_[corner] == other;
+      });
+    });
+  }
+
+  Surface& surface_;
+  double reach_;
+  std::vector<std::uint32_t> into_;
+  std::vector<std::vector<std::size_t>> triangles_;  ///< of the points on open edges
+  std::map<Cell, std::vector<std::uint32_t>> kept_;
+};
+
+void measure(const Surface& surface, Opening& opening) {
+  Vec3d sum;
+  double total = 0;
+  for (std::size_t i = 0; i < opening.edges(); ++i) {
+    const Vec3d& from = surface.points[opening.points[i]];
+    const Vec3d& to = surface.points[opening.points[(i + 1) % opening.points.size()]];
+    const double weight = length(to - from);
+    sum += 0.5 * weight * (from + to);
+    total += weight;
+  }
+  // Points of two numbers at one place make edges without length.
+  opening.centre = total > 0 ? 1 / total * sum : surface.points[opening.points.front()];
+  for (const std::uint32_t point : opening.points)
+    opening.size = std::max(opening.size, 2 * length(surface.points[point] - opening.centre));
+}
+
+void fill(Surface& surface, const Opening& opening) {
+  const std::vector<std::uint32_t>& ring = opening.points;
+  if (ring.size() == 3) {
+    surface.triangles.push_back({ring[2], ring[1], ring[0]});
+    return;
+  }
+  const auto middle = static_cast<std::uint32_t>(surface.points.size());
+  surface.points.push_back(opening.centre);
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    surface.triangles.push_back({ring[(i + 1) % ring.size()], ring[i], middle});
+}
+
+/// Edges between two points, the lower number first.
+using Edges = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// As `fill` does, but without a middle as long as a corner of the ring may be cut off: where the surface has
+/// no such edge yet, and the triangle looks the way the opening does.
+void span(Surface& surface, Opening opening, Edges& edges) {
+  std::vector<std::uint32_t>& ring = opening.points;
+  const auto point = [&](std::size_t i) { return ring[i % ring.size()]; };
+  const auto at = [&](std::size_t i) -> const Vec3d& { return surface.points[point(i)]; };
+  const auto normal = [&](const Vec3d& middle, std::size_t i) {
+    return cross(at(i + 1) - middle, at(i) - middle);
+  };
+  Vec3d facing;
+  for (std::size_t i = 0; i < ring.size(); ++i) facing += normal(opening.centre, i);
+  while (ring.size() > 3) {
+    std::size_t first = 0;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const double new_edge = length(at(i + 2) - at(i));
+      if (new_edge >= shortest || !(dot(normal(at(i + 2), i), facing) > 0)) continue;
+      if (edges.contains(std::minmax(ring[i], point(i + 2)))) continue;
+      shortest = new_edge;
+      first = i;
+    }
+    if (shortest == std::numeric_limits<double>::infinity()) break;
+    surface.triangles.push_back({point(first + 2), point(first + 1), ring[first]});
+    edges.insert(std::minmax(ring[first], point(first + 2)));
+    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>((first + 1) % ring.size()));
+  }
+  measure(surface, opening);
+  fill(surface, opening);
+}
+
+[[noreturn]] void refuse(const Opening& opening, const std::string& problem) {
+  throw InputError("the opening of " + std::to_string(opening.edges()) + " edges around " +
+                   place(opening.centre) + problem);
+}
+
+}  // namespace
+
+std::vector<Opening> openings_of(const Surface& surface) {
+  FreeEdges edges(surface);
+  std::vector<Opening> openings;
+  constexpr std::size_t nowhere = SIZE_MAX;
+  std::vector<std::size_t> place_on_way(surface.points.size(), nowhere);
+  for (std::uint32_t start = 0; start < surface.points.size(); ++start)
+    while (edges.any_from(start)) {
+      std::vector<std::uint32_t> way{start};
+      place_on_way[start] = 0;
+      do {
+        const std::uint32_t next = edges.take_from(way.back());
+        const std::size_t begin = place_on_way[next];
+        if (begin == nowhere) {
+          place_on_way[next] = way.size();
+          way.push_back(next);
+          continue;
+        }
+        Opening& ring = openings.emplace_back();
+        ring.points.assign(way.begin() + static_cast<std::ptrdiff_t>(begin), way.end());
+        for (std::size_t i = begin + 1; i < way.size(); ++i) place_on_way[way[i]] = nowhere;
+        way.resize(begin + 1);
+      } while (edges.any_from(way.back()));
+      for (const std::uint32_t point : way) place_on_way[point] = nowhere;
+      if (way.size() > 1) openings.push_back({std::move(way), false, {}, 0});
+    }
+  for (Opening& opening : openings) measure(surface, opening);
+  std::stable_sort(openings.begin(), openings.end(),
+                   [](const Opening& a, const Opening& b) { return a.size > b.size; });
+  return openings;
+}
+
+std::size_t join_corners(Surface& surface) {
+  Box<double> box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+  for (const Vec3d& point : surface.points) extend(box, point);
+  const Vec3d size = box.size();
+  const double extent = std::max({size.x, size.y, size.z});
+  std::size_t merged = 0;
+  // The two sides of something thin find their own corners before they are within reach of each other.
+  if (extent > 0)
+    for (const double share : {1e-7, 1e-6, 1e-5}) merged += Joiner(surface, share * extent).finish();
+  return merged;
+}
+
+void require_joined(const Surface& surface) {
+  const std::size_t free = FreeEdges(surface).count();
+  const std::size_t edges = (3 * surface.triangles.size() + free) / 2;
+  if (surface.triangles.size() > 1 && 2 * free > edges)
+    throw InputError(
+        "its triangles do not join: " + std::to_string(free) + " of " + std::to_string(edges) +
+        " edges belong to one triangle only; merge the points of corners that lie beside each other "
+        "where the surface was made");
+}
+
+std::vector<Opening> close_openings(Surface& surface, double largest) {
+  require_joined(surface);
+  std::vector<Opening> openings = openings_of(surface);
+  for (const Opening& opening : openings) {
+    if (!(opening.size <= largest))
+      refuse(opening, " is " + shown(opening.size) + " m across, and at most " + shown(largest) +
+                          " m are closed; close it where the surface was made");
+    if (!opening.is_ring)
+      refuse(opening,
+             " does not enclose a hole, because triangles beside it have different orientations; give them "
+             "one orientation where the surface was made");
+  }
+  for (const Opening& opening : openings) fill(surface, opening);
+  return openings;
+}
+
+void span_openings(Surface& surface) {
+  const std::vector<Opening> openings = openings_of(surface);
+  std::vector<bool> on_ring(surface.points.size());
+  for (const Opening& opening : openings)
+    for (const std::uint32_t point : opening.points) on_ring[point] = true;
+  Edges edges;
+  for (const SurfaceSide& side : sides_by_edge(surface))
+    if (on_ring[side.low] && on_ring[side.high]) edges.emplace(side.low, side.high);
+  for (const Opening& opening : openings) span(surface, opening, edges);
+}
+
+std::vector<Vec3d> vertex_normals(const Surface& surface) {
+  std::vector<Vec3d> normals(surface.points.size());
+  for (const auto& triangle : surface.triangles)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Vec3d& at = surface.points[triangle[corner]];
+      const Vec3d to_next = surface.points[triangle[(corner + 1) % 3]] - at;
+      const Vec3d to_last = surface.points[triangle[(corner + 2) % 3]] - at;
+      const Vec3d normal = cross(to_next, to_last);
+      const double sine = length(normal);  // times both lengths, like the cosine
+      if (sine > 0) normals[triangle[corner]] += (std::atan2(sine, dot(to_next, to_last)) / sine) * normal;
+    }
+  for (Vec3d& normal : normals)
+    if (const double sum = length(normal); sum > 0) normal = (1 / sum) * normal;
+  return normals;
+}
+
+Surface inflated(const Surface& surface, const std::vector<Vec3d>& normals, double offset) {
+  Surface result = surface;
+  for (std::size_t point = 0; point < result.points.size(); ++point)
+    result.points[point] += offset * normals[point];
+  return result;
 }
 
 }  // namespace mssim

@@ -8,6 +8,7 @@
 #include <utility>
 
 namespace mssim {
+
 namespace {
 
 constexpr std::uint32_t leaf_triangles = 4;

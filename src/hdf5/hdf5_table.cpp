@@ -10,6 +10,7 @@
 #include <utility>
 
 namespace mssim {
+
 namespace {
 
 /// What deflation makes of a byte at most: two bits of its stream stand for 258 bytes.

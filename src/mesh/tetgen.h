@@ -1,15 +1,51 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "geometry/surface.h"
 #include "mesh/tet_mesh.h"
-#include "mesh/tetgen_program.h"
 
 namespace mssim {
+
+/// The installed TetGen.
+struct TetgenProgram {
+  std::filesystem::path executable;
+  std::string version;  ///< as it calls itself, for example "1.5", or "unknown"
+  /// Of the program and its library: what distinguishes two TetGens that call themselves the same.
+  std::uint64_t fnv1a_64 = 0;
+};
+
+/// The `tetgen` that PATH finds, or nothing.
+std::optional<TetgenProgram> find_tetgen();
+
+/// The text of a file and the name that messages give it.
+struct NamedText {
+  std::string name;
+  std::string_view text;
+};
+
+/// Reads a mesh from TetGen's .node and .ele files, numbered from 0 or 1; attributes and boundary markers are
+/// left out. The mesh is valid: finite coordinates, every node in a tetrahedron and at a place of its own,
+/// positive volumes (when all are negative the mesh is mirrored and its tetrahedra are turned), no face in
+/// three tetrahedra. Throws InputError that names file, line and value.
+TetMesh parse_tetgen_files(const NamedText& node_file, const NamedText& ele_file);
+
+/// The same from files.
+TetMesh read_tetgen_files(const std::filesystem::path& node_file, const std::filesystem::path& ele_file);
+
+/// A .node file, numbered from 0; numbers read back as they are.
+std::string node_text(const std::vector<Vec3d>& nodes);
+
+/// An .ele file, numbered from 0.
+std::string ele_text(const std::vector<Tetrahedron>& tetrahedra);
+
+/// A .smesh file, numbered from 0, without holes and regions: what TetGen fills with tetrahedra.
+std::string smesh_text(const Surface& surface);
 
 /// A point takes TetGen 40 us where there are thousands, and 90 us where there are hundreds of thousands.
 inline constexpr std::uint64_t most_meshable_points = 4'000'000;

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "geometry/disjoint_sets.h"
+#include "geometry/geometry.h"
 
 namespace mssim {
 namespace {

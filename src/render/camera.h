@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/box.h"
 #include "geometry/depth_raster.h"
+#include "geometry/geometry.h"
 #include "geometry/vec3.h"
 
 namespace mssim {

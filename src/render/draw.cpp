@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "geometry/vertex_normals.h"
+#include "geometry/surface.h"
 #include "render/light.h"
 #include "render/srgb.h"
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "geometry/box.h"
+#include "geometry/geometry.h"
 #include "picture/picture.h"
 #include "render/camera.h"
 #include "render/ground.h"

@@ -4,9 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mesh/shape_mesh.h"
-#include "mesh/surface_mesh.h"
-#include "mesh/tetgen_files.h"
+#include "mesh/meshing.h"
+#include "mesh/tetgen.h"
 #include "scene/fields/scene_error.h"
 #include "scene/scene_file.h"
 #include "scene/spec/scene_spec.h"

@@ -9,7 +9,7 @@
 
 #include "fuzz_checks.h"
 #include "garment/body/stance_guess.h"
-#include "geometry/openings.h"
+#include "geometry/surface.h"
 #include "mesh/surface_file.h"
 #include "text/error.h"
 #include "text/text.h"

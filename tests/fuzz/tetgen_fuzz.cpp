@@ -4,7 +4,7 @@
 #include <string>
 
 #include "fuzz_checks.h"
-#include "mesh/tetgen_files.h"
+#include "mesh/tetgen.h"
 #include "text/error.h"
 
 namespace mssim {

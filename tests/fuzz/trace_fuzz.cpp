@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "fuzz_checks.h"
+#include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
-#include "hdf5/hdf5_write.h"
 #include "output/traces/h5md_trace.h"
 #include "output/traces/trace_content.h"
 #include "platform/files.h"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mesh/sphere_shape.h"
+#include "mesh/shapes.h"
 #include "tests/support/contact_fixture.h"
 
 namespace mssim {

@@ -1,6 +1,6 @@
-#include "geometry/monotone_curve.h"
-
 #include <gtest/gtest.h>
+
+#include "geometry/geometry.h"
 
 namespace mssim {
 namespace {

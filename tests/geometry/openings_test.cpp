@@ -1,5 +1,3 @@
-#include "geometry/openings.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -8,7 +6,8 @@
 #include <utility>
 
 #include "garment/body/mannequin.h"
-#include "mesh/sphere_shape.h"
+#include "geometry/surface.h"
+#include "mesh/shapes.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "mesh/shape_mesh.h"
+#include "mesh/meshing.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

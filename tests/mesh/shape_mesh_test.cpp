@@ -1,5 +1,3 @@
-#include "mesh/shape_mesh.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +5,8 @@
 #include <numbers>
 
 #include "geometry/geometry.h"
-#include "mesh/mesh_defect.h"
+#include "mesh/meshing.h"
+#include "mesh/tet_mesh.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

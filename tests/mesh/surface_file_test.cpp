@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "geometry/geometry.h"
-#include "mesh/surface_mesh.h"
+#include "mesh/meshing.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

@@ -1,11 +1,10 @@
-#include "mesh/tetgen_files.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <array>
 
-#include "mesh/mesh_defect.h"
+#include "mesh/tet_mesh.h"
+#include "mesh/tetgen.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

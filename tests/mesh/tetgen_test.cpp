@@ -8,8 +8,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "mesh/shape_mesh.h"
-#include "mesh/tetrahedralise.h"
+#include "mesh/meshing.h"
 #include "platform/process.h"
 #include "tests/support/mesh_fixture.h"
 #include "text/error.h"

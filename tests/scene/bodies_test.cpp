@@ -14,7 +14,7 @@
 
 #include "geometry/geometry.h"
 #include "mesh/tet_mesh.h"
-#include "mesh/tetgen_files.h"
+#include "mesh/tetgen.h"
 #include "output/tables/csv.h"
 #include "output/tables/published_bodies.h"
 #include "scene/body_shapes.h"

@@ -8,7 +8,7 @@
 
 #include "garment/body/body_measures.h"
 #include "garment/body/ellipse_tube.h"
-#include "geometry/monotone_curve.h"
+#include "geometry/geometry.h"
 #include "tests/support/isosurface.h"
 
 namespace mssim {

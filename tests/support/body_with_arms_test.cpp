@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/closed_parts.h"
+#include "geometry/surface.h"
 
 namespace mssim {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_backend.h"
-#include "mesh/sphere_shape.h"
+#include "mesh/shapes.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/largest_distance.h"
 

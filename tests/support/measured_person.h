@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/convex_hull.h"
+#include "geometry/geometry.h"
 #include "tests/support/body_with_arms.h"
 
 namespace mssim {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/box_shape.h"
+#include "mesh/shapes.h"
 #include "tests/support/temporary_folder.h"
 #include "text/error.h"
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
 #include "platform/files.h"
 
 namespace mssim {

@@ -5,7 +5,7 @@
 
 #include "garment/body/body_stance.h"
 #include "garment/body/landmarks.h"
-#include "geometry/openings.h"
+#include "geometry/surface.h"
 #include "output/tables/table.h"
 
 namespace mssim {

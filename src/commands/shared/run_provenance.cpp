@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "backends/devices/offer.h"
-#include "mesh/tetgen_program.h"
+#include "mesh/tetgen.h"
 #include "output/folders/provenance_file.h"
 #include "text/text.h"
 

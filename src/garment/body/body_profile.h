@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "garment/body/trunk_and_legs.h"
-#include "geometry/convex_hull.h"
+#include "geometry/geometry.h"
 #include "geometry/surface.h"
 
 namespace mssim {

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "geometry/geometry.h"
-#include "geometry/monotone_curve.h"
 
 namespace mssim {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/convex_hull.h"
+#include "geometry/geometry.h"
 #include "geometry/surface.h"
 
 namespace mssim {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/convex_hull.h"
+#include "geometry/geometry.h"
 #include "geometry/surface.h"
 
 namespace mssim {

@@ -7,7 +7,6 @@
 
 #include "garment/body/leg_gap.h"
 #include "garment/body/length_unit.h"
-#include "geometry/box.h"
 #include "geometry/geometry.h"
 #include "text/error.h"
 

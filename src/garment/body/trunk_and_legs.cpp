@@ -14,7 +14,7 @@
 #include "garment/body/part_rim.h"
 #include "garment/body/section_loops.h"
 #include "garment/body/section_necks.h"
-#include "geometry/openings.h"
+#include "geometry/surface.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "garment/contact/side_map.h"
-#include "geometry/closed_parts.h"
-#include "geometry/vertex_normals.h"
+#include "geometry/surface.h"
 #include "text/text.h"
 
 namespace mssim {

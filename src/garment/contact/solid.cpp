@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "geometry/closed_parts.h"
+#include "geometry/surface.h"
 #include "platform/machine.h"
 
 namespace mssim {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geometry/nearest_point.h"
+#include "geometry/triangle_tree.h"
 #include "text/text.h"
 
 namespace mssim {

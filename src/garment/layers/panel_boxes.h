@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "garment/garment.h"
-#include "geometry/box.h"
+#include "geometry/geometry.h"
 #include "geometry/vec3.h"
 
 namespace mssim {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hdf5/h5md_tuples.h"
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
+#include "hdf5/hdf5_table.h"
 
 namespace mssim {
 namespace {

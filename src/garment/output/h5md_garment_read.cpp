@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "garment/output/h5md_garment.h"
-#include "hdf5/hdf5_read.h"
+#include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
 
 namespace mssim {

@@ -9,7 +9,7 @@
 
 #include "garment/body/length_unit.h"
 #include "geometry/geometry.h"
-#include "geometry/openings.h"
+#include "geometry/surface.h"
 #include "mesh/surface_file.h"
 #include "scene/fields/length_field.h"
 #include "scene/fields/scene_error.h"

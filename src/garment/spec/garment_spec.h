@@ -12,7 +12,7 @@
 #include "garment/pattern/jeans_outline.h"
 #include "garment/pattern/panel_springs.h"
 #include "garment/spec/garment_pieces.h"
-#include "mesh/mesh_size.h"
+#include "mesh/meshing.h"
 
 namespace mssim {
 

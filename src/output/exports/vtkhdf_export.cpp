@@ -6,8 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "hdf5/hdf5_space.h"
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
 #include "platform/files.h"
 
 namespace mssim {

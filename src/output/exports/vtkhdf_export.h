@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "hdf5/hdf5_handle.h"
+#include "hdf5/hdf5.h"
 #include "output/exports/export_mesh.h"
 #include "platform/files.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "geometry/disjoint_sets.h"
+#include "geometry/geometry.h"
 
 namespace mssim {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
 #include "output/traces/xdmf.h"
 
 namespace mssim {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "garment/output/h5md_garment.h"
-#include "hdf5/h5md_tuples.h"
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
+#include "hdf5/hdf5_table.h"
 #include "output/traces/xdmf.h"
 
 namespace mssim {

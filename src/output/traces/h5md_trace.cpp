@@ -4,8 +4,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "hdf5/hdf5_space.h"
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
 #include "output/traces/h5md_body.h"
 #include "platform/files.h"
 

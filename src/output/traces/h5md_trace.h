@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/surface.h"
-#include "hdf5/hdf5_handle.h"
+#include "hdf5/hdf5.h"
 #include "model/energy.h"
 #include "model/system.h"
 #include "output/traces/h5md_head.h"

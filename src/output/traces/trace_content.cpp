@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "garment/output/h5md_garment_read.h"
-#include "hdf5/hdf5_read.h"
+#include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
 #include "output/traces/h5md_body.h"
 #include "output/traces/h5md_head.h"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "hdf5/hdf5_read.h"
+#include "hdf5/hdf5.h"
 #include "platform/files.h"
 #include "platform/process.h"
 #include "text/text.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/vec3.h"
-#include "hdf5/hdf5_handle.h"
+#include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
 #include "output/traces/trace_content.h"
 #include "output/traces/trace_error.h"

@@ -4,7 +4,7 @@
 #include <functional>
 #include <numeric>
 
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
 #include "platform/files.h"
 #include "text/text.h"
 

@@ -8,11 +8,8 @@
 #include <vector>
 
 #include "geometry/vec3.h"
-#include "mesh/box_shape.h"
-#include "mesh/interior_points.h"
-#include "mesh/mesh_size.h"
-#include "mesh/sphere_shape.h"
-#include "mesh/torus_shape.h"
+#include "mesh/meshing.h"
+#include "mesh/shapes.h"
 #include "model/spring.h"
 
 namespace mssim {

@@ -17,7 +17,7 @@
 #include "garment/stepping/opencl_dressing.h"
 #include "garment/stepping/serial_dressing.h"
 #include "integrators/all_integrators.h"
-#include "mesh/sphere_shape.h"
+#include "mesh/shapes.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/garment_system.h"

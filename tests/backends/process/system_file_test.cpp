@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hdf5/hdf5_read.h"
+#include "hdf5/hdf5.h"
 #include "platform/files.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"

@@ -7,7 +7,7 @@
 
 #include "commands/shared/command.h"
 #include "garment/scene/garment_body.h"
-#include "mesh/tetgen_files.h"
+#include "mesh/tetgen.h"
 #include "scene/scene_file.h"
 #include "tests/support/obj_text.h"
 #include "tests/support/open_count.h"

@@ -9,7 +9,7 @@
 
 #include "garment/body/landmarks.h"
 #include "garment/body/mannequin.h"
-#include "mesh/sphere_shape.h"
+#include "mesh/shapes.h"
 #include "mesh/surface_file.h"
 #include "tests/support/mesh_fixture.h"
 #include "text/text.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "mesh/torus_shape.h"
+#include "mesh/shapes.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

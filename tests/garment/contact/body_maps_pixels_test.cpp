@@ -8,7 +8,7 @@
 
 #include "garment/body/mannequin.h"
 #include "garment/contact/body_maps.h"
-#include "mesh/sphere_shape.h"
+#include "mesh/shapes.h"
 #include "mesh/surface_file.h"
 #include "tests/support/body_maps_fixture.h"
 #include "tests/support/mesh_fixture.h"

@@ -7,9 +7,8 @@
 #include <limits>
 
 #include "garment/contact/solid.h"
-#include "geometry/vertex_normals.h"
-#include "mesh/box_shape.h"
-#include "mesh/sphere_shape.h"
+#include "geometry/surface.h"
+#include "mesh/shapes.h"
 #include "tests/support/body_maps_fixture.h"
 #include "tests/support/mesh_fixture.h"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/vertex_normals.h"
-#include "mesh/sphere_shape.h"
+#include "geometry/surface.h"
+#include "mesh/shapes.h"
 #include "tests/support/body_maps_fixture.h"
 #include "tests/support/mesh_fixture.h"
 

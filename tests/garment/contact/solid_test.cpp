@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/closed_parts.h"
-#include "mesh/sphere_shape.h"
+#include "geometry/surface.h"
+#include "mesh/shapes.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/nearest_point.h"
+#include "geometry/triangle_tree.h"
 #include "tests/support/cloth_layers_fixture.h"
 
 namespace mssim {

@@ -8,7 +8,7 @@
 #include "garment/contact/solid.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
-#include "mesh/sphere_shape.h"
+#include "mesh/shapes.h"
 #include "model/energy.h"
 #include "tests/support/dressed_jeans.h"
 #include "tests/support/dressing_step.h"

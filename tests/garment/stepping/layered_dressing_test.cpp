@@ -11,7 +11,7 @@
 #include "garment/stepping/layer_collision.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
-#include "mesh/sphere_shape.h"
+#include "mesh/shapes.h"
 #include "tests/support/dressing_step.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/largest_distance.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
 #include "output/traces/trace_reader.h"
 #include "tests/support/solid_system.h"
 #include "tests/support/trace_fixture.h"

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "hdf5/hdf5_write.h"
+#include "hdf5/hdf5.h"
 #include "tests/support/solid_system.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"

@@ -1,0 +1,184 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace mssim {
+
+/// Thrown when an HDF5 call fails; what() is the reason from HDF5's error stack.
+struct Hdf5Error : std::runtime_error {
+  Hdf5Error(const std::string& action_, const std::string& reason, int error_number_)
+      : std::runtime_error(reason), action(action_), error_number(error_number_) {}
+  std::string action;  ///< what was being done, for example "creating /h5md"
+  int error_number;    ///< the errno that HDF5 noted, 0 when it noted none
+};
+
+/// Call before any other HDF5 function: keeps HDF5 from locking files, which their writers do, from printing
+/// its error stack, and from flushing files at exit, where it crashes when a file could not be written.
+void prepare_hdf5();
+
+/// Throws the Hdf5Error of the HDF5 call that has just failed.
+[[noreturn]] void throw_hdf5_error(const std::string& action);
+
+/// Passes on the result of an HDF5 call, an identifier or a status; throws Hdf5Error when it is negative.
+template <class Result>
+Result checked(Result result, const std::string& action) {
+  if (result < 0) throw_hdf5_error(action);
+  return result;
+}
+
+/// Owns an HDF5 identifier of one kind.
+template <herr_t (*close_identifier)(hid_t)>
+class Hdf5Handle {
+ public:
+  Hdf5Handle() = default;
+  /// Takes what an HDF5 call returned; throws Hdf5Error when the call failed.
+  Hdf5Handle(hid_t identifier, const std::string& action) : identifier_(checked(identifier, action)) {}
+  Hdf5Handle(Hdf5Handle&& other) noexcept : identifier_(other.release()) {}
+  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+    std::swap(identifier_, other.identifier_);
+    return *this;
+  }
+  ~Hdf5Handle() {
+    if (identifier_ >= 0) close_identifier(identifier_);
+  }
+  hid_t get() const { return identifier_; }
+  /// Closes now; throws Hdf5Error when that fails, as it does when something could not be written.
+  void close(const std::string& action) { checked(close_identifier(release()), action); }
+  /// Gives the identifier up without closing it.
+  hid_t release() { return std::exchange(identifier_, -1); }
+
+ private:
+  hid_t identifier_ = -1;
+};
+
+using Hdf5File = Hdf5Handle<H5Fclose>;
+using Hdf5Group = Hdf5Handle<H5Gclose>;
+using Hdf5Dataset = Hdf5Handle<H5Dclose>;
+using Hdf5Space = Hdf5Handle<H5Sclose>;
+using Hdf5Type = Hdf5Handle<H5Tclose>;
+using Hdf5Attribute = Hdf5Handle<H5Aclose>;
+using Hdf5Properties = Hdf5Handle<H5Pclose>;
+
+/// Makes sure that an open file, which will be called `name`, can grow by `bytes`: HDF5 spoils a file that it
+/// cannot write to its end, whose head then promises more than there is. release_reserved_space() gives back
+/// what is left. Throws Hdf5Error and WriteError.
+void reserve_room(hid_t file, const std::filesystem::path& name, std::size_t bytes);
+
+/// Small pieces of an HDF5 file. Strings are of fixed length, as H5MD asks, UTF-8 without a terminator;
+/// numbers are little-endian. All functions throw Hdf5Error.
+
+/// A new group; the groups above it exist.
+Hdf5Group create_group(hid_t parent, const std::string& path);
+
+void write_attribute(hid_t object, const std::string& name, std::string_view text);
+void write_attribute(hid_t object, const std::string& name, double value);
+void write_attribute(hid_t object, const std::string& name, std::int64_t value);
+void write_attribute(hid_t object, const std::string& name, std::span<const std::int64_t> values);
+/// An array of strings of one length.
+void write_attribute(hid_t object, const std::string& name, std::span<const std::string_view> texts);
+/// A reference to the object at `target`.
+void write_reference(hid_t object, const std::string& name, hid_t file, const std::string& target);
+
+/// A scalar dataset of one string; unlike attributes it may be longer than 64 KiB.
+void write_text(hid_t parent, const std::string& name, std::string_view text);
+
+/// A dataset of strings, one at least.
+void write_texts(hid_t parent, const std::string& name, std::span<const std::string_view> texts);
+
+/// A dataset of numbers that does not grow, none of its extents 0; `data` holds them in `memory_type`.
+void write_array(hid_t parent, const std::string& path, hid_t file_type, hid_t memory_type,
+                 std::span<const hsize_t> shape, const void* data);
+
+/// A list of numbers in double precision, one at least.
+void write_numbers(hid_t parent, const std::string& path, std::span<const double> numbers);
+
+/// Rows in a chunk of a long list of tuples.
+inline constexpr hsize_t tuples_per_chunk = 65536;
+
+/// How the chunks of a dataset are stored. Every chunk has a Fletcher-32 checksum.
+enum class Packing { plain, deflated };
+
+/// Properties of a new dataset with these chunks.
+Hdf5Properties chunked(std::span<const hsize_t> chunk, Packing packing);
+
+/// A dataset of the given shape; the first dimension may grow when `grows`.
+Hdf5Dataset create_dataset(hid_t parent, const std::string& path, hid_t type, std::span<const hsize_t> shape,
+                           bool grows, const Hdf5Properties& properties);
+
+/// Grows the dataset's first dimension to first + count and writes the rows from `first` on; `data` holds
+/// them in `memory_type`.
+void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t first, hsize_t count,
+                hid_t memory_type, const void* data);
+
+/// The same with one row.
+inline void write_row(const Hdf5Dataset& dataset, const std::string& name, hsize_t row, hid_t memory_type,
+                      const void* data) {
+  write_rows(dataset, name, row, 1, memory_type, data);
+}
+
+/// Thrown for what is in an HDF5 file and cannot be used. what() is the problem alone, which names the place:
+/// "/connectivity/springs has 2 extents instead of 1".
+struct Hdf5ContentError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Small pieces of an HDF5 file that anybody may have written, the counterpart of hdf5_write.h. Nothing is
+/// read before it is known to be what is asked for, and nothing is allocated that the file cannot hold. Paths
+/// lead through hard links alone: other links may name any file of the machine. All functions throw Hdf5Error
+/// and Hdf5ContentError.
+
+/// Opens a file for reading; without the filters that HDF5 would look for in folders of the machine.
+Hdf5File open_for_reading(const std::filesystem::path& file);
+
+/// Whether there is an object at `path`, which begins with '/'.
+bool exists(hid_t file, const std::string& path);
+
+/// The dataset at `path`, which is stored in this file, by filters that hdf5_write.h uses.
+Hdf5Dataset open_dataset(hid_t file, const std::string& path);
+
+/// Whether numbers are floating-point ones of 32 or 64 bits, or integers of 8 to 64 bits, of either byte
+/// order.
+bool is_real(const Hdf5Type& type);
+bool is_integer(const Hdf5Type& type);
+
+/// What chunks go through when they are written.
+struct Hdf5Filter {
+  H5Z_filter_t number = 0;
+  unsigned option = 0;  ///< the first, for shuffling the bytes of a number
+};
+
+/// The filters of a dataset in the order of writing.
+std::vector<Hdf5Filter> filters_of(const Hdf5Dataset& dataset);
+
+/// The length of a file in bytes.
+hsize_t bytes_of(hid_t file);
+
+/// Throws unless the file can hold so many `items` of `bytes_per_item`, each byte of it standing for `ratio`.
+void require_room(hid_t file, const std::string& path, hsize_t items, hsize_t bytes_per_item,
+                  hsize_t ratio = 1);
+
+/// A dataset of one string, of fixed length or not, without what fills it up.
+std::string read_text(hid_t file, const std::string& path);
+
+/// A list of strings.
+std::vector<std::string> read_texts(hid_t file, const std::string& path);
+
+/// Whether the object at `path`, which exists, has an attribute.
+bool has_attribute(hid_t file, const std::string& path, const std::string& name);
+
+/// An attribute of one string, or of one number (is_real, is_integer).
+std::string read_text_attribute(hid_t file, const std::string& path, const std::string& name);
+double read_double_attribute(hid_t file, const std::string& path, const std::string& name);
+std::int64_t read_integer_attribute(hid_t file, const std::string& path, const std::string& name);
+
+}  // namespace mssim

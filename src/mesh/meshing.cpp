@@ -1,0 +1,310 @@
+#include "mesh/meshing.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+#include "geometry/geometry.h"
+#include "geometry/triangle_tree.h"
+#include "mesh/surface_file.h"
+#include "mesh/tetgen.h"
+#include "mesh/text_lines.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+/// Meshes that were made before, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME
+/// or ~/.cache). A file's name is INPUT-PROGRAM: the hash of what TetGen was given and that of the TetGen
+/// that made it. The cache only saves time: an entry that is missing, damaged or cannot be written is no
+/// error, and several processes may use it at once.
+class MeshCache {
+ public:
+  MeshCache();
+
+  /// The mesh that this TetGen made of this input.
+  std::optional<TetMesh> find(std::uint64_t input, std::uint64_t program) const;
+
+  /// The newest mesh that any TetGen made of this input: for machines without TetGen.
+  std::optional<TetMesh> find_of_any_program(std::uint64_t input) const;
+
+  /// Keeps a mesh; the file appears as a whole or not at all.
+  void store(std::uint64_t input, std::uint64_t program, const TetMesh& mesh) const;
+
+ private:
+  std::filesystem::path folder_;  ///< empty when the user has neither variable nor home
+};
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view extension = ".mesh";
+
+fs::path cache_folder() {
+  // The XDG base directory specification has a relative path ignored.
+  const char* xdg = std::getenv("XDG_CACHE_HOME");
+  if (xdg && *xdg == '/') return fs::path(xdg) / "mssim" / "meshes";
+  const char* home = std::getenv("HOME");
+  if (home && *home == '/') return fs::path(home) / ".cache" / "mssim" / "meshes";
+  return {};
+}
+
+/// "mssim mesh 1 BYTES HASH": bytes of the .node text, hash of both texts.
+std::string header_of(const std::string& nodes, const std::string& tetrahedra) {
+  return "mssim mesh 1 " + std::to_string(nodes.size()) + ' ' + to_hex(fnv1a_64(nodes + tetrahedra)) + '\n';
+}
+
+/// The mesh, or nothing for a file that is not, or no longer, what was written.
+std::optional<TetMesh> read_entry(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  try {
+    const std::string text = read_text(file);
+    const std::size_t header = text.find('\n') + 1;
+    constexpr std::string_view begin = "mssim mesh 1 ";
+    if (header == 0 || !text.starts_with(begin)) return std::nullopt;
+    const std::size_t node_bytes = std::strtoull(text.c_str() + begin.size(), nullptr, 10);
+    if (node_bytes > text.size() - header) return std::nullopt;
+    const std::string nodes = text.substr(header, node_bytes);
+    const std::string tetrahedra = text.substr(header + node_bytes);
+    if (!text.starts_with(header_of(nodes, tetrahedra))) return std::nullopt;
+    return parse_tetgen_files({file.string(), nodes}, {file.string(), tetrahedra});
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+std::string file_name(std::uint64_t input, std::uint64_t program) {
+  return to_hex(input) + '-' + to_hex(program) + std::string(extension);
+}
+
+}  // namespace
+
+MeshCache::MeshCache() : folder_(cache_folder()) {}
+
+std::optional<TetMesh> MeshCache::find(std::uint64_t input, std::uint64_t program) const {
+  if (folder_.empty()) return std::nullopt;
+  return read_entry(folder_ / file_name(input, program));
+}
+
+std::optional<TetMesh> MeshCache::find_of_any_program(std::uint64_t input) const {
+  if (folder_.empty()) return std::nullopt;
+  std::optional<TetMesh> newest;
+  fs::file_time_type newest_time = fs::file_time_type::min();
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(to_hex(input) + '-') || !name.ends_with(extension)) continue;
+    std::error_code no_time;
+    const fs::file_time_type time = entry->last_write_time(no_time);
+    if (no_time || (newest && time <= newest_time)) continue;
+    if (auto mesh = read_entry(entry->path())) {
+      newest = std::move(mesh);
+      newest_time = time;
+    }
+  }
+  return newest;
+}
+
+void MeshCache::store(std::uint64_t input, std::uint64_t program, const TetMesh& mesh) const {
+  if (folder_.empty()) return;
+  std::error_code ignored;
+  fs::create_directories(folder_, ignored);
+  const std::string nodes = node_text(mesh.nodes);
+  const std::string tetrahedra = ele_text(mesh.tetrahedra);
+  const fs::path file = folder_ / file_name(input, program);
+  try {
+    write_file_atomically(file, header_of(nodes, tetrahedra) + nodes + tetrahedra);
+  } catch (const WriteError&) {
+    // The mesh is made anew next time; or another process is storing the same.
+  }
+}
+
+TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
+                       const std::string& switches, std::uint64_t added_points) {
+  const std::uint64_t input = fnv1a_64(switches + '\n' + smesh_text(surface) + node_text(interior));
+  const MeshCache cache;
+  const auto program = find_tetgen();
+  if (!program) {
+    if (auto mesh = cache.find_of_any_program(input)) return *mesh;
+    throw MissingProgram(
+        "the program tetgen, which makes the meshes of bodies, is not in PATH; install Debian's package "
+        "tetgen");
+  }
+  if (auto mesh = cache.find(input, program->fnv1a_64)) return *mesh;
+  require_meshing_memory(surface.points.size() + interior.size() + added_points);
+  TetMesh mesh = run_tetgen(*program, surface, interior, switches);
+  cache.store(input, program->fnv1a_64, mesh);
+  return mesh;
+}
+
+namespace {
+
+Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }
+Vec3d half_size(const SphereShape& sphere) { return {sphere.radius_m, sphere.radius_m, sphere.radius_m}; }
+Vec3d half_size(const TorusShape& torus) {
+  const double outer = torus.major_radius_m + torus.minor_radius_m;
+  return {outer, torus.minor_radius_m, outer};
+}
+
+}  // namespace
+
+std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior) {
+  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape) + interior.count;
+}
+
+ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
+  return std::visit(
+      [&](const auto& kind) {
+        ShapePoints points;
+        points.surface = surface_of(kind);
+        points.interior =
+            place_interior_points(interior, {volume_of(points.surface), half_size(kind),
+                                             [&](const Vec3d& point) { return depth_in(kind, point); }});
+        return points;
+      },
+      shape);
+}
+
+TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
+  require_meshable(point_count(shape, interior));
+  const ShapePoints points = points_of(shape, interior);
+  return tetrahedralise(points.surface, points.interior, keep_surface);
+}
+
+namespace {
+
+/// Nodes are added, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
+/// than 1.414 times its shortest edge. (The surface's triangles may be few and long; kept as they are, they
+/// would stay the springs of the body.)
+const std::string fill_well = "-pq1.414";
+
+/// The limit in TetGen's form, which has no exponents.
+std::string volume_switch(double largest_volume_m3) {
+  if (largest_volume_m3 == 0) return "";
+  std::array<char, 512> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), largest_volume_m3, std::chars_format::fixed).ptr;
+  return "a" + std::string(text.data(), end);
+}
+
+/// How thick a body is somewhere.
+struct Thickness {
+  double size = 0;  ///< m, the diameter of the largest ball inside that touches the surface there
+  Vec3d at;
+};
+
+/// Places spread over the surface by area, and how thick the body is there, the thinnest first; only those
+/// where it is less than `limit`, m.
+std::vector<Thickness> thin_places(const Surface& surface, const std::vector<double>& area_up_to,
+                                   std::size_t samples, double limit) {
+  const TriangleTree tree(surface);
+  std::vector<Thickness> thin;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(samples);
+    const auto found = std::ranges::upper_bound(area_up_to, share * area_up_to.back());
+    const auto t = std::min(static_cast<std::size_t>(found - area_up_to.begin()), area_up_to.size() - 1);
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3d &corner = surface.points[a], ab = surface.points[b] - corner, ac = surface.points[c] - corner;
+    // Roberts' sequence in the plane, folded into the triangle.
+    constexpr double step_b = 0.7548776662466927, step_c = 0.5698402909980532;
+    const double number = static_cast<double>(i + 1);
+    double of_b = number * step_b - std::floor(number * step_b),
+           of_c = number * step_c - std::floor(number * step_c);
+    if (of_b + of_c > 1) of_b = 1 - of_b, of_c = 1 - of_c;
+    const Vec3d at = corner + of_b * ab + of_c * ac, normal = cross(ab, ac),
+                inwards = -1 / length(normal) * normal;
+    const auto has_room = [&](double size) {
+      constexpr double rounding = 1e-6;
+      const double least = size / 2 * (1 - rounding);
+      return tree.distance(at + size / 2 * inwards, least) >= least;
+    };
+    if (has_room(limit)) continue;
+    double fits = 0, too_large = limit;
+    constexpr int halvings = 20;
+    for (int k = 0; k < halvings; ++k) {
+      const double size = (fits + too_large) / 2;
+      (has_room(size) ? fits : too_large) = size;
+    }
+    thin.push_back({too_large, at});
+  }
+  std::ranges::sort(thin, {}, &Thickness::size);
+  return thin;
+}
+
+/// Tetrahedra that are as wide as they are high need half a node for each square of the surface with the
+/// body's thickness as its side: with sheets of 1 m x 1 m x 0.1 to 0.005 m, TetGen makes 0.9 to 1.1 of that.
+/// Throws InputError where a hundredth of the surface or more is so thin that this is too many.
+void require_thick(const Surface& surface) {
+  std::vector<double> area_up_to;
+  double area = 0;
+  for (const auto& [a, b, c] : surface.triangles) {
+    area += length(cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a])) / 2;
+    area_up_to.push_back(area);
+  }
+  constexpr std::size_t samples = 1000, fewest = samples / 100;
+  constexpr double nodes_a_square = 0.5;
+  const double enough = std::sqrt(nodes_a_square * area / static_cast<double>(most_meshable_points));
+  const std::vector<Thickness> thin = thin_places(surface, area_up_to, samples, enough);
+  double most_nodes = 0;
+  Thickness worst;
+  for (std::size_t count = fewest; count <= thin.size(); ++count) {
+    const Thickness& here = thin[count - 1];
+    const double share = static_cast<double>(count) / samples;
+    const double nodes = nodes_a_square * share * area / (here.size * here.size);
+    if (nodes > most_nodes) most_nodes = nodes, worst = here;
+  }
+  constexpr double countable = 1e18;
+  try {
+    require_meshable(static_cast<std::uint64_t>(std::min(most_nodes, countable)),
+                     "by a body that is thicker there");
+  } catch (const InputError& error) {
+    throw InputError("it is " + two_digits(worst.size) + " m thick at " + place(worst.at) + ": " +
+                     error.what());
+  }
+}
+
+}  // namespace
+
+TetMesh surface_mesh(const SurfaceShape& body) {
+  const std::string name = body.file.string();
+  if (!(body.unit_m > 0) || !std::isfinite(body.unit_m))
+    throw InputError(name + ": a unit of the file is " + decimal(body.unit_m) + " m; give a positive number");
+  if (!(body.largest_volume_m3 >= 0) || !std::isfinite(body.largest_volume_m3))
+    throw InputError(name + ": the largest volume of a tetrahedron is " + decimal(body.largest_volume_m3) +
+                     " m^3; give a positive number, or 0 for no limit");
+
+  auto [surface, note] = read_surface(body.file);
+  for (Vec3d& point : surface.points) point = body.unit_m * point;
+  validate_surface(surface, name);
+  // A limit far below the body's volume would fill the memory.
+  constexpr double most_tetrahedra = 1e7;
+  constexpr double tetrahedra_a_node = 7;  // of a fine mesh, a little fewer
+  if (body.largest_volume_m3 > 0 && volume_of(surface) / body.largest_volume_m3 > most_tetrahedra)
+    throw InputError(name + ": tetrahedra of at most " + decimal(body.largest_volume_m3) +
+                     " m^3 in a body of " + shown(volume_of(surface)) +
+                     " m^3 would be more than ten million; give a larger volume");
+  const double tetrahedra =
+      body.largest_volume_m3 > 0 ? volume_of(surface) / body.largest_volume_m3 : 0;  // at least
+  const auto nodes = std::max(std::uint64_t{surface.points.size()},
+                              static_cast<std::uint64_t>(tetrahedra / tetrahedra_a_node));
+  try {
+    require_meshable(nodes);
+    require_thick(surface);
+    TetMesh mesh = tetrahedralise(surface, {}, fill_well + volume_switch(body.largest_volume_m3),
+                                  nodes - surface.points.size());
+    mesh.note = std::move(note);
+    return mesh;
+  } catch (const InputError& error) {
+    throw InputError(name + ": " + error.what());
+  }
+}
+
+}  // namespace mssim

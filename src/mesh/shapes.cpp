@@ -1,0 +1,382 @@
+#include "mesh/shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+#include <string>
+#include <unordered_map>
+
+#include "geometry/geometry.h"
+#include "text/error.h"
+
+namespace mssim {
+
+namespace {
+
+/// Throws InputError unless `metres`, which is `what`, is between a tenth of a millimetre and a kilometre:
+/// coordinates are rounded to micrometres.
+void require_length(double metres, std::string_view what) {
+  if (!(metres >= 1e-4 && metres <= 1000))
+    throw InputError(std::string(what) + " is " + decimal(metres) +
+                     " m; give a length from 0.0001 to 1000 m");
+}
+
+/// Throws InputError unless `cells`, which are `what`, are from `smallest` to 1,000.
+void require_cells(std::uint32_t cells, std::uint32_t smallest, std::string_view what) {
+  constexpr std::uint32_t largest = 1000;
+  if (cells < smallest || cells > largest)
+    throw InputError(std::string(what) + " are " + std::to_string(cells) + "; give a number from " +
+                     std::to_string(smallest) + " to " + std::to_string(largest));
+}
+
+using Index = std::array<std::uint32_t, 3>;
+
+/// Numbers the surface points of the grid of corners in the order of their first use.
+class SurfacePoints {
+ public:
+  SurfacePoints(const BoxShape& box, Surface& surface) : box_(box), surface_(surface) {}
+
+  std::uint32_t operator[](const Index& at) {
+    const auto& cells = box_.cells;
+    const std::uint32_t corner = (at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2];
+    const auto [entry, is_new] =
+        number_.try_emplace(corner, static_cast<std::uint32_t>(surface_.points.size()));
+    if (is_new) {
+      const auto coordinate = [&](std::size_t axis, double size) {
+        return size * (at[axis] / static_cast<double>(cells[axis]) - 0.5);
+      };
+      surface_.points.push_back(
+          rounded({coordinate(0, box_.size.x), coordinate(1, box_.size.y), coordinate(2, box_.size.z)}));
+    }
+    return entry->second;
+  }
+
+ private:
+  const BoxShape& box_;
+  Surface& surface_;
+  std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< by the corner's place in the grid
+};
+
+}  // namespace
+
+std::uint64_t surface_point_count(const BoxShape& box) {
+  const std::uint64_t a = box.cells[0], b = box.cells[1], c = box.cells[2];
+  return 2 * (a * b + b * c + c * a) + 2;
+}
+
+Surface surface_of(const BoxShape& box) {
+  require_length(box.size.x, "a box's size along x");
+  require_length(box.size.y, "a box's size along y");
+  require_length(box.size.z, "a box's size along z");
+  for (const std::uint32_t cells : box.cells) require_cells(cells, 1, "a box's cells along a side");
+
+  Surface surface;
+  SurfacePoints points(box, surface);
+  for (std::size_t normal = 0; normal < 3; ++normal) {
+    const std::size_t right = (normal + 1) % 3;
+    const std::size_t up = (normal + 2) % 3;
+    for (const bool far_side : {false, true})
+      for (std::uint32_t r = 0; r < box.cells[right]; ++r)
+        for (std::uint32_t u = 0; u < box.cells[up]; ++u) {
+          const auto corner = [&](std::uint32_t to_right, std::uint32_t to_up) {
+            Index at{};
+            at[normal] = far_side ? box.cells[normal] : 0;
+            at[right] = r + to_right;
+            at[up] = u + to_up;
+            return points[at];
+          };
+          // (right, up, normal) is right-handed: counter-clockwise seen from the far side.
+          std::array<std::uint32_t, 4> square{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+          if (!far_side) std::swap(square[1], square[3]);
+          surface.triangles.push_back({square[0], square[1], square[2]});
+          surface.triangles.push_back({square[0], square[2], square[3]});
+        }
+  }
+  return surface;
+}
+
+double depth_in(const BoxShape& box, const Vec3d& point) {
+  return std::min({box.size.x / 2 - std::abs(point.x), box.size.y / 2 - std::abs(point.y),
+                   box.size.z / 2 - std::abs(point.z)});
+}
+
+namespace {
+
+/// The corners of an icosahedron: (0, +-1, +-golden ratio) and its cyclic permutations.
+std::array<Vec3d, 12> icosahedron_corners() {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  return {{{-1, g, 0},
+           {1, g, 0},
+           {-1, -g, 0},
+           {1, -g, 0},
+           {0, -1, g},
+           {0, 1, g},
+           {0, -1, -g},
+           {0, 1, -g},
+           {g, 0, -1},
+           {g, 0, 1},
+           {-g, 0, -1},
+           {-g, 0, 1}}};
+}
+
+constexpr std::array<std::array<std::uint32_t, 3>, 20> icosahedron_faces{{
+    {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1},
+}};
+
+/// The points of the cut icosahedron. One on an edge belongs to two faces or more, and is the same point for
+/// all: it is known by its weights at the corners that it lies between.
+class SpherePoints {
+ public:
+  SpherePoints(const SphereShape& sphere, Surface& surface) : sphere_(sphere), surface_(surface) {}
+
+  /// The point of a face with these weights at its corners; their sum is the frequency.
+  std::uint32_t operator()(const std::array<std::uint32_t, 3>& face,
+                           const std::array<std::uint32_t, 3>& weights) {
+    Weights key{};
+    for (std::size_t i = 0; i < 3; ++i)
+      if (weights[i] > 0) key[i] = {face[i] + 1, weights[i]};
+    std::sort(key.begin(), key.end());
+    const auto [entry, is_new] = number_.try_emplace(key, static_cast<std::uint32_t>(surface_.points.size()));
+    if (is_new) surface_.points.push_back(position(key));
+    return entry->second;
+  }
+
+ private:
+  /// (corner of the icosahedron counted from 1, weight), ascending; corner 0 is none.
+  using Weights = std::array<std::array<std::uint32_t, 2>, 3>;
+
+  Vec3d position(const Weights& weights) const {
+    Vec3d sum{};
+    for (const auto& [corner, weight] : weights)
+      if (corner > 0) sum += static_cast<double>(weight) * corners_[corner - 1];
+    return rounded((sphere_.radius_m / length(sum)) * sum);
+  }
+
+  const SphereShape& sphere_;
+  Surface& surface_;
+  std::array<Vec3d, 12> corners_ = icosahedron_corners();
+  std::map<Weights, std::uint32_t> number_;
+};
+
+}  // namespace
+
+std::uint64_t surface_point_count(const SphereShape& sphere) {
+  return 10 * std::uint64_t{sphere.frequency} * sphere.frequency + 2;
+}
+
+Surface surface_of(const SphereShape& sphere) {
+  require_length(sphere.radius_m, "a sphere's radius");
+  require_cells(sphere.frequency, 1, "a sphere's triangles along an edge of the icosahedron (frequency)");
+  Surface surface;
+  SpherePoints point(sphere, surface);
+  const std::uint32_t n = sphere.frequency;
+  for (const auto& face : icosahedron_faces)
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = 0; i + j < n; ++j) {
+        const auto corner = [&](std::uint32_t second, std::uint32_t third) {
+          return point(face, {n - second - third, second, third});
+        };
+        surface.triangles.push_back({corner(i, j), corner(i + 1, j), corner(i, j + 1)});
+        if (i + j + 1 < n)
+          surface.triangles.push_back({corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)});
+      }
+  return surface;
+}
+
+double depth_in(const SphereShape& sphere, const Vec3d& point) { return sphere.radius_m - length(point); }
+
+namespace {
+
+void require_ring(const TorusShape& torus) {
+  require_length(torus.major_radius_m, "a torus's major radius");
+  require_length(torus.minor_radius_m, "a torus's minor radius");
+  require_cells(torus.cells_around, 4, "a torus's cells around");
+  require_cells(torus.cells_across, 3, "a torus's cells across");
+  if (torus.cells_around % 2 != 0)
+    throw InputError("a torus's cells around are " + std::to_string(torus.cells_around) +
+                     ", an odd number; every other circle is turned by half a cell, so give an even one");
+  if (torus.minor_radius_m >= torus.major_radius_m)
+    throw InputError("a torus's minor radius of " + decimal(torus.minor_radius_m) +
+                     " m leaves no hole in a ring of " + decimal(torus.major_radius_m) +
+                     " m; give one less than the major radius");
+}
+
+}  // namespace
+
+std::uint64_t surface_point_count(const TorusShape& torus) {
+  return std::uint64_t{torus.cells_around} * torus.cells_across;
+}
+
+Surface surface_of(const TorusShape& torus) {
+  require_ring(torus);
+  constexpr double full_turn = 2 * std::numbers::pi;
+  const std::uint32_t around = torus.cells_around;
+  const std::uint32_t across = torus.cells_across;
+  Surface surface;
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const double u = full_turn * i / around;
+      const double v = full_turn * (j + (i % 2 == 0 ? 0.0 : 0.5)) / across;
+      const double ring = torus.major_radius_m + torus.minor_radius_m * std::cos(v);
+      surface.points.push_back(
+          rounded({ring * std::cos(u), torus.minor_radius_m * std::sin(v), ring * std::sin(u)}));
+    }
+
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const auto point = [&](std::uint32_t circle, std::uint32_t place_on_it) {
+        return (circle % around) * across + place_on_it % across;
+      };
+      // Point j of an odd circle lies between points j and j + 1 of the even circles beside it.
+      const std::uint32_t a = point(i, j);
+      const std::uint32_t b = point(i, j + 1);
+      if (i % 2 == 0) {
+        surface.triangles.push_back({a, b, point(i + 1, j)});
+        surface.triangles.push_back({b, point(i + 1, j + 1), point(i + 1, j)});
+      } else {
+        surface.triangles.push_back({a, point(i + 1, j + 1), point(i + 1, j)});
+        surface.triangles.push_back({a, b, point(i + 1, j + 1)});
+      }
+    }
+  return surface;
+}
+
+double depth_in(const TorusShape& torus, const Vec3d& point) {
+  const double from_axis = std::sqrt(point.x * point.x + point.z * point.z);
+  const double from_circle = from_axis - torus.major_radius_m;
+  return torus.minor_radius_m - std::sqrt(from_circle * from_circle + point.y * point.y);
+}
+
+namespace {
+
+/// Uniform numbers from the engine's own output: the standard fixes what std::mt19937 gives, and leaves open
+/// what a std distribution makes of it.
+class UniformNumbers {
+ public:
+  explicit UniformNumbers(std::uint32_t seed) : engine_(seed) {}
+  /// Between -1 and 1, both excluded.
+  double next() { return (static_cast<double>(engine_()) + 0.5) / 2147483648.0 - 1; }
+  Vec3d next_vector() {
+    const double x = next();
+    const double y = next();
+    return {x, y, next()};
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// Three perpendicular unit vectors in a random direction, all directions being equally likely: the rotation
+/// of a random quaternion of length 1.
+std::array<Vec3d, 3> random_axes(UniformNumbers& random) {
+  double w = 0;
+  Vec3d v;
+  double squared = 0;
+  do {
+    w = random.next();
+    v = random.next_vector();
+    squared = w * w + dot(v, v);
+  } while (squared > 1 || squared < 0.01);
+  const double scale = 1 / std::sqrt(squared);
+  const double a = w * scale;
+  const auto [b, c, d] = scale * v;
+  return {{{1 - 2 * (c * c + d * d), 2 * (b * c + a * d), 2 * (b * d - a * c)},
+           {2 * (b * c - a * d), 1 - 2 * (b * b + d * d), 2 * (c * d + a * b)},
+           {2 * (b * d + a * c), 2 * (c * d - a * b), 1 - 2 * (b * b + c * c)}}};
+}
+
+struct LatticePoint {
+  double depth = 0;
+  Vec3d position;
+};
+
+class Lattice {
+ public:
+  Lattice(const InteriorSpace& space, UniformNumbers& random)
+      : space_(space), offset_(random.next_vector()), axes_(random_axes(random)) {}
+
+  /// The points at this spacing that lie at least so deep.
+  std::vector<LatticePoint> points(double spacing, double smallest_depth) const {
+    const double cell = spacing * std::cbrt(2.0);  // a cubic cell holds two points
+    const int reach = static_cast<int>(length(space_.half_size) / cell) + 2;
+    std::vector<LatticePoint> found;
+    for (int i = -reach; i <= reach; ++i)
+      for (int j = -reach; j <= reach; ++j)
+        for (int k = -reach; k <= reach; ++k)
+          for (const double centre : {0.0, 0.5}) {
+            const Vec3d at = 0.5 * offset_ + Vec3d{i + centre, j + centre, k + centre};
+            const Vec3d position =
+                (cell * at.x) * axes_[0] + (cell * at.y) * axes_[1] + (cell * at.z) * axes_[2];
+            const double depth = space_.depth(position);
+            if (depth > 0 && depth >= smallest_depth) found.push_back({depth, position});
+          }
+    return found;
+  }
+
+ private:
+  const InteriorSpace& space_;
+  Vec3d offset_;
+  std::array<Vec3d, 3> axes_;
+};
+
+void require_between(double value, double low, double high, const std::string& what) {
+  if (!(value >= low && value <= high))
+    throw InputError("the " + what + " of interior points is " + decimal(value) + "; give a number from " +
+                     decimal(low) + " to " + decimal(high));
+}
+
+}  // namespace
+
+std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space) {
+  constexpr std::uint32_t most = 1000000;
+  if (parameters.count > most)
+    throw InputError("the count of interior points is " + std::to_string(parameters.count) +
+                     "; give at most " + std::to_string(most));
+  require_between(parameters.jitter, 0, 0.5, "jitter");
+  require_between(parameters.margin, 0, 1, "margin");
+  if (parameters.count == 0) return {};
+
+  UniformNumbers random(parameters.seed);
+  const Lattice lattice(space, random);
+  const auto points_at = [&](double spacing) { return lattice.points(spacing, parameters.margin * spacing); };
+
+  // Where all the volume could be used, the spacing would be that of an endless lattice.
+  const double endless = std::cbrt(space.volume / parameters.count);
+  double enough = 0.25 * endless;
+  double too_wide = 1.5 * endless;
+  constexpr int halvings = 30;
+  for (int i = 0; i < halvings; ++i) {
+    const double spacing = (enough + too_wide) / 2;
+    (points_at(spacing).size() >= parameters.count ? enough : too_wide) = spacing;
+  }
+  std::vector<LatticePoint> chosen = points_at(enough);
+  if (chosen.size() < parameters.count)
+    throw InputError(std::to_string(parameters.count) + " interior points do not fit into a volume of " +
+                     shown(space.volume) + " m^3 at a margin of " + decimal(parameters.margin) +
+                     " spacings from its surface; give fewer points or a smaller margin");
+  // The few too many lie at the surface, where they are missed least.
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const LatticePoint& a, const LatticePoint& b) { return a.depth > b.depth; });
+  chosen.resize(parameters.count);
+
+  std::vector<Vec3d> points;
+  for (const LatticePoint& point : chosen) {
+    Vec3d moved = point.position;
+    constexpr int tries = 20;
+    for (int i = 0; i < tries; ++i) {
+      const Vec3d candidate = point.position + (enough * parameters.jitter) * random.next_vector();
+      if (space.depth(candidate) < parameters.margin * enough) continue;
+      moved = candidate;
+      break;
+    }
+    points.push_back(rounded(moved));
+  }
+  return points;
+}
+
+}  // namespace mssim
