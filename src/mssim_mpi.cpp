@@ -5,8 +5,8 @@
 
 #include "platform/machine.h"
 #include "ranks/launch.h"
-#include "ranks/launch_words.h"
 #include "ranks/rank_program.h"
+#include "ranks/requests.h"
 
 int main(int argc, char** argv) {
   mssim::start_with_short_waits(argv);

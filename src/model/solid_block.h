@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/vec3.h"
-#include "model/tetrahedral_mesh.h"
+#include "model/system.h"
 
 namespace mssim {
 

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <functional>
 #include <limits>
+#include <string>
+
+#include "text/text.h"
 
 namespace mssim {
 
@@ -18,6 +22,16 @@ double mean_rest_length(const System& system) {
   double sum = 0;
   for (const Spring& spring : system.springs) sum += spring.rest_length;
   return system.springs.empty() ? 0 : sum / static_cast<double>(system.springs.size());
+}
+
+System with_laws_of(const System& system) {
+  System other;
+  other.materials = system.materials;
+  other.gravity = system.gravity;
+  other.viscous_damping = system.viscous_damping;
+  other.floor = system.floor;
+  other.solver = system.solver;
+  return other;
 }
 
 System without_floor(System system) {
@@ -65,6 +79,33 @@ StiffnessBound stiffness_bound(const System& system) {
   }
   bound.damping += system.viscous_damping;
   return bound;
+}
+
+namespace {
+
+void append(std::string& bytes, std::uint64_t word) {
+  for (int shift = 0; shift < 64; shift += 8) bytes += static_cast<char>(word >> shift & 255U);
+}
+
+void append(std::string& bytes, const Vec3d& vector) {
+  for (const double number : {vector.x, vector.y, vector.z})
+    append(bytes, std::bit_cast<std::uint64_t>(number));
+}
+
+}  // namespace
+
+std::uint64_t state_hash(const State& state) {
+  std::string hashes, leaf;
+  const std::size_t nodes = state.position.size();
+  for (std::size_t first = 0; first < nodes; first += state_hash_leaf) {
+    leaf.clear();
+    for (std::size_t i = first; i < std::min(nodes, first + state_hash_leaf); ++i) {
+      append(leaf, state.position[i]);
+      append(leaf, state.velocity[i]);
+    }
+    append(hashes, fnv1a_64(leaf));
+  }
+  return fnv1a_64(hashes);
 }
 
 }  // namespace mssim

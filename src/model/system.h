@@ -1,19 +1,28 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "garment/garment.h"
 #include "geometry/vec3.h"
-#include "model/grid_patch.h"
-#include "model/solver_settings.h"
-#include "model/spring.h"
-#include "model/tetrahedral_mesh.h"
+#include "model/topology.h"
 
 namespace mssim {
+
+/// How far the solvers of implicit integrators go.
+struct SolverSettings {
+  /// Of conjugate gradients and of Newton's method: where the norm of what is left is so small a part of what
+  /// it was, they end.
+  double tolerance = 1e-5;
+  std::uint32_t iterations = 10;  ///< of fast-springs: local and global steps
+  std::uint32_t substeps = 10;    ///< of xpbd: small steps in a step
+};
 
 /// Where all nodes are and how they move, in the scene file's node order and in double precision: the form in
 /// which states enter and leave every backend.
@@ -59,6 +68,9 @@ std::optional<double> uniform_node_mass(const System& system);
 /// Mean rest length over all springs, m: the unit of position errors.
 double mean_rest_length(const System& system);
 
+/// A system without nodes that has the laws of this one: its materials, gravity, damping, floor and solver.
+System with_laws_of(const System& system);
+
 /// The same system with the floor out of reach.
 System without_floor(System system);
 
@@ -79,5 +91,24 @@ struct StiffnessBound {
 
 /// Gershgorin's bound: a node's springs all aligned, all neighbours moving against it.
 StiffnessBound stiffness_bound(const System& system);
+
+/// Moments at equal times of a simulation, from its start on: a frame is the step nearest to its time.
+struct FrameGrid {
+  double steps_per_frame = 1;  ///< at least 1, so that no two frames are the same step
+
+  /// Steps done when frame `frame` is taken.
+  std::int64_t step_of(std::int64_t frame) const {
+    return std::llround(static_cast<double>(frame) * steps_per_frame);
+  }
+};
+
+/// Nodes of a leaf of state_hash.
+inline constexpr std::size_t state_hash_leaf = 4096;
+
+/// Two states have the same hash if they agree to the last bit; others, but by accident, do not. It is a tree
+/// of two levels, so that who holds only a part of the nodes can hash that part: FNV-1a of each 4096 nodes
+/// (the six numbers of a node after each other, position before velocity, each a double from its lowest byte
+/// on), and FNV-1a of these hashes in their order, each from its lowest byte on.
+std::uint64_t state_hash(const State& state);
 
 }  // namespace mssim

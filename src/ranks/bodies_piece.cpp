@@ -8,9 +8,9 @@
 
 #include "backends/layouts/cuthill_mckee.h"
 #include "backends/openmp/openmp.h"
-#include "ranks/bodies_part.h"
 #include "ranks/common_kernel.h"
 #include "ranks/graph_partition.h"
+#include "ranks/shares.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
 

@@ -6,9 +6,9 @@
 
 #include "backends/openmp/sliced_bodies.h"
 #include "backends/openmp/step_slices.h"
-#include "ranks/body_shares.h"
-#include "ranks/ghost_messages.h"
+#include "ranks/messages.h"
 #include "ranks/piece.h"
+#include "ranks/shares.h"
 
 namespace mssim {
 

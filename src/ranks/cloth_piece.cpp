@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ranks/common_kernel.h"
-#include "ranks/host_memory.h"
+#include "ranks/messages.h"
 #include "scene/cloth.h"
 #include "text/text.h"
 

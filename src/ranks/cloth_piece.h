@@ -8,9 +8,8 @@
 
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/step_bands.h"
-#include "ranks/neighbour_messages.h"
+#include "ranks/messages.h"
 #include "ranks/piece.h"
-#include "ranks/session.h"
 
 namespace mssim {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "backends/vectors/instruction_sets.h"
-#include "ranks/environment.h"
-#include "ranks/session.h"
+#include "ranks/messages.h"
+#include "ranks/requests.h"
 
 namespace mssim {
 

@@ -10,7 +10,7 @@
 
 #include "backends/layouts/cuthill_mckee.h"
 #include "backends/layouts/slice_entries.h"
-#include "ranks/rank_failure.h"
+#include "ranks/shares.h"
 
 namespace mssim {
 namespace {

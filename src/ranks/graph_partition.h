@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "model/spring.h"
+#include "model/system.h"
 
 namespace mssim {
 

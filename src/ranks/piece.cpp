@@ -1,12 +1,55 @@
 #include "ranks/piece.h"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "backends/openmp/openmp.h"
+#include "model/system.h"
+#include "platform/process.h"
 #include "ranks/bodies_piece.h"
 #include "ranks/cloth_piece.h"
-#include "ranks/copies_piece.h"
+#include "ranks/messages.h"
+#include "scene/scene_kinds.h"
+#include "text/text.h"
 
 namespace mssim {
 
 namespace {
+
+/// The whole scene, on every rank once more, stepped as openmp steps it: what the ranks of a machine take
+/// where they have nothing to say to each other, and only share its memory. Rank 0 takes part in the states
+/// of mssim; the others must have the same.
+class CopiesPiece final : public Piece {
+ public:
+  CopiesPiece(const Session& session, const RankJob& job);
+
+  std::vector<NodeRun> taken_by(int /*rank*/) const override { return {{0, scene_nodes()}}; }
+  std::vector<NodeRun> owned_by(int rank) const override;
+  std::size_t scene_nodes() const override { return system_.nodes(); }
+  void set_state(const State& state) override { backend_->set_state(state); }
+  /// Throws RankFailure where the states of the ranks differ.
+  State state() const override;
+  void step(int count) override { backend_->step(count); }
+  int threads() const override { return backend_->threads(); }
+  std::string note() const override;
+
+ private:
+  const Session& session_;
+  System system_;
+  std::unique_ptr<Backend> backend_;
+};
 
 [[noreturn]] void refuse_windows() { throw RankFailure("mssim asks for windows of what is no cloth"); }
 
@@ -30,6 +73,261 @@ std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job) {
   if (job.copies) return std::make_unique<CopiesPiece>(session, job);
   if (is_cloth) return std::make_unique<ClothPiece>(session, job);
   return std::make_unique<BodiesPiece>(session, job);
+}
+
+CopiesPiece::CopiesPiece(const Session& session, const RankJob& job) : session_(session) {
+  // Its start with masses, springs, and what openmp makes of them while it is made.
+  constexpr std::uint64_t node_bytes = 200, spring_bytes = 70;
+  const SceneCounts counts = counts_of(job.scene);
+  require_memory(session, node_bytes * counts.nodes + spring_bytes * counts.springs_unique);
+  system_ = build_system(job.scene);
+  round_start_to_single(system_);
+  backend_ = make_openmp(system_, *job.integrator, job.dt_s, {.threads = job.threads, .roots = job.roots});
+}
+
+std::vector<NodeRun> CopiesPiece::owned_by(int rank) const {
+  return rank == 0 ? taken_by(rank) : std::vector<NodeRun>();
+}
+
+State CopiesPiece::state() const {
+  State state = backend_->state();
+  const std::vector<std::string> hashes = session_.gather(std::to_string(state_hash(state)));
+  for (int rank = 1; rank < session_.ranks(); ++rank)
+    if (hashes[static_cast<std::size_t>(rank)] != hashes.front())
+      throw RankFailure("the copy of " + session_.name_of(rank) + " has another state than that of " +
+                        session_.name_of(0));
+  return state;
+}
+
+std::string CopiesPiece::note() const { return backend_->device() + ", a copy of the scene each"; }
+
+namespace {
+
+/// Nodes that a message holds at most.
+constexpr std::size_t nodes_at_once = std::size_t{1} << 18;
+constexpr int state_tag = 2;
+
+/// The file of a state, [2: positions, velocities][nodes] vectors, in memory. mssim, which made it, leaves
+/// its size alone.
+class MappedState {
+ public:
+  MappedState(const std::filesystem::path& file, std::size_t nodes) : nodes_(nodes) {
+    const Descriptor open(::open(file.c_str(), O_RDWR | O_CLOEXEC));
+    void* memory = open.is_open()
+                       ? ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED, open.get(), 0)
+                       : MAP_FAILED;
+    if (memory == MAP_FAILED)
+      throw RankFailure("rank 0 cannot open " + file.string() + " (" + std::strerror(errno) +
+                        "): it must run on the machine of mssim");
+    vectors_ = static_cast<Vec3d*>(memory);
+  }
+  ~MappedState() { ::munmap(vectors_, bytes()); }
+  MappedState(const MappedState&) = delete;
+  MappedState& operator=(const MappedState&) = delete;
+
+  Vec3d* position(std::size_t node) const { return vectors_ + node; }
+  Vec3d* velocity(std::size_t node) const { return vectors_ + nodes_ + node; }
+
+ private:
+  std::size_t bytes() const { return 2 * nodes_ * sizeof(Vec3d); }
+  std::size_t nodes_;
+  Vec3d* vectors_ = nullptr;
+};
+
+/// Goes through the nodes of some runs.
+class NodeWalk {
+ public:
+  explicit NodeWalk(std::vector<NodeRun> runs) : runs_(std::move(runs)) {}
+  /// The next nodes, as many as a message holds; none at the end.
+  std::vector<NodeRun> next() {
+    std::vector<NodeRun> some;
+    std::size_t room = nodes_at_once;
+    while (room > 0 && run_ < runs_.size()) {
+      const NodeRun run = runs_[run_];
+      const std::size_t count = std::min(room, run.count - taken_);
+      some.push_back({run.first + taken_, count});
+      room -= count;
+      taken_ += count;
+      if (taken_ == run.count) {
+        ++run_;
+        taken_ = 0;
+      }
+    }
+    return some;
+  }
+
+ private:
+  std::vector<NodeRun> runs_;
+  std::size_t run_ = 0, taken_ = 0;
+};
+
+/// The states of some nodes on their way: all positions, and then all velocities.
+struct Message {
+  std::size_t nodes = 0;
+  std::vector<Vec3d> vectors;
+
+  explicit Message(const std::vector<NodeRun>& runs) {
+    for (const NodeRun& run : runs) nodes += run.count;
+    vectors.resize(2 * nodes);
+  }
+  Vec3d* positions() { return vectors.data(); }
+  Vec3d* velocities() { return vectors.data() + nodes; }
+};
+
+/// Calls `take` with every run of a message and its place there.
+template <class Take>
+void for_each_run(const std::vector<NodeRun>& runs, const Take& take) {
+  std::size_t place = 0;
+  for (const NodeRun& run : runs) {
+    take(run, place);
+    place += run.count;
+  }
+}
+
+/// Calls `pass` for every message between rank 0 and a rank in which this process has a part: the rank, the
+/// runs and the message.
+template <class RunsOf, class Pass>
+void for_each_message(const Session& session, const RunsOf& runs_of, const Pass& pass) {
+  for (int rank = 0; rank < session.ranks(); ++rank) {
+    if (session.rank() != 0 && session.rank() != rank) continue;
+    NodeWalk walk(runs_of(rank));
+    for (std::vector<NodeRun> runs = walk.next(); !runs.empty(); runs = walk.next()) {
+      Message message(runs);
+      pass(rank, runs, message);
+    }
+  }
+}
+
+/// Sends a message to a rank, or receives it from there: `start` is MPI_Isend or MPI_Irecv.
+template <class Start>
+void exchange(const Session& session, Message& message, int rank, const Start& start) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  check_mpi(start(message.vectors.data(), static_cast<int>(3 * message.vectors.size()), MPI_DOUBLE, rank,
+                  state_tag, MPI_COMM_WORLD, &request),
+            "exchanging a state");
+  session.wait({&request, 1}, std::array{rank});
+}
+
+/// Writes what the ranks own of the nodes of a file into it: runs_of(rank), whose state on this rank is
+/// `own`.
+template <class RunsOf>
+void gather(const Session& session, const std::filesystem::path& file, std::size_t nodes,
+            const RunsOf& runs_of, const State& own) {
+  std::size_t given = 0;
+  const auto fill = [&](Message& message) {
+    std::copy_n(own.position.data() + given, message.nodes, message.positions());
+    std::copy_n(own.velocity.data() + given, message.nodes, message.velocities());
+    given += message.nodes;
+  };
+  std::optional<MappedState> all;
+  if (session.rank() == 0) all.emplace(file, nodes);
+  for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
+    if (session.rank() == rank)
+      fill(message);
+    else
+      exchange(session, message, rank, MPI_Irecv);
+    if (all)
+      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+        std::copy_n(message.positions() + place, run.count, all->position(run.first));
+        std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
+      });
+    else
+      exchange(session, message, 0, MPI_Isend);
+  });
+}
+
+}  // namespace
+
+void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece) {
+  State own;
+  const auto keep = [&](Message& message) {
+    own.position.insert(own.position.end(), message.positions(), message.positions() + message.nodes);
+    own.velocity.insert(own.velocity.end(), message.velocities(), message.velocities() + message.nodes);
+  };
+  std::optional<MappedState> all;
+  if (session.rank() == 0) all.emplace(file, piece.scene_nodes());
+  const auto runs_of = [&](int rank) { return piece.taken_by(rank); };
+  for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
+    if (all)
+      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+        std::copy_n(all->position(run.first), run.count, message.positions() + place);
+        std::copy_n(all->velocity(run.first), run.count, message.velocities() + place);
+      });
+    else
+      exchange(session, message, 0, MPI_Irecv);
+    if (session.rank() == rank)
+      keep(message);
+    else
+      exchange(session, message, rank, MPI_Isend);
+  });
+  piece.set_state(own);
+}
+
+void gather_state(const Session& session, const std::filesystem::path& file, const Piece& piece) {
+  gather(
+      session, file, piece.scene_nodes(), [&](int rank) { return piece.owned_by(rank); }, piece.state());
+}
+
+void gather_window(const Session& session, const std::filesystem::path& file, const Piece& piece,
+                   const GridWindow& window) {
+  gather(
+      session, file, window.nodes(), [&](int rank) { return piece.owned_by(rank, window); },
+      piece.state(window));
+}
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+void StepCosts::step(const Session& session, Piece& piece, int count) {
+  const auto begin = std::chrono::steady_clock::now();
+  piece.step(count);
+  const auto stepped = std::chrono::steady_clock::now();
+  session.meet();
+  met_s_ += seconds_since(stepped);
+  seconds_ += seconds_since(begin);
+  steps_ += count;
+}
+
+std::vector<std::string> StepCosts::tell(const Session& session, const Piece& piece) {
+  const RankCosts now = piece.costs(), before = std::exchange(told_, now);
+  const double seconds = std::exchange(seconds_, 0), met_s = std::exchange(met_s_, 0),
+               steps = std::exchange(steps_, 0);
+  std::vector<std::string> lines;
+  const auto say = [&](const char* name, double value) {
+    lines.push_back(std::string("cost ") + name + ' ' + decimal(value));
+  };
+  double waiting = 0, packing = 0, bytes = 0, messages = 0;
+  if (seconds > 0) {
+    waiting = (met_s + now.waited_s - before.waited_s) / seconds;
+    packing = (now.packed_s - before.packed_s) / seconds;
+    bytes = static_cast<double>(now.bytes - before.bytes) / steps;
+    messages = static_cast<double>(now.messages - before.messages) / steps;
+  }
+  double waiting_sum = 0, packing_sum = 0, most_bytes = 0, most_messages = 0;
+  const std::string own =
+      decimal(waiting) + ' ' + decimal(packing) + ' ' + decimal(bytes) + ' ' + decimal(messages);
+  for (const std::string& text : session.gather(own)) {
+    std::istringstream of_rank(text);
+    of_rank >> waiting >> packing >> bytes >> messages;
+    waiting_sum += waiting;
+    packing_sum += packing;
+    most_bytes = std::max(most_bytes, bytes);
+    most_messages = std::max(most_messages, messages);
+  }
+  say("waiting", std::min(1.0, waiting_sum / session.ranks()));
+  say("packing", std::min(1.0, packing_sum / session.ranks()));
+  say("bytes", most_bytes);
+  say("messages", most_messages);
+  if (session.ranks() > 1) {
+    say("latency", links_.latency_s);
+    say("bandwidth", links_.bytes_per_second);
+  }
+  return lines;
 }
 
 }  // namespace mssim

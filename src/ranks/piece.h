@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "ranks/rank_costs.h"
-#include "ranks/session.h"
+#include "ranks/messages.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -70,5 +70,38 @@ std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job);
 /// Throws Unsupported where the scene cannot be cut for so many ranks, as make_piece does in each of them: to
 /// be asked before any are started.
 void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks);
+
+/// States between mssim and the pieces: rank 0 has the file of a state (docs/own-backends.md), and each rank
+/// its part. No rank holds more than its part and a message. All ranks call these together; they throw
+/// RankFailure.
+
+/// Gives every rank what it takes of the state in the file.
+void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece);
+
+/// Writes what every rank owns into the file.
+void gather_state(const Session& session, const std::filesystem::path& file, const Piece& piece);
+
+/// The same of a window of a cloth: the file has its nodes alone.
+void gather_window(const Session& session, const std::filesystem::path& file, const Piece& piece,
+                   const GridWindow& window);
+
+/// What the steps of all ranks cost since they were last told: the answers to the request `costs`
+/// (docs/own-backends.md).
+class StepCosts {
+ public:
+  explicit StepCosts(const LinkSpeed& links) : links_(links) {}
+
+  /// Takes steps with the piece, until all ranks have.
+  void step(const Session& session, Piece& piece, int count);
+  /// The lines of the answer, on all ranks, which call this together.
+  std::vector<std::string> tell(const Session& session, const Piece& piece);
+
+ private:
+  LinkSpeed links_;
+  RankCosts told_;      ///< what the piece said when it was last asked
+  double seconds_ = 0;  ///< of the steps since then
+  double met_s_ = 0;    ///< of these, waiting for others at their end
+  double steps_ = 0;
+};
 
 }  // namespace mssim

@@ -19,13 +19,9 @@
 
 #include "integrators/all_integrators.h"
 #include "platform/machine.h"
-#include "ranks/environment.h"
-#include "ranks/launch_words.h"
+#include "ranks/messages.h"
 #include "ranks/piece.h"
-#include "ranks/piece_states.h"
 #include "ranks/requests.h"
-#include "ranks/session.h"
-#include "ranks/step_costs.h"
 #include "scene/scene_file.h"
 #include "text/text.h"
 

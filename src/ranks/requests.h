@@ -1,12 +1,32 @@
 #pragma once
 
+#include <cstdlib>
 #include <map>
+#include <ostream>
 #include <string>
 #include <string_view>
 
 #include "platform/process.h"
 
 namespace mssim {
+
+/// A variable of the environment, or what stands for it where it is not set or empty.
+inline std::string variable(const char* name, const char* otherwise = "") {
+  const char* value = std::getenv(name);
+  return value && *value ? value : otherwise;
+}
+
+// What the process that starts the launcher (launch.h) and the ranks say to each other: the ranks among all
+// that they print.
+
+/// The argument of mssim-mpi, and of its ranks, by which each steps the whole scene.
+inline constexpr std::string_view copies_word = "copies";
+
+/// On stdout, once: MPI has started, on all hosts.
+inline constexpr std::string_view ranks_have_started = "mssim-mpi: all ranks have started";
+
+/// On stderr, before the sentence with which a rank fails.
+inline constexpr std::string_view sentence_mark = "mssim-mpi: ";
 
 /// The program's end of the protocol of own backends (docs/own-backends.md): what mssim says comes line by
 /// line.
@@ -30,5 +50,31 @@ class Requests {
 
 /// A sentence as what follows the first word of an answer: in one line.
 std::string in_one_line(std::string text);
+
+/// What a launcher of MPI and its ranks print, of which some lines say why they have failed.
+class LauncherOutput {
+ public:
+  /// Lines that a reader may want to see are passed on, to a stream that lives as long.
+  explicit LauncherOutput(std::ostream& passed_on) : passed_on_(passed_on) {}
+
+  /// The next bytes, which need not end with a line.
+  void take(std::string_view bytes);
+  /// Whether the ranks have said that they have started (ranks_have_started).
+  bool ranks_started() const { return started_; }
+  /// Whether a rank has said why it has failed.
+  bool rank_has_failed() const { return !of_rank_.empty(); }
+  /// Why they have failed, in a sentence: what a rank has said first; or else the last line of the launcher
+  /// that names one; or else what Open MPI says first between lines of dashes or asterisks, behind the line
+  /// before those, which is ssh's; or else the last line.
+  std::string reason() const;
+
+ private:
+  void take_line(const std::string& line);
+
+  std::ostream& passed_on_;
+  std::string unfinished_, of_rank_, about_rank_, in_frame_, before_frame_, last_;
+  bool framed_ = false;  ///< in the first paragraph behind such a line
+  bool started_ = false;
+};
 
 }  // namespace mssim

@@ -13,9 +13,8 @@
 #include "geometry/geometry.h"
 #include "platform/machine.h"
 #include "scene/body_shapes.h"
-#include "scene/fields/material_fields.h"
-#include "scene/fields/scene_error.h"
-#include "scene/spec/memory.h"
+#include "scene/fields/fields.h"
+#include "scene/spec/scene_spec.h"
 #include "text/error.h"
 #include "text/text.h"
 

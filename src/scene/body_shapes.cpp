@@ -6,7 +6,7 @@
 
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/spec/scene_spec.h"
 #include "text/text.h"

@@ -4,8 +4,7 @@
 #include <optional>
 
 #include "mesh/tet_mesh.h"
-#include "scene/fields/field_visitor.h"
-#include "scene/spec/bodies_spec.h"
+#include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/fields/material_fields.h"
-#include "scene/fields/scene_error.h"
-#include "scene/spec/memory.h"
+#include "scene/fields/fields.h"
+#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 namespace {

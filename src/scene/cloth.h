@@ -4,8 +4,7 @@
 #include <optional>
 
 #include "model/system.h"
-#include "scene/fields/field_visitor.h"
-#include "scene/spec/scene_parts.h"
+#include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -26,7 +25,7 @@ std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec);
 SceneParts read_cloth(const SceneSpec& spec);
 
 /// The nodes of a window as a cloth of their own, with the numbers that they have in the whole: what lies
-/// outside is not built. Its springs are left out: springs_of (model/grid_patch.h) gives them. Throws
+/// outside is not built. Its springs are left out: springs_of (model/topology.h) gives them. Throws
 /// std::bad_alloc.
 System build_cloth_window(const SceneSpec& spec, const GridWindow& window);
 

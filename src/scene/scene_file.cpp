@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "platform/files.h"
-#include "scene/fields/json_reader.h"
-#include "scene/fields/json_schema.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
 

@@ -7,7 +7,7 @@
 #include "garment/scene/garment_scene.h"
 #include "scene/bodies.h"
 #include "scene/cloth.h"
-#include "scene/spec/memory.h"
+#include "scene/spec/scene_spec.h"
 
 namespace mssim {
 namespace {

@@ -6,9 +6,7 @@
 #include <string_view>
 
 #include "model/system.h"
-#include "scene/fields/field_visitor.h"
-#include "scene/spec/built_scene.h"
-#include "scene/spec/scene_parts.h"
+#include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

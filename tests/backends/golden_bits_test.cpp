@@ -16,7 +16,7 @@
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
 #include "integrators/all_integrators.h"
-#include "model/state_hash.h"
+#include "model/system.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/dressing_systems.h"

@@ -2,7 +2,7 @@
 
 #include "backends/described/backend_description.h"
 #include "fuzz_checks.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 
 namespace mssim {
 namespace {

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "fuzz_checks.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "model/energy.h"
-#include "model/grid_patch.h"
 #include "model/system.h"
+#include "model/topology.h"
 
 namespace mssim {
 namespace {

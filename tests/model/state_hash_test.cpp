@@ -1,5 +1,3 @@
-#include "model/state_hash.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "model/system.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,5 +1,3 @@
-#include "ranks/bodies_part.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include "backends/openmp/sliced_bodies.h"
 #include "backends/openmp/step_slices.h"
 #include "integrators/all_integrators.h"
+#include "ranks/shares.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/mail.h"
 #include "tests/support/solid_system.h"

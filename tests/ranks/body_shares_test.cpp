@@ -1,11 +1,11 @@
-#include "ranks/body_shares.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 #include <string>
+
+#include "ranks/shares.h"
 
 namespace mssim {
 namespace {

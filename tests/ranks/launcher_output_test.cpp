@@ -1,9 +1,9 @@
-#include "ranks/launcher_output.h"
-
 #include <gtest/gtest.h>
 
 #include <sstream>
 #include <string>
+
+#include "ranks/requests.h"
 
 namespace mssim {
 namespace {

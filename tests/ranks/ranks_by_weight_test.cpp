@@ -1,7 +1,7 @@
-#include "ranks/ranks_by_weight.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "ranks/shares.h"
 
 namespace mssim {
 namespace {

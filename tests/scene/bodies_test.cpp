@@ -18,7 +18,7 @@
 #include "output/tables/csv.h"
 #include "output/tables/published_bodies.h"
 #include "scene/body_shapes.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/scene_files.h"

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "platform/files.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "scene/spec/memory.h"
+#include "scene/spec/scene_spec.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/scene_files.h"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "tests/support/scene_files.h"
 #include "text/text.h"

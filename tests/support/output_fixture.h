@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "model/grid_patch.h"
 #include "model/system.h"
+#include "model/topology.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

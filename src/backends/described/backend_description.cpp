@@ -13,8 +13,7 @@
 
 #include "integrators/all_integrators.h"
 #include "platform/files.h"
-#include "scene/fields/json_reader.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/interface/backend.h"
-#include "model/grid_patch.h"
+#include "model/topology.h"
 
 namespace mssim {
 

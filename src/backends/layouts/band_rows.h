@@ -8,7 +8,7 @@
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/band_layout.h"
 #include "backends/layouts/spring_constants.h"
-#include "model/spring.h"
+#include "model/system.h"
 
 namespace mssim {
 

@@ -11,7 +11,7 @@
 #include <cstdint>
 
 #include "backends/vectors/lanes-inl.h"
-#include "model/spring.h"
+#include "model/system.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "model/grid_patch.h"
+#include "model/topology.h"
 
 namespace mssim {
 

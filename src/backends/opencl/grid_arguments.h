@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "kernels/grid_parameters.h"
-#include "model/grid_patch.h"
 #include "model/system.h"
+#include "model/topology.h"
 
 namespace mssim {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "backends/devices/program.h"
-#include "model/spring.h"
+#include "model/system.h"
 
 namespace mssim {
 namespace {

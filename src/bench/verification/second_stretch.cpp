@@ -23,17 +23,6 @@ constexpr int most_steps = 400;
 constexpr int starts = 8;
 constexpr std::size_t enough_landed = 10;
 
-/// The laws of the scene, on a floor of a height of its own.
-System with_laws_of(const System& scene) {
-  System small;
-  small.materials = scene.materials;
-  small.gravity = scene.gravity;
-  small.viscous_damping = scene.viscous_damping;
-  small.floor = scene.floor;
-  small.solver = scene.solver;
-  return small;
-}
-
 System small_cloth(const System& scene, const GridPatch& grid) {
   System small = with_laws_of(scene);
   const GridPatch patch{13, 17, grid.spacing};

@@ -9,7 +9,7 @@
 #include "bench/verification/deviation.h"
 #include "integrators/stability.h"
 #include "model/spectrum.h"
-#include "model/state_hash.h"
+#include "model/system.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -56,7 +56,7 @@ struct Verification {
   double position_error = 0;  ///< largest distance between the same node's positions, in mean rest lengths
   double energy_drift =
       0;  ///< total energy less the reference's, over the reference's kinetic + elastic energy
-  std::optional<std::uint64_t> state_hash;  ///< of the state after the last step (model/state_hash.h)
+  std::optional<std::uint64_t> state_hash;  ///< of the state after the last step (model/system.h)
   std::optional<std::string> failure;       ///< empty: verified
 };
 

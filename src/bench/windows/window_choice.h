@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/grid_patch.h"
+#include "model/topology.h"
 
 namespace mssim {
 

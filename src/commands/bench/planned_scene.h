@@ -7,7 +7,6 @@
 #include "bench/expected_time.h"
 #include "bench/job/scene_job.h"
 #include "commands/shared/prepared_scene.h"
-#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

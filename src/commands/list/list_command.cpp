@@ -19,7 +19,7 @@
 #include "commands/shared/opencl_notes.h"
 #include "integrators/all_integrators.h"
 #include "output/tables/listing.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/error.h"

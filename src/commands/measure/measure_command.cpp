@@ -16,7 +16,7 @@
 #include "garment/scene/garment_body.h"
 #include "mesh/surface_file.h"
 #include "platform/files.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/error.h"

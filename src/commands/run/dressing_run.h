@@ -7,7 +7,7 @@
 #include "commands/shared/stop_request.h"
 #include "garment/fitting/dress.h"
 #include "garment/stepping/dressing_backend.h"
-#include "model/frame_grid.h"
+#include "model/system.h"
 
 namespace mssim {
 

@@ -5,7 +5,6 @@
 
 #include "integrators/stability.h"
 #include "model/system.h"
-#include "scene/spec/scene_parts.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

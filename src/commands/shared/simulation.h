@@ -6,7 +6,7 @@
 
 #include "backends/interface/backend.h"
 #include "model/energy.h"
-#include "model/frame_grid.h"
+#include "model/system.h"
 
 namespace mssim {
 

@@ -8,7 +8,7 @@
 
 #include "bench/verification/blow_up.h"
 #include "garment/stepping/serial_dressing.h"
-#include "model/state_hash.h"
+#include "model/system.h"
 #include "statistics/statistics.h"
 
 namespace mssim {

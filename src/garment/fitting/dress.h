@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "garment/stepping/dressing_backend.h"
-#include "model/frame_grid.h"
 #include "model/system.h"
 
 namespace mssim {

@@ -10,7 +10,7 @@
 #include "garment/pattern/panel_springs.h"
 #include "garment/pattern/placement.h"
 #include "garment/pattern/seams.h"
-#include "model/spring.h"
+#include "model/system.h"
 #include "text/error.h"
 
 namespace mssim {

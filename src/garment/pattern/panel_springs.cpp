@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geometry/geometry.h"
-#include "model/grid_patch.h"
+#include "model/topology.h"
 #include "text/error.h"
 
 namespace mssim {

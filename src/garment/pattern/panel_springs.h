@@ -5,7 +5,7 @@
 
 #include "garment/garment.h"
 #include "garment/pattern/panel_mesh.h"
-#include "model/spring.h"
+#include "model/system.h"
 
 namespace mssim {
 

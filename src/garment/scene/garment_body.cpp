@@ -11,8 +11,7 @@
 #include "geometry/geometry.h"
 #include "geometry/surface.h"
 #include "mesh/surface_file.h"
-#include "scene/fields/length_field.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "text/error.h"
 #include "text/text.h"
 

@@ -3,7 +3,7 @@
 #include <variant>
 
 #include "garment/body/measured_body.h"
-#include "scene/fields/field_visitor.h"
+#include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

@@ -13,7 +13,7 @@
 #include "garment/pattern/jeans.h"
 #include "garment/scene/garment_body.h"
 #include "geometry/geometry.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "text/error.h"
 #include "text/text.h"
 

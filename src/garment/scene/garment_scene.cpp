@@ -14,9 +14,8 @@
 #include "garment/layers/panel_layers.h"
 #include "garment/scene/garment_body.h"
 #include "garment/scene/garment_cut.h"
-#include "scene/fields/length_field.h"
-#include "scene/fields/scene_error.h"
-#include "scene/spec/memory.h"
+#include "scene/fields/fields.h"
+#include "scene/spec/scene_spec.h"
 #include "text/text.h"
 
 namespace mssim {

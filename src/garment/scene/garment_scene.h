@@ -2,8 +2,7 @@
 
 #include <optional>
 
-#include "scene/fields/field_visitor.h"
-#include "scene/spec/scene_parts.h"
+#include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

@@ -1,7 +1,6 @@
 #include "garment/spec/garment_pieces.h"
 
-#include "scene/fields/material_fields.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "text/error.h"
 #include "text/text.h"
 
@@ -10,7 +9,6 @@ namespace {
 
 constexpr std::uint32_t most_panels = 64, most_seams = 256, most_lines = 10'000, most_layers = 8;
 constexpr std::size_t most_points = 100;  // of a boundary: they are compared with each other
-constexpr double largest_length_m = 10;
 
 void visit_boundary(FieldVisitor& fields, const Field& field, BoundarySpec& boundary) {
   fields.object(field, Presence::required, [&](FieldVisitor& drawn) {

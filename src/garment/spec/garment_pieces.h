@@ -11,7 +11,7 @@
 #include "garment/pattern/panel_springs.h"
 #include "garment/pattern/seams.h"
 #include "geometry/vec3.h"
-#include "scene/fields/field_visitor.h"
+#include "scene/fields/fields.h"
 
 namespace mssim {
 

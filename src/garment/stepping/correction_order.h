@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "garment/garment.h"
-#include "model/spring.h"
+#include "model/system.h"
 
 namespace mssim {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "model/spring.h"
+#include "model/system.h"
 
 namespace mssim {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "geometry/vec3.h"
-#include "model/tetrahedral_mesh.h"
+#include "model/system.h"
 #include "output/traces/trace_reader.h"
 
 namespace mssim {

@@ -9,7 +9,7 @@
 #include "picture/colour_map.h"
 #include "picture/legend.h"
 #include "render/srgb.h"
-#include "scene/fields/scene_floor.h"
+#include "scene/fields/fields.h"
 
 namespace mssim {
 namespace {

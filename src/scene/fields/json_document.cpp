@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "text/text.h"
 
 namespace mssim {

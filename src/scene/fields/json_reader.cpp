@@ -1,13 +1,11 @@
-#include "scene/fields/json_reader.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scene/fields/fields.h"
 #include "scene/fields/json_document.h"
-#include "scene/fields/scene_error.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,8 +1,8 @@
-#include "scene/fields/json_schema.h"
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
+
+#include "scene/fields/fields.h"
 
 namespace mssim {
 namespace {

@@ -3,16 +3,83 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
+#include "garment/body/measured_body.h"
 #include "garment/spec/garment_spec.h"
-#include "model/spring.h"
+#include "geometry/vec3.h"
+#include "mesh/meshing.h"
+#include "mesh/shapes.h"
 #include "model/system.h"
-#include "scene/spec/bodies_spec.h"
 
 namespace mssim {
+
+/// A box, sphere or torus whose surface and inner points mssim makes itself.
+template <class Solid>
+struct GeneratedShape {
+  Solid solid;
+  InteriorPoints interior;
+
+  bool operator==(const GeneratedShape&) const = default;
+};
+
+/// TetGen's files. Paths that are not absolute start at the scene file's folder.
+struct MeshFiles {
+  std::string node_file;
+  std::string ele_file;
+  double unit_m = 1;  ///< metres in one unit of the files
+
+  bool operator==(const MeshFiles&) const = default;
+};
+
+/// A closed surface in an OBJ or STL file, to be filled with tetrahedra. Paths that are not absolute start at
+/// the scene file's folder.
+struct SurfaceFile {
+  std::string file;
+  double unit_m = 1;                  ///< metres in one unit of the file
+  double largest_tetrahedron_m3 = 0;  ///< volume of the largest one allowed, 0 for no limit
+
+  bool operator==(const SurfaceFile&) const = default;
+};
+
+/// The first body's shape of another scene: of that name, or of the file with that path, which, if not
+/// absolute, starts at the scene file's folder.
+struct ShapeOfScene {
+  std::string name;
+
+  bool operator==(const ShapeOfScene&) const = default;
+};
+
+/// One alternative a kind of shape, in the order of their table (body_shapes.h).
+using BodyShape = std::variant<GeneratedShape<BoxShape>, GeneratedShape<SphereShape>,
+                               GeneratedShape<TorusShape>, MeshFiles, SurfaceFile, ShapeOfScene>;
+
+/// One body: its shape, and how it starts.
+struct BodySpec {
+  BodyShape shape;
+  std::optional<MeshSize> expected;
+  Vec3d centre_m;            ///< of mass
+  Vec3d turn_axis{0, 1, 0};  ///< any length but zero
+  double turn_deg = 0;       ///< by which the shape is turned about its centre
+  Vec3d velocity_m_per_s;    ///< of the centre
+  Vec3d spin_rad_per_s;      ///< angular velocity about the centre
+  /// Rate at which the body grows at first, so that every spring works from the first step on: a node at the
+  /// distance r from the centre starts with swell * r outwards.
+  double swell_per_s = 0;
+};
+
+/// Solid bodies, all of one material, that start apart from each other and fall.
+struct BodiesSpec {
+  double density_kg_per_m3 = 0;  ///< a body's mass is spread evenly over its nodes
+  SpringMaterial springs;
+  std::vector<BodySpec> list;
+};
 
 /// The nodes of a cloth that stay where they start: of one row every `every_columns`-th, and its last one.
 struct ClothPins {
@@ -64,5 +131,38 @@ struct SceneCounts {
   /// As Hong et al. count them; how, depends on the scene kind. None for a kind that they do not have.
   std::optional<std::uint64_t> springs_published = {};
 };
+
+/// What a scene's file describes.
+struct BuiltScene {
+  System system;
+  std::string note = {};  ///< what a reader should know of what it was built from, in a sentence; or empty
+  std::shared_ptr<const MeasuredBody> body = {};  ///< that a garment is put on; none of other scenes
+};
+
+/// What a scene is built from. All files that its own file names have been read, each once, and made into
+/// meshes, or into a measured body and the garment that is cut for it; none is read again.
+///
+/// Copies share the meshes, of which there is one each. Estimates of memory do not count them: who has built
+/// the scene for the last time drops its parts.
+struct SceneParts {
+  SceneCounts counts;                 ///< what the scene has
+  std::optional<SceneCounts> stated;  ///< what files say about that, none where they say nothing
+  /// Builds the scene, whose spec they were read for. Throws SceneError when it needs more memory than there
+  /// is, before allocating any for its System, and for what does not fit together.
+  std::function<BuiltScene(const SceneSpec& spec)> build;
+};
+
+/// Bytes that any run of a scene needs at least: its System with the start state, and the double-precision
+/// reference that every run is compared with (up to four pairs of position and velocity), and one state read
+/// back. The backend under test comes on top.
+std::uint64_t memory_needed(std::uint64_t nodes, std::uint64_t springs);
+
+/// Throws SceneError when any run of a scene of this size needs more than the available memory, as below.
+void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts);
+
+/// Throws SceneError when `needed` bytes for a scene of this size are more than the available memory, naming
+/// both and the remedy. `pointer` is the JSON pointer to what sets the size.
+void require_memory(const SceneSpec& spec, std::string_view pointer, const SceneCounts& counts,
+                    std::uint64_t needed, std::string_view remedy);
 
 }  // namespace mssim

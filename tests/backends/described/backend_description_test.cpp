@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

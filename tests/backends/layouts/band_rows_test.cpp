@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/grid_patch.h"
+#include "model/topology.h"
 
 namespace mssim {
 namespace {

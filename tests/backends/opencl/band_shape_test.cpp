@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "integrators/all_integrators.h"
-#include "model/grid_patch.h"
+#include "model/topology.h"
 
 namespace mssim {
 namespace {

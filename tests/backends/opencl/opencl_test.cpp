@@ -17,8 +17,8 @@
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
-#include "model/grid_patch.h"
 #include "model/system.h"
+#include "model/topology.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/free_fall.h"
 #include "tests/support/largest_distance.h"

@@ -18,7 +18,7 @@
 #include "bench/verification/deviation.h"
 #include "bench/verification/second_stretch.h"
 #include "integrators/all_integrators.h"
-#include "model/state_hash.h"
+#include "model/system.h"
 #include "scene/scene_file.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"

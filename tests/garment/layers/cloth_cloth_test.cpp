@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "model/grid_patch.h"
+#include "model/topology.h"
 #include "tests/support/cloth_layers_fixture.h"
 
 namespace mssim {

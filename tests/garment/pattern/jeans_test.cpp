@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "model/grid_patch.h"
+#include "model/topology.h"
 #include "tests/support/jeans_body.h"
 #include "tests/support/mesh_fixture.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "model/grid_patch.h"
+#include "model/topology.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
 

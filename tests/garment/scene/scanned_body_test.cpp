@@ -11,7 +11,7 @@
 #include <string>
 
 #include "commands/shared/command.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/dressed_jeans.h"

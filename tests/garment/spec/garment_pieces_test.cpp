@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/scene_files.h"

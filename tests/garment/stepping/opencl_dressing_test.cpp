@@ -12,7 +12,7 @@
 
 #include "garment/stepping/serial_dressing.h"
 #include "integrators/all_integrators.h"
-#include "model/state_hash.h"
+#include "model/system.h"
 #include "tests/support/dressing_step.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/largest_distance.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/spring.h"
+#include "model/system.h"
 
 namespace mssim {
 

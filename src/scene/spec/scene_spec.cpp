@@ -1,9 +1,9 @@
-#include "scene/spec/memory.h"
+#include "scene/spec/scene_spec.h"
 
 #include <string>
 
 #include "platform/machine.h"
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 
 namespace mssim {
 

@@ -2,15 +2,19 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "geometry/vec3.h"
+#include "model/system.h"
+#include "text/error.h"
 
 namespace mssim {
 
@@ -90,5 +94,50 @@ class FieldVisitor {
   /// A nested object; `fields` is called only when it is there.
   virtual void object(const Field& field, Presence presence, const FieldList& fields) = 0;
 };
+
+/// No length of a garment or its body is larger, m.
+inline constexpr double largest_length_m = 10;
+
+/// A length of a garment or its body.
+inline void visit_length(FieldVisitor& fields, const Field& field, double& target) {
+  fields.number(field, target, above(0, largest_length_m));
+}
+
+inline constexpr double largest_stiffness = 1e9;  ///< N/m
+
+/// Names the fields of one kind of spring, with their targets in `material`.
+inline void visit_material(FieldVisitor& fields, SpringMaterial& material, const Range& stiffness) {
+  fields.number({"stiffness_n_per_m", "Force per lengthening, N/m."}, material.stiffness, stiffness);
+  fields.number({"damping_n_s_per_m", "Force against the rate of lengthening, along the spring, N s/m."},
+                material.damping, from(0, 1e6));
+}
+
+/// Bad input: a scene that cannot be found, read, understood or built. what() is one sentence that names the
+/// file, the place in it (a JSON pointer such as /cloth/rows), the value and the remedy. Commands print it
+/// and exit with 2.
+struct SceneError : ErrorWith<exit_bad_input> {
+  using ErrorWith::ErrorWith;
+};
+
+/// Throws SceneError: "FILE: POINTER PROBLEM".
+[[noreturn]] void refuse(const std::filesystem::path& file, std::string_view pointer,
+                         const std::string& problem);
+
+/// A number for an error message, as short as it reads back.
+std::string shown_number(double number);
+
+/// The height of the floor that a scene file states, m; none where it states none, or where `scene_json` is
+/// no scene file.
+std::optional<double> stated_floor(const std::string& scene_json);
+
+/// Gives every value of a JSON text's top object to its field, recursively. `file` is where the text came
+/// from. Throws SceneError, one sentence with file, JSON pointer, value and remedy, for what is not strict
+/// JSON (parse_json), a document that is no object, an unknown key (naming the nearest known one), a missing
+/// key, a wrong type, a fraction where an integer is asked for, and a number out of its range.
+void read_fields(const std::filesystem::path& file, const std::string& text, const FieldList& fields);
+
+/// The JSON Schema (draft 7) of a file whose top object has these fields: it accepts what read_fields
+/// accepts. `title` and `description` are of the file. Indented, ends with a newline.
+std::string json_schema(std::string_view title, std::string_view description, const FieldList& fields);
 
 }  // namespace mssim

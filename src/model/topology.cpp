@@ -1,4 +1,4 @@
-#include "model/grid_patch.h"
+#include "model/topology.h"
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace mssim {
 
@@ -53,5 +55,41 @@ inline constexpr std::array<GridSpring, 6> grid_stencil{{
     {2, 0, bending},
     {0, 2, bending},
 }};
+
+/// A regular cloth: rows x columns nodes, row-major, joined by the 12-neighbour stencil.
+struct GridPatch {
+  std::uint32_t rows = 0;
+  std::uint32_t columns = 0;
+  double spacing = 0;              ///< m, between neighbours of a row or a column at rest
+  std::uint32_t first_column = 0;  ///< its place in the whole cloth, where this is a window of it
+
+  std::uint32_t nodes() const { return rows * columns; }
+  std::uint32_t node(std::uint32_t row, std::uint32_t column) const { return row * columns + column; }
+  /// Rest length of one kind of spring, m, as every backend uses it (see Spring::rest_length).
+  float rest_length(GridSpringKind kind) const;
+};
+
+/// The nodes of some rows and columns of a grid that follow each other.
+struct GridWindow {
+  std::uint32_t row = 0, column = 0;  ///< the first ones
+  std::uint32_t rows = 0, columns = 0;
+
+  std::size_t nodes() const { return std::size_t{rows} * columns; }
+};
+
+/// Number of unique springs of a rows x columns grid, without building them:
+/// structural 2rc - r - c, shear 2(r-1)(c-1), bending 2rc - 2r - 2c (for grids of at least 2 x 2).
+std::uint64_t count_springs(std::uint64_t rows, std::uint64_t columns);
+
+/// The springs of the grid in the order of their owners, each once. Throws nothing but std::bad_alloc.
+std::vector<Spring> springs_of(const GridPatch& grid);
+
+/// Node indices a, b, c, d of a tetrahedron of positive volume: (b - a) . ((c - a) x (d - a)) > 0.
+using Tetrahedron = std::array<std::uint32_t, 4>;
+
+/// The solid bodies of a scene, one after the other. The springs are the edges of the tetrahedra.
+struct TetrahedralMesh {
+  std::vector<Tetrahedron> tetrahedra;
+};
 
 }  // namespace mssim

@@ -1,8 +1,9 @@
-#include "scene/fields/scene_error.h"
+#include "scene/fields/fields.h"
 
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 #include "text/text.h"
 
@@ -20,6 +21,17 @@ std::string shown_number(double number) {
       whole ? std::to_chars(text, text + sizeof text, static_cast<std::int64_t>(number))
             : std::to_chars(text, text + sizeof text, number, std::chars_format::general);
   return {text, end.ptr};
+}
+
+std::optional<double> stated_floor(const std::string& scene_json) {
+  const nlohmann::json scene = nlohmann::json::parse(scene_json, nullptr, false);
+  if (!scene.is_object()) return std::nullopt;
+  const auto floor = scene.find("floor");
+  if (floor == scene.end() || !floor->is_object()) return std::nullopt;
+  const auto height = floor->find("height_m");
+  if (height == floor->end() || !height->is_number() || !std::isfinite(height->get<double>()))
+    return std::nullopt;
+  return height->get<double>();
 }
 
 }  // namespace mssim
