@@ -13,14 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "bench/bench_memory.h"
-#include "bench/expected_time.h"
+#include "bench/estimates.h"
 #include "bench/job/combination.h"
 #include "bench/roofline/machine_peak.h"
 #include "bench/roofline/step_cost.h"
 #include "bench/verification/sample_check.h"
 #include "bench/verification/second_stretch.h"
-#include "bench/windows/window_verification.h"
+#include "bench/windows/windows.h"
 #include "garment/bench/dressing_record.h"
 #include "garment/bench/garment_verification.h"
 #include "garment/stepping/dressing_backend.h"

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "guide/recommendation.h"
-#include "guide/step_timer.h"
+#include "guide/limits.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -50,6 +49,11 @@ std::optional<SizeCurve::Sample> sample_of(SizeCurve& curve, const FamilyCloth& 
 }
 
 }  // namespace
+
+int steps_a_frame(double dt_s, double frames_per_second) {
+  // A step that fits but for its last digits fits.
+  return std::max(1, static_cast<int>(std::ceil(1 / (frames_per_second * dt_s) - 1e-9)));
+}
 
 std::optional<SizeCurve::Largest> SizeCurve::largest(double frames_per_second) const {
   if (samples.empty()) return std::nullopt;

@@ -9,10 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "guide/guided_method.h"
+#include "guide/limits.h"
 #include "model/system.h"
 
 namespace mssim {
+
+/// Whole steps a frame that are no longer than dt_s.
+int steps_a_frame(double dt_s, double frames_per_second);
 
 /// Frame rates that cloths are asked for, a second.
 inline constexpr std::array<double, 3> frame_rates{30, 60, 120};

@@ -9,6 +9,15 @@
 
 namespace mssim {
 
+/// The state of a system `span_s` after its start, in double precision, by a solver that shares nothing with
+/// the table of integrators but the laws of springs and acceleration: Boost.Odeint's Bulirsch-Stoer method
+/// (extrapolated modified midpoint rules of variable order and step; Hairer, Norsett and Wanner, Solving
+/// Ordinary Differential Equations I, section II.9). `tolerance`: the error of a step, absolute, of
+/// positions in m and velocities in m/s. The floor does not act. None where `stop` ended it
+/// between two of its steps, or where it found no step that is small enough.
+std::optional<State> independent_state(const System& system, double span_s, double tolerance,
+                                       const std::function<bool()>& stop);
+
 /// What a trusted state is asked for with.
 struct TrustedRequest {
   double longest_s = 0;        ///< simulated time that it is to be after the start, at most
@@ -46,7 +55,7 @@ struct TrustedState {
 /// Classical Runge-Kutta in double precision (backends/reference.h), twice or more often, each time with half
 /// the step: two results of order 4 differ by 15 times the error of the better one (Hairer, Norsett and
 /// Wanner, Solving Ordinary Differential Equations I, section II.4, Richardson). Then another solver
-/// (independent_solver.h) must come to the same. The horizon ends before a node meets the floor, since after
+/// (independent_state) must come to the same. The horizon ends before a node meets the floor, since after
 /// a bounce results differ by a step's worth of landing time; and before a trajectory that starts 1e-7 mean
 /// rest lengths beside it has parted by more than allowed_parting.
 TrustedState trusted_state(const System& system, const TrustedRequest& request);

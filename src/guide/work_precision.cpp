@@ -2,17 +2,85 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
 #include <utility>
 
-#include "bench/verification/blow_up.h"
-#include "bench/verification/deviation.h"
-#include "guide/energy_criterion.h"
-#include "guide/step_timer.h"
+#include "backends/reference.h"
+#include "bench/verification/verification.h"
+#include "guide/limits.h"
 #include "integrators/all_integrators.h"
 #include "model/energy.h"
 #include "platform/machine.h"
 
 namespace mssim {
+
+namespace {
+
+bool beats(const WorkPoint& a, const WorkPoint& b) {
+  const double time = a.seconds_a_second(), other_time = b.seconds_a_second();
+  const double error = *a.position_error, other_error = *b.position_error;
+  return time <= other_time && error <= other_error && (time < other_time || error < other_error);
+}
+
+}  // namespace
+
+void mark_pareto_front(std::span<WorkPoint> points) {
+  for (WorkPoint& point : points)
+    point.on_front = point.counts() && std::ranges::none_of(points, [&](const WorkPoint& other) {
+                       return other.counts() && beats(other, point);
+                     });
+}
+
+namespace {
+
+/// Exact backward Euler at the horizon; none where it diverges, or was stopped.
+std::optional<State> exact_state(const System& system, const TrustedState& trusted, int steps,
+                                 const std::function<bool()>& stop) {
+  const auto backend =
+      make_reference(system, *find_integrator("newton-euler"), trusted.horizon_s / steps, stop);
+  for (int step = 0; step < steps; ++step) {
+    backend->step(1);
+    if (stop()) return std::nullopt;
+  }
+  State state = backend->state();
+  if (first_bad_node(state)) return std::nullopt;
+  return state;
+}
+
+/// Numbers of steps over the horizon, those that newton-euler took the least time for first.
+std::vector<int> by_cost(std::span<const WorkPoint> points, std::span<const ImplicitEnd> ends) {
+  std::map<int, double> seconds;
+  for (const ImplicitEnd& end : ends)
+    seconds.try_emplace(points[end.point].steps, std::numeric_limits<double>::infinity());
+  for (const WorkPoint& point : points)
+    if (const auto known = seconds.find(point.steps);
+        known != seconds.end() && point.integrator->solver == Solver::newton)
+      known->second = std::min(known->second, point.steps * point.seconds_a_step);
+  std::vector<int> order;
+  for (const auto& [steps, cost] : seconds) order.push_back(steps);
+  std::ranges::stable_sort(order, {}, [&](int steps) { return seconds.at(steps); });
+  return order;
+}
+
+}  // namespace
+
+void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd> ends, const System& system,
+                       const TrustedState& trusted, const std::function<bool()>& stop) {
+  for (const int steps : by_cost(points, ends)) {
+    if (stop()) return;
+    const std::optional<State> exact = exact_state(system, trusted, steps, stop);
+    if (!exact) continue;
+    const double step_error = position_deviation(system, trusted.state, *exact);
+    for (const ImplicitEnd& end : ends)
+      if (WorkPoint& point = points[end.point]; point.steps == steps) {
+        point.solver_error = position_deviation(system, *exact, end.state);
+        point.step_error = step_error;
+      }
+  }
+}
+
 namespace {
 
 std::optional<double> evaluations_of(const Integrator& integrator, const System& system) {

@@ -1,15 +1,34 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "guide/guided_method.h"
+#include "guide/limits.h"
 #include "guide/trusted_state.h"
-#include "guide/work_point.h"
 
 namespace mssim {
+
+/// Marks the points that no other one beats: one that counts and is no slower, no less accurate and, in one
+/// of the two, better. Points that do not count are never on the front.
+void mark_pareto_front(std::span<WorkPoint> points);
+
+/// Where a point of an implicit method ended.
+struct ImplicitEnd {
+  std::size_t point = 0;  ///< its index
+  State state;            ///< at the horizon
+};
+
+/// Tells the errors of implicit points apart: the solver's from the step's. Between them stands exact
+/// backward Euler with the same step: newton-euler in double precision until it gains nothing more. The steps
+/// that newton-euler itself took the least time for go first, until `stop` says so; what is left has no such
+/// errors, nor has what newton-euler does not run or that diverges.
+void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd> ends, const System& system,
+                       const TrustedState& trusted, const std::function<bool()>& stop);
 
 /// A point of a curve, and where it ended.
 struct MeasuredPoint {
@@ -54,8 +73,5 @@ class WorkCurve {
 /// first point shows that this diverges; of an implicit one the longest step that is of use, the same for all
 /// of them, so that they share exact backward Euler.
 int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s);
-
-/// The longest step that is tried, s: a frame of the slowest rate that is asked about.
-inline constexpr double longest_useful_step_s = 1.0 / 30;
 
 }  // namespace mssim

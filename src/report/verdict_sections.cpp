@@ -2,7 +2,6 @@
 #include <array>
 #include <iterator>
 
-#include "bench/results/comparability.h"
 #include "bench/results/comparison.h"
 #include "output/tables/comparison_table.h"
 #include "report/html.h"

@@ -1,5 +1,3 @@
-#include "bench/bench_memory.h"
-
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -12,6 +10,7 @@
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
 #include "backends/reference.h"
+#include "bench/estimates.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"

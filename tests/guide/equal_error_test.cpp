@@ -1,10 +1,9 @@
-#include "guide/equal_error.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "guide/guide.h"
 #include "integrators/all_integrators.h"
 #include "tests/guide/made_points.h"
 

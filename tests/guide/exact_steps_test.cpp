@@ -1,11 +1,10 @@
-#include "guide/exact_steps.h"
-
 #include <gtest/gtest.h>
 
 #include <string_view>
 
 #include "backends/backends.h"
-#include "bench/verification/deviation.h"
+#include "bench/verification/verification.h"
+#include "guide/work_precision.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "guide/work_point.h"
+#include "guide/limits.h"
 #include "integrators/all_integrators.h"
 
 namespace mssim {

@@ -1,9 +1,8 @@
-#include "guide/recommendation.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "guide/pareto_front.h"
+#include "guide/guide.h"
+#include "guide/work_precision.h"
 #include "tests/guide/made_points.h"
 
 namespace mssim {

@@ -1,11 +1,8 @@
-#include "guide/stable_step.h"
-
 #include <gtest/gtest.h>
 
 #include "backends/backends.h"
 #include "backends/reference.h"
-#include "guide/step_limits.h"
-#include "guide/step_theory.h"
+#include "guide/limits.h"
 #include "integrators/all_integrators.h"
 #include "model/spectrum.h"
 #include "tests/support/cloth_system.h"

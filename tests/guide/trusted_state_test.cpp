@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/verification/deviation.h"
-#include "guide/independent_solver.h"
+#include "bench/verification/verification.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/spring_chain.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "guide/energy_criterion.h"
+#include "guide/guide.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "model/solid_block.h"
+#include "bench/verification/second_stretch.h"
 #include "model/system.h"
 
 namespace mssim {

@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "bench/job/sample_length.h"
-#include "bench/verification/blow_up.h"
-#include "bench/windows/window_reference.h"
-#include "bench/windows/window_verification.h"
+#include "bench/job/scene_job.h"
+#include "bench/verification/verification.h"
+#include "bench/windows/windows.h"
 #include "integrators/all_integrators.h"
 #include "statistics/statistics.h"
 #include "text/text.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "bench/job/sample_length.h"
 #include "bench/job/scene_job.h"
 #include "bench/results/result.h"
 #include "bench/verification/sample_check.h"

@@ -4,9 +4,22 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace mssim {
+
+/// What a processor says of itself in /proc/cpuinfo. On x86-64 `maker` is the vendor's identification; on Arm
+/// it is the implementer's number as the kernel writes it ("0x41"), `model` the part's, and `family` zero.
+struct CpuIdentification {
+  std::string_view maker;
+  int family = 0;
+  int model = 0;
+};
+
+/// The design behind the name, for example "Zen 4" or "Sapphire Rapids": names such as "AMD EPYC", which
+/// virtual machines often give, say nothing of how fast a processor is. Empty where the table has none.
+std::string_view cpu_generation(const CpuIdentification& cpu);
 
 /// A cache of one level and type, of which the machine may have several.
 struct Cache {
@@ -20,7 +33,7 @@ struct Cache {
 /// What can be known about a Linux machine without asking for rights. What cannot be read is empty or zero.
 struct Machine {
   std::string cpu_model;
-  std::string cpu_generation;           ///< its design (cpu_generation.h)
+  std::string cpu_generation;           ///< its design
   int logical_cpus = 0;                 ///< online
   double cpu_mhz = 0;                   ///< of the first CPU, now
   std::vector<Cache> caches;            ///< by level, then type

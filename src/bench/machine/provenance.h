@@ -52,7 +52,7 @@ struct Provenance {
   std::string device_memory;  ///< how backends with a device exchange data, where that was asked of them
   std::vector<std::string> opencl_devices;  ///< platform, device and driver, as the caller describes them
   std::string tetgen;  ///< version and hash of the TetGen that meshes bodies here; empty when there is none
-  std::vector<std::string> noise;  ///< what makes times here longer or less certain (bench/machine/noise.h)
+  std::vector<std::string> noise;  ///< what makes times here longer or less certain
   std::vector<SceneHash> scenes;
   std::vector<BackendProgramRecord> backend_programs;  ///< by name
   std::vector<std::string>
@@ -79,5 +79,10 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
 
 /// Adds the hash of a scene file's text.
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text);
+
+/// What makes times on this machine longer, or different from run to run: one sentence each with what to do,
+/// from the machine's load, governor and turbo and from the threads asked for and where they may run. What
+/// the system does not tell is no noise.
+std::vector<std::string> noise_of(const Provenance& provenance);
 
 }  // namespace mssim

@@ -5,8 +5,60 @@
 #include <cmath>
 
 #include "statistics/statistics.h"
+#include "text/text.h"
 
 namespace mssim {
+
+namespace {
+
+/// Adds "WHAT was BEFORE and is NOW" where they differ, each sentence once.
+void add(std::vector<std::string>& sentences, const std::string& what, const std::string& before,
+         const std::string& now) {
+  if (before == now) return;
+  std::string sentence = what + " was " + before + " and is " + now;
+  if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
+}
+
+/// `with_generation`: an mssim that did not know generations wrote results that can be compared all the same.
+std::string cpu_of(const Machine& machine, bool with_generation) {
+  return (with_generation ? cpu_name(machine) : machine.cpu_model) + " with " +
+         std::to_string(machine.logical_cpus) + " logical CPUs";
+}
+
+std::string size_of(const ResultRow& row) {
+  return "one of " + std::to_string(row.nodes) + " nodes and " + std::to_string(row.springs_unique) +
+         " springs";
+}
+
+}  // namespace
+
+std::vector<std::string> differences(const Provenance& before, const Provenance& now) {
+  std::vector<std::string> sentences;
+  const bool generations = !before.machine.cpu_generation.empty() && !now.machine.cpu_generation.empty();
+  add(sentences, "the CPU", cpu_of(before.machine, generations), cpu_of(now.machine, generations));
+  add(sentences, "the compiler", before.build.compiler, now.build.compiler);
+  add(sentences, "the build type", before.build.build_type, now.build.build_type);
+  add(sentences, "the compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
+  add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
+  for (const SceneHash& scene : before.scenes)
+    if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);
+        same != now.scenes.end())
+      add(sentences, "the hash of scene " + scene.name, to_hex(scene.fnv1a_64), to_hex(same->fnv1a_64));
+  return sentences;
+}
+
+std::vector<std::string> differences(std::span<const ResultRow> before, std::span<const ResultRow> now) {
+  std::vector<std::string> sentences;
+  for (const ResultRow& row : before) {
+    const auto same = std::ranges::find_if(
+        now, [&](const ResultRow& candidate) { return same_combination(candidate, row); });
+    if (same == now.end() || !row.ms_per_step || !same->ms_per_step) continue;
+    add(sentences, "the device of " + row.backend, row.device, same->device);
+    add(sentences, "scene " + row.scene, size_of(row), size_of(*same));
+  }
+  return sentences;
+}
+
 namespace {
 
 /// With so few samples a side even times that do not overlap are not significant.
@@ -105,6 +157,40 @@ bool has_regression(const RunComparison& comparison) {
   return std::ranges::any_of(comparison.rows, [](const ComparedRow& row) {
     return row.verdict == Verdict::slower || row.verdict == Verdict::lost;
   });
+}
+
+namespace {
+
+RatioEstimate ratio_at_look(const PairedTimes& times) {
+  return paired_ratio(times.base_ms, times.new_ms, look_at(times.base_ms.size()).fraction);
+}
+
+}  // namespace
+
+bool is_settled(const PairedTimes& times, double threshold) {
+  if (!times.lost.empty()) return true;
+  if (times.base_ms.size() != look_at(times.base_ms.size()).pairs) return false;
+  return is_certain(ratio_at_look(times), threshold);
+}
+
+ComparedRow compare_pairs(const PairedTimes& times, double threshold) {
+  ComparedRow row;
+  row.scene = times.scene;
+  row.backend = times.backend;
+  row.integrator = times.integrator;
+  row.base_ms = median(times.base_ms);
+  if (!times.lost.empty()) {
+    row.verdict = Verdict::lost;
+    row.reason = times.lost;
+    return row;
+  }
+  row.new_ms = median(times.new_ms);
+  row.ratio = ratio_at_look(times);
+  if (times.base_ms.size() >= first_look_pairs) row.verdict = verdict_of(*row.ratio, threshold);
+  if (row.verdict == Verdict::undecided)
+    if (const auto needed = samples_needed(*row.ratio, times.base_ms.size(), threshold))
+      row.samples_needed = look_at(*needed).pairs;
+  return row;
 }
 
 }  // namespace mssim

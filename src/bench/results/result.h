@@ -61,7 +61,7 @@ struct ResultRow {
   std::string status = "ok";  ///< ok, or failed/unsupported/unavailable/not timed, and why after a colon
   std::string note;           ///< what a reader of the numbers should know, or empty
   int warm_up_trials = 0;     ///< before the samples, until the backend was warm
-  int outliers = 0;           ///< samples that lie far from the rest (statistics/statistics.h); they count too
+  int outliers = 0;  ///< samples that lie far from the rest (statistics/statistics.h); they count too
   std::optional<double> processors_used;  ///< processor seconds a second of the samples, median
   // Of processes that take the steps together, medians of the samples (Communication).
   std::optional<double> waiting_share;   ///< of a step, in which a process waits for others; mean of all

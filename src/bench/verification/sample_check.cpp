@@ -9,8 +9,6 @@
 #include <sstream>
 
 #include "backends/reference.h"
-#include "bench/verification/blow_up.h"
-#include "bench/verification/deviation.h"
 #include "bench/verification/verification.h"
 #include "model/energy.h"
 #include "text/text.h"

@@ -1,11 +1,27 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "backends/interface/backend.h"
+#include "model/system.h"
 
 namespace mssim {
+
+/// Tetrahedra that need no mesher.
+struct SolidBlock {
+  std::vector<Vec3d> position;  ///< [nodes] m
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  ///< of the tetrahedra, each once, ascending
+};
+
+/// Adds a block of nx x ny x nz nodes, `spacing` m apart, x fastest, from `corner` on: each cube of
+/// neighbours cut into six tetrahedra around its diagonal (Kuhn's cut).
+void add_block(SolidBlock& blocks, std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double spacing,
+               const Vec3d& corner);
 
 /// The second part of a verification: a small scene of the same kind, materials, laws and step, near the
 /// origin, where positions are rounded least. It moves more than a scene does at its start, and meets a

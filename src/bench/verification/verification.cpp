@@ -2,17 +2,88 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "backends/reference.h"
-#include "bench/verification/blow_up.h"
-#include "bench/verification/deviation.h"
 #include "integrators/stability.h"
 #include "model/spectrum.h"
 #include "model/system.h"
 #include "text/text.h"
 
 namespace mssim {
+
+std::optional<std::size_t> first_bad_node(const State& state) {
+  const auto is_single = [](const Vec3d& a) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    return std::abs(a.x) <= largest && std::abs(a.y) <= largest && std::abs(a.z) <= largest;
+  };
+  for (std::size_t i = 0; i < state.position.size(); ++i)
+    if (!is_single(state.position[i]) || !is_single(state.velocity[i])) return i;
+  return std::nullopt;
+}
+
+std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps) {
+  return find_blow_up(
+      [&](int count) {
+        backend.set_state(from);
+        backend.step(count);
+        return first_bad_node(backend.state());
+      },
+      steps);
+}
+
+std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t>(int steps)>& bad_node_after,
+                                   int steps) {
+  int good = 0, bad = steps;
+  std::optional<std::size_t> node = bad_node_after(bad);
+  if (!node) return std::nullopt;
+  while (bad - good > 1) {
+    const int middle = good + (bad - good) / 2;
+    if (const auto found = bad_node_after(middle)) {
+      bad = middle;
+      node = found;
+    } else {
+      good = middle;
+    }
+  }
+  return BlowUp{bad, *node};
+}
+
+std::string describe(const BlowUp& blow_up, double dt_s, std::int64_t steps_before) {
+  const std::int64_t step = steps_before + blow_up.step;
+  std::ostringstream text;
+  text << "blew up at step " << step << " (t = " << static_cast<double>(step) * dt_s << " s): node "
+       << blow_up.node << " is not finite in single precision; take a smaller dt_s or \"auto\"";
+  return text.str();
+}
+
+double position_deviation(const System& system, const State& reference, const State& state) {
+  double largest = 0;
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    const Vec3d d = state.position[i] - reference.position[i];
+    largest = std::max(largest, dot(d, d));
+  }
+  return std::sqrt(largest) / mean_rest_length(system);
+}
+
+double energy_in_motion(const System& system, const State& state, const Energy& energy) {
+  constexpr double share = 0.01, rounding = 8 * 0x1p-24;
+  double rounded = 0;
+  for (const Spring& spring : system.springs) {
+    const Vec3d& x = state.position[spring.first];
+    rounded += system.materials[spring.kind].stiffness / 2 * rounding * rounding * dot(x, x) / 3;
+  }
+  // Of what has no springs that resist, and does not move, nothing.
+  return std::max({energy.kinetic + energy.elastic, rounded / share, std::numeric_limits<double>::min()});
+}
+
+Deviation deviation_from(const System& system, const State& reference, const Energy& energy,
+                         const State& state) {
+  return {position_deviation(system, reference, state),
+          (energy_of(system, state).total() - energy.total()) / energy_in_motion(system, reference, energy)};
+}
+
 namespace {
 
 bool touches_floor(const System& system, const State& state) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bench/results/comparability.h"
+#include "bench/results/comparison.h"
 #include "commands/bench/earlier_rows.h"
 #include "integrators/all_integrators.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "bench/results/comparability.h"
+#include "bench/results/comparison.h"
 #include "commands/bench/measured_run.h"
 #include "output/folders/provenance_file.h"
 #include "text/error.h"

@@ -6,8 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "bench/windows/window_choice.h"
-#include "bench/windows/window_reference.h"
+#include "bench/windows/windows.h"
 #include "commands/shared/backend_choice.h"
 #include "integrators/stability.h"
 #include "platform/machine.h"

@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bench/bench_memory.h"
-#include "bench/expected_time.h"
+#include "bench/estimates.h"
 #include "bench/job/scene_job.h"
 #include "commands/shared/prepared_scene.h"
 #include "scene/spec/scene_spec.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "bench/expected_time.h"
+#include "bench/estimates.h"
 
 namespace mssim {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/results/comparability.h"
+#include "bench/results/comparison.h"
 #include "commands/bench/measured_run.h"
 #include "text/error.h"
 #include "text/text.h"

@@ -7,8 +7,7 @@
 #include <variant>
 
 #include "backends/backends.h"
-#include "bench/bench_memory.h"
-#include "bench/expected_time.h"
+#include "bench/estimates.h"
 #include "commands/bench/bench_options.h"
 #include "commands/bench/planned_scene.h"
 #include "commands/bench/suites.h"

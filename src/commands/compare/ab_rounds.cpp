@@ -6,7 +6,7 @@
 #include <iostream>
 #include <random>
 
-#include "bench/results/paired_times.h"
+#include "bench/results/comparison.h"
 #include "commands/bench/bench_plan.h"
 #include "commands/compare/ab_program.h"
 #include "commands/shared/progress_line.h"

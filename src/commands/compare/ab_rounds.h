@@ -24,7 +24,7 @@ struct AbOptions {
 /// the two by turns, in a random order in each round, each time as a new process (where its memory happens to
 /// lie is then part of the noise and no difference), and compares pairs of the least samples. Where one of
 /// them cannot rely on an earlier verification, being older, each process of both verifies again, and stderr
-/// says so. A combination is measured until it is settled (paired_times.h). Ends when all are, or before a
+/// says so. A combination is measured until it is settled. Ends when all are, or before a
 /// round that would exceed the time budget, of which the verification is part. Says on stderr how many rounds
 /// there were. Throws UsageError when a program fails, takes far longer than the budget or there is nothing
 /// to compare, MissingProgram when one cannot be run, Unavailable when one misses a device, CsvError for

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/results/comparability.h"
 #include "bench/results/comparison.h"
 #include "commands/bench/measured_run.h"
 #include "commands/compare/ab_rounds.h"

@@ -6,7 +6,7 @@
 
 #include "backends/interface/backend.h"
 #include "commands/shared/backend_choice.h"
-#include "guide/recommendation.h"
+#include "guide/guide.h"
 
 namespace mssim {
 

@@ -16,7 +16,7 @@
 #include "commands/shared/run_provenance.h"
 #include "commands/shared/stop_request.h"
 #include "commands/shared/tell_first.h"
-#include "guide/scene_guide.h"
+#include "guide/guide.h"
 #include "output/folders/result_folder.h"
 #include "output/guide/guide_page.h"
 #include "output/guide/guide_table.h"

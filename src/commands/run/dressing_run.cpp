@@ -8,7 +8,7 @@
 #include <sstream>
 #include <vector>
 
-#include "bench/verification/blow_up.h"
+#include "bench/verification/verification.h"
 #include "commands/shared/fit_body.h"
 #include "commands/shared/progress_line.h"
 #include "garment/fitting/fit_bounds.h"

@@ -13,7 +13,7 @@
 
 #include "backends/backends.h"
 #include "backends/reference.h"
-#include "bench/expected_time.h"
+#include "bench/estimates.h"
 #include "commands/run/dressing_run.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/opencl_notes.h"

@@ -4,8 +4,8 @@
 #include <limits>
 #include <sstream>
 
-#include "bench/verification/blow_up.h"
 #include "bench/verification/energy_ledger.h"
+#include "bench/verification/verification.h"
 #include "text/error.h"
 
 namespace mssim {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/verification/blow_up.h"
+#include "bench/verification/verification.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "integrators/all_integrators.h"
 #include "text/text.h"

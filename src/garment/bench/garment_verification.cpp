@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "bench/verification/blow_up.h"
+#include "bench/verification/verification.h"
 #include "garment/stepping/serial_dressing.h"
 #include "model/system.h"
 #include "statistics/statistics.h"

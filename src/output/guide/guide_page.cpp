@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "guide/equal_error.h"
+#include "guide/guide.h"
 #include "output/guide/guide_table.h"
 #include "text/text.h"
 

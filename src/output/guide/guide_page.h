@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "guide/scene_guide.h"
+#include "guide/guide.h"
 #include "output/tables/result_table.h"
 
 namespace mssim {

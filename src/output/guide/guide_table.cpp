@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "guide/equal_error.h"
+#include "guide/guide.h"
 #include "output/guide/guide_page.h"
 #include "text/text.h"
 

@@ -1,8 +1,8 @@
-#include "bench/job/sample_length.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "bench/job/scene_job.h"
 
 namespace mssim {
 namespace {

@@ -1,7 +1,7 @@
-#include "bench/machine/noise.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "bench/machine/provenance.h"
 
 namespace mssim {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/machine/cpu_generation.h"
+#include "bench/machine/machine.h"
 #include "output/folders/provenance_file.h"
 #include "tests/support/temporary_folder.h"
 

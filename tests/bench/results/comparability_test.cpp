@@ -1,11 +1,10 @@
-#include "bench/results/comparability.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "bench/results/comparison.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {

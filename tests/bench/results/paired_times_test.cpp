@@ -1,5 +1,3 @@
-#include "bench/results/paired_times.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "bench/results/comparison.h"
 #include "statistics/rank_tests.h"
 #include "statistics/statistics.h"
 #include "tests/support/result_fixture.h"

@@ -14,8 +14,6 @@
 
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/serial.h"
-#include "bench/verification/blow_up.h"
-#include "bench/verification/deviation.h"
 #include "bench/verification/second_stretch.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"

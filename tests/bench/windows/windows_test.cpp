@@ -1,3 +1,5 @@
+#include "bench/windows/windows.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,9 +14,6 @@
 #include "backends/layouts/column_range.h"
 #include "backends/reference.h"
 #include "bench/verification/verification.h"
-#include "bench/windows/window_choice.h"
-#include "bench/windows/window_reference.h"
-#include "bench/windows/window_verification.h"
 #include "integrators/all_integrators.h"
 #include "scene/cloth.h"
 #include "scene/scene_kinds.h"

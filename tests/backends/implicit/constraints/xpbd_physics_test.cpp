@@ -8,7 +8,7 @@
 
 #include "backends/implicit/constraints/constraints.h"
 #include "backends/reference.h"
-#include "bench/verification/blow_up.h"
+#include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
 #include "model/energy.h"

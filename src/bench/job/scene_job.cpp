@@ -1,4 +1,4 @@
-#include "bench/job/sample_length.h"
+#include "bench/job/scene_job.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,0 +1,261 @@
+#include "bench/windows/windows.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <future>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include "backends/layouts/band_grid.h"
+#include "backends/layouts/column_range.h"
+#include "backends/reference.h"
+#include "bench/verification/verification.h"
+#include "model/energy.h"
+#include "platform/machine.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+/// Rows and columns of a window where the cloth is large. What the reference computes around it costs more.
+constexpr std::uint32_t usual_side = 128;
+constexpr std::uint32_t least_side = 8;
+/// Windows of a small cloth are so many times in its shorter side.
+constexpr std::uint32_t windows_a_side = 8;
+
+bool overlap(const GridWindow& a, const GridWindow& b) {
+  return a.row < b.row + b.rows && b.row < a.row + a.rows && a.column < b.column + b.columns &&
+         b.column < a.column + a.columns;
+}
+
+/// The i-th of numbers from 0 to 1 of which any first few lie evenly: the fractions of multiples of `step`.
+double spread(std::size_t i, double step) {
+  const double multiple = step * static_cast<double>(i + 1);
+  return multiple - std::floor(multiple);
+}
+
+// Powers of the root of x^3 = x + 1, whose multiples fill a square evenly.
+constexpr double row_step = 0.7548776662466927, column_step = 0.5698402909980532;
+
+}  // namespace
+
+std::vector<GridWindow> choose_windows(const GridPatch& grid, std::size_t parts,
+                                       std::optional<std::uint32_t> pinned_row, std::size_t count) {
+  const std::uint32_t side =
+      std::clamp(std::min(grid.rows, grid.columns) / windows_a_side, least_side, usual_side);
+  const std::uint32_t rows = std::min(side, grid.rows), columns = std::min(side, grid.columns);
+  const std::uint32_t last_row = grid.rows - rows, last_column = grid.columns - columns;
+  std::vector<GridWindow> chosen;
+  const auto place = [&](std::uint32_t row, std::uint32_t column) {
+    const GridWindow window{std::min(row, last_row), std::min(column, last_column), rows, columns};
+    if (chosen.size() >= count ||
+        std::ranges::any_of(chosen, [&](const GridWindow& other) { return overlap(window, other); }))
+      return false;
+    chosen.push_back(window);
+    return true;
+  };
+  const auto row_at = [&](std::size_t i) {
+    return static_cast<std::uint32_t>(spread(i, row_step) * (last_row + 1.0));
+  };
+  const auto around = [](std::size_t middle, std::uint32_t length) {
+    return static_cast<std::uint32_t>(middle - std::min<std::size_t>(middle, length / 2));
+  };
+  place(0, 0);
+  place(last_row, last_column);
+  constexpr std::size_t tries = 16;
+  for (std::size_t part = 1; part < parts; ++part) {
+    const std::size_t seam = part_of({0, grid.columns}, part, parts).first;
+    for (std::size_t i = 0; i < tries && !place(row_at(part + i), around(seam, columns)); ++i) continue;
+  }
+  if (pinned_row) place(around(*pinned_row, rows), around(grid.columns / 2, columns));
+  place(0, last_column);
+  place(last_row, 0);
+  for (std::size_t i = 0; i < tries * count && chosen.size() < count; ++i)
+    place(row_at(i), static_cast<std::uint32_t>(spread(i, column_step) * (last_column + 1.0)));
+  return chosen;
+}
+
+namespace {
+
+constexpr int leg = 20;  ///< steps after which the domain is cut to what is still right
+static_assert(std::ranges::find(window_looks, leg) != window_looks.end() && verification_steps % leg == 0);
+
+GridWindow domain_for(const GridWindow& window, int steps, const Integrator& integrator,
+                      const GridPatch& grid) {
+  return domain_of(window, ghost_columns(integrator, static_cast<std::size_t>(steps)), grid);
+}
+
+/// What a state of a window says of another one in it.
+State cut(const State& state, const GridWindow& from, const GridWindow& to) {
+  State part;
+  for (std::uint32_t row = to.row; row < to.row + to.rows; ++row) {
+    const std::size_t first = std::size_t{row - from.row} * from.columns + (to.column - from.column);
+    const auto copy = [&](const std::vector<Vec3d>& all, std::vector<Vec3d>& some) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+      some.insert(some.end(), begin, begin + to.columns);
+    };
+    copy(state.position, part.position);
+    copy(state.velocity, part.velocity);
+  }
+  return part;
+}
+
+bool is_in_the_air(const State& state, const Floor& floor) {
+  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > floor.height; });
+}
+
+}  // namespace
+
+GridWindow domain_of(const GridWindow& window, std::size_t reach, const GridPatch& grid) {
+  const ColumnRange rows = with_ghosts({window.row, window.rows}, reach, grid.rows);
+  const ColumnRange columns = with_ghosts({window.column, window.columns}, reach, grid.columns);
+  return {static_cast<std::uint32_t>(rows.first), static_cast<std::uint32_t>(columns.first),
+          static_cast<std::uint32_t>(rows.count), static_cast<std::uint32_t>(columns.count)};
+}
+
+WindowReference run_window_reference(const WindowedCloth& cloth, const GridWindow& window,
+                                     const Integrator& integrator, double dt_s) {
+  WindowReference reference{window, cloth.build(window), {}, {}};
+  GridWindow domain = domain_for(window, verification_steps, integrator, cloth.grid);
+  System system = cloth.build(domain);
+  std::unique_ptr<Backend> backend = make_reference(system, integrator, dt_s);
+  State before = system.start;
+  bool in_the_air = true;
+  const int comparable = comparable_steps(reference.system, integrator, dt_s, verification_steps);
+  // To the end even after contact: a blow-up may only show then.
+  for (int steps = 0; const int look : window_looks) {
+    const int count = look - std::exchange(steps, look);
+    backend->step(count);
+    State state = backend->state();
+    const GridWindow right = domain_for(window, verification_steps - steps, integrator, cloth.grid);
+    const State right_state = cut(state, domain, right);
+    if (const auto node = first_bad_node(right_state)) {
+      BlowUp blow_up = find_blow_up(*backend, before, count).value_or(BlowUp{count, 0});
+      blow_up.node = node_of_cloth(right, *node, cloth.grid);
+      reference.failure = "the double-precision reference " + describe(blow_up, dt_s, steps - count);
+      return reference;
+    }
+    in_the_air = in_the_air && is_in_the_air(right_state, system.floor);
+    if (in_the_air && steps <= comparable) reference.states.push_back(cut(right_state, right, window));
+    before = std::move(state);
+    if (steps % leg != 0 || steps == verification_steps) continue;
+    backend.reset();
+    domain = right;
+    system = cloth.build(domain);
+    system.start = right_state;
+    backend = make_reference(system, integrator, dt_s);
+    before = right_state;
+  }
+  return reference;
+}
+
+double window_reference_bytes(const Integrator& integrator, const GridWindow& window, const GridPatch& grid) {
+  constexpr double state_node = 2 * sizeof(Vec3d), states = 5;  // start, read, before, right, in the backend
+  const GridWindow domain = domain_for(window, verification_steps, integrator, grid);
+  const std::uint64_t springs = count_springs(domain.rows, domain.columns);
+  return reference_memory(integrator, true).bytes(integrator, domain.nodes(), springs, 1) +
+         static_cast<double>(domain.nodes()) * (states * state_node + sizeof(double)) +
+         static_cast<double>(springs) * sizeof(Spring);
+}
+
+WindowReferences run_window_references(const WindowedCloth& cloth, const Integrator& integrator, double dt_s,
+                                       std::size_t at_once) {
+  WindowReferences all;
+  all.windows.resize(cloth.windows.size());
+  std::atomic<std::size_t> next = 0;
+  {
+    const OnAllProcessCpus unbound;  // threads that OpenMP does not start would share the CPU of this one
+    std::vector<std::future<void>> threads;
+    for (std::size_t thread = 0; thread < std::min(at_once, all.windows.size()); ++thread)
+      threads.push_back(std::async(as_the_system_can, [&] {
+        for (std::size_t i = next++; i < all.windows.size(); i = next++)
+          all.windows[i] = run_window_reference(cloth, cloth.windows[i], integrator, dt_s);
+      }));
+    for (std::future<void>& thread : threads) thread.get();
+  }
+  std::size_t looks = window_looks.size();
+  for (const WindowReference& window : all.windows) {
+    if (window.failure) all.failure = window.failure;
+    looks = std::min(looks, window.states.size());
+  }
+  if (looks > 0) all.steps = window_looks[looks - 1];
+  if (!all.failure && looks == 0) all.failure = touches_at_once(window_looks.front());
+  return all;
+}
+
+std::optional<std::size_t> first_bad_node(const WindowBackend& backend, const WindowedCloth& cloth) {
+  for (const GridWindow& window : cloth.windows)
+    if (const auto node = first_bad_node(backend.window(window)))
+      return node_of_cloth(window, *node, cloth.grid);
+  return std::nullopt;
+}
+
+std::optional<BlowUp> find_blow_up(WindowBackend& backend, const WindowedCloth& cloth, int steps) {
+  return find_blow_up(
+      [&](int count) {
+        backend.restart();
+        backend.step(count);
+        return first_bad_node(backend, cloth);
+      },
+      steps);
+}
+
+Verification verify_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
+                            const WindowReferences& reference, double dt_s) {
+  if (reference.failure) {
+    Verification result;
+    result.failure = reference.failure;
+    return result;
+  }
+  backend.restart();
+  backend.step(reference.steps);
+  return compare_windows(backend, cloth, integrator, reference, reference.steps, dt_s);
+}
+
+Verification compare_windows(WindowBackend& backend, const WindowedCloth& cloth, const Integrator& integrator,
+                             const WindowReferences& reference, int steps, double dt_s) {
+  Verification result;
+  const std::string after = " after " + pluralize(static_cast<std::uint64_t>(steps), "step");
+  double energy_off = 0, in_motion = 0, worst = 0;  // worst: in tolerances
+  std::ostringstream why;
+  for (const WindowReference& one : reference.windows) {
+    const State state = backend.window(one.window);
+    if (first_bad_node(state)) {
+      const auto blow_up = find_blow_up(backend, cloth, steps);
+      result.failure = blow_up ? describe(*blow_up, dt_s) : std::string(finite_in_the_next);
+      return result;
+    }
+    const State& right = one.after(steps);
+    const Energy expected = energy_of(one.system, right);
+    energy_off += energy_of(one.system, state).total() - expected.total();
+    in_motion += energy_in_motion(one.system, right, expected);
+    const double error = position_deviation(one.system, right, state);
+    const double tolerance = position_tolerance(one.system, integrator, steps);
+    result.position_error = std::max(result.position_error, error);
+    if (error <= tolerance || error / tolerance <= worst) continue;
+    worst = error / tolerance;
+    why.str("");
+    why << "position error " << error << " of a rest length exceeds " << tolerance << after
+        << " in the window from row " << one.window.row << " and column " << one.window.column << " on";
+  }
+  result.energy_drift = energy_off / in_motion;
+  if (why.str().empty() && !(std::abs(result.energy_drift) <= energy_tolerance))
+    why << "energy in the windows is off by " << result.energy_drift << " of the energy in motion, more than "
+        << energy_tolerance << ',' << after;
+  if (!why.str().empty()) result.failure = why.str();
+  return result;
+}
+
+std::string share_seen(const WindowedCloth& cloth) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "verified in " << pluralize(static_cast<std::uint64_t>(cloth.windows.size()), "window") << ", "
+       << 100 * static_cast<double>(cloth.nodes_in_windows()) / static_cast<double>(cloth.nodes())
+       << " % of the nodes";
+  return text.str();
+}
+
+}  // namespace mssim

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "backends/interface/backend.h"
+#include "guide/cloth_sizes.h"
+#include "guide/limits.h"
+#include "guide/trusted_state.h"
+#include "model/spectrum.h"
+
+namespace mssim {
+
+/// What a user can bear.
+struct Wish {
+  double frames_per_second = 60;
+  double error = 1e-3;  ///< of positions at the horizon, in mean rest lengths
+};
+
+/// What to take, as places in the points that it was chosen from.
+struct Recommendation {
+  std::optional<std::size_t> best;  ///< the cheapest that is accurate enough
+  std::optional<std::size_t>
+      runner_up;  ///< the cheapest such one of another integrator, else of another backend
+  std::optional<std::size_t> nearest;  ///< the most accurate, where none is accurate enough
+  bool holds_frames = false;           ///< the best computes a frame within its time
+  std::vector<std::string> sentences;  ///< three, each with its full stop
+};
+
+/// The cheapest of the points that count and whose error is within the wish; how it stands to real time; and
+/// when another one would be. `horizon_s`: when the errors were measured.
+Recommendation recommend(std::span<const WorkPoint> points, const Wish& wish, double horizon_s);
+
+/// What a scene's guide is asked for. All that it points to must outlive the guide.
+struct GuideRequest {
+  std::string scene;
+  const System* system = nullptr;
+  std::vector<const BackendInfo*> backends;
+  std::vector<const Integrator*> integrators;
+  ExecutionOptions execution;
+  Wish wish;
+  double seconds = 120;            ///< wall time that it may take, about
+  double longest_horizon_s = 0.1;  ///< simulated time after which errors are measured, at most
+  ClothMaker make_cloth;           ///< of the scene's family; none: no sizes are measured
+};
+
+/// What it tells and asks on the way.
+struct GuideWatch {
+  std::function<void(const std::string& activity, double done)> progress = [](const std::string&, double) {};
+  std::function<bool()> stop = [] { return false; };  ///< ends the guide with what it has
+};
+
+/// Everything that was measured of a scene, and what follows.
+struct SceneGuide {
+  std::string scene;
+  std::uint64_t nodes = 0, springs = 0;
+  Wish wish;
+  Spectrum at_start, on_the_way;
+  TrustedState trusted;  ///< where it has a failure, there are no points
+  std::vector<StepLimit> limits;
+  std::vector<GuidedMethod> methods;
+  std::vector<WorkPoint> points;  ///< by method, from coarse to fine, the front marked
+  std::vector<SizeCurve> sizes;
+  Recommendation recommendation;
+};
+
+/// Measures a scene, which is no garment: the trusted state, the largest stable steps, the work-precision
+/// curves from coarse to fine by turns, and the sizes of cloths. What the time does not suffice for is left
+/// out, and the method's status says so.
+SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch);
+
+/// What a method takes where its error may be this large.
+struct CostAtError {
+  double seconds_a_second = 0;  ///< wall time of a simulated second
+  /// It is that of the coarsest point that counts, which is more accurate than asked: a longer step was not
+  /// stable, or not tried.
+  bool at_longest_step = false;
+};
+
+/// Between two points of the curve the logarithm of the cost is taken as linear in that of the error; none
+/// where no point is accurate enough. Points that do not count are left out.
+std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
+                                         double error);
+
+/// Errors at which costs are shown, from large to small: the wished one and three around it.
+std::array<double, 4> errors_around(const Wish& wish);
+
+/// What Hong et al. say of integrators by milliseconds a step, beside what was measured at the wished error:
+/// sentences with their full stops. For each backend the order of semi-euler, midpoint and rk4; and what
+/// becomes of explicit Euler, which they leave out because it "can be readily blow-up". Empty where none of
+/// it was measured.
+std::vector<std::string> beside_the_paper(const SceneGuide& guide);
+
+}  // namespace mssim
