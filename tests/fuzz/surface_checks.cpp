@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fuzz_checks.h"
-#include "garment/body/stance_guess.h"
+#include "garment/body/stance.h"
 #include "geometry/surface.h"
 #include "mesh/surface_file.h"
 #include "text/error.h"

@@ -6,8 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "garment/body/body_measures.h"
-#include "garment/body/ellipse_tube.h"
+#include "garment/body/mannequin.h"
 #include "geometry/geometry.h"
 #include "tests/support/isosurface.h"
 

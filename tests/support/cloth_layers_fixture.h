@@ -14,8 +14,6 @@
 #include "garment/layers/cloth_cloth.h"
 #include "garment/layers/cloth_contacts.h"
 #include "garment/layers/cloth_crossings.h"
-#include "garment/layers/panel_boxes.h"
-#include "garment/layers/panel_layers.h"
 #include "geometry/vec3.h"
 
 namespace mssim {

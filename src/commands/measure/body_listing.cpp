@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "garment/body/length_unit.h"
+#include "garment/body/stance.h"
 #include "geometry/geometry.h"
 
 namespace mssim {

@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
-#include "garment/body/body_stance.h"
-#include "garment/body/landmarks.h"
+#include "garment/body/body_profile.h"
+#include "garment/body/stance.h"
 #include "geometry/surface.h"
 #include "output/tables/table.h"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "garment/pattern/jeans_outline.h"
+#include "garment/pattern/jeans.h"
 #include "garment/spec/garment_spec.h"
 
 namespace mssim {

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "garment/contact/band_hull.h"
 #include "garment/contact/solid.h"
 
 namespace mssim {

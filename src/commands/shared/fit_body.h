@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "garment/body/measured_body.h"
+#include "garment/body/body_profile.h"
 #include "garment/fitting/fit.h"
 
 namespace mssim {

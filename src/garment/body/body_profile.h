@@ -10,6 +10,24 @@
 
 namespace mssim {
 
+/// What is between the two legs of an upright body at a height: no point of its section.
+struct LegGap {
+  double height = 0;         ///< y
+  double low = 0, high = 0;  ///< x
+  PlanPoint right, left;  ///< the middles of the boxes around what lies on either side, at lower and higher x
+};
+
+/// The gap between the legs at this height, none where the section does not fall apart into two halves that
+/// are about equally wide. The surface, which stands upright in y, need not be closed; lengths are in its
+/// unit.
+std::optional<LegGap> leg_gap(const Surface& body, double height);
+
+/// The gaps at evenly spaced heights, from below upwards, of the longest run of heights that have one.
+std::vector<LegGap> leg_gaps(const Surface& body);
+
+/// The x that is between the legs at the highest gap, and at as many of those below as there is one.
+double between_legs(const std::vector<LegGap>& gaps);
+
 /// The measures that a pattern needs of a body, mannequin or scan: any closed surface, m, that stands upright
 /// in y, looks to +z and has a leg on either side of the plane x = 0. It may be of several closed parts that
 /// overlap. Only its trunk and legs count (trunk_and_legs): an arm beside the hip does not make it wider.
@@ -77,6 +95,37 @@ class BodyProfile {
   std::optional<double> crotch_;
   /// For horizontal slices of equal height, the triangles that reach into each.
   std::vector<std::vector<std::uint32_t>> slices_;
+};
+
+/// A height of a body, and what a tape says there.
+struct Landmark {
+  double height = 0;            ///< m, above y = 0
+  std::optional<double> girth;  ///< m, around the trunk or the thicker leg; none where legs are not apart
+  bool by_proportion = false;  ///< the body shows nothing there, so that it is a share of the crotch's height
+};
+
+/// What trousers need to know of a body. ISO 8559-1 takes waist and knee at bones, which a surface does not
+/// show: they are where it is narrowest.
+struct BodyLandmarks {
+  Landmark waist;            ///< the smallest girth between hip and chest
+  Landmark hip;              ///< the greatest girth between crotch and waist
+  double crotch_height = 0;  ///< m, above y = 0
+  Landmark thigh;            ///< just below the crotch
+  Landmark knee;             ///< the smallest girth between calf and thigh
+  Landmark ankle;            ///< the smallest girth between foot and calf
+};
+
+/// Finds them on a body that stands on y = 0. Throws InputError for one without legs (BodyProfile).
+BodyLandmarks find_landmarks(const BodyProfile& profile);
+
+/// The girth of the thicker leg at a height, m; none where the legs are not apart or one does not reach.
+std::optional<double> thicker_leg(const BodyProfile& profile, double y);
+
+/// A body that has been read, or made, and measured.
+struct MeasuredBody {
+  Surface surface;      ///< all of it, m, as it is drawn
+  std::string note;     ///< what a reader should know of how it was read, in a sentence; or empty
+  BodyProfile profile;  ///< of trunk and legs, which patterns are cut for and garments meet
 };
 
 }  // namespace mssim

@@ -2,14 +2,217 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <string_view>
 
-#include "garment/body/ellipse_tube.h"
 #include "geometry/geometry.h"
 #include "text/error.h"
 
 namespace mssim {
+
+namespace {
+
+struct NamedGirth {
+  std::string_view name;
+  GirthAt at;
+};
+
+[[noreturn]] void fail(std::string_view measure, double value, std::string_view unit,
+                       const std::string& rest) {
+  throw InputError("the body's " + std::string(measure) + " is " + shown(value) + std::string(unit) + rest);
+}
+
+void require_between(std::string_view measure, double value, std::string_view unit, double least,
+                     double most) {
+  // Written so that what is no number fails too.
+  if (!(value >= least && value <= most))
+    fail(measure, value, unit,
+         "; give a number from " + shown(least) + " to " + shown(most) + std::string(unit));
+}
+
+/// Heights closer together than this leave no room for a smooth body between them.
+void require_below(std::string_view measure, double height, std::string_view next, double next_height,
+                   double apart) {
+  if (height > next_height - apart)
+    fail(measure, height, " m",
+         " and the " + std::string(next) + " is " + shown(next_height) + " m; put it lower, at " +
+             shown(next_height - apart) + " m at most, or the other higher");
+}
+
+void require_heights_in_order(const BodyMeasures& m) {
+  constexpr double apart = 0.02;
+  constexpr double thigh_to_crotch = 0.005;
+  require_below("ankle height", m.ankle.height, "knee height", m.knee.height, apart);
+  require_below("knee height", m.knee.height, "thigh height", m.thigh.height, apart);
+  require_below("thigh height", m.thigh.height, "crotch height", m.crotch_height, thigh_to_crotch);
+  require_below("crotch height", m.crotch_height, "hip height", m.hip.height, apart);
+  require_below("hip height", m.hip.height, "waist height", m.waist.height, apart);
+  require_below("waist height", m.waist.height, "bust height", m.bust.height, apart);
+}
+
+void require_thighs_below_hip(const BodyMeasures& m) {
+  const double hip_half_width = m.hip.girth / ellipse_perimeter(1, m.hip_aspect);
+  const double room = 1.1 * hip_half_width - m.thigh_gap / 2;  // a tenth wider than the hip is still a body
+  const double most = room / 2 * ellipse_perimeter(1, thigh_aspect);
+  if (m.thigh.girth > most)
+    fail("thigh girth", m.thigh.girth, " m",
+         ", and both thighs side by side would stick out beyond a hip girth of " + shown(m.hip.girth) +
+             " m; give a thigh girth of at most " + shown(std::floor(most * 1000) / 1000) +
+             " m or a larger hip girth");
+}
+
+}  // namespace
+
+void check_measures(const BodyMeasures& m) {
+  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
+                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
+                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
+  for (const NamedGirth& girth : girths) {
+    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
+    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
+  }
+  require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
+  require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
+  require_between("thigh gap", m.thigh_gap, " m", 0.004, 0.04);
+  require_between("stance", m.stance, " m", 0.02, 1);
+  require_heights_in_order(m);
+  require_thighs_below_hip(m);
+}
+
+namespace {
+
+class Tube {
+ public:
+  Tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells)
+      : surface_(surface), sections_(sections), cells_(cells) {
+    for (std::uint32_t j = 0; j < cells.around; ++j) {
+      const double angle = 2 * std::numbers::pi * j / cells.around;
+      directions_.push_back({std::cos(angle), 0, std::sin(angle)});
+    }
+  }
+
+  void add() {
+    const std::vector<EllipseSection> rings = interpolated();
+    const auto first = static_cast<std::uint32_t>(surface_.points.size());
+    for (const EllipseSection& ring : rings) add_ring(ring);
+    const auto last = static_cast<std::uint32_t>(surface_.points.size()) - cells_.around;
+    for (std::uint32_t ring = first; ring < last; ring += cells_.around) add_belt(ring);
+    add_end(first, sections_.front(), false);
+    add_end(last, sections_.back(), true);
+  }
+
+ private:
+  MonotoneCurve curve(double EllipseSection::*edge) const {
+    std::vector<double> heights, values;
+    for (const EllipseSection& section : sections_) {
+      heights.push_back(section.height);
+      values.push_back(section.*edge);
+    }
+    return {heights, values};
+  }
+
+  /// The sections, and between each two as many more as cells of about the wanted height need.
+  std::vector<EllipseSection> interpolated() const {
+    const auto x_min = curve(&EllipseSection::x_min), x_max = curve(&EllipseSection::x_max);
+    const auto z_min = curve(&EllipseSection::z_min), z_max = curve(&EllipseSection::z_max);
+    std::vector<EllipseSection> rings{sections_.front()};
+    for (std::size_t i = 0; i + 1 < sections_.size(); ++i) {
+      const EllipseSection& below = sections_[i];
+      const EllipseSection& above = sections_[i + 1];
+      const auto rows = static_cast<int>(std::ceil(way_between(below, above) / cells_.height));
+      for (int row = 1; row < rows; ++row) {
+        const double y = below.height + (above.height - below.height) * row / rows;
+        rings.push_back({y, x_min(y), x_max(y), z_min(y), z_max(y)});
+      }
+      rings.push_back(above);
+    }
+    return rings;
+  }
+
+  /// The longest straight way from one section to the next along an edge of their boxes.
+  static double way_between(const EllipseSection& a, const EllipseSection& b) {
+    const double sideways = std::max({std::abs(b.x_min - a.x_min), std::abs(b.x_max - a.x_max),
+                                      std::abs(b.z_min - a.z_min), std::abs(b.z_max - a.z_max)});
+    const double up = b.height - a.height;
+    return std::sqrt(sideways * sideways + up * up);
+  }
+
+  static Vec3d centre(const EllipseSection& ring) {
+    return {(ring.x_min + ring.x_max) / 2, ring.height, (ring.z_min + ring.z_max) / 2};
+  }
+
+  void add_ring(const EllipseSection& ring) {
+    const double a = ring.half_width();
+    const double b = ring.half_depth();
+    const auto spoke = [&](std::size_t j) {
+      const Vec3d& direction = directions_[j % directions_.size()];
+      return Vec3d{a * direction.x, 0, b * direction.z};
+    };
+    double inscribed = 0;
+    for (std::size_t j = 0; j < directions_.size(); ++j) inscribed += length(spoke(j + 1) - spoke(j));
+    const double larger = ellipse_perimeter(a, b) / inscribed;
+    for (std::size_t j = 0; j < directions_.size(); ++j)
+      surface_.points.push_back(rounded(centre(ring) + larger * spoke(j)));
+  }
+
+  /// The cells between the ring that begins at point `lower` and the next.
+  void add_belt(std::uint32_t lower) {
+    const std::uint32_t n = cells_.around;
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const std::uint32_t a = lower + j, b = lower + (j + 1) % n;
+      const std::uint32_t c = a + n, d = b + n;
+      // Quarter by quarter the other diagonal, so that no side of the body differs from its mirror image.
+      if (4 * j / n % 2 == 0) {
+        surface_.triangles.push_back({a, c, b});
+        surface_.triangles.push_back({b, c, d});
+      } else {
+        surface_.triangles.push_back({a, c, d});
+        surface_.triangles.push_back({a, d, b});
+      }
+    }
+  }
+
+  void add_end(std::uint32_t ring, const EllipseSection& section, bool is_top) {
+    const auto middle = static_cast<std::uint32_t>(surface_.points.size());
+    surface_.points.push_back(rounded(centre(section)));
+    for (std::uint32_t j = 0; j < cells_.around; ++j) {
+      const std::uint32_t a = ring + j, b = ring + (j + 1) % cells_.around;
+      if (is_top)
+        surface_.triangles.push_back({middle, b, a});
+      else
+        surface_.triangles.push_back({middle, a, b});
+    }
+  }
+
+  Surface& surface_;
+  const std::vector<EllipseSection>& sections_;
+  const TubeCells cells_;
+  std::vector<Vec3d> directions_;  ///< of a ring's points
+};
+
+}  // namespace
+
+double ellipse_perimeter(double half_axis, double other_half_axis) {
+  const double sum = half_axis + other_half_axis;
+  const double difference = half_axis - other_half_axis;
+  const double h = difference * difference / (sum * sum);
+  return std::numbers::pi * sum * (1 + 3 * h / (10 + std::sqrt(4 - 3 * h)));
+}
+
+EllipseSection section_of_girth(double height, double girth, double aspect, double x, double z) {
+  const double half_width = girth / ellipse_perimeter(1, aspect);
+  const double half_depth = half_width * aspect;
+  return {height, x - half_width, x + half_width, z - half_depth, z + half_depth};
+}
+
+void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells) {
+  assert(sections.size() >= 2 && cells.around >= 4 && cells.around % 4 == 0 && cells.height > 0);
+  Tube(surface, sections, cells).add();
+}
+
 namespace {
 
 double between(double from, double to, double fraction) { return from + (to - from) * fraction; }

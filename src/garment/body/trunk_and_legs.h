@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "geometry/surface.h"
 
@@ -27,7 +28,7 @@ struct TrunkAndLegs {
 /// body's trunk on, what overlaps it at the next height belongs to it, too: downwards but for what is much
 /// smaller than the rest (an arm beside the trunk, fingers beside a thigh), upwards but for what is joined
 /// with the trunk again further up. A hand that rests against the hip is cut off at its neck
-/// (section_necks.h) where it hangs from an arm. Left out are whole triangles, with a rim (part_rim.h) where
+/// (cut_at_necks) where it hangs from an arm. Left out are whole triangles, with a rim where
 /// parts touch, and where that opens the surface it is closed. A surface without other parts, and one that
 /// reaches x = 0 nowhere, is given back as it is.
 ///

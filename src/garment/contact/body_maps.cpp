@@ -3,16 +3,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "garment/contact/side_map.h"
 #include "geometry/surface.h"
 #include "text/text.h"
 
 namespace mssim {
+
+SideMap side_map(const Surface& surface, const std::vector<Vec3d>& normals, const PixelGrid& grid,
+                 ViewFrom view, int threads) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Fragment> fragments = rasterise(surface, grid, view, threads);
+  SideMap map{std::vector<double>(fragments.size(), view == ViewFrom::front ? -infinity : infinity),
+              std::vector<Vec3d>(fragments.size())};
+  for (std::size_t pixel = 0; pixel < fragments.size(); ++pixel) {
+    const Fragment& fragment = fragments[pixel];
+    if (fragment.triangle == Fragment::nothing) continue;
+    map.depth[pixel] = fragment.z;
+    Vec3d sum;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      sum += double{fragment.weights[corner]} * normals[surface.triangles[fragment.triangle][corner]];
+    if (const double size = length(sum); size > 0) map.normal[pixel] = (1 / size) * sum;
+  }
+  return map;
+}
+
 namespace {
 
 /// What faces the camera least: the z of a unit normal, 6 degrees from edge-on. Within a pixel at the

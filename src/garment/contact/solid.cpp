@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "geometry/surface.h"
 #include "platform/machine.h"
 
 namespace mssim {
+
 namespace {
 
 constexpr double anywhere = std::numeric_limits<double>::infinity();
@@ -58,6 +61,46 @@ double Solid::distance(const Vec3d& point) const {
   double least = anywhere;
   for (const TriangleTree& part : parts_) least = part.distance(point, least);
   return least;
+}
+
+namespace {
+
+/// The corners of the triangles within the band, and where their edges leave it.
+std::vector<Vec3d> points_of_band(const Surface& body, double lowest, double highest) {
+  std::vector<Vec3d> points;
+  for (const Vec3d& point : body.points)
+    if (point.y >= lowest && point.y <= highest) points.push_back(point);
+  for (const auto& triangle : body.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d &from = body.points[triangle[i]], &to = body.points[triangle[(i + 1) % 3]];
+      for (const double height : {lowest, highest})
+        if (from.y < height && to.y > height)
+          points.push_back(from + (height - from.y) / (to.y - from.y) * (to - from));
+    }
+  return points;
+}
+
+}  // namespace
+
+BandHull::BandHull(const Surface& body, double lowest, double highest) {
+  const std::vector<Vec3d> points = points_of_band(body, lowest, highest);
+  constexpr int step = 2, steepest = 30;  // degrees
+  constexpr double radians = std::numbers::pi / 180;
+  for (int up = -steepest; up <= steepest; up += step)
+    for (int around = 0; around < 360; around += step) {
+      const double level = std::cos(up * radians);
+      const Vec3d normal{level * std::sin(around * radians), std::sin(up * radians),
+                         level * std::cos(around * radians)};
+      double offset = -std::numeric_limits<double>::infinity();
+      for (const Vec3d& point : points) offset = std::max(offset, dot(normal, point));
+      planes_.push_back({normal, offset});
+    }
+}
+
+double BandHull::distance(const Vec3d& point) const {
+  double farthest = 0;
+  for (const Plane& plane : planes_) farthest = std::max(farthest, dot(plane.normal, point) - plane.offset);
+  return farthest;
 }
 
 }  // namespace mssim

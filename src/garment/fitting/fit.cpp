@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "garment/layers/cloth_contacts.h"
 #include "garment/layers/cloth_crossings.h"
-#include "garment/layers/panel_layers.h"
 #include "laws/host_laws.h"
 #include "statistics/statistics.h"
 

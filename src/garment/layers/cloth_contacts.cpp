@@ -4,15 +4,142 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "geometry/triangle_tree.h"
 #include "text/text.h"
 
 namespace mssim {
+
+namespace {
+
+std::uint32_t panel_of(const Garment& garment, std::uint32_t node) {
+  const auto holds = [&](const GarmentPanel& panel) {
+    return node >= panel.first_node && node - panel.first_node < panel.nodes();
+  };
+  return static_cast<std::uint32_t>(std::ranges::find_if(garment.panels, holds) - garment.panels.begin());
+}
+
+std::string quoted(const GarmentPanel& panel) { return '"' + printable(panel.name) + '"'; }
+
+void validate_panel(std::uint32_t index, const Garment& garment, std::size_t nodes) {
+  if (index >= garment.panels.size())
+    throw std::invalid_argument("cloth layers: there is no panel " + std::to_string(index) +
+                                ", the garment has " + std::to_string(garment.panels.size()) +
+                                ", counted from 0");
+  const GarmentPanel& panel = garment.panels[index];
+  if (panel.rows < 2 || panel.columns < 2)
+    throw std::invalid_argument("cloth layers: panel " + quoted(panel) + " has " +
+                                std::to_string(panel.rows) + " x " + std::to_string(panel.columns) +
+                                " nodes, give it at least 2 x 2");
+  const std::uint64_t end = panel.first_node + std::uint64_t{panel.rows} * panel.columns;
+  if (end > nodes)
+    throw std::invalid_argument("cloth layers: panel " + quoted(panel) + " ends at node " +
+                                std::to_string(end) + ", but there are only " + std::to_string(nodes) +
+                                " nodes, each of which needs a mass");
+}
+
+}  // namespace
+
+std::vector<PanelPair> layer_pairs(const Garment& garment) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> sewn;
+  for (const Joint& joint : garment.joints) {
+    const std::uint32_t from = panel_of(garment, joint.node), onto = panel_of(garment, joint.edge_first);
+    sewn.insert(std::minmax({from, onto}));
+  }
+  std::vector<PanelPair> pairs;
+  const auto panels = static_cast<std::uint32_t>(garment.panels.size());
+  for (std::uint32_t inner = 0; inner < panels; ++inner) {
+    for (std::uint32_t outer = 0; outer < panels; ++outer) {
+      if (garment.panels[inner].layer < garment.panels[outer].layer &&
+          !sewn.contains(std::minmax({inner, outer})))
+        pairs.push_back({inner, outer});
+    }
+  }
+  return pairs;
+}
+
+void validate_layers(const ClothLayers& layers, const Garment& garment, std::size_t nodes) {
+  for (const std::uint32_t panel : layers.mirrored) validate_panel(panel, garment, nodes);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> known;
+  for (const auto& [inner, outer] : layers.pairs) {
+    validate_panel(inner, garment, nodes);
+    validate_panel(outer, garment, nodes);
+    if (inner == outer)
+      throw std::invalid_argument("cloth layers: panel " + quoted(garment.panels[inner]) +
+                                  " is paired with itself, but only collisions of different panels are "
+                                  "found: name another one");
+    if (!known.insert(std::minmax({inner, outer})).second)
+      throw std::invalid_argument("cloth layers: panels " + quoted(garment.panels[inner]) + " and " +
+                                  quoted(garment.panels[outer]) + " are paired twice: name each pair once");
+  }
+}
+
+PanelBoxes::PanelBoxes(const GarmentPanel& panel) : panel_(panel) {
+  blocks_.push_back({0, panel.rows - 1, 0, panel.columns - 1});
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block) split(block);
+  boxes_.resize(blocks_.size());
+  cell_boxes_.resize(blocks_.front().cells());
+}
+
+void PanelBoxes::split(std::uint32_t block) {
+  const Block whole = blocks_[block];
+  const auto parts = [](std::uint32_t begin, std::uint32_t end) { return end - begin > leaf_side ? 2U : 1U; };
+  const std::uint32_t row_parts = parts(whole.row_begin, whole.row_end);
+  const std::uint32_t column_parts = parts(whole.column_begin, whole.column_end);
+  if (row_parts * column_parts == 1) {
+    leaves_.push_back(block);
+    return;
+  }
+  blocks_[block].first_child = static_cast<std::uint32_t>(blocks_.size());
+  blocks_[block].children = row_parts * column_parts;
+  const auto bound = [](std::uint32_t begin, std::uint32_t end, std::uint32_t part, std::uint32_t of) {
+    return begin + (end - begin) * part / of;
+  };
+  for (std::uint32_t i = 0; i < row_parts; ++i) {
+    for (std::uint32_t j = 0; j < column_parts; ++j)
+      blocks_.push_back({bound(whole.row_begin, whole.row_end, i, row_parts),
+                         bound(whole.row_begin, whole.row_end, i + 1, row_parts),
+                         bound(whole.column_begin, whole.column_end, j, column_parts),
+                         bound(whole.column_begin, whole.column_end, j + 1, column_parts)});
+  }
+}
+
+void PanelBoxes::refit_leaf(std::uint32_t leaf, const Coordinates& position) {
+  const Block& cells = blocks_[leaf];
+  const auto at = [&](std::uint32_t row, std::uint32_t column) {
+    const Vec3<float> point = point_of(position, panel_.node(row, column));
+    return Box<float>{point, point};
+  };
+  for (std::uint32_t row = cells.row_begin; row < cells.row_end; ++row) {
+    Box<float> left = united(at(row, cells.column_begin), at(row + 1, cells.column_begin));
+    for (std::uint32_t column = cells.column_begin; column < cells.column_end; ++column) {
+      const Box<float> right = united(at(row, column + 1), at(row + 1, column + 1));
+      Box<float>& cell = cell_boxes_[row * (panel_.columns - 1) + column];
+      cell = united(left, right);
+      const bool first = row == cells.row_begin && column == cells.column_begin;
+      boxes_[leaf] = first ? cell : united(boxes_[leaf], cell);
+      left = right;
+    }
+  }
+}
+
+void PanelBoxes::refit_rest() {
+  for (std::size_t block = blocks_.size(); block-- > 0;) {
+    const Block& parent = blocks_[block];
+    if (parent.children == 0) continue;
+    boxes_[block] = boxes_[parent.first_child];
+    for (std::uint32_t i = 1; i < parent.children; ++i)
+      boxes_[block] = united(boxes_[block], boxes_[parent.first_child + i]);
+  }
+}
+
 namespace {
 
 /// Two sub-patches with fewer cells than this together are searched by the task that met them: searching them

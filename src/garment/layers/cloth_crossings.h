@@ -4,7 +4,7 @@
 #include <span>
 
 #include "garment/garment.h"
-#include "garment/layers/panel_layers.h"
+#include "garment/layers/cloth_contacts.h"
 #include "geometry/vec3.h"
 
 namespace mssim {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "garment/output/dressed_rows.h"
+#include "garment/output/garment_table.h"
 #include "output/tables/result_table.h"
 #include "output/tables/table_csv.h"
 

@@ -31,4 +31,9 @@ void write_garment(hid_t file, const Garment& garment);
 /// Writes the joints into /connectivity, which exists. Throws Hdf5Error.
 void write_joints(hid_t file, const std::string& particles, const Garment& garment);
 
+/// Reads what h5md_garment.h writes: panels, seams and joints. How the garment was dressed, and the length
+/// and strength of joints, are not in a trace. Throws Hdf5Error, Hdf5ContentError, and std::invalid_argument
+/// where the garment does not fit the nodes.
+Garment read_garment(hid_t file, std::size_t nodes);
+
 }  // namespace mssim

@@ -1,19 +1,120 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "garment/garment.h"
-#include "garment/pattern/close_cloth.h"
 #include "garment/pattern/panel_mesh.h"
-#include "garment/pattern/panel_springs.h"
-#include "garment/pattern/placement.h"
-#include "garment/pattern/seams.h"
 #include "model/system.h"
 #include "text/error.h"
 
 namespace mssim {
+
+/// What of a pattern is to lie close to the body: cloth beside these seams.
+struct CloseSeams {
+  std::vector<std::string> seams;  ///< their names
+  double reach = 0;                ///< m, how far beside a seam, along a row in the flat pattern
+  double lowest = 0, highest = 0;  ///< m, heights on the body, both included
+};
+
+/// The nodes of these seams, and those of the same rows within the reach, each once and in rising order.
+/// `garment` has panels, seams, joints and where its nodes lie flat.
+CloseCloth close_cloth(const CloseSeams& close, const Garment& garment);
+
+/// The rows of a panel next to its top boundary, which hold the garment on the body.
+struct Waistband {
+  double height = 0;            ///< m; 0 is no waistband
+  double stiffness_factor = 8;  ///< of the structural springs along its rows
+  double mass_factor = 4;       ///< of its nodes: the largest time step stays about what it is elsewhere
+  double seam_factor = 4;       ///< of the seams' force on its nodes (Joint::strength)
+};
+
+/// What a panel is cut from. Defaults are denim's, as light as a garment needs it to settle quickly.
+struct PanelMaterial {
+  double area_density = 0.40;  ///< kg/m^2
+  SpringMaterial structural{200, 0};
+  SpringMaterial shear{60, 0};
+  SpringMaterial bending{8, 0};
+  /// A node's mass is at least this share of the panel's mean one. At 0 the masses sum to the panel's; nodes
+  /// on the boundary then weigh half or a quarter, which shortens the largest stable time step. At 1 they
+  /// weigh what the others do: hems and seams are several layers of cloth.
+  double least_mass_share = 0;
+  Waistband waistband{};
+};
+
+/// How many rows from the top one down belong to the waistband: those that end within its height of the top
+/// corners, taking the mean of left and right, and the top row in any case. 0 without a waistband.
+std::uint32_t waistband_rows(const PanelMesh& mesh, const Waistband& waistband);
+
+/// Throws InputError, which names the panel, field and remedy, unless density, stiffnesses and factors are
+/// positive and finite, and dampings, shares and the waistband's height not negative.
+void require_cloth(const std::string& panel, const PanelMaterial& cloth);
+
+/// Appends the springs of the 12-neighbour stencil in the order of springs_of(GridPatch), each as long at
+/// rest as its ends are apart in the plane of the pattern, and to `materials` those of the panel: structural,
+/// shear, bending and, with a waistband, its rows' structural one.
+void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const PanelMaterial& cloth,
+                    std::vector<Spring>& springs, std::vector<SpringMaterial>& materials);
+
+/// kg, of each node: a quarter of each cell that it belongs to, times the density.
+std::vector<double> node_masses(const PanelMesh& mesh, const PanelMaterial& cloth);
+
+/// m^2, of all cells
+double area_of(const PanelMesh& mesh);
+
+/// How deep the body is at a height y: z of its foremost and hindmost point, m. The functions answer for
+/// every height that a panel reaches.
+struct BodyDepth {
+  std::function<double(double)> front, back;
+};
+
+/// Where a panel begins: before or behind the body, bent round an upright cylinder. A panel keeps the heights
+/// that it was drawn at.
+struct PanelPlacement {
+  bool behind = false;
+  /// m, x at which the pattern's x = 0 stands, by height; its sign says on which side of the body
+  std::function<double(double)> axis = [](double) { return 0.0; };
+  double distance = 0.03;  ///< m, from the body's foremost (hindmost) point at that height
+  double radius = 0.105;   ///< m, of the bend
+};
+
+/// The nodes of a panel in space, m, rounded to micrometres. Its outside looks away from the body. The half
+/// that looks to the plane x = 0 bends by no more than two thirds of the distance and runs straight on from
+/// there, so that it stays before everything that the body has at its height: trunk and other leg are there.
+/// Throws InputError, which begins with `panel`, where the body has no finite depth and for a distance or
+/// radius that is not positive.
+std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
+                               const PanelPlacement& placement, const BodyDepth& body);
+
+/// A part of a panel's boundary. With from > to it is passed backwards.
+struct SeamStretch {
+  std::string panel;
+  PanelEdge edge = PanelEdge::left;
+  double from = 0;  ///< fraction of the boundary's arc length
+  double to = 1;
+};
+
+/// Two stretches that are sewn together, the beginning of one to the beginning of the other.
+struct Seam {
+  std::string name;
+  SeamStretch first, second;
+  /// How much the lengths of the two may differ, as a fraction of the longer one; what is longer is eased in.
+  double tolerance = 0.03;
+};
+
+/// The joints of a seam (Vassilev, "Cloth simulation"): each node of the stretch with more of them (of
+/// `first` where both have as many), once, is joined to the place at the same fraction of the other's length,
+/// which is a node where one lies within a twentieth of the edge, and at both ends. A stretch ends at the
+/// nodes that are nearest to its ends. The lengths of the joints sum to the length of the finer stretch.
+///
+/// `panels` and `meshes` belong to each other; `seam_index` becomes Joint::seam. Throws InputError, which
+/// begins with "seam NAME", for an unknown panel, a stretch outside its boundary or with less than two nodes,
+/// one that is sewn to itself, and lengths that differ by more than the tolerance.
+std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> panels,
+                             std::span<const PanelMesh> meshes, std::uint32_t seam_index);
 
 /// A pattern piece with all that makes it a part of a garment.
 struct PatternPanel {

@@ -1,14 +1,267 @@
 #include "garment/pattern/jeans.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <string>
 #include <utility>
 
 #include "geometry/geometry.h"
 #include "text/error.h"
 
 namespace mssim {
+
+namespace {
+
+/// How front and back differ. Proportions are those of trouser drafts as they are taught (Aldrich, "Metric
+/// Pattern Cutting"), the lengths what fitted best on the reference body.
+struct Half {
+  bool before;             ///< the side seams
+  double width;            ///< m, added to half of what the body has of each girth there
+  double fork_share;       ///< of the hip: how far the crotch point juts out over the centre line ...
+  double fork_more;        ///< m, ... and this
+  double centre_share;     ///< of what the waist is narrower than the hip is taken away at the centre
+  double raised;           ///< m, of the waist at the centre over that at the side
+  double crease_outwards;  ///< m, from the middle of the widest line
+  double curve_height;     ///< m, over the crotch line, at which the crotch curve meets the centre line
+  double inseam_hollow;    ///< m, how far the inseam's control point stands back from the crotch point
+  double fork_flatness;    ///< of the fork: length of the crotch curve's lower control
+};
+constexpr Half front_half{true, -0.007, 1.0 / 16, 0, 0.8, -0.009, 0, 0.075, 0.018, 0.60};
+constexpr Half back_half{false, 0.007, 1.0 / 8, 0.005, 1.05, 0.010, 0.015, 0.09, 0.040, 0.62};
+
+/// By how much of the body's girth jeans without ease are stretched at hip and waist. Around a body that is
+/// round both ways the cloth is too long at the side seams; without tension it stands off there.
+constexpr double hip_stretch = 0.031, waist_stretch = 0.006;
+
+constexpr double side_raised = -0.003;  // m, of the waist at the side
+constexpr double side_slope = 0.2;      // by which the waist falls away from there
+
+Curve line(const Vec3d& from, const Vec3d& to) { return Curve({from, to}); }
+
+Curve bezier(const Vec3d& from, const Vec3d& control_1, const Vec3d& control_2, const Vec3d& to) {
+  return Curve::bezier(std::array{from, control_1, control_2, to});
+}
+
+/// A function of the height as the cubic through given values at two heights, which follows a table between
+/// them with the least squares of its distances.
+struct FittedCubic {
+  double low_slope = 0, high_slope = 0;  ///< dx/dy at the two heights
+};
+
+FittedCubic fit_slopes(double low, double low_value, double high, double high_value,
+                       const std::function<double(double)>& wanted) {
+  constexpr int samples = 32;
+  const double height = high - low;
+  double a = 0, b = 0, c = 0, p = 0, q = 0;  // normal equations [a b; b c] slopes = [p; q]
+  for (int i = 1; i < samples; ++i) {
+    const double t = static_cast<double>(i) / samples, s = 1 - t;
+    const double rest =
+        wanted(low + t * height) - s * s * (1 + 2 * t) * low_value - t * t * (3 - 2 * t) * high_value;
+    const double of_low = height * t * s * s, of_high = -height * t * t * s;
+    a += of_low * of_low;
+    b += of_low * of_high;
+    c += of_high * of_high;
+    p += of_low * rest;
+    q += of_high * rest;
+  }
+  const double determinant = a * c - b * b;
+  return {(c * p - b * q) / determinant, (a * q - b * p) / determinant};
+}
+
+/// One half, with x = 0 at the outer side's hip while it is drawn.
+class Drafting {
+ public:
+  Drafting(const JeansMeasures& measures, const Half& half, double fork_factor)
+      : m_(measures),
+        half_(half),
+        crotch_line_(m_.crotch_height - m_.crotch_ease),
+        hip_width_(width_at(m_.hip_height)),
+        waist_width_(width_at(m_.waist_height)),
+        fork_(fork_factor * (half.fork_share * m_.girth(m_.hip_height) + half.fork_more)),
+        crease_(0.5 * (hip_width_ + fork_) - half.crease_outwards) {}
+
+  /// With the crotch point this far below the crotch line.
+  JeansOutline outline(double drop) const {
+    const Vec3d waist_centre{hip_width_ - centre_taken(), m_.waist_height + half_.raised, 0};
+    const Curve waist_line = waist(waist_centre);
+    const double half_knee = 0.25 * m_.knee + 0.5 * half_.width, half_hem = 0.25 * m_.hem + 0.5 * half_.width;
+    const Vec3d outer_hem{crease_ - half_hem, m_.hem_height, 0},
+        inner_hem{crease_ + half_hem, m_.hem_height, 0};
+    const Vec3d outer_knee{crease_ - half_knee, m_.knee_height, 0};
+    const Vec3d inner_knee{crease_ + half_knee, m_.knee_height, 0};
+    const Vec3d crotch_point{hip_width_ + fork_, crotch_line_ - drop, 0};
+    return {
+        from_crease(line(outer_hem, inner_hem)), from_crease(waist_line),
+        from_crease(line(outer_hem, outer_knee).followed_by(side(outer_hem, outer_knee, waist_line.first()))),
+        from_crease(line(inner_hem, inner_knee).followed_by(thigh(inner_hem, inner_knee, crotch_point))),
+        from_crease(centre(crotch_point, waist_centre))};
+  }
+
+ private:
+  /// A quarter of the jeans at a height from hip to waist.
+  double width_at(double y) const {
+    const double fraction = (y - m_.hip_height) / (m_.waist_height - m_.hip_height);
+    const double girth = m_.girth(y);
+    const double ease = (1 - fraction) * (m_.hip_ease - hip_stretch * girth) +
+                        fraction * (m_.waist_ease - waist_stretch * girth);
+    if (!(girth > 0.2 && girth < 5))
+      throw InputError("jeans: the body's girth at the height " + shown(y) + " m is " + shown(girth) +
+                       " m; give a body that has one from 0.2 to 5 m there");
+    const double front = m_.front_share ? m_.front_share(y) : 0.5;
+    const double share = half_.before ? front : 1 - front;
+    return 0.5 * share * (girth + 2 * std::numbers::pi * m_.body_offset + ease) + half_.width;
+  }
+
+  double centre_taken() const { return half_.centre_share * (hip_width_ - waist_width_); }
+
+  /// The height at which the centre seam begins to lean to the side; the crotch curve ends there.
+  double centre_bend() const { return crotch_line_ + half_.curve_height; }
+  double centre_height() const { return m_.waist_height + half_.raised - centre_bend(); }
+
+  /// x of the centre seam, and of its line prolonged below: upright at the bend, over seat and belly a cubic
+  /// of the height that leans the more the higher, as the body does.
+  double centre_x(double y) const {
+    const double t = std::max(0.0, (y - centre_bend()) / centre_height());
+    return hip_width_ - centre_taken() * t * t * (3 - top_lean + (top_lean - 2) * t);
+  }
+  /// -dx/dy of the centre seam at the waist.
+  double centre_lean() const { return top_lean * centre_taken() / centre_height(); }
+
+  /// The upper edge, as long as the waist is wide. It rises to the side, where front and back would make a
+  /// notch otherwise, and stands at right angles to the centre seam.
+  Curve waist(const Vec3d& at_centre) const {
+    double width = waist_width_;
+    const auto drawn = [&] {
+      const Vec3d at_side{at_centre.x - width, m_.waist_height + side_raised, 0};
+      return bezier(at_side, at_side + (width / 3) * Vec3d{1, -side_slope, 0},
+                    at_centre - (width / 3) * Vec3d{1, centre_lean(), 0}, at_centre);
+    };
+    // The slope adds 2 % at the most, so that each turn leaves 2 % of the error.
+    for (int turn = 0; turn < 12; ++turn) width *= waist_width_ / drawn().length();
+    return drawn();
+  }
+
+  /// From the knee to the waist: two cubics with one direction at the hip. The upper one follows the body's
+  /// girth.
+  Curve side(const Vec3d& hem, const Vec3d& knee, const Vec3d& at_waist) const {
+    const auto wanted = [this](double y) { return centre_x(y) - width_at(y); };
+    const Vec3d hip{wanted(m_.hip_height), m_.hip_height, 0};
+    const double height = at_waist.y - hip.y;
+    const FittedCubic fit = fit_slopes(hip.y, hip.x, at_waist.y, at_waist.x, wanted);
+    const Vec3d at_hip{fit.low_slope, 1, 0};
+    const double thigh_height = hip.y - knee.y;
+    return Curve::bezier(std::array{knee, knee + 0.31 * thigh_height * along(hem, knee),
+                                    hip - 0.2 * thigh_height * at_hip, hip, hip + height / 3 * at_hip,
+                                    at_waist - height / 3 * Vec3d{fit.high_slope, 1, 0}, at_waist});
+  }
+
+  Curve thigh(const Vec3d& hem, const Vec3d& knee, const Vec3d& crotch_point) const {
+    const double height = crotch_point.y - knee.y;
+    return bezier(knee, knee + 0.36 * height * along(hem, knee),
+                  crotch_point - Vec3d{half_.inseam_hollow, 0.43 * height, 0}, crotch_point);
+  }
+
+  /// The crotch curve, nearly level at its point, and the seam above it, which centre_x describes.
+  Curve centre(const Vec3d& crotch_point, const Vec3d& at_waist) const {
+    const Vec3d bend{hip_width_, centre_bend(), 0}, up{0, 1, 0};
+    const double third = centre_height() / 3;
+    return Curve::bezier(std::array{crotch_point,
+                                    crotch_point - Vec3d{half_.fork_flatness * fork_, -0.002, 0},
+                                    bend - 0.75 * half_.curve_height * up, bend, bend + third * up,
+                                    at_waist - third * Vec3d{-centre_lean(), 1, 0}, at_waist});
+  }
+
+  /// The direction of the line between two points, scaled so that it rises by 1.
+  static Vec3d along(const Vec3d& from, const Vec3d& to) { return 1 / (to.y - from.y) * (to - from); }
+
+  Curve from_crease(const Curve& curve) const {
+    std::vector<Vec3d> points = curve.points();
+    for (Vec3d& point : points) point.x -= crease_;
+    return Curve(std::move(points));
+  }
+
+  /// The centre seam's lean at the waist over its mean one.
+  static constexpr double top_lean = 1.2;
+
+  const JeansMeasures& m_;
+  const Half& half_;
+  double crotch_line_;
+  double hip_width_, waist_width_;
+  double fork_;
+  double crease_;  ///< x
+};
+
+void require_between(double value, double least, double most, const std::string& what) {
+  if (!(value >= least && value <= most))
+    throw InputError("jeans: " + what + " is " + shown(value) + " m; give a length from " + shown(least) +
+                     " to " + shown(most) + " m");
+}
+
+void require_measures(const JeansMeasures& m) {
+  if (!m.girth) throw InputError("jeans: the body's girth is missing; give it as a function of the height");
+  require_between(m.hem_height, 0, 2, "the hem's height, hem_height_m,");
+  const double least = 0.03;  // between two of the heights
+  require_between(m.knee_height, m.hem_height + least, 2,
+                  "the knee's height, knee_height_m, which lies above the hem's,");
+  require_between(
+      m.crotch_height - m.crotch_ease, m.knee_height + least, 2,
+      "the crotch line's height, the body's less crotch_ease_m, which lies above the knee's, knee_height_m,");
+  require_between(m.hip_height, m.crotch_height + least, 2,
+                  "the hip's height, hip_height_m, which lies above the crotch's,");
+  require_between(m.waist_height, m.hip_height + least, 2,
+                  "the waist's height, waist_height_m, which lies above the hip's,");
+  require_between(m.knee, 0.1, 2, "the jeans' circumference at the knee, knee_m,");
+  require_between(m.hem, 0.1, 2, "the jeans' circumference at the hem, hem_m,");
+  require_between(m.hip_ease, -0.2, 0.5, "the ease at the hip, hip_ease_m,");
+  require_between(m.waist_ease, -0.2, 0.5, "the ease at the waist, waist_ease_m,");
+  require_between(m.crotch_ease, -0.05, 0.2, "the ease at the crotch, crotch_ease_m,");
+  require_between(m.body_offset, 0, 0.05, "the distance between body and cloth");
+}
+
+/// With the crotch curves' forks so many times as wide as the hip's girth alone has them.
+JeansDraft draft_with(const JeansMeasures& measures, double fork_factor) {
+  const Drafting front(measures, front_half, fork_factor), back(measures, back_half, fork_factor);
+  const JeansOutline front_outline = front.outline(0);
+  const double inseam = front_outline.inseam.length();
+  double least = -0.03, most = 0.08;  // m: the back inseam shrinks from the one to the other
+  const auto back_inseam = [&](double drop) { return back.outline(drop).inseam.length(); };
+  if (!(back_inseam(least) > inseam && back_inseam(most) < inseam))
+    throw InputError(
+        "jeans: no crotch point makes the back's inseam as long as the front's of " + shown(inseam) +
+        " m; change the heights (hip_height_m, waist_height_m, knee_height_m, hem_height_m) or the widths "
+        "(knee_m, hem_m) towards the body's");
+  for (int halving = 0; halving < 30; ++halving) {
+    const double middle = 0.5 * (least + most);
+    (back_inseam(middle) > inseam ? least : most) = middle;
+  }
+  return {front_outline, back.outline(most)};
+}
+
+/// How wide the forks must be for the centre seams to be as long as the body there, with some ease: a body
+/// that is deep for its girth needs wider ones.
+double fork_factor(const JeansMeasures& measures) {
+  if (!measures.crotch_length) return 1;
+  constexpr double ease = 0.05;  // m, of which the crotch's own and the raised back take a part
+  const double wanted = measures.crotch_length(measures.waist_height) + ease;
+  double least = 0.7, most = 1.6;
+  for (int halving = 0; halving < 12; ++halving) {
+    const double middle = 0.5 * (least + most);
+    const JeansDraft draft = draft_with(measures, middle);
+    (draft.front.centre.length() + draft.back.centre.length() < wanted ? least : most) = middle;
+  }
+  return 0.5 * (least + most);
+}
+
+}  // namespace
+
+JeansDraft draft_jeans(const JeansMeasures& measures) {
+  require_measures(measures);
+  return draft_with(measures, fork_factor(measures));
+}
+
 namespace {
 
 double inner_length(const JeansOutline& outline) { return outline.inseam.length() + outline.centre.length(); }
@@ -131,6 +384,53 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
                    measures.crotch_height - below_the_crotch,
                    measures.hip_height};
   return pattern;
+}
+
+namespace {
+
+double in_millimetres(double metres) { return std::round(1000 * metres) / 1000; }
+
+/// What the jeans are wider than the body at their upper edge, m. Where the body hardly widens from there to
+/// the hip, they hold by being narrower.
+double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
+  constexpr double usual = 0.01, least = -0.03;  // m
+  constexpr double steep = 0.7;                  // m of girth per m of height: usual from there on
+  constexpr double narrower = 0.1;               // m, by as much less for each m per m below
+  const double widening = (profile.hull_girth(jeans.hip_height) - profile.hull_girth(jeans.waist_height)) /
+                          (jeans.waist_height - jeans.hip_height);
+  return std::clamp(usual + narrower * (widening - steep), least, usual);
+}
+
+/// How much the leg, straight from hem to knee, would have to be wider to go round the body's with some air.
+double lack_of_width(const BodyProfile& profile, const JeansMeasures& jeans) {
+  constexpr double air = 0.03, step = 0.01;  // m
+  double lack = 0;
+  for (double y = jeans.hem_height; y <= jeans.knee_height; y += step) {
+    const double fraction = (y - jeans.hem_height) / (jeans.knee_height - jeans.hem_height);
+    const double width = (1 - fraction) * jeans.hem + fraction * jeans.knee;
+    lack = std::max(lack, thicker_leg(profile, y).value_or(0) + air - width);
+  }
+  return lack;
+}
+
+}  // namespace
+
+JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& body) {
+  constexpr double edge = 0.8;                           // of the way from the hip to the waist
+  constexpr double wider_knee = 1.135, wider_hem = 1.5;  // than knee and ankle
+  JeansMeasures jeans;
+  jeans.waist_height = in_millimetres(body.hip.height + edge * (body.waist.height - body.hip.height));
+  jeans.hip_height = in_millimetres(body.hip.height);
+  jeans.crotch_height = body.crotch_height;
+  jeans.knee_height = in_millimetres(body.knee.height);
+  jeans.hem_height = in_millimetres(std::max(body.ankle.height - 0.02, 0.03));
+  if (body.knee.girth) jeans.knee = wider_knee * *body.knee.girth;
+  if (body.ankle.girth) jeans.hem = wider_hem * *body.ankle.girth;
+  const double lack = lack_of_width(profile, jeans);
+  jeans.waist_ease = in_millimetres(ease_at_waist(profile, jeans));
+  jeans.knee = in_millimetres(jeans.knee + lack);
+  jeans.hem = in_millimetres(jeans.hem + lack);
+  return jeans;
 }
 
 }  // namespace mssim

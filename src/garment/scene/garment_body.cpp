@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "garment/body/length_unit.h"
+#include "garment/body/stance.h"
 #include "geometry/geometry.h"
 #include "geometry/surface.h"
 #include "mesh/surface_file.h"

@@ -2,7 +2,7 @@
 
 #include <variant>
 
-#include "garment/body/measured_body.h"
+#include "garment/body/body_profile.h"
 #include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "garment/layers/panel_layers.h"
+#include "garment/layers/cloth_contacts.h"
 #include "garment/scene/garment_body.h"
 #include "garment/scene/garment_cut.h"
 #include "scene/fields/fields.h"

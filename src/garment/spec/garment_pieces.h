@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "garment/pattern/garment_build.h"
-#include "garment/pattern/panel_springs.h"
-#include "garment/pattern/seams.h"
 #include "geometry/vec3.h"
 #include "scene/fields/fields.h"
 

@@ -5,12 +5,12 @@
 #include <string>
 #include <variant>
 
-#include "garment/body/body_stance.h"
 #include "garment/body/mannequin.h"
+#include "garment/body/stance.h"
 #include "garment/cloth_layers.h"
 #include "garment/dressing.h"
-#include "garment/pattern/jeans_outline.h"
-#include "garment/pattern/panel_springs.h"
+#include "garment/pattern/garment_build.h"
+#include "garment/pattern/jeans.h"
 #include "garment/spec/garment_pieces.h"
 #include "mesh/meshing.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "garment/output/h5md_garment_read.h"
+#include "garment/output/h5md_garment.h"
 #include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
 #include "output/traces/h5md_body.h"

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "garment/body/measured_body.h"
+#include "garment/body/body_profile.h"
 #include "garment/spec/garment_spec.h"
 #include "geometry/vec3.h"
 #include "mesh/meshing.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include "garment/body/landmarks.h"
 #include "garment/body/mannequin.h"
 #include "mesh/shapes.h"
 #include "mesh/surface_file.h"

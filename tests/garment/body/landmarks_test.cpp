@@ -1,9 +1,8 @@
-#include "garment/body/landmarks.h"
-
 #include <gmock/gmock.h>
 
+#include "garment/body/body_profile.h"
 #include "garment/body/mannequin.h"
-#include "garment/pattern/jeans_for_body.h"
+#include "garment/pattern/jeans.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/mesh_fixture.h"
 

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "garment/body/body_profile.h"
-#include "garment/body/ellipse_tube.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

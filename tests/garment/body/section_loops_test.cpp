@@ -1,12 +1,11 @@
 // The closed lines in which a horizontal plane meets a surface, and whether they overlap.
-#include "garment/body/section_loops.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
 #include <numeric>
 
+#include "garment/body/sections.h"
 #include "mesh/shapes.h"
 #include "tests/support/mesh_fixture.h"
 

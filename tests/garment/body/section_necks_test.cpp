@@ -1,12 +1,12 @@
 // A hand against a hip is cut off where its section is narrowest; what has no neck stays whole.
-#include "garment/body/section_necks.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <numeric>
+
+#include "garment/body/sections.h"
 
 namespace mssim {
 namespace {

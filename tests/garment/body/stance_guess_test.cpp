@@ -1,5 +1,3 @@
-#include "garment/body/stance_guess.h"
-
 #include <gmock/gmock.h>
 
 #include <array>
@@ -7,8 +5,8 @@
 #include <tuple>
 #include <utility>
 
-#include "garment/body/length_unit.h"
 #include "garment/body/mannequin.h"
+#include "garment/body/stance.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/mesh_fixture.h"
 

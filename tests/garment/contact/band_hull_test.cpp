@@ -1,9 +1,8 @@
 // How far points lie outside of a body whose hollows are bridged.
-#include "garment/contact/band_hull.h"
-
 #include <gtest/gtest.h>
 
-#include "garment/body/ellipse_tube.h"
+#include "garment/body/mannequin.h"
+#include "garment/contact/solid.h"
 
 namespace mssim {
 namespace {

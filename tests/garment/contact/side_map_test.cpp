@@ -1,11 +1,10 @@
 // What a camera sees of a body: depth and normals.
-#include "garment/contact/side_map.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "garment/contact/body_maps.h"
 #include "geometry/surface.h"
 #include "mesh/shapes.h"
 #include "tests/support/body_maps_fixture.h"

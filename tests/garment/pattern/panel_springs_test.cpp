@@ -1,10 +1,9 @@
-#include "garment/pattern/panel_springs.h"
-
 #include <gmock/gmock.h>
 
 #include <limits>
 #include <numeric>
 
+#include "garment/pattern/garment_build.h"
 #include "model/topology.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"

@@ -1,10 +1,9 @@
-#include "garment/pattern/placement.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
+#include "garment/pattern/garment_build.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
 

@@ -1,9 +1,8 @@
-#include "garment/pattern/seams.h"
-
 #include <gmock/gmock.h>
 
 #include <set>
 
+#include "garment/pattern/garment_build.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
+#include "garment/layers/cloth_contacts.h"
 #include "garment/layers/cloth_crossings.h"
-#include "garment/layers/panel_layers.h"
 #include "garment/stepping/layer_collision.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
