@@ -48,9 +48,8 @@ ShapePoints points_of(const Shape& shape, const InteriorPoints& interior);
 
 /// The mesh of a shape: its surface points first, then the interior points, then what TetGen had to add
 /// (nothing, for the bodies of the committed scenes). Made by TetGen or taken from the cache
-/// (tetrahedralise.h). Throws InputError for parameters out of range and for
-/// more points than can be meshed (tetgen.h), MissingProgram when TetGen is needed and
-/// not installed.
+/// (tetrahedralise). Throws InputError for parameters out of range and for more points than can be meshed
+/// (tetgen.h), MissingProgram when TetGen is needed and not installed.
 TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior);
 
 /// A body whose surface a user drew.

@@ -1,5 +1,6 @@
 #!/bin/bash
-# The data flows one way: which room of src/ may include which others. Arguments: mssim (unused), the source folder.
+# The data flows one way: which room of src/ may include which others, and which of their headers. Arguments: mssim (unused), the
+# source folder.
 set -euo pipefail
 
 # The rule. A room is a folder with files of its own; a row names one and the rooms that it may include beside itself,
@@ -97,11 +98,67 @@ supervise.cpp         platform
 mssim_mpi.cpp         platform ranks
 '
 
-# offences ROOT: prints FILE:LINE: what is wrong with each include under ROOT/src and ROOT/kernels that breaks the rule, and
-# with each row of the rule that names a room which does not stand above it.
+# What a room shows to the others: headers that read as its documentation. All others of these rooms are private. Rooms that are
+# not here show too many, all that they have; a room is added when it shows one or two, and those that show more are to.
+shown='
+text                  text error
+statistics            statistics
+cluster               step_model
+render                draw srgb
+hdf5                  hdf5 hdf5_table
+laws                  host_laws laws-inl
+garment/contact       body_maps solid
+garment/body          body_profile mannequin stance
+garment/pattern       garment_build jeans
+garment/spec          garment_spec
+garment/scene         garment_scene garment_body
+garment/bench         garment_verification dressing_record
+platform              files process supervised_process machine
+mesh                  meshing shapes surface_file tet_mesh tetgen
+model                 system topology energy spectrum node_surface
+scene/fields          fields
+scene/spec            scene_spec
+scene                 scene_file scene_kinds cloth
+backends/vectors      instruction_sets lanes-inl
+backends/accumulation accumulation_methods
+backends/implicit     implicit
+backends/implicit/newton       newton
+backends/implicit/local_global local_global
+backends/implicit/constraints  constraints
+backends/opencl       opencl
+backends/hybrid       hybrid
+backends/process      process_backend backend_program
+backends/described    backend_description
+ranks                 launch rank_program requests
+bench/machine         provenance build_info
+bench/results         result comparison
+bench/roofline        machine_peak step_cost
+bench/windows         windows
+bench/job             scene_job combination
+bench                 bench_scene estimates
+guide                 guide cloth_sizes
+output/guide          guide_page guide_table
+output/pictures       painter picture_folder
+output/folders        result_folder provenance_file
+commands/arguments    arguments program_parser
+commands/run          run_command run_scene
+commands/render       render_command
+commands/export       export_command
+commands/guide        guide_command guide_run
+commands/list         list_command
+commands/compare      compare_command
+commands/check        check_command
+commands/measure      measure_command
+commands/new_backend  new_backend_command
+commands/report       report_command
+commands/help         help_command
+'
+
+# offences ROOT: prints FILE:LINE: what is wrong with each include under ROOT/src and ROOT/kernels that breaks the rule or
+# takes what its room does not show, and with each row of the rule that names a room which does not stand above it.
 offences() {
   (cd "$1" && find src kernels -path src/starters -prune -o -type f -print | sort | xargs grep -HnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]') |
-    awk -v rule="$rule" '
+    awk -v rule="$rule" -v shown="$shown" '
       function room_of(path) {
         sub(/^src\//, "", path)
         if (path ~ /\//) sub(/\/[^\/]*$/, "", path)
@@ -117,6 +174,14 @@ offences() {
             may[word[1], word[w]] = 1
           }
           known[word[1]] = may[word[1], word[1]] = 1
+        }
+        rows = split(shown, row, "\n")
+        for (r = 1; r <= rows; ++r) {
+          words = split(row[r], word, " ")
+          for (w = 2; w <= words; ++w) {
+            shows[word[1], word[w]] = 1
+            list[word[1]] = list[word[1]] (w > 2 ? ", " : "") word[w] ".h"
+          }
         }
       }
       {
@@ -134,6 +199,11 @@ offences() {
           print place ": \"" header "\" is neither written from src/ on nor a library header in <>"
         else if ((to in known) && !((from, to) in may))
           print place ": " from " may not include " header
+        else if (to != from && (to in list)) {
+          name = substr(header, length(to) + 2)
+          sub(/\.h$/, "", name)
+          if (!((to, name) in shows)) print place ": " header " is private to its room, which shows " list[to]
+        }
       }'
 }
 
@@ -148,9 +218,12 @@ printf '#include "bench/results/result.h"\n#include "bench/job/plan.h"\n#include
 printf '#include "mssim/version.h"\n#include <hwy/highway.h>\n' >"$made_up/src/bench/machine/a.cpp"
 printf '#include "scene/scene_file.h"\n#include "commands/bench/bench_plan.h"\n' >"$made_up/src/commands/run/a.cpp"
 printf '#include <vector>\n' >"$made_up/src/gadgets/a.h"
+mkdir -p "$made_up/src/bench/verification"
+printf '#include "text/text.h"\n#include "text/words.h"\n' >"$made_up/src/bench/verification/a.h"
 printf '#include "model/system.h"\n' >"$made_up/kernels/a.h"
 printf '#include "commands/shared/command.h"\n' >"$made_up/src/main.cpp"
 expected='kernels/a.h:1: kernels may not include model/system.h
+src/bench/verification/a.h:2: text/words.h is private to its room, which shows text.h, error.h
 src/commands/run/a.cpp:2: commands/run may not include commands/bench/bench_plan.h
 src/gadgets/a.h:1: gadgets has no row in the include rule
 src/model/a.h:3: model may not include scene/spec/scene_spec.h
@@ -163,6 +236,11 @@ if ! diff <(printf '%s\n' "$expected") <(offences "$made_up"); then
 fi
 
 found=$(offences "$2")
+while read -r room headers; do
+  for header in $headers; do
+    [[ -e $2/src/$room/$header.h ]] || found+=$'\n'"what rooms show: there is no src/$room/$header.h"
+  done
+done <<<"$shown"
 if [[ $found ]]; then
   printf '%s\n' "$found" "The rule stands in tests/project/include_rule_test.sh." >&2
   exit 1
