@@ -40,11 +40,11 @@ class PointMerger {
 }  // namespace
 
 FileSurface read_surface(const std::filesystem::path& file) {
-  const std::string extension = to_lower(file.extension().string());
+  const std::string ending = to_lower(file.extension().string());
   FileSurface read;
-  if (extension == ".obj")
+  if (ending == ".obj")
     read.surface = parse_obj(file.string(), read_text(file));
-  else if (extension == ".stl")
+  else if (ending == ".stl")
     read.surface = parse_stl(file.string(), read_text(file));
   else
     throw InputError(file.string() +
