@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "backends/interface/window_backend.h"
-#include "backends/process/backend_program.h"
+#include "backends/interface/backend.h"
+#include "backends/process/process_backend.h"
 #include "garment/stepping/dressing_backend.h"
 #include "platform/machine.h"
 

@@ -113,12 +113,14 @@ garment/pattern       garment_build jeans
 garment/spec          garment_spec
 garment/scene         garment_scene garment_body
 garment/bench         garment_verification dressing_record
+garment/fitting       fitting
 platform              files process supervised_process machine
 mesh                  meshing shapes surface_file tet_mesh tetgen
 model                 system topology energy spectrum node_surface
 scene/fields          fields
 scene/spec            scene_spec
 scene                 scene_file scene_kinds cloth
+backends/interface    backend ahead
 backends/vectors      instruction_sets lanes-inl
 backends/accumulation accumulation_methods
 backends/implicit     implicit
@@ -127,7 +129,7 @@ backends/implicit/local_global local_global
 backends/implicit/constraints  constraints
 backends/opencl       opencl
 backends/hybrid       hybrid
-backends/process      process_backend backend_program
+backends/process      process_backend
 backends/described    backend_description
 ranks                 launch rank_program requests
 bench/machine         provenance build_info
@@ -139,6 +141,8 @@ bench                 bench_scene estimates
 guide                 guide cloth_sizes
 output/guide          guide_page guide_table
 output/pictures       painter picture_folder
+output/traces         trace_content h5md_trace trace_reader energy_curve xdmf
+output/exports        exports vtkhdf_export
 output/folders        result_folder provenance_file
 commands/arguments    arguments program_parser
 commands/run          run_command run_scene

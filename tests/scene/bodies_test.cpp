@@ -17,7 +17,6 @@
 #include "mesh/tetgen.h"
 #include "output/tables/csv.h"
 #include "output/tables/published_bodies.h"
-#include "scene/body_shapes.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"

@@ -7,7 +7,7 @@
 
 #include "backends/backends.h"
 #include "commands/shared/fit_body.h"
-#include "garment/fitting/fit_bounds.h"
+#include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"

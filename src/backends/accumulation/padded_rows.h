@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/row_layout.h"
 #include "backends/layouts/spring_constants.h"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "backends/process/backend_program.h"
+#include "backends/process/process_backend.h"
 
 namespace mssim {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "backends/hybrid/spring_kernel.h"
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/alike_springs.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "backends/hybrid/spring_kernel.h"
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/node_records.h"
 #include "backends/layouts/packed_springs.h"

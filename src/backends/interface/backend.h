@@ -13,12 +13,36 @@
 #include <string_view>
 #include <utility>
 
-#include "backends/interface/communication.h"
 #include "integrators/integrator.h"
+#include "kernels/surroundings.h"
 #include "model/system.h"
+#include "model/topology.h"
 #include "text/error.h"
 
 namespace mssim {
+
+/// The surroundings of a system, as the backends in single precision compute with them.
+inline Surroundings surroundings_of(const System& system) {
+  return {static_cast<float>(system.viscous_damping), static_cast<float>(system.gravity),
+          static_cast<float>(system.floor.height), static_cast<float>(system.floor.restitution),
+          static_cast<float>(system.floor.friction)};
+}
+
+/// What processes that take steps together spend on each other.
+struct Communication {
+  double waiting = 0;  ///< share of the time of a step that a process waits for others; mean of all
+  /// The same for bringing together what is sent, bringing it across where the processor does that, and
+  /// putting in place what has come.
+  double packing = 0;
+  double bytes = 0;     ///< that the process with most sends in a step
+  double messages = 0;  ///< the same
+  /// Half of the time that a message of a few bytes takes to a neighbour and back, s, where it takes longest;
+  /// none where there is no neighbour.
+  std::optional<double> latency_s;
+  std::optional<double> bytes_per_second;  ///< of large messages to a neighbour, where they are slowest
+
+  friend bool operator==(const Communication& a, const Communication& b) = default;
+};
 
 /// How host and OpenCL device exchange data.
 enum class DeviceMemory : std::uint8_t {
@@ -159,5 +183,15 @@ struct MemoryUse {
 
 /// Of a SpringList<float>.
 inline constexpr MemoryUse spring_list_memory{.node = 17, .pair_node = 24};
+
+/// A backend for a cloth of which no single process has the whole: it builds the scene by itself, and gives
+/// the states of some nodes at a time. Neither set_state nor state may be called of it.
+class WindowBackend : public Backend {
+ public:
+  /// Goes back to the scene's start state.
+  virtual void restart() = 0;
+  /// The present state of the window's nodes, row by row.
+  virtual State window(const GridWindow& window) const = 0;
+};
 
 }  // namespace mssim

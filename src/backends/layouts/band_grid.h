@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/band_cut.h"
 #include "backends/layouts/band_layout.h"

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "integrators/coefficients.h"
 #include "kernels/step_parameters.h"
 

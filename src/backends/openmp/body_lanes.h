@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/alike_bodies.h"
 #include "backends/layouts/alike_slices.h"

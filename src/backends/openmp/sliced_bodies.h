@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/node_messages.h"
 #include "backends/layouts/node_records.h"

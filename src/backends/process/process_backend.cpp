@@ -3,7 +3,9 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <iomanip>
 #include <limits>
@@ -17,18 +19,75 @@
 #include <vector>
 
 #include "backends/interface/ahead.h"
-#include "backends/process/answers.h"
 #include "backends/process/conversation.h"
-#include "backends/process/method_text.h"
-#include "backends/process/program_start.h"
-#include "backends/process/state_file.h"
-#include "backends/process/system_file.h"
+#include "backends/process/exchanged_files.h"
 #include "platform/files.h"
+#include "platform/machine.h"
 #include "platform/process.h"
 #include "platform/supervised_process.h"
 #include "text/text.h"
 
 namespace mssim {
+
+namespace {
+
+/// NAME=VALUE: what the program finds in its environment beside this process's. `socket`: where mssim
+/// listens.
+std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
+                                        const Integrator& integrator, const ExecutionOptions& options) {
+  const char* path = std::getenv("PYTHONPATH");
+  const std::string count = std::to_string(processors_of(program, options));
+  std::vector<std::string> all{
+      "MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count, "OMP_NUM_THREADS=" + count,
+      "PYTHONPATH=" + (data_folder() / "python").string() + (path && *path ? std::string(":") + path : "")};
+  if (program.in_ranks) {
+    all.push_back("MSSIM_RANKS=" + std::to_string(ranks_of(program, options).ranks));
+    all.push_back("MSSIM_LAUNCHER=" + options.launcher);
+    all.push_back("MSSIM_FOLDER=" + std::filesystem::current_path().string());
+    all.push_back("MSSIM_INTEGRATOR=" + std::string(integrator.name));
+    all.push_back("MSSIM_SCENE_FILE=" + std::filesystem::absolute(options.scene_file).string());
+    all.push_back(std::string("MSSIM_ROOTS=") + (options.roots == Roots::exact ? "exact" : "fast"));
+  }
+  all.insert(all.end(), program.environment.begin(), program.environment.end());
+  return all;
+}
+
+/// The first of the processors that mssim may use; none where the program may use all of them.
+std::vector<int> first_cpus(int threads) {
+  std::vector<int> cpus = process_cpus();
+  if (cpus.size() <= static_cast<std::size_t>(threads)) return {};
+  cpus.resize(static_cast<std::size_t>(threads));
+  return cpus;
+}
+
+constexpr std::array<std::string_view, slot_kinds> slot_names{
+    "x", "v", "x_next", "v_next", "x_a", "v_a", "x_b", "v_b", "a", "temporary_1", "temporary_2"};
+
+std::string_view name_of(Slot slot) { return slot_names.at(index(slot)); }
+
+}  // namespace
+
+std::string method_text(const Integrator& integrator) {
+  std::ostringstream text;
+  text << std::setprecision(std::numeric_limits<double>::max_digits10);
+  text << "integrator " << integrator.name << '\n';
+  for (std::size_t s = 0; s < integrator.stage_count; ++s) {
+    const Stage& stage = integrator.stages.at(s);
+    text << "stage " << name_of(position_slot(stage.gather)) << ' ' << name_of(velocity_slot(stage.gather))
+         << '\n';
+    for (std::size_t i = 0; i < assignment_count(stage); ++i) {
+      const Assignment& assignment = stage.assignments.at(i);
+      text << "assign " << name_of(assignment.out);
+      for (std::size_t t = 0; t < term_count(assignment); ++t) {
+        const Term& term = assignment.terms.at(t);
+        text << ' ' << term.coefficient << ' ' << term.dt_power << ' ' << name_of(term.slot);
+      }
+      text << '\n';
+    }
+  }
+  return text.str();
+}
+
 namespace {
 
 using namespace std::chrono_literals;

@@ -10,7 +10,7 @@
 #include "backends/backends.h"
 #include "bench/results/result.h"
 #include "bench/windows/windows.h"
-#include "garment/fitting/fit_bounds.h"
+#include "garment/fitting/fitting.h"
 
 namespace mssim {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/interface/window_backend.h"
+#include "backends/interface/backend.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrator.h"
 #include "model/system.h"

@@ -12,7 +12,7 @@
 #include "commands/bench/verified_rows.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/run_provenance.h"
-#include "output/traces/trace_name.h"
+#include "output/traces/energy_curve.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/error.h"

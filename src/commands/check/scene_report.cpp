@@ -13,7 +13,7 @@
 #include "commands/bench/suites.h"
 #include "commands/run/run_scene.h"
 #include "commands/shared/choices.h"
-#include "garment/fitting/dress.h"
+#include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"

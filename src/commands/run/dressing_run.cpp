@@ -11,7 +11,7 @@
 #include "bench/verification/verification.h"
 #include "commands/shared/fit_body.h"
 #include "commands/shared/progress_line.h"
-#include "garment/fitting/fit_bounds.h"
+#include "garment/fitting/fitting.h"
 #include "output/tables/table_text.h"
 #include "platform/machine.h"
 #include "text/error.h"

@@ -5,7 +5,7 @@
 #include "commands/run/run_recorder.h"
 #include "commands/shared/prepared_scene.h"
 #include "commands/shared/stop_request.h"
-#include "garment/fitting/dress.h"
+#include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "model/system.h"
 

@@ -24,7 +24,7 @@
 #include "commands/shared/stop_request.h"
 #include "garment/stepping/serial_dressing.h"
 #include "output/tables/table_text.h"
-#include "output/traces/trace_name.h"
+#include "output/traces/energy_curve.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "scene/scene_file.h"

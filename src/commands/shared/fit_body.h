@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "garment/body/body_profile.h"
-#include "garment/fitting/fit.h"
+#include "garment/fitting/fitting.h"
 
 namespace mssim {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "garment/contact/body_maps.h"
 #include "model/system.h"
 // After what it needs.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hdf5/hdf5.h"
-#include "output/exports/export_mesh.h"
+#include "output/exports/exports.h"
 #include "platform/files.h"
 
 namespace mssim {

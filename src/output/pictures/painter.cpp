@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "output/traces/node_strain.h"
+#include "output/traces/trace_content.h"
 #include "picture/colour_bar.h"
 #include "picture/colour_map.h"
 #include "picture/legend.h"

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <hdf5.h>
+
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -11,11 +14,32 @@
 #include "hdf5/hdf5.h"
 #include "model/energy.h"
 #include "model/system.h"
-#include "output/traces/h5md_head.h"
 #include "output/traces/xdmf.h"
 #include "platform/files.h"
 
 namespace mssim {
+
+/// What a trace says about how it came about.
+struct TraceHeader {
+  std::string author = "unknown";  ///< who ran the simulation
+  std::string creator_version;     ///< of mssim
+  std::string scene_json;          ///< the scene file's text
+  std::string provenance_json;     ///< the text of provenance.json
+  std::string backend;
+  std::string integrator;
+  double dt_s = 0;
+  bool with_losses = false;  ///< whether its frames say what has been taken from the energy
+  /// Whether positions and velocities are stored in double precision, for backends that compute in it.
+  bool in_double = false;
+};
+
+/// Throws std::invalid_argument unless there are nodes and the topology fits them: a file that points beyond
+/// its nodes would crash who reads it.
+void require_fitting_topology(const Topology& topology, std::size_t nodes);
+
+/// Throws std::invalid_argument where a body, which may be empty, has triangles beyond its points, points
+/// without triangles, or stands beside something that is no garment.
+void require_fitting_body(const Topology& topology, const Surface& body);
 
 /// A trace: the frames of one simulation in an HDF5 file after H5MD 1.1 (https://www.nongnu.org/h5md), with
 /// an XDMF file beside it for viewers. SI units throughout, listed in /parameters/units. PARTICLES is `cloth`
@@ -33,7 +57,9 @@ namespace mssim {
 ///     /parameters/springs/{rest_length,stiffness,damping}     [springs] float64, in that order
 ///     /connectivity/tetrahedra                [tetrahedra][4] uint32, of bodies
 ///     /connectivity/joints                    [joints][3] uint32, of a garment: h5md_garment.h
-///     /body/{points,triangles}                of a body that does not move: h5md_body.h
+///     /body/{points,triangles}                [points][3] float32, m, and [triangles][3] uint32,
+///     counter-clockwise
+///                                             seen from outside: the body that a garment is dressed on
 ///     /parameters                             scene and provenance as JSON, and how it was stepped
 ///     /parameters/{panels,joints,seams}       of a garment: h5md_garment.h
 ///     /xdmf/{position,velocity}/FRAME         virtual datasets, one frame each: [1][rows][columns][3] for

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -9,11 +11,11 @@
 #include "garment/output/h5md_garment.h"
 #include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
-#include "output/traces/h5md_body.h"
-#include "output/traces/h5md_head.h"
+#include "output/traces/h5md_trace.h"
 #include "output/traces/xdmf.h"
 
 namespace mssim {
+
 namespace {
 
 std::string read_particles(hid_t file) {
@@ -140,5 +142,23 @@ TraceContent trace_content_of(const System& system, const TraceHeader& header, c
 }
 
 std::string particles_group(const TraceContent& content) { return "/particles/" + content.particles; }
+
+std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions) {
+  std::vector<double> strain(content.nodes);
+  std::vector<std::uint32_t> springs(content.nodes);
+  for (std::size_t i = 0; i < content.rest_length.size(); ++i) {
+    const auto& [first, second] = content.springs[i];
+    const double rest = content.rest_length[i];
+    if (rest <= 0) continue;
+    const double stretched = length(positions[second] - positions[first]) / rest - 1;
+    for (const std::uint32_t node : {first, second}) {
+      strain[node] += stretched;
+      ++springs[node];
+    }
+  }
+  for (std::size_t node = 0; node < strain.size(); ++node)
+    if (springs[node] > 0) strain[node] /= springs[node];
+  return strain;
+}
 
 }  // namespace mssim

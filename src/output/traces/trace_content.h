@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "geometry/surface.h"
+#include "geometry/vec3.h"
 #include "model/system.h"
-#include "output/traces/h5md_head.h"
+#include "output/traces/h5md_trace.h"
 
 namespace mssim {
 
@@ -40,5 +41,9 @@ TraceContent trace_content_of(const System& system, const TraceHeader& header, c
 
 /// Where the particles of a trace are, for example /particles/cloth.
 std::string particles_group(const TraceContent& content);
+
+/// [nodes] The mean strain of the springs at each node, at these positions ([nodes] m); 0 where there are
+/// none. `content` has rest lengths.
+std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions);
 
 }  // namespace mssim

@@ -11,6 +11,7 @@
 #include "text/text.h"
 
 namespace mssim {
+
 namespace {
 
 namespace fs = std::filesystem;

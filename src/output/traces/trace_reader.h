@@ -11,9 +11,16 @@
 #include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
 #include "output/traces/trace_content.h"
-#include "output/traces/trace_error.h"
+#include "text/error.h"
 
 namespace mssim {
+
+/// Thrown for a trace that cannot be read. what() is one sentence that names the file, what is wrong with it
+/// and what to do about it. Commands end with exit code 2, and with 4 where the system refused to read.
+struct TraceError : Error {
+  TraceError(const std::string& sentence, bool refused_by_system)
+      : Error(refused_by_system ? exit_file_error : exit_bad_input, sentence) {}
+};
 
 /// Reads a trace that H5mdTrace wrote, or the NAME.part of a run that did not end, which has frames as well.
 /// Nothing of the file is trusted: what does not fit gives a TraceError. Checksums are compared. Not for use

@@ -56,7 +56,7 @@ struct ShapeOfScene {
   bool operator==(const ShapeOfScene&) const = default;
 };
 
-/// One alternative a kind of shape, in the order of their table (body_shapes.h).
+/// One alternative a kind of shape, in the order of their table (scene/bodies.h).
 using BodyShape = std::variant<GeneratedShape<BoxShape>, GeneratedShape<SphereShape>,
                                GeneratedShape<TorusShape>, MeshFiles, SurfaceFile, ShapeOfScene>;
 

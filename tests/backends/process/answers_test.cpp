@@ -1,11 +1,10 @@
-#include "backends/process/answers.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "backends/interface/backend.h"
+#include "backends/process/conversation.h"
 
 namespace mssim {
 namespace {

@@ -1,7 +1,6 @@
-#include "backends/process/method_text.h"
-
 #include <gtest/gtest.h>
 
+#include "backends/process/process_backend.h"
 #include "integrators/all_integrators.h"
 
 namespace mssim {

@@ -1,5 +1,3 @@
-#include "backends/process/state_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/process/exchanged_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {

@@ -1,11 +1,10 @@
-#include "backends/process/system_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "backends/process/exchanged_files.h"
 #include "hdf5/hdf5.h"
 #include "platform/files.h"
 #include "tests/support/cloth_system.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "garment/fitting/dress.h"
+#include "garment/fitting/fitting.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
 #include "scene/scene_file.h"

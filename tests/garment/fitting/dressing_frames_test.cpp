@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "garment/fitting/dress.h"
+#include "garment/fitting/fitting.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
 #include "tests/support/dressing_step.h"

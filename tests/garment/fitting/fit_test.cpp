@@ -1,6 +1,4 @@
 // How a garment fits, on garments whose fit is known.
-#include "garment/fitting/fit.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "garment/fitting/fit_bounds.h"
+#include "garment/fitting/fitting.h"
 #include "tests/support/garment_system.h"
 
 namespace mssim {

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "garment/fitting/dress.h"
-#include "garment/fitting/fit.h"
+#include "garment/fitting/fitting.h"
 #include "garment/stepping/correction_order.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"

@@ -1,11 +1,11 @@
+#include "output/exports/exports.h"
+
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <fstream>
 #include <sstream>
 
-#include "output/exports/obj_export.h"
-#include "output/exports/ply_export.h"
 #include "output/exports/vtkhdf_export.h"
 #include "tests/support/solid_system.h"
 #include "tests/support/trace_fixture.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "output/traces/node_strain.h"
+#include "output/traces/trace_content.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 

@@ -1,9 +1,9 @@
-#include "output/traces/trace_name.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "output/traces/energy_curve.h"
 
 namespace mssim {
 namespace {

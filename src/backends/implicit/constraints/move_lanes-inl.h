@@ -6,7 +6,7 @@
 #define MSSIM_MOVE_LANES_INL_H_
 #endif
 
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/vectors/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

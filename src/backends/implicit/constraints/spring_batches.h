@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "backends/implicit/constraints/compliance.h"
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/aligned_array.h"
 #include "backends/layouts/node_records.h"
 #include "backends/threads/team_gain.h"

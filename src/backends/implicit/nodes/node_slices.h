@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "backends/implicit/nodes/node_chunk.h"
-#include "backends/interface/surroundings.h"
+#include "backends/interface/backend.h"
 #include "backends/layouts/aligned_array.h"
 #include "model/system.h"
 

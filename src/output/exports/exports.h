@@ -41,4 +41,11 @@ struct ExportFrame {
 /// Reads a frame. Throws TraceError.
 ExportFrame frame_of(const TraceReader& trace, const ExportMesh& mesh, std::size_t frame);
 
+/// The text of a Wavefront OBJ: points, and triangles as an object a part. Numbers read back as the same.
+std::string obj_of(const ExportMesh& mesh, const ExportFrame& frame);
+
+/// The bytes of a PLY, binary and little-endian: of each point x, y, z, the velocity vx, vy, vz, the strain
+/// of its springs, its node in the trace and its part, whose names are comments; and the triangles.
+std::string ply_of(const ExportMesh& mesh, const ExportFrame& frame);
+
 }  // namespace mssim

@@ -1,0 +1,438 @@
+#include "garment/fitting/fitting.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "garment/layers/cloth_contacts.h"
+#include "garment/layers/cloth_crossings.h"
+#include "laws/host_laws.h"
+#include "statistics/statistics.h"
+
+namespace mssim {
+
+namespace {
+
+/// Distance that a share of the nodes has moved less than, m.
+double moved(const State& before, const State& after, double fraction) {
+  std::vector<double> distances;
+  distances.reserve(after.position.size());
+  for (std::size_t i = 0; i < after.position.size(); ++i)
+    distances.push_back(length(after.position[i] - before.position[i]));
+  return quantile(std::move(distances), fraction);
+}
+
+/// Delivers the frames of a dressing in their order.
+class FrameDelivery {
+ public:
+  explicit FrameDelivery(const DressingFrames& frames) : frames_(frames) {}
+
+  /// Steps after which the next frame is due; none where nobody looks.
+  std::optional<std::int64_t> due() const {
+    return frames_.on_frame ? std::optional(frames_.grid.step_of(next_)) : std::nullopt;
+  }
+  void deliver(const State& state, std::int64_t iterations) {
+    if (!frames_.on_frame) return;
+    frames_.on_frame(state, iterations);
+    ++next_;
+  }
+
+ private:
+  const DressingFrames& frames_;
+  std::int64_t next_ = 0;
+};
+
+/// Steps from `done` to `end`, where it leaves a frame that is due to the caller.
+void step_through(DressingBackend& backend, std::int64_t done, std::int64_t end, FrameDelivery& frames) {
+  for (auto due = frames.due(); due && *due < end; due = frames.due()) {
+    backend.step(static_cast<int>(*due - done));
+    done = *due;
+    frames.deliver(backend.state(), done);
+  }
+  backend.step(static_cast<int>(end - done));
+}
+
+}  // namespace
+
+DressingResult dress(DressingBackend& backend, const System& system, double dt_s, const SettlingRule& rule,
+                     const OnWindow& on_window, const DressingFrames& frames) {
+  const int window = std::max(1, static_cast<int>(std::lround(rule.window_s / dt_s)));
+  const auto longest = static_cast<std::int64_t>(std::llround(rule.longest_s / dt_s));
+  backend.set_state(system.start);
+  DressingResult result;
+  result.state = system.start;
+  FrameDelivery delivery(frames);
+  delivery.deliver(result.state, 0);
+  bool goes_on = longest > 0;
+  while (goes_on) {
+    const bool was_draping = backend.progress().draping;
+    const std::int64_t end = std::min(result.iterations + window, longest);
+    const bool whole_window = end - result.iterations == window;
+    step_through(backend, result.iterations, end, delivery);
+    result.iterations = end;
+    State state = backend.state();
+    if (backend.progress().draping) result.seamed_at = backend.progress().seamed_at;
+    // A window that began with open seams, or that was cut short, says nothing about how a sewn garment
+    // rests.
+    result.settled = was_draping && whole_window && moved(result.state, state, rule.fraction) < rule.distance;
+    result.state = std::move(state);
+    goes_on = on_window(result.state, result.iterations) && !result.settled && result.iterations < longest;
+    if (!goes_on || delivery.due() == result.iterations) delivery.deliver(result.state, result.iterations);
+  }
+  result.simulated_s = static_cast<double>(result.iterations) * dt_s;
+  return result;
+}
+
+namespace {
+
+double largest_gap(const Garment& garment, const std::vector<Vec3d>& position) {
+  double largest = 0;
+  for (const Joint& joint : garment.joints) {
+    largest = std::max(largest, length(joint_gap(position[joint.node], position[joint.edge_first],
+                                                 position[joint.edge_second], joint.edge_share)));
+  }
+  return largest;
+}
+
+void measure_side_distance(const CloseCloth& close, const std::vector<Vec3d>& position, const FitBody& body,
+                           Fit& fit) {
+  std::vector<Vec3d> points;
+  for (const std::uint32_t node : close.nodes)
+    if (position[node].y >= close.lowest && position[node].y <= close.highest)
+      points.push_back(position[node]);
+  if (points.empty()) return;
+  const std::vector<double> distances = body.distances(points, close.lowest, close.highest);
+  const auto farthest = std::ranges::max_element(distances);
+  fit.side_distance = *farthest;
+  fit.side_distance_height = points[static_cast<std::size_t>(farthest - distances.begin())].y;
+}
+
+/// Whether a spring of the 12-neighbour stencil is one whose elongation counts: one that spans a single cell.
+/// Bending springs, two cells long, may change length by bending.
+bool is_structural_or_shear(const Garment& garment, const Spring& spring) {
+  const GarmentPanel& panel = garment.panel_of(spring.first);
+  const std::uint32_t first = spring.first - panel.first_node, second = spring.second - panel.first_node;
+  const auto apart = [](std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; };
+  return apart(first / panel.columns, second / panel.columns) <= 1 &&
+         apart(first % panel.columns, second % panel.columns) <= 1;
+}
+
+std::vector<double> elongations(const System& system, const Garment& garment,
+                                const std::vector<Vec3d>& position) {
+  std::vector<double> elongations;
+  for (const Spring& spring : system.springs)
+    if (is_structural_or_shear(garment, spring))
+      elongations.push_back(length(position[spring.second] - position[spring.first]) / spring.rest_length -
+                            1);
+  return elongations;
+}
+
+/// Mean height of nodes, one or more, above where the pattern puts them.
+double mean_rise(const Garment& garment, const std::vector<Vec3d>& position,
+                 const std::vector<std::uint32_t>& nodes) {
+  double rise = 0;
+  for (const std::uint32_t node : nodes) rise += position[node].y - garment.flat[node].y;
+  return rise / static_cast<double>(nodes.size());
+}
+
+/// Of the upper edges of each layer's panels, the mean rise that is farthest off.
+double upper_edge_rise(const Garment& garment, const std::vector<Vec3d>& position) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> edges;
+  for (const GarmentPanel& panel : garment.panels)
+    for (std::uint32_t column = 0; column < panel.columns; ++column)
+      edges[panel.layer].push_back(panel.node(panel.rows - 1, column));
+  double farthest = 0;
+  for (const auto& [layer, nodes] : edges) {
+    const double rise = mean_rise(garment, position, nodes);
+    if (!(std::abs(rise) <= std::abs(farthest))) farthest = rise;
+  }
+  return farthest;
+}
+
+std::vector<std::uint32_t> where_seams_meet(const Garment& garment) {
+  std::map<std::uint32_t, std::set<std::uint32_t>> seams_at;
+  for (const Joint& joint : garment.joints) {
+    seams_at[joint.node].insert(joint.seam);
+    if (joint.edge_share == 0) seams_at[joint.edge_first].insert(joint.seam);
+    if (joint.edge_share == 1) seams_at[joint.edge_second].insert(joint.seam);
+  }
+  std::vector<std::uint32_t> nodes;
+  for (const auto& [node, seams] : seams_at)
+    if (seams.size() > 1) nodes.push_back(node);
+  return nodes;
+}
+
+/// Rows of two panels that are sewn to each other at both ends, as closed loops of nodes.
+std::vector<std::vector<std::uint32_t>> sewn_rows(const Garment& garment) {
+  // For each end of a row, the nodes of other panels that it is sewn to.
+  std::multimap<std::uint32_t, std::uint32_t> sewn_to;
+  for (const Joint& joint : garment.joints) {
+    const std::uint32_t other = joint.edge_share < 0.5 ? joint.edge_first : joint.edge_second;
+    sewn_to.emplace(joint.node, other);
+    sewn_to.emplace(other, joint.node);
+  }
+  const auto rows_sewn_to = [&](std::uint32_t node) {
+    std::map<const GarmentPanel*, std::uint32_t> rows;
+    for (auto [to, end] = sewn_to.equal_range(node); to != end; ++to) {
+      const GarmentPanel& panel = garment.panel_of(to->second);
+      rows.emplace(&panel, (to->second - panel.first_node) / panel.columns);
+    }
+    return rows;
+  };
+  std::vector<std::vector<std::uint32_t>> loops;
+  for (const GarmentPanel& panel : garment.panels)
+    for (std::uint32_t row = 0; row < panel.rows; ++row) {
+      const auto left = rows_sewn_to(panel.node(row, 0));
+      const auto right = rows_sewn_to(panel.node(row, panel.columns - 1));
+      for (const auto& [other, other_row] : left) {
+        if (other < &panel || !right.contains(other)) continue;  // each pair once
+        std::vector<std::uint32_t> loop;
+        for (std::uint32_t column = 0; column < panel.columns; ++column)
+          loop.push_back(panel.node(row, column));
+        // The other panel is seen from its own outside: its left is this one's right.
+        for (std::uint32_t column = 0; column < other->columns; ++column)
+          loop.push_back(other->node(other_row, column));
+        loops.push_back(std::move(loop));
+      }
+    }
+  return loops;
+}
+
+/// How often a loop goes around an upright axis.
+int turns_around(const std::vector<std::uint32_t>& loop, const std::vector<Vec3d>& position,
+                 const Vec3d& axis) {
+  double angle = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3d from = position[loop[i]] - axis, to = position[loop[(i + 1) % loop.size()]] - axis;
+    angle += std::atan2(from.z * to.x - from.x * to.z, from.x * to.x + from.z * to.z);
+  }
+  return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
+}
+
+}  // namespace
+
+std::vector<Vec3d> face_samples(const GarmentPanel& panel, const std::vector<Vec3d>& position) {
+  constexpr int per_side = 5;
+  std::vector<Vec3d> samples;
+  for (std::uint32_t row = 0; row + 1 < panel.rows; ++row)
+    for (std::uint32_t column = 0; column + 1 < panel.columns; ++column) {
+      const Vec3d &corner = position[panel.node(row, column)], &right = position[panel.node(row, column + 1)],
+                  &up = position[panel.node(row + 1, column)],
+                  &far = position[panel.node(row + 1, column + 1)];
+      for (int i = 0; i < per_side; ++i)
+        for (int j = 0; j < per_side; ++j) {
+          const double u = i / (per_side - 1.0), v = j / (per_side - 1.0);
+          samples.push_back(u + v <= 1 ? corner + u * (right - corner) + v * (up - corner)
+                                       : far + (1 - u) * (up - far) + (1 - v) * (right - far));
+        }
+    }
+  return samples;
+}
+
+Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBody& body) {
+  const auto& garment = std::get<Garment>(system.topology);
+  Fit fit;
+  fit.largest_gap = largest_gap(garment, position);
+  for (const double depth : body.depths(position)) {
+    fit.nodes_inside += depth > 0 ? 1U : 0U;
+    fit.deepest_node = std::max(fit.deepest_node, depth);
+  }
+  for (const GarmentPanel& panel : garment.panels) {
+    const std::vector<double> depths = body.depths(face_samples(panel, position));
+    fit.deepest_face_sample = std::max(fit.deepest_face_sample, std::ranges::max(depths));
+  }
+  measure_side_distance(garment.close, position, body, fit);
+  fit.upper_edge_rise = upper_edge_rise(garment, position);
+  if (const auto meeting = where_seams_meet(garment); !meeting.empty())
+    fit.meeting_rise = mean_rise(garment, position, meeting);
+  for (const std::vector<std::uint32_t>& loop : sewn_rows(garment)) {
+    Vec3d middle;
+    for (const std::uint32_t node : loop) middle += 1 / static_cast<double>(loop.size()) * position[node];
+    ++fit.rows;
+    fit.rows_astray += std::abs(turns_around(loop, position, body.limb_middle(middle))) == 1 ? 0U : 1U;
+  }
+  const std::vector<double> longer = elongations(system, garment, position);
+  fit.elongation_50 = quantile(longer, 0.5);
+  fit.elongation_99 = quantile(longer, 0.99);
+  fit.elongation_999 = quantile(longer, 0.999);
+  fit.elongation_max = quantile(longer, 1);
+  fit.crossings = count_crossings(garment, {layer_pairs(garment), {}}, position);
+  return fit;
+}
+
+namespace {
+
+/// What led to a number beyond its bound, as far as that can be told, and what may help. The keys are those
+/// of scene files.
+struct Diagnosis {
+  std::string_view happened, remedy;
+};
+
+constexpr Diagnosis pierced{"the body comes through", "a larger skin_m or more nodes"};
+constexpr Diagnosis stretched{"the cloth is stretched",
+                              "a wider garment (hip_ease_m, waist_ease_m) or stiffer cloth"};
+
+/// A row of the TABLE of a fit's numbers.
+struct FitNumber {
+  std::string_view name;
+  double (*value)(const Fit& fit);
+  double FitBounds::*bound;    ///< on the magnitude; null where there is none
+  double per_unit;             ///< factor to the unit of `name`
+  bool has_sign = false;       ///< the bound holds in both directions
+  std::string_view what{};     ///< in a sentence
+  std::string_view unit{};     ///< there, with what goes before it
+  double per_spoken_unit = 1;  ///< factor to that
+  Diagnosis too_large{};
+  Diagnosis too_small{};                 ///< below its bound, where it has a sign
+  bool (*exists)(const Fit&) = nullptr;  ///< null where every garment has the number
+};
+
+constexpr double mm = 1e3;
+constexpr double percent = 100;
+
+constexpr std::array<FitNumber, 15> numbers{{
+    {"largest_gap_mm",
+     [](const Fit& f) { return f.largest_gap; },
+     &FitBounds::largest_gap,
+     mm,
+     false,
+     "the largest gap of a seam",
+     " mm",
+     mm,
+     {"a seam gapes", "a larger closing_share, or a wider garment (hip_ease_m, waist_ease_m)"}},
+    {"nodes_inside", [](const Fit& f) { return static_cast<double>(f.nodes_inside); }, nullptr, 1},
+    {"deepest_node_mm", [](const Fit& f) { return f.deepest_node; }, &FitBounds::deepest, mm, false,
+     "the deepest node inside the body", " mm", mm, pierced},
+    {"deepest_face_mm", [](const Fit& f) { return f.deepest_face_sample; }, &FitBounds::deepest, mm, false,
+     "the deepest point of a face inside the body", " mm", mm, pierced},
+    {"elongation_50", [](const Fit& f) { return f.elongation_50; }, nullptr, 1},
+    {"elongation_99", [](const Fit& f) { return f.elongation_99; }, &FitBounds::elongation_99, 1, false,
+     "the 99th percentile of elongations", " %", percent, stretched},
+    {"elongation_999", [](const Fit& f) { return f.elongation_999; }, &FitBounds::elongation_999, 1, false,
+     "the 99.9th percentile of elongations", " %", percent, stretched},
+    {"elongation_max", [](const Fit& f) { return f.elongation_max; }, nullptr, 1},
+    {"upper_edge_rise_mm",
+     [](const Fit& f) { return f.upper_edge_rise; },
+     &FitBounds::upper_edge_shift,
+     mm,
+     true,
+     "the distance of the upper edge from its place in the pattern",
+     " mm",
+     mm,
+     {"the garment was pushed up", "a higher waist (waist_height_m) or more waist_ease_m"},
+     {"the garment slid down", "a lower waist (waist_height_m), less waist_ease_m or more friction"}},
+    {"crotch_rise_mm",
+     [](const Fit& f) { return f.meeting_rise.value(); },
+     &FitBounds::meeting_shift,
+     mm,
+     true,
+     "the distance of the crotch from its place in the pattern",
+     " mm",
+     mm,
+     {"the crotch was drawn up", "more crotch_ease_m"},
+     {"the crotch hangs low", "less crotch_ease_m, or a lower waist (waist_height_m)"},
+     [](const Fit& f) { return f.meeting_rise.has_value(); }},
+    {"rows", [](const Fit& f) { return static_cast<double>(f.rows); }, nullptr, 1},
+    {"rows_astray",
+     [](const Fit& f) { return static_cast<double>(f.rows_astray); },
+     &FitBounds::rows_astray,
+     1,
+     false,
+     "the number of rows that do not go once around their limb",
+     "",
+     1,
+     {"the garment is not all around the body", "more nodes, or a body whose legs stand further apart"}},
+    {"crossings",
+     [](const Fit& f) { return static_cast<double>(f.crossings); },
+     &FitBounds::crossings,
+     1,
+     false,
+     "the number of places where layers of the cloth cross",
+     "",
+     1,
+     {"layers went through each other",
+      "layers that touch (\"layers\"), a larger thickness_m or more nodes"}},
+    {"side_distance_mm",
+     [](const Fit& f) { return f.side_distance.value(); },
+     &FitBounds::side_distance,
+     mm,
+     false,
+     "the largest distance of the side seams' cloth from the body between hip and thigh",
+     " mm",
+     mm,
+     {"the garment stands off at the sides",
+      "less hip_ease_m, a hip_height_m where the body is widest, or more nodes"},
+     {},
+     [](const Fit& f) { return f.side_distance.has_value(); }},
+    {.name = "side_distance_height_m",
+     .value = [](const Fit& f) { return f.side_distance_height.value(); },
+     .bound = nullptr,
+     .per_unit = 1,
+     .exists = [](const Fit& f) { return f.side_distance_height.has_value(); }},
+}};
+
+bool exists(const FitNumber& number, const Fit& fit) {
+  return number.exists == nullptr || number.exists(fit);
+}
+
+bool is_within(const FitNumber& number, const Fit& fit, const FitBounds& bounds) {
+  // A number that is none keeps no bound.
+  return std::abs(number.value(fit)) <= bounds.*number.bound;
+}
+
+/// The bound in units of which one has so many of the number's own.
+std::string shown_bound(const FitNumber& number, const FitBounds& bounds, double per_unit) {
+  std::ostringstream text;
+  text << (number.has_sign ? "±" : "") << bounds.*number.bound * per_unit;
+  return text.str();
+}
+
+const Diagnosis& diagnosis_of(const FitNumber& number, const Fit& fit) {
+  return number.has_sign && number.value(fit) < 0 ? number.too_small : number.too_large;
+}
+
+}  // namespace
+
+std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
+  std::vector<FitCheck> checks;
+  for (const FitNumber& number : numbers) {
+    if (!exists(number, fit)) continue;
+    FitCheck& check = checks.emplace_back();
+    check.name = number.name;
+    check.value = number.per_unit * number.value(fit);
+    if (number.bound == nullptr) continue;
+    check.bound = number.per_unit * bounds.*number.bound;
+    check.shown_bound = shown_bound(number, bounds, number.per_unit);
+    check.within = is_within(number, fit, bounds);
+  }
+  return checks;
+}
+
+std::vector<std::string> misfits(const DressingResult& result, const Fit& fit, const FitBounds& bounds) {
+  std::vector<std::string> found;
+  if (!result.seamed_at)
+    found.emplace_back(
+        "the seams did not close in time; try a larger seam_force_n_per_m or longest_seaming_s, or a wider "
+        "garment");
+  if (!result.settled)
+    found.emplace_back("the garment did not come to rest; try more viscous_damping_per_s or more nodes");
+  for (const FitNumber& number : numbers) {
+    if (number.bound == nullptr || !exists(number, fit) || is_within(number, fit, bounds)) continue;
+    const Diagnosis& diagnosis = diagnosis_of(number, fit);
+    std::ostringstream text;
+    text << diagnosis.happened << ": " << number.what << " is " << number.value(fit) * number.per_spoken_unit
+         << number.unit << ", beyond " << shown_bound(number, bounds, number.per_spoken_unit) << number.unit
+         << "; try " << diagnosis.remedy;
+    found.push_back(text.str());
+  }
+  return found;
+}
+
+}  // namespace mssim
