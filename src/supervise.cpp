@@ -148,7 +148,8 @@ void signal_all(pid_t program, int signal) {
   }
 }
 
-/// Of all that the program started: of those that live by their clocks, and of those that were waited for.
+/// Processor time of all that the program started: of those that live by their clocks, and of those that were
+/// waited for.
 double processor_seconds() {
   rusage waited{};
   ::getrusage(RUSAGE_CHILDREN, &waited);

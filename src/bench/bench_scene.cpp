@@ -40,7 +40,7 @@ StepSize size_for(const Combination& combination, const StepSize& scene) {
   return combination.stored_springs ? with_stored_springs(scene, *combination.stored_springs) : scene;
 }
 
-/// Of the roofs that the combination is held against.
+/// Key of the peaks that the combination is compared with.
 std::pair<int, std::size_t> peak_key(const Combination& combination, const StepSize& scene) {
   return {combination.row.threads,
           static_cast<std::size_t>(working_set_bytes(*combination.integrator, size_for(combination, scene)))};

@@ -39,7 +39,7 @@ struct ExpectedTime {
 /// of use, because its solver goes on for as long as it takes.
 double expected_evaluations(const Integrator& integrator);
 
-/// Of several scenes together.
+/// The time of several scenes together.
 ExpectedTime total(std::span<const ExpectedTime> scenes);
 
 /// How many rounds of them fit into `seconds` with all else, at least 1.

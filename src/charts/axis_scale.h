@@ -16,7 +16,7 @@ struct AxisScale {
 /// begin near it.
 AxisScale linear_scale(double low, double high);
 
-/// The same from 0 on, or to 0: bars compare by their lengths.
+/// A scale from 0 on, or to 0: bars compare by their lengths.
 AxisScale scale_from_zero(double low, double high);
 
 /// A logarithmic one of positive values: ticks at powers of ten, in between too where there are few.

@@ -25,7 +25,7 @@ struct Series {
   std::vector<double> y{};  ///< of bars, one for each of Chart::groups
   /// Intervals around y, drawn as error bars: as many as y, or none.
   std::vector<double> low{}, high{};
-  /// Of references, not of bars: signs at the points instead of a line.
+  /// Signs at the points instead of a line, for references; bars have none.
   PointMark mark = PointMark::none;
 };
 

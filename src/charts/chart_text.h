@@ -13,7 +13,8 @@ namespace mssim {
 /// where it was wider.
 std::string shown_text(std::string_view text, std::size_t most);
 
-/// The same in lines that are at most `most` wide, broken at spaces where there are some: at most three.
+/// The shown text in lines that are at most `most` wide, broken at spaces where there are some: at most
+/// three.
 std::vector<std::string> shown_lines(std::string_view text, std::size_t most);
 
 /// A text of shown_text as gnuplot reads it: in single quotes, where nothing is a command, an escape or a

@@ -116,7 +116,7 @@ class Script {
          " maxrows ", std::to_string(layout_.legend_rows));
   }
 
-  /// Of bars: left and right end of those of a series in a group.
+  /// Left and right end of the bars of a series in a group.
   Interval bar(std::size_t series, double group) const {
     const double width = 0.84 / static_cast<double>(chart_.series.size());
     const double left = group - 0.42 + width * static_cast<double>(series);

@@ -34,10 +34,10 @@ struct SeriesStyle {
 
   std::string_view colour() const { return series_colours[family % series_colours.size()]; }
   std::size_t shape() const { return family % point_shapes; }
-  /// Of lines, after all shapes another dash: twice as many differ without colours.
+  /// The dash of a line, another one after all shapes: twice as many differ without colours.
   std::size_t dashes() const { return family / point_shapes % line_dashes; }
   std::size_t pattern() const { return family % bar_patterns; }
-  /// Of bars, a number for colour, pattern and origin.
+  /// The fill of bars: a number for colour, pattern and origin.
   std::size_t fill() const { return 2 * (family % looks) + (origin == Origin::published ? 1 : 0); }
 };
 

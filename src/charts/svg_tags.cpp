@@ -25,7 +25,7 @@ std::string with_single_spaces(std::string_view text) {
   return result;
 }
 
-/// Of NAME = "VALUE" ..., all of it or none.
+/// The attributes NAME = "VALUE" ..., all of them or none.
 std::optional<std::vector<std::pair<std::string, std::string>>> attributes_of(std::string_view text) {
   std::vector<std::pair<std::string, std::string>> attributes;
   for (text = trimmed(text); !text.empty(); text = trimmed(text)) {

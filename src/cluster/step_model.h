@@ -4,7 +4,7 @@
 
 namespace mssim {
 
-/// Of a node in a message: position and velocity in single precision.
+/// Bytes of a node in a message: position and velocity in single precision.
 inline constexpr double message_node_bytes = 24;
 
 /// How fast processes compute a cloth and send to each other: what the model of a step is made of.

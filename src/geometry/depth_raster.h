@@ -56,7 +56,7 @@ using TakeBand = std::function<void(std::uint32_t first_row, std::span<const Fra
 void rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view, int threads,
                const TakeBand& take);
 
-/// The same as one array, row by row.
+/// Gives all pixels as one array, row by row.
 std::vector<Fragment> rasterise(const Surface& surface, const PixelGrid& grid, ViewFrom view,
                                 int threads = 0);
 

@@ -74,9 +74,9 @@ class TriangleTree {
   /// determinant that decides: the ray, or the point, is as near an edge, a vertex or a plane as that.
   std::optional<int> winding_by_ray(const Vec3d& point) const;
 
-  /// The same from the sum of the solid angles of all triangles (Van Oosterom and Strackee, "The solid angle
-  /// of a plane triangle", 1983), which knows no special positions but is slow. The point lies on no
-  /// triangle.
+  /// The winding number from the sum of the solid angles of all triangles (Van Oosterom and Strackee, "The
+  /// solid angle of a plane triangle", 1983), which knows no special positions but is slow. The point lies on
+  /// no triangle.
   int winding_by_angles(const Vec3d& point) const;
 
  private:

@@ -35,7 +35,7 @@ inline bool is_finite(const Vec3d& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// The same vector in another precision.
+/// Converts a vector to another precision.
 template <class To, class From>
 constexpr Vec3<To> vec3_cast(const Vec3<From>& a) {
   return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};

@@ -33,9 +33,9 @@ struct WorkPoint {
   /// Largest distance from the trusted state at the horizon, in mean rest lengths; none where not finite.
   std::optional<double> position_error;
   std::optional<double> energy_error;  ///< of the total energy, over the trusted kinetic + elastic energy
-  /// Of implicit methods, where there was time: the distance from exact backward Euler with the same step,
-  /// which is the solver's error, and that one's from the trusted state, which is the step's. In mean rest
-  /// lengths.
+  /// Errors of an implicit method, in mean rest lengths, where there was time to tell them apart: the
+  /// solver's, which is the distance from exact backward Euler with the same step, and the step's, which is
+  /// that one's distance from the trusted state.
   std::optional<double> solver_error, step_error;
   bool beyond_trust = false;  ///< the error is not trusted_margin times the trusted state's own
   bool on_front = false;      ///< no other point is both as fast and as accurate (mark_pareto_front)
@@ -47,7 +47,7 @@ struct WorkPoint {
   bool counts() const { return !diverged && within_limit && !beyond_trust && position_error.has_value(); }
 };
 
-/// Of the same method?
+/// Whether both are points of one method.
 inline bool same_method(const WorkPoint& a, const WorkPoint& b) {
   return a.integrator == b.integrator && a.backend == b.backend;
 }

@@ -120,7 +120,7 @@ Hdf5Dataset create_dataset(hid_t parent, const std::string& path, hid_t type, st
 void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t first, hsize_t count,
                 hid_t memory_type, const void* data);
 
-/// The same with one row.
+/// Writes one row.
 inline void write_row(const Hdf5Dataset& dataset, const std::string& name, hsize_t row, hid_t memory_type,
                       const void* data) {
   write_rows(dataset, name, row, 1, memory_type, data);

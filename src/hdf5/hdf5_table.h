@@ -76,7 +76,7 @@ class Hdf5Table {
 
 /// All numbers of a dataset.
 std::vector<double> read_doubles(hid_t file, const std::string& path, const std::vector<hsize_t>& extents);
-/// The same for whole numbers of 32 bits without a sign.
+/// Reads whole numbers of 32 bits without a sign.
 std::vector<std::uint32_t> read_numbers(hid_t file, const std::string& path,
                                         const std::vector<hsize_t>& extents);
 

@@ -284,7 +284,7 @@ class ObjReader {
       surface_.triangles.push_back({points[a], points[b], points[c]});
   }
 
-  /// Of corners that follow each other at one place, one stays, unless that leaves no triangle.
+  /// Keeps one of the corners that follow each other at one place, unless that leaves no triangle.
   static void leave_out_repeated(std::vector<std::uint32_t>& points) {
     std::vector<std::uint32_t> apart = points;
     apart.erase(std::unique(apart.begin(), apart.end()), apart.end());

@@ -16,7 +16,7 @@ namespace mssim {
 struct TetgenProgram {
   std::filesystem::path executable;
   std::string version;  ///< as it calls itself, for example "1.5", or "unknown"
-  /// Of the program and its library: what distinguishes two TetGens that call themselves the same.
+  /// Hash of the program and its library: it distinguishes two TetGens that give the same version.
   std::uint64_t fnv1a_64 = 0;
 };
 
@@ -35,7 +35,7 @@ struct NamedText {
 /// three tetrahedra. Throws InputError that names file, line and value.
 TetMesh parse_tetgen_files(const NamedText& node_file, const NamedText& ele_file);
 
-/// The same from files.
+/// Reads the mesh from files. Throws like parse_tetgen_files, and where a file cannot be read.
 TetMesh read_tetgen_files(const std::filesystem::path& node_file, const std::filesystem::path& ele_file);
 
 /// A .node file, numbered from 0; numbers read back as they are.

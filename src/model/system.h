@@ -17,8 +17,8 @@ namespace mssim {
 
 /// How far the solvers of implicit integrators go.
 struct SolverSettings {
-  /// Of conjugate gradients and of Newton's method: where the norm of what is left is so small a part of what
-  /// it was, they end.
+  /// Conjugate gradients and Newton's method end where the norm of the residual has become this part of what
+  /// it was.
   double tolerance = 1e-5;
   std::uint32_t iterations = 10;  ///< of fast-springs: local and global steps
   std::uint32_t substeps = 10;    ///< of xpbd: small steps in a step
@@ -71,7 +71,7 @@ double mean_rest_length(const System& system);
 /// A system without nodes that has the laws of this one: its materials, gravity, damping, floor and solver.
 System with_laws_of(const System& system);
 
-/// The same system with the floor out of reach.
+/// The system with its floor out of reach.
 System without_floor(System system);
 
 /// Rounds to single precision.

@@ -10,7 +10,7 @@ struct PixelRange {
   std::int64_t begin, end;
 };
 
-/// Of `count` pixels from `first` on, those within 0 to `size`.
+/// Keeps those of `count` pixels from `first` on that lie within 0 to `size`.
 PixelRange pixels_inside(std::int64_t first, std::int64_t count, std::int64_t size) {
   return {std::clamp<std::int64_t>(first, 0, size), std::clamp<std::int64_t>(first + count, 0, size)};
 }

@@ -383,7 +383,7 @@ bool may_be_executed(const fs::path& file) {
   return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
 }
 
-/// Of a script: #! and the rest of its line. Empty for what is none.
+/// First line of a script, from #! on. Empty for what is no script.
 std::string first_line(const fs::path& file) {
   std::array<char, 256> bytes{};  // no system reads more of it
   std::ifstream(file, std::ios::binary).read(bytes.data(), bytes.size() - 1);

@@ -125,7 +125,7 @@ class FolderLock {
 class TemporaryFolder {
  public:
   TemporaryFolder();
-  /// The same in a folder that the caller names.
+  /// Makes the folder in one that the caller names.
   explicit TemporaryFolder(const std::filesystem::path& parent);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

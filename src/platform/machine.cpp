@@ -91,7 +91,7 @@ std::vector<std::int64_t> numbers_in(const fs::path& file) {
   return numbers;
 }
 
-/// Of /proc/self/mountinfo: "36 35 98:0 /root /folder options [more...] - cgroup source options".
+/// Mounts in /proc/self/mountinfo: "36 35 98:0 /root /folder options [more...] - cgroup source options".
 std::vector<Mount> mounts(const fs::path& root) {
   std::vector<Mount> found;
   std::ifstream in(root / "proc/self/mountinfo");
@@ -109,8 +109,9 @@ std::vector<Mount> mounts(const fs::path& root) {
   return found;
 }
 
-/// Of /proc/self/cgroup: "4:cpu,cpuacct:/group", of version 2 "0::/group". The group that this process is in,
-/// of the hierarchy that is mounted there; a group beyond the mount's root cannot be seen, and is that.
+/// A group in /proc/self/cgroup: "4:cpu,cpuacct:/group", of version 2 "0::/group". The group that this
+/// process is in, of the hierarchy that is mounted there; a group beyond the mount's root cannot be seen, and
+/// is that.
 fs::path own_group(const Mount& mount, const fs::path& root) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {

@@ -58,7 +58,7 @@ std::uint64_t available_memory();
 /// none where the available memory suffices. Both in bytes.
 std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t available);
 
-/// The same of what is available now.
+/// Compares with the memory that is available now (available_memory), bytes.
 std::optional<std::string> memory_shortage(std::uint64_t needed);
 
 /// Starts the program anew, with its arguments, where OpenMP's threads would wait for each other as long as
@@ -110,7 +110,7 @@ struct Terminal {
 /// Colours need a terminal that knows escape sequences and no NO_COLOR (no-color.org).
 Terminal terminal_with(const StreamFacts& facts);
 
-/// The same for a descriptor, in this environment. The only place that asks what a stream leads to.
+/// What may be written to a descriptor, in this environment. The only place that asks what a stream leads to.
 Terminal terminal_of(int descriptor);
 
 }  // namespace mssim

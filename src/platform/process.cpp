@@ -214,7 +214,7 @@ class Running {
         failed && !result_.out_of_time && child_.memory_bytes > 0 && peak_bytes > child_.memory_bytes / 4 * 3;
   }
 
-  /// Of one that has ended.
+  /// The result of a child that has ended.
   const ChildResult& result() const {
     if (error_.action == execution) fail(child_, why_not_executed(child_.program, error_.error));
     if (error_.action != nullptr) fail(child_, error_.action, error_.error);

@@ -93,7 +93,7 @@ void note_ending_signal(int signal);
 /// The signal that was noted last and that nobody has taken, or 0.
 int noted_ending_signal();
 
-/// The same, and takes it: nothing is noted any more.
+/// Takes the noted signal, or 0: nothing is noted any more.
 int take_ending_signal();
 
 /// While it lives, those signals call a handler, but for those that are ignored (nohup), which stay so.

@@ -11,8 +11,8 @@
 
 namespace mssim {
 
-/// Of a processor's kernels those that one with the instruction set of the variable MSSIM_INSTRUCTION_SET
-/// would have, by which different processors can be tried on one machine.
+/// Keeps those of a processor's kernels that one with the instruction set of the variable
+/// MSSIM_INSTRUCTION_SET would have, by which different processors can be tried on one machine.
 template <class Kernel>
 std::vector<Kernel> kernels_of_rank(std::vector<Kernel> kernels) {
   const std::string name = variable("MSSIM_INSTRUCTION_SET");

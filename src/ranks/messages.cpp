@@ -234,7 +234,7 @@ NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : 
 
 namespace {
 
-/// Of a node in a message.
+/// Numbers of a node in a message.
 constexpr std::size_t node_floats = 6;
 /// Where a record has the velocity (backends/layouts/node_records.h).
 constexpr std::size_t velocity = 4;

@@ -73,8 +73,8 @@ class Session {
 
   /// Waits until all requests are complete. `peers`: the ranks that they wait for, for the failure.
   void wait(std::span<MPI_Request> requests, std::span<const int> peers) const;
-  /// The same for a request that nothing but the user's next wish completes: sleeps meanwhile, however long
-  /// it takes.
+  /// Waits for a request that only the user's next request completes: sleeps meanwhile, however long it
+  /// takes.
   static void wait_idle(MPI_Request& request);
   /// Waits for all ranks.
   void meet() const;

@@ -38,7 +38,7 @@ class Piece {
   /// The nodes of the scene whose states a rank takes, with the ghosts that no message brings before they are
   /// needed, in the order in which its states have them. Rank 0 asks it of all ranks, others of themselves.
   virtual std::vector<NodeRun> taken_by(int rank) const = 0;
-  /// The same of those that it steps: every node of the scene is one rank's.
+  /// The nodes of the scene that a rank steps: every node of the scene is one rank's.
   virtual std::vector<NodeRun> owned_by(int rank) const = 0;
   virtual std::size_t scene_nodes() const = 0;
 
@@ -81,7 +81,7 @@ void scatter_state(const Session& session, const std::filesystem::path& file, Pi
 /// Writes what every rank owns into the file.
 void gather_state(const Session& session, const std::filesystem::path& file, const Piece& piece);
 
-/// The same of a window of a cloth: the file has its nodes alone.
+/// Writes what every rank owns of a window of a cloth: the file has its nodes alone.
 void gather_window(const Session& session, const std::filesystem::path& file, const Piece& piece,
                    const GridWindow& window);
 

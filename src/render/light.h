@@ -35,7 +35,7 @@ class Lights {
 /// What the key light reaches: the nearest surface to it, on a grid of its own.
 class Shadow {
  public:
-  /// Of the subject's triangles. `threads` as in rasterise().
+  /// Maps the shadow of the subject's triangles. `threads` as in rasterise().
   Shadow(const Surface& surface, const Camera& key, int threads);
 
   /// How much of the key light reaches a point: 0 in the shadow to 1, between them at its edge.

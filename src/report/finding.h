@@ -31,7 +31,7 @@ struct Finding {
   std::string sentence;
 };
 
-/// Of each two configurations of a published table: which is faster, and from which size on.
+/// Which of each two configurations of a published table is faster, and from which size on.
 std::vector<Finding> order_findings(const PaperScenes& scenes);
 
 /// What a step of each integrator costs, in steps of the cheapest.
@@ -47,7 +47,7 @@ std::vector<Finding> garment_findings(std::span<const ResultRow> rows);
 /// told from 1. None without rows.
 std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
 
-/// Of so many comparisons: how many are as published, and how many contradict it.
+/// How many of so many comparisons are as published, and how many contradict it.
 Outcome outcome_of(std::uint64_t all, std::uint64_t as_published, std::uint64_t contrary);
 
 /// How far a measured ratio of costs may lie from the published one, as a factor, to reproduce it.

@@ -230,7 +230,7 @@ std::optional<Chart> size_chart(const FoundGuide& guide, const std::string& scen
   return chart.series.empty() ? std::nullopt : std::optional(std::move(chart));
 }
 
-/// Of the first explicit and the first implicit integrator that have one.
+/// Charts of sizes, of the first explicit and the first implicit integrator that have one.
 std::vector<Chart> size_charts(const FoundGuide& guide, const std::string& scene, const std::string& id) {
   std::vector<Chart> charts;
   for (const bool implicit : {false, true})

@@ -11,7 +11,7 @@ namespace mssim {
 /// one place that escapes: all that stands in a page went through it, or is written in the program.
 std::string html_text(std::string_view text);
 
-/// The same of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that
+/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that
 /// is not closed, or has a blank behind it, stands for itself.
 std::string html_prose(std::string_view text);
 

@@ -16,8 +16,8 @@ std::string machine_section(const ReportInput& input);
 /// The findings of each folder.
 std::string verdict_section(const ReportInput& input);
 
-/// Of exactly two folders: what changed from the first to the second, as `mssim compare` says it; why they
-/// cannot be compared; empty of any other number.
+/// What changed from the first of two folders to the second, as `mssim compare` says it, or why they cannot
+/// be compared; empty for any other number of folders.
 std::string changes_section(const ReportInput& input);
 
 /// Times of the largest scenes with their intervals, and all rows to unfold.
@@ -26,7 +26,7 @@ std::string headline_section(const ReportInput& input);
 /// The tables of the papers, published beside measured.
 std::string published_section(const ReportInput& input);
 
-/// Of folders of guides: scene by scene what the guide recommends, charts of errors and costs, and the
+/// Folders of guides, scene by scene: what the guide recommends, charts of errors and costs, and the
 /// guide's tables to unfold. Empty where there is none.
 std::string guide_section(const ReportInput& input);
 

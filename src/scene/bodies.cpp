@@ -297,7 +297,7 @@ class MeshedShapes {
 
   const MeshedShape& of_body(std::size_t body) const { return shapes_[of_body_[body]]; }
 
-  /// Of all bodies together.
+  /// Counts all bodies together.
   SceneCounts counts() const {
     SceneCounts counts;
     for (const std::size_t shape : of_body_) {

@@ -44,14 +44,14 @@ SceneParts read_parts(const SceneSpec& spec);
 /// Nodes and springs that the scene has. Reads its parts for that, and throws like read_parts.
 SceneCounts counts_of(const SceneSpec& spec);
 
-/// The same, of the scene's System.
+/// Counts what the scene's System has.
 SceneCounts counts_of(const SceneSpec& spec, const System& system);
 
 /// Throws SceneError when any run of the scene, which has these counts, needs more memory than there is
 /// (memory_needed), naming both amounts.
 void require_memory(const SceneSpec& spec, const SceneCounts& counts);
 
-/// The same for a use of the scene that needs `needed` bytes.
+/// Throws SceneError when a use of the scene that needs `needed` bytes does not fit into memory.
 void require_memory(const SceneSpec& spec, const SceneCounts& counts, std::uint64_t needed,
                     std::string_view remedy);
 

@@ -7,7 +7,7 @@
 
 namespace mssim {
 
-/// Of a 95 % interval.
+/// Error of a 95 % interval.
 inline constexpr double usual_error = 0.05;
 
 /// What a test that uses ranks alone found: the probability of a statistic at least as far out, were there
@@ -87,14 +87,14 @@ class RankDistribution {
 /// Samples of fewer values have their exact distribution computed.
 inline constexpr std::size_t exact_below = 50;
 
-/// Of Mann and Whitney's U, the number of pairs (x, y) with x > y, for samples of these sizes without ties.
-/// Exact: each set of ranks that x may have is equally likely; they are counted by the sum of their ranks.
-/// Source: H. B. Mann, D. R. Whitney, On a test of whether one of two random variables is stochastically
-/// larger than the other, Annals of Mathematical Statistics 18, 1947.
+/// The distribution of Mann and Whitney's U, the number of pairs (x, y) with x > y, for samples of these
+/// sizes without ties. Exact: each set of ranks that x may have is equally likely; they are counted by the
+/// sum of their ranks. Source: H. B. Mann, D. R. Whitney, On a test of whether one of two random variables is
+/// stochastically larger than the other, Annals of Mathematical Statistics 18, 1947.
 RankDistribution rank_sum_distribution(std::size_t x_size, std::size_t y_size);
 
-/// Of Wilcoxon's V, the sum of the ranks of the positive values, for that many values without ties and zeros.
-/// Exact: each rank is as likely to belong to a positive value as to a negative one.
+/// The distribution of Wilcoxon's V, the sum of the ranks of the positive values, for that many values
+/// without ties and zeros. Exact: each rank is as likely to belong to a positive value as to a negative one.
 /// Source: F. Wilcoxon, Individual comparisons by ranking methods, Biometrics Bulletin 1, 1945.
 RankDistribution signed_rank_distribution(std::size_t size);
 

@@ -14,7 +14,7 @@ namespace mssim {
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options);
 
-/// The same with the vector code for another instruction set than the best.
+/// Takes the vector code for another instruction set than the best.
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options, const RowKernel& kernel);
 

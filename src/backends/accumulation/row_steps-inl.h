@@ -68,7 +68,7 @@ HWY_INLINE Lanes3 spring_acceleration(const ClothConstants& constants, const Pla
   return sum;
 }
 
-/// The same, a function of its own at edges: a copy in every stage takes long to compile.
+/// The acceleration at edges, in a function of its own: a copy in every stage takes long to compile.
 HWY_NOINLINE inline Lanes3 edge_acceleration(const ClothConstants& constants, const EdgeVector& place,
                                              const float* here, const NodeLanes& node) {
   return spring_acceleration(constants, place, here, node);

@@ -20,7 +20,7 @@ namespace {
 
 std::function<void(const std::string&)> listener;
 
-/// Of the trial, on this device: what tells trials apart.
+/// Arguments of the trial on this device: what tells trials apart.
 std::vector<std::string> arguments_of(const DriverTrial& trial, const OpenclDevice& device) {
   return {std::string(driver_trial_word),
           trial.backend,

@@ -122,7 +122,7 @@ void take_devices(const std::string& pocl_failure, OpenclOffer& offer) {
   for (const cl::Platform& platform : platforms) take_devices(platform, pocl_failure, offer);
 }
 
-/// The same, of drivers that survived being asked with that answer.
+/// Takes devices of drivers that survived being asked with that answer.
 void take_devices(Answer answer, const std::string& pocl_failure, OpenclOffer& offer) {
   take_devices(pocl_failure, offer);
   std::ranges::move(answer.troubles, std::back_inserter(offer.troubles));

@@ -45,7 +45,7 @@ fs::path default_cache() {
   return "/tmp/pocl/kcache";
 }
 
-/// The same for a folder of mssim's, or nothing where the user has none for caches.
+/// A folder of mssim's own in the user's caches, or nothing where the user has none for caches.
 fs::path own_cache() {
   if (const fs::path caches = value_of("XDG_CACHE_HOME"); caches.is_absolute())
     return caches / "mssim" / "pocl";

@@ -18,7 +18,7 @@ namespace mssim {
 /// Text of the files in kernels/, in this order, for that many lanes. Throws std::runtime_error when one is
 /// missing.
 std::string program_text(int lanes, std::initializer_list<const char*> files);
-/// The same where nodes lie in slices of so many.
+/// The program text where nodes lie in slices of so many.
 std::string slices_program_text(std::size_t slice_nodes, int lanes, std::initializer_list<const char*> files);
 
 /// Name of the stage's kernel.

@@ -53,7 +53,7 @@ class Hybrid final : public Backend {
   State state() const override { return nodes_.read(device_.pair(present_).data()); }
 
   std::string device() const override { return device_.queue().label(); }
-  /// Of the host or the device, whichever takes more: they take turns.
+  /// Threads of the host or the device, whichever takes more: they take turns.
   int threads() const override { return std::max(threads_, device_.queue().threads()); }
   bool runs_on_host() const override { return device_.queue().runs_on_host(); }
   std::optional<std::uint64_t> stored_springs() const override {

@@ -37,15 +37,15 @@ std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrato
   return make(system, dt_s, more...);
 }
 
-/// The same of a reference, whose steps end soon enough without being told to.
+/// Wraps a reference, whose steps end soon enough without being told to.
 template <auto make>
 std::unique_ptr<Backend> reference_of_one_integrator(const System& system, const Integrator& /*integrator*/,
                                                      double dt_s, const std::function<bool()>& /*stop*/) {
   return make(system, dt_s);
 }
 
-/// Of a SpringEquation<float>: of a node what PlainNodes hold, six vectors and a block of P; of a spring what
-/// it adds to A.
+/// Memory of a SpringEquation<float>: of a node what PlainNodes hold, six vectors and a block of P; of a
+/// spring what it adds to A.
 constexpr MemoryUse plain_newton{.node = 29 + 6 * 12 + 24, .spring = 20};
 
 /// Entries of a sparse factor in minimum degree order, a node: 5 to 6 and doubling of a cloth of 40,000 to

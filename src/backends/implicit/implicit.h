@@ -15,7 +15,7 @@ namespace mssim {
 std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options);
 
-/// The same code in double precision, whose solvers go on until they gain nothing more, or `stop` says that
+/// The plain code in double precision, whose solvers go on until they gain nothing more, or `stop` says that
 /// nobody waits for them any longer (make_reference in backends/reference.h).
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
                                                  double dt_s, const std::function<bool()>& stop);

@@ -31,8 +31,8 @@ inline Surroundings surroundings_of(const System& system) {
 /// What processes that take steps together spend on each other.
 struct Communication {
   double waiting = 0;  ///< share of the time of a step that a process waits for others; mean of all
-  /// The same for bringing together what is sent, bringing it across where the processor does that, and
-  /// putting in place what has come.
+  /// Share of the time for packing what is sent, copying it where the processor does that, and unpacking what
+  /// has come.
   double packing = 0;
   double bytes = 0;     ///< that the process with most sends in a step
   double messages = 0;  ///< the same
@@ -181,7 +181,7 @@ struct MemoryUse {
   }
 };
 
-/// Of a SpringList<float>.
+/// The memory of a SpringList<float>.
 inline constexpr MemoryUse spring_list_memory{.node = 17, .pair_node = 24};
 
 /// A backend for a cloth of which no single process has the whole: it builds the scene by itself, and gives

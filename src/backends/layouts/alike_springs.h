@@ -15,7 +15,7 @@ namespace mssim {
 struct AlikeSprings {
   static constexpr std::size_t slice_nodes = 16;
 
-  /// Of one group of bodies.
+  /// The springs of one group of bodies.
   struct SpringOfSlices {
     std::uint32_t first, second;  ///< slices
     float stiffness_rest;         ///< AlikeBodies::SpringAhead::stiffness_rest

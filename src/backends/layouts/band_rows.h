@@ -12,7 +12,7 @@
 
 namespace mssim {
 
-/// Of each half of a layout's columns, how many columns of the cloth there are from one of them to the
+/// For each half of a layout's columns, how many columns of the cloth there are from one of them to the
 /// cloth's end, itself included; 0 if it is none of the cloth's.
 using ColumnsToEnd = std::array<std::size_t, 2>;
 
@@ -21,8 +21,8 @@ using ColumnsToEnd = std::array<std::size_t, 2>;
 /// dummies stay at rest, and the vector code needs no masks. Most rows share their values.
 class BandRows {
  public:
-  /// Of a column that so many are `behind`, unless it is far from the cloth's end. `springs`: by
-  /// GridSpringKind. `gravity` in m/s^2.
+  /// The constants of a column that so many are `behind`, unless it is far from the cloth's end. `springs`:
+  /// by GridSpringKind. `gravity` in m/s^2.
   BandRows(const BandLayout& layout, const std::vector<SpringConstants>& springs, float gravity,
            ColumnsToEnd to_end = {far_from_end, far_from_end});
 

@@ -122,7 +122,7 @@ struct TransposedRecords {
   }
 };
 
-/// The same for vectors.
+/// Stores the nodes of a vector as records, one behind the other.
 template <std::size_t lanes>
 HWY_INLINE void store_records(float* to, const NodeLanes& node) {
   const FloatTag d;

@@ -57,8 +57,8 @@ struct SlicedGraph {
   /// Throws Unsupported where springs of unlike materials meet in a node, and for more springs than 32 bits
   /// number from both ends.
   SlicedGraph(const System& system, std::size_t slice_lanes);
-  /// The same of a part: its nodes have the entries of the whole's graph, in the same order, with the same
-  /// constants. Springs between ghosts are left out.
+  /// Slices a part of a graph: its nodes have the entries of the whole's graph, in the same order, with the
+  /// same constants. Springs between ghosts are left out.
   SlicedGraph(const System& system, std::size_t slice_lanes, const GraphPart& part);
 
   std::size_t nodes() const { return slot.size(); }

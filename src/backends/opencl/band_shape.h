@@ -19,7 +19,7 @@ struct BandShape {
   std::size_t ghosts = 0;      ///< columns on each side of a partition
   std::size_t partitions = 0;  ///< work-items
 
-  /// Of all shapes the one whose steps take least on so many compute units with a cache of so many bytes;
+  /// The shape whose steps take least on so many compute units with a cache of so many bytes;
   /// with `steps_in_a_launch` if that is given.
   BandShape(const GridPatch& grid, const Integrator& integrator, std::size_t lanes, std::size_t units,
             std::uint64_t cache_bytes, std::optional<std::size_t> steps_in_a_launch = {});

@@ -15,7 +15,7 @@ std::string mesh_program_text(const Integrator& integrator, int lanes);
 /// Nodes in a slice of the graph that the program reads.
 std::size_t mesh_slice_lanes(int lanes);
 
-/// The same for alike bodies, over kernels/alike_stage.cl, and the bodies in a slice of them.
+/// The program for alike bodies, over kernels/alike_stage.cl, and the bodies in a slice of them.
 std::string alike_program_text(const Integrator& integrator, int lanes);
 std::size_t alike_slice_lanes(int lanes);
 

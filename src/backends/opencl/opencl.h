@@ -15,9 +15,9 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
                                      const OpenclDevice& device, int lanes,
                                      DeviceMemory memory = DeviceMemory::shared);
 
-/// The same on the device that options.device names, and where that is a processor on options.threads of its
-/// compute units. Throws Unavailable where there is no such device or its driver fails, Unsupported where the
-/// scene does not fit into its memory.
+/// Makes the backend on the device that options.device names, and where that is a processor on
+/// options.threads of its compute units. Throws Unavailable where there is no such device or its driver
+/// fails, Unsupported where the scene does not fit into its memory.
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 

@@ -39,7 +39,7 @@ class PieceCosts {
     std::partial_sum(ended_before_.begin(), ended_before_.end(), ended_before_.begin());
   }
   std::size_t nodes() const { return ended_before_.size() - 1; }
-  /// Of nodes [begin, end): every spring with an end there.
+  /// Cost of nodes [begin, end): every spring with an end there.
   std::size_t of(std::size_t begin, std::size_t end) const {
     return begun_before_[end] - ended_before_[begin] + (end - begin) * node_cost;
   }
@@ -88,7 +88,7 @@ std::vector<Cut> cut_groups(const std::vector<AlikeSlices::Group>& groups,
   return cuts;
 }
 
-/// The same for so many shares or fewer, which cost as little as possible.
+/// Cuts groups into so many shares or fewer, which cost as little as possible.
 std::vector<Cut> cut_groups_into(const std::vector<AlikeSlices::Group>& groups,
                                  const std::vector<PieceCosts>& costs, std::size_t shares) {
   std::size_t low = 1, high = 1;

@@ -64,7 +64,7 @@ struct BodyLanes {
   /// [threads] of the piece that a thread works on, from its body's first node on; zero between pieces.
   std::vector<AlignedArray> forces;
 
-  /// Of all bodies of a system, cut for at most `thread_count` threads.
+  /// Holds all bodies of a system, cut for at most `thread_count` threads.
   BodyLanes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
             double dt_s, std::size_t lane_count, std::size_t thread_count);
   void set_state(const State& state);

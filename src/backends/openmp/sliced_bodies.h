@@ -35,7 +35,7 @@ struct SlicedBodies {
   Coefficients<float> coefficients{};
   Surroundings surroundings{};
   std::size_t threads = 1;
-  /// Of about the same work; of a part those of the slices without edge nodes, which may be empty.
+  /// Chunks of about the same work; in a part those of the slices without edge nodes, which may be empty.
   std::vector<Chunk> chunks;
   std::vector<Chunk> edge_chunks;    ///< as many of the other slices; none of a whole
   NodeMessages* messages = nullptr;  ///< of a part: what brings its ghosts; null of a whole
@@ -47,7 +47,7 @@ struct SlicedBodies {
   /// Throws Unsupported like SlicedGraph, and for more nodes than entries can name.
   SlicedBodies(const System& system, const Integrator& method, double dt_s, std::size_t slice_lanes,
                std::size_t thread_count);
-  /// The same of a part: `graph` is that of `system`, and `messages` must be set before the first step.
+  /// Holds a part of bodies: `graph` is that of `system`, and `messages` must be set before the first step.
   SlicedBodies(const System& system, SlicedGraph graph, const Integrator& method, double dt_s,
                std::size_t thread_count);
   /// Takes and gives the states of the own nodes.

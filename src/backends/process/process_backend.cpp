@@ -94,8 +94,8 @@ using namespace std::chrono_literals;
 
 /// How long a program that was asked to end gets to do so.
 constexpr std::chrono::milliseconds patience = 2s;
-/// The same of one that has closed its connection: it may be about to say why, and what has started its
-/// processes on other machines takes seconds to hear of their end.
+/// Patience with a program that has closed its connection: it may be about to say why, and what has started
+/// its processes on other machines takes seconds to hear of their end.
 constexpr std::chrono::milliseconds patience_for_reasons = 8s;
 /// Lines that a program may say of itself before it is ready.
 constexpr int most_lines = 100;

@@ -59,7 +59,7 @@ std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, con
                                               const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options);
 
-/// The same for a cloth of which this process has an outline alone, and a program that has windows
+/// Starts the program for a cloth of which this process has an outline alone, and a program that has windows
 /// (Unsupported where it has not). `window_nodes`: of every window that it will be asked for. The backend
 /// moves the states of an integrator that is ahead.
 std::unique_ptr<WindowBackend> make_process_window_backend(const BackendProgram& program,

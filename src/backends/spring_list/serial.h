@@ -11,7 +11,7 @@ namespace mssim {
 std::unique_ptr<Backend> make_serial(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 
-/// The same code in double precision.
+/// The serial code in double precision.
 std::unique_ptr<Backend> make_serial_in_double(const System& system, const Integrator& integrator,
                                                double dt_s);
 

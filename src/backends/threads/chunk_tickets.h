@@ -56,7 +56,7 @@ class ChunkTickets {
     }
     return false;
   }
-  /// The same in every phase until all is over. Calls finished() whenever it has finished one. Between phases
+  /// Works in every phase until all is over. Calls finished() whenever it has finished one. Between phases
   /// it spins `spins` times before it offers its core.
   template <class Act, class Finished>
   void work_until_closed(std::uint32_t range, int spins, Act&& act, Finished&& finished) {

@@ -30,10 +30,10 @@ class SpinBarrier {
       wait_for_others(mine);
   }
 
-  /// The same at the end of a round. Meanwhile one thread may take rounds for all: take_round(n), n = 0, 1,
-  /// ..., does the work of all threads in the (n + 1)th round after this one, or returns false where none is
-  /// left. Returns to every thread how many rounds that were. `waited`: how long this thread has waited for
-  /// others since the last such meeting, apart from here.
+  /// Meets the others at the end of a round. Meanwhile one thread may take rounds for all: take_round(n) with
+  /// n from 0 on does the work of all threads in the (n + 1)th round after this one, or returns false where
+  /// none is left. Returns to every thread how many rounds that were. `waited`: how long this thread has
+  /// waited for others since the last such meeting, apart from here.
   template <class TakeRound>
   std::size_t end_round(TakeRound&& take_round, TeamGain::Duration waited = {}) {
     note_wait(waited);

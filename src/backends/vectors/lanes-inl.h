@@ -156,7 +156,7 @@ HWY_INLINE Lanes3 keep(EveryLane, const Lanes3& a) { return a; }
 HWY_INLINE Lanes3 select(Mask mask, const Lanes3& yes, const Lanes3& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
-/// The same of components: `none` in the lane that has no other.
+/// Shifts each component: `none` in the lane that has no other.
 HWY_INLINE Lanes3 from_lane_before(const Lanes3& a, Lanes none, std::size_t group) {
   return {from_lane_before(a.x, none, group), from_lane_before(a.y, none, group),
           from_lane_before(a.z, none, group)};

@@ -14,7 +14,7 @@ struct BuildInfo {
   std::string build_type;  ///< CMake's, for example "Release"
 };
 
-/// Of the running program.
+/// What the running program was built from.
 const BuildInfo& build_info();
 
 }  // namespace mssim

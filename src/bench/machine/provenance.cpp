@@ -48,7 +48,7 @@ std::string without_home(std::string_view argument) {
   return result;
 }
 
-/// Of the running program's file; none where it cannot be read.
+/// Hash of the running program's file; none where it cannot be read.
 std::optional<std::uint64_t> program_hash() {
   try {
     return fnv1a_64(read_file("/proc/self/exe"));

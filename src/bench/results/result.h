@@ -54,7 +54,7 @@ struct ResultRow {
       position_error;  ///< largest distance to the double reference over the mean rest length
   std::optional<double>
       energy_drift;  ///< difference of total energy to the reference over the energy in motion
-  /// Of the state after the verification's steps (model/system.h): rows with the same hash are the same
+  /// Hash of the state after the verification's steps (model/system.h): rows with the same hash are the same
   /// to the last bit. None where an older mssim did not tell.
   std::optional<std::uint64_t> state_hash;
   bool verified = false;

@@ -26,12 +26,12 @@ struct StepCost {
 /// optimistic. Sign changes are free.
 inline constexpr std::size_t flops_per_spring = 6 + 10 + 7 + 3 + 6;
 
-/// Of the acceleration of one node (acceleration_law.h), when the springs' constants were divided by its mass
-/// beforehand: viscous damping (3 products, 3 sums) and gravity (1 sum).
+/// Operations of the acceleration of one node (acceleration_law.h), when the springs' constants were divided
+/// by its mass beforehand: viscous damping (3 products, 3 sums) and gravity (1 sum).
 inline constexpr std::size_t flops_per_acceleration = 3 + 3 + 1;
 
-/// Of the pointwise assignments of a stage, for one node: in each of three components a product for every
-/// term whose factor is not 1, and a sum between terms.
+/// Operations of the pointwise assignments of a stage, for one node: in each of three components a product
+/// for every term whose factor is not 1, and a sum between terms.
 constexpr std::size_t line_flops(const Stage& stage) {
   std::size_t count = 0;
   for (const Assignment& assignment : stage.assignments) {
@@ -68,7 +68,7 @@ std::size_t bytes_per_spring(const Topology& topology);
 
 StepSize step_size(const System& system);
 
-/// The same where only so many of the springs are in memory (Backend::stored_springs): others share theirs.
+/// The size where only so many of the springs are in memory (Backend::stored_springs): others share theirs.
 StepSize with_stored_springs(StepSize size, std::uint64_t stored);
 
 /// Cost of a step that passes over the nodes, and where they take memory over the springs, once per stage.

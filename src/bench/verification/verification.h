@@ -32,7 +32,7 @@ std::optional<std::size_t> first_bad_node(const State& state);
 /// all.
 std::optional<BlowUp> find_blow_up(Backend& backend, const State& from, int steps);
 
-/// The same by any way to find the first bad node so many steps after the start.
+/// Finds the first bad step by any way to find the first bad node so many steps after the start.
 std::optional<BlowUp> find_blow_up(const std::function<std::optional<std::size_t>(int steps)>& bad_node_after,
                                    int steps);
 

@@ -90,7 +90,7 @@ class SceneReader {
   std::map<std::filesystem::path, SceneParts> parts_;
 };
 
-/// The same, with the backends that the suite has for this scene.
+/// The settings with the backends that the suite has for this scene.
 BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
                                 const std::string& scene) {
   BenchSettings settings = all;

@@ -65,7 +65,7 @@ std::vector<const BackendInfo*> baseline_and_best() {
   return {find_backend("serial"), find_backend("openmp")};
 }
 
-/// Of the suite that is run by guides, which make their tables themselves.
+/// No tables, for the suite that is run by guides, which make their tables themselves.
 TableMaker no_tables() {
   return [](std::span<const ResultRow> /*rows*/, const Provenance& /*provenance*/) {
     return std::vector<ResultTable>();

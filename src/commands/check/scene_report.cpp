@@ -77,8 +77,8 @@ std::vector<const Integrator*> usual_integrators() {
   return usual;
 }
 
-/// Of the integrators that a bench takes unasked, those with which the scene may blow up: the limit is on the
-/// safe side.
+/// Names the integrators, of those that a bench takes unasked, with which the scene may blow up: the limit is
+/// on the safe side.
 std::optional<std::string> warning_of_dt(const PreparedScene& scene, const ModeBound& modes) {
   std::vector<std::string_view> unstable;
   double smallest = scene.dt_s;

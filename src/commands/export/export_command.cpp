@@ -33,7 +33,7 @@ struct ExportOptions {
   FrameOptions frames;
 };
 
-/// Of the files that have the format; the first is the usual one.
+/// Endings of files that have the format; the first is the usual one.
 std::vector<std::string_view> extensions_of(ExportFormat format) {
   if (format == ExportFormat::vtkhdf) return {".vtkhdf", ".hdf", ".h5", ".hdf5"};
   return {format == ExportFormat::obj ? ".obj" : ".ply"};

@@ -23,7 +23,7 @@ std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>
 /// More host threads than this are a typing error, and would only fail later and less clearly.
 inline constexpr int most_threads = 4096;
 
-/// The same of processes.
+/// The largest number of processes.
 inline constexpr int most_ranks = 65536;
 
 /// Declares an argument that takes scenes: names or files. `target` must outlive the parsing.

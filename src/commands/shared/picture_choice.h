@@ -11,7 +11,7 @@
 
 namespace mssim {
 
-/// Of pictures one by one.
+/// Size of pictures that are written one by one.
 inline constexpr const char* usual_picture_size = "960x720";
 
 /// How pictures are to look, in the words of the command line.
@@ -26,7 +26,7 @@ struct PictureChoice {
 void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::string& usual_size,
                       std::optional<Argument> needed = {});
 
-/// The same as options, drawn by so many threads. `usual_size` is WIDTHxHEIGHT. Throws UsageError.
+/// The choice as options, drawn by so many threads. `usual_size` is WIDTHxHEIGHT. Throws UsageError.
 PictureOptions picture_options(const PictureChoice& choice, const std::string& usual_size, int threads);
 
 /// "WIDTHxHEIGHT" as two whole numbers from 1 to `most`; none where it is something else.

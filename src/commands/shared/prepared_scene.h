@@ -23,7 +23,7 @@ struct PreparedScene {
 /// Builds the scene of its parts. Throws SceneError.
 PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts);
 
-/// The same, its parts read for it alone. Throws SceneError and MissingProgram.
+/// Prepares a scene whose parts are read for it alone. Throws SceneError and MissingProgram.
 PreparedScene prepare_scene(SceneSpec spec);
 
 /// The modes of the scene, for the stability limits of its integrators.

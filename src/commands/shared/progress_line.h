@@ -45,7 +45,7 @@ class ProgressLine {
   void skip_scene();
   /// `done`: share of the scene, 0 to 1.
   void update(const std::string& activity, double done);
-  /// The same for who calls all the time: ten times a second at most.
+  /// Updates ten times a second at most, for who calls all the time.
   void update_often(const std::string& activity, double done);
 
  private:

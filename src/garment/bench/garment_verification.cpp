@@ -92,7 +92,7 @@ class StretchErrors {
     return mssim::quantile(std::move(all), fraction);
   }
 
-  /// Of the state after the last step.
+  /// Hash of the state after the last step.
   std::uint64_t last_hash() const { return last_hash_; }
   double energy_error() const { return energy_error_; }
   double energy_in_motion() const { return energy_in_motion_; }

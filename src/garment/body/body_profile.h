@@ -53,7 +53,7 @@ class BodyProfile {
 
   /// The perimeter of the section's convex hull, m: what a tape says.
   double hull_girth(double y) const;
-  /// The same of one leg: of the section's part at x < 0 for a negative `side`, else at x > 0. Throws
+  /// The girth of one leg: of the section's part at x < 0 for a negative `side`, else at x > 0. Throws
   /// InputError where the section reaches x = 0, as it does above the crotch, and where there is no such leg.
   double leg_girth(double y, int side) const;
   /// The part of that girth before the plane in which z, m, is given, which passes through the section.

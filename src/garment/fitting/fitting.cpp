@@ -142,7 +142,7 @@ double mean_rise(const Garment& garment, const std::vector<Vec3d>& position,
   return rise / static_cast<double>(nodes.size());
 }
 
-/// Of the upper edges of each layer's panels, the mean rise that is farthest off.
+/// The mean rise of the upper edges of a layer's panels, of the layer where it is farthest off.
 double upper_edge_rise(const Garment& garment, const std::vector<Vec3d>& position) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> edges;
   for (const GarmentPanel& panel : garment.panels)

@@ -59,7 +59,7 @@ struct Fit {
   /// m, how far the upper edges of a layer's panels hang above where the pattern puts them, on average;
   /// below, where negative: of the layer where that is farthest off.
   double upper_edge_rise = 0;
-  /// The same of the nodes at which seams meet: the crotch; none where seams do not meet.
+  /// m, the rise of the nodes at which seams meet (the crotch), on average; none where seams do not meet.
   std::optional<double> meeting_rise = {};
   /// Rows of two panels, sewn to each other at both ends, which do not go once around the limb between them.
   std::size_t rows = 0, rows_astray = 0;

@@ -37,7 +37,7 @@ class Curve {
   /// This curve and then that one, which begins where this one ends.
   Curve followed_by(const Curve& next) const;
 
-  /// The same with x turned round: a left panel's boundary becomes a right one's.
+  /// The curve with x negated: a left panel's boundary becomes a right one's.
   Curve mirrored() const;
 
  private:

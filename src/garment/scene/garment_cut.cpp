@@ -92,7 +92,7 @@ std::string uncut_jeans(const JeansMeasures& jeans, const BodyProfile& profile) 
 
 using OfHeight = std::function<double(double height)>;
 
-/// The same function, which computes a value once for each height. Copies remember together.
+/// Wraps a function so that it computes a value once for each height. Copies remember together.
 OfHeight remembered(OfHeight function) {
   return [function = std::move(function),
           known = std::make_shared<std::unordered_map<double, double>>()](double height) {

@@ -156,7 +156,7 @@ HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Panel& p
   }
 }
 
-/// The same for a block.
+/// Collides all rows of a block with the body.
 HWY_INLINE void collide_with_body(GarmentGrid& grid, const GarmentGrid::Block& block, const StepRule& rule) {
   for (std::size_t row = block.begin; row < block.end; ++row)
     collide_with_body(grid, grid.panels[block.panel], row, rule);

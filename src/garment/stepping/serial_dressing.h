@@ -12,7 +12,7 @@ namespace mssim {
 std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s);
 
-/// The same in double precision.
+/// The serial dressing in double precision.
 std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, const Integrator& integrator,
                                                          double dt_s);
 

@@ -27,7 +27,7 @@ struct ExportMesh {
 /// out.
 ExportMesh surface_mesh(const TraceContent& content);
 
-/// The same, but bodies as their tetrahedra between all nodes.
+/// The mesh with bodies as their tetrahedra between all nodes.
 ExportMesh solid_mesh(const TraceContent& content);
 
 /// One frame of a mesh.

@@ -29,7 +29,7 @@ std::string provenance_text(const Provenance& provenance);
 /// first must be there, and what a newer one adds is ignored. Throws ProvenanceError.
 Provenance read_provenance(const std::filesystem::path& file);
 
-/// The same of a text; `file` is named in messages.
+/// Reads a text; `file` is named in messages. Throws like read_provenance.
 Provenance parse_provenance(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace mssim

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Rgb skin_tone{201, 188, 178}, denim{58, 88, 140};
 
-/// Of the side that is turned away: the same, paler.
+/// Colour of the side that is turned away: paler.
 Light inside_of(const Light& colour) {
   constexpr float kept = 0.72F;
   return kept * colour + (1 - kept) * Light{0.55F, 0.55F, 0.55F};

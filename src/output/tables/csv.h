@@ -39,7 +39,7 @@ class CsvTable {
   /// messages. Throws CsvError when a quote is left open or a record has not the header's length.
   CsvTable(std::string name, std::string_view text);
 
-  /// The same from a file. Throws CsvError when it cannot be read, too.
+  /// Reads the table from a file. Throws CsvError when it cannot be read, too.
   explicit CsvTable(const std::filesystem::path& file);
 
   const std::vector<std::string>& header() const { return header_; }
@@ -52,7 +52,7 @@ class CsvTable {
   }
   /// Throws CsvError unless the whole field is a finite number.
   double number(std::size_t record, std::size_t column) const;
-  /// The same; none for an empty field.
+  /// Reads a number; none for an empty field.
   std::optional<double> optional_number(std::size_t record, std::size_t column) const;
   /// Throws CsvError unless the whole field is a whole number from 0 to 2^53.
   std::uint64_t count(std::size_t record, std::size_t column) const;

@@ -14,7 +14,7 @@ std::string prose(std::string_view text) {
   return result;
 }
 
-/// The same that cannot end a cell or a line.
+/// The text as one that cannot end a cell or a line.
 std::string one_cell(std::string_view text) {
   std::string cell;
   for (const char character : prose(text)) {

@@ -41,7 +41,7 @@ class PublishedTable {
   /// std::runtime_error when the folder is missing.
   explicit PublishedTable(const PublishedTableInfo& table_info);
 
-  /// The same from a table that was read. Throws CsvError.
+  /// Takes the numbers from a table that was read. Throws CsvError.
   PublishedTable(const PublishedTableInfo& table_info, const CsvTable& table);
 
   const PublishedTableInfo& info() const { return info_; }

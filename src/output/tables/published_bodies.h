@@ -24,7 +24,7 @@ struct PublishedBody {
 /// folder is missing.
 std::vector<PublishedBody> published_bodies();
 
-/// The same from a table that was read. Throws CsvError.
+/// Takes the bodies from a table that was read. Throws CsvError.
 std::vector<PublishedBody> published_bodies(const CsvTable& table);
 
 }  // namespace mssim

@@ -18,7 +18,7 @@ std::string_view mark_of_ratio(double ratio, double time, double other);
 /// What that mark means; empty where no cell has it.
 std::string legend_of_ratios(const Table& table);
 std::string legend_of_ratios(const Document& page);
-/// The same for a table that is text already.
+/// The legend of a table that is text already.
 std::string legend_of_ratios(std::string_view table);
 
 }  // namespace mssim

@@ -106,7 +106,7 @@ struct RowLayout {
   std::array<std::size_t, RowColumn::count> width{};
   std::size_t bar = 0;
 
-  /// Of a line without its bar.
+  /// Width of a line without its bar.
   std::size_t total() const {
     std::size_t sum = 0;
     for (const std::size_t one : width) sum += one > 0 ? gap.size() + one : 0;

@@ -9,7 +9,7 @@ namespace mssim {
 
 /// An array of an object a row, whose keys are the columns; nothing is null.
 nlohmann::ordered_json table_json(const Table& table);
-/// The same as text.
+/// The table's JSON as text.
 std::string table_json_text(const Table& table);
 
 /// A text as JSON spells it, in quotes. Bytes that are no UTF-8 are replaced.

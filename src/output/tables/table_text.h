@@ -11,7 +11,7 @@ namespace mssim {
 /// is "-". Empty for a table without columns.
 std::string table_text(const Table& table);
 
-/// The same of a table of one row. Where it is wider than `width` columns, a line for each value that there
+/// A table of one row as text. Where it is wider than `width` columns, a line for each value that there
 /// is.
 std::string record_text(const Table& table, std::optional<int> width);
 

@@ -42,7 +42,7 @@ struct XdmfMesh {
   hsize_t body_points = 0;     ///< of the body that does not move, in `body_points_dataset`
   hsize_t body_triangles = 0;  ///< in `body_triangles_dataset`; 0 where there is no such body
 
-  /// Of positions and velocities.
+  /// Bytes of a number of positions and velocities.
   std::size_t bytes_per_number() const { return in_double ? sizeof(double) : sizeof(float); }
 };
 XdmfMesh xdmf_mesh_of(const System& system, const Surface& body, bool in_double = false);

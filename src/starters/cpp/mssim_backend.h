@@ -59,7 +59,7 @@ struct Floor {
   double friction = 0;
 };
 
-/// Of a cloth: node = row * columns + column.
+/// The grid of a cloth: node = row * columns + column.
 struct Grid {
   std::uint32_t rows = 0, columns = 0;
   double spacing = 0;  ///< m

@@ -27,7 +27,7 @@ namespace mssim {
 /// By plain loops over the spring list on one thread.
 std::unique_ptr<Backend> make_serial_local_global(const System& system, double dt_s);
 
-/// The same in double precision.
+/// The plain solver in double precision.
 std::unique_ptr<Backend> make_local_global_reference(const System& system, double dt_s);
 
 /// With vectors, on as many threads: the same bits at every number of them.

@@ -149,7 +149,7 @@ HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, NodeChunk ch
   return sum.total();
 }
 
-/// The same where slopes are not kept: found again from the positions of the linearisation.
+/// Multiplies where slopes are not kept: they are found again from the positions of the linearisation.
 template <class Nodes>
 HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, NodeChunk chunk) {
   const Lanes dt(equation.dt);

@@ -13,8 +13,8 @@ namespace mssim {
 /// By plain loops over the spring list on one thread.
 std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s);
 
-/// The same in double precision, until nothing more is gained. Where `stop`, which is asked often in a step,
-/// says so, the step ends there; the state is then of no use.
+/// Newton's method in double precision, until nothing more is gained. Where `stop`, which is asked often in a
+/// step, says so, the step ends there; the state is then of no use.
 std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
                                                double dt_s, const std::function<bool()>& stop = {});
 

@@ -56,7 +56,7 @@ class NewtonSerial final : public Backend {
   SolverWork work_;
 };
 
-/// Of the norms in which the reference's solvers end, beside which a step's own error is large.
+/// Part of the norms at which the reference's solvers end, beside which a step's own error is large.
 constexpr double reference_tolerance = 1e-12;
 
 }  // namespace

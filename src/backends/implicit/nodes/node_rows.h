@@ -21,7 +21,7 @@ struct NodeRows {
   using Plane = RowLayout<1>;   ///< of one number a node
 
   static constexpr std::size_t spring_slopes = 4;  ///< numbers of a spring in a field of slopes
-  /// Of a field of slopes: those of the springs of grid_stencil, at the nodes that own them.
+  /// Slopes of a field: those of the springs of grid_stencil, at the nodes that own them.
   using SlopeLayout = RowLayout<grid_stencil.size() * spring_slopes>;
 
   Layout layout;

@@ -166,7 +166,7 @@ HWY_INLINE void for_each_vector(const NodeRows& nodes, NodeChunk chunk, Act&& ac
   }
 }
 
-/// The same as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
+/// Acts as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
 template <class Act>
 HWY_INLINE void for_each_whole_vector(const NodeRows& nodes, NodeChunk chunk, Act&& act) {
   const RowWalk walk(nodes);
