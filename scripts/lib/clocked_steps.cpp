@@ -16,7 +16,6 @@
 #include "commands/shared/prepared_scene.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
-#include "statistics/quantile.h"
 #include "statistics/statistics.h"
 
 namespace {
