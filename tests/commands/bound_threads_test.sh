@@ -6,6 +6,9 @@ mssim=$1
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
+# The tests set it to be quick on few processors. Without it, as users have it, mssim starts anew to set how long threads spin.
+unset OMP_WAIT_POLICY
+
 cpus=$(nproc --all)
 if [ "$cpus" -lt 2 ] || [ "$(nproc)" -ne "$cpus" ]; then
   echo "skipped: needs a process with all of several CPUs"
@@ -53,4 +56,6 @@ OMP_PROC_BIND=true "$mssim" bench --scene cloth2500 --backend serial --integrato
   --out "$work/bound" >"$work/out" 2>"$work/err" || fail "a bench with bound threads exits with $?"
 named=$(sed -n '/"allowed_cpus"/,/]/p' "$work/bound/provenance.json" | tr -cd '0-9,' | tr ',' '\n' | grep -c .)
 [ "$named" -eq "$cpus" ] || fail "the provenance names $named of $cpus CPUs"
+asked_for=$(sed -n 's/.*"asked_for": \([0-9]*\).*/\1/p' "$work/bound/provenance.json")
+[ "$asked_for" = "$cpus" ] || fail "bound threads are $asked_for by default, on $cpus CPUs"
 [ "$failures" -eq 0 ]
