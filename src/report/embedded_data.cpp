@@ -1,7 +1,7 @@
 #include "report/embedded_data.h"
 
 #include "output/folders/provenance_file.h"
-#include "output/tables/table_json.h"
+#include "output/tables/table.h"
 #include "output/tables/timings_csv.h"
 #include "report/sections.h"
 #include "text/text.h"
@@ -33,9 +33,9 @@ std::string json_of(const ReportFolder& folder, const ReportInput& input) {
   std::vector<std::string> problems;
   for (const std::string& problem : folder.problems) problems.push_back(json_string(problem));
   return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" + join(problems, ", ") +
-         "],\n\"verdict\": " + table_json_text(verdict) +
-         ", \"timings\": " + table_json_text(timings_table(folder.rows)) +
-         (folder.guide ? ", \"guide\": " + table_json_text(points_of(*folder.guide)) : "") +
+         "],\n\"verdict\": " + to_text(verdict, ListingFormat::json) +
+         ", \"timings\": " + to_text(timings_table(folder.rows), ListingFormat::json) +
+         (folder.guide ? ", \"guide\": " + to_text(points_of(*folder.guide), ListingFormat::json) : "") +
          ", \"provenance\": " + (folder.provenance ? provenance_text(*folder.provenance) : "null") + "}";
 }
 

@@ -5,8 +5,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "output/tables/csv.h"
-#include "output/tables/markdown_reader.h"
+#include "output/tables/table.h"
 #include "platform/files.h"
 #include "report/readable_records.h"
 

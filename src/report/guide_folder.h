@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/document.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 

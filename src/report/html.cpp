@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "output/tables/cell_text.h"
+#include "output/tables/table.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "output/tables/document.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 

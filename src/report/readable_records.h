@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "output/tables/csv.h"
+#include "output/tables/table.h"
 #include "text/text.h"
 
 namespace mssim {

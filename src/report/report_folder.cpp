@@ -8,7 +8,7 @@
 #include "garment/output/garment_csv.h"
 #include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
-#include "output/tables/csv.h"
+#include "output/tables/table.h"
 #include "output/tables/timings_csv.h"
 #include "platform/files.h"
 #include "report/readable_records.h"

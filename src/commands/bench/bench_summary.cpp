@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "output/tables/github_table.h"
-#include "output/tables/listing.h"
 #include "output/tables/ratio_mark.h"
 #include "output/tables/result_table.h"
 #include "output/tables/row_table.h"
-#include "output/tables/table_json.h"
+#include "output/tables/table.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -57,7 +56,7 @@ std::string remarks(RowPointers rows, std::string_view table, const Provenance& 
 
 std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
                     const Terminal& terminal) {
-  if (format == SummaryFormat::github) return table_json_text(github_table(rows));
+  if (format == SummaryFormat::github) return to_text(github_table(rows), ListingFormat::json);
   if (format == SummaryFormat::table) {
     const std::vector<const ResultRow*> pointers = pointers_to(rows);
     const std::string text = row_table(pointers, provenance, terminal);

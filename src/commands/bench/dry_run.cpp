@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "output/tables/table_text.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 
@@ -21,7 +21,7 @@ void tell_plan(const BenchPlan& plan) {
                {"expected_s", seconds(scene.time)}});
   for (const UnbuiltScene& scene : plan.described)
     std::cout << scene.spec.name << ": not timed; its structure is shown\n";
-  std::cout << table_text(table);
+  std::cout << to_text(table);
   std::cout << "about " << seconds(all) << " s in all\n";
 }
 

@@ -10,8 +10,7 @@
 #include "commands/check/scene_report.h"
 #include "commands/shared/choices.h"
 #include "commands/shared/prepared_scene.h"
-#include "output/tables/listing.h"
-#include "output/tables/table_text.h"
+#include "output/tables/table.h"
 #include "scene/scene_file.h"
 #include "text/error.h"
 
@@ -25,7 +24,7 @@ struct CheckOptions {
 
 /// For a reader: what the scene is in a line of its own.
 std::string as_tables(const SceneReport& report) {
-  return table_text(report.scene) + '\n' + table_text(report.combinations);
+  return to_text(report.scene) + '\n' + to_text(report.combinations);
 }
 
 /// Adds each combination with what its scene is.

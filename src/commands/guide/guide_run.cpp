@@ -20,7 +20,7 @@
 #include "output/folders/result_folder.h"
 #include "output/guide/guide_page.h"
 #include "output/guide/guide_table.h"
-#include "output/tables/table_text.h"
+#include "output/tables/table.h"
 #include "platform/machine.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
@@ -78,7 +78,7 @@ void print(const SceneGuide& guide) {
     return;
   }
   for (const std::string& sentence : guide.recommendation.sentences) std::cout << sentence << '\n';
-  std::cout << '\n' << table_text(guide_summary(guide)) << '\n';
+  std::cout << '\n' << to_text(guide_summary(guide)) << '\n';
   for (const std::string& sentence : about_trusted_state(guide.trusted)) std::cout << sentence << '\n';
 }
 
@@ -147,7 +147,7 @@ void tell(const GuidePlan& plan) {
                {"integrators", plan.integrators.size()},
                {"backends", plan.backends.size()},
                {"expected_s", plan.seconds / static_cast<double>(plan.scenes.size())}});
-  std::cout << table_text(table) << "about " << three_digits(plan.seconds) << " s in all\n";
+  std::cout << to_text(table) << "about " << three_digits(plan.seconds) << " s in all\n";
 }
 
 }  // namespace

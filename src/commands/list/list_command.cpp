@@ -18,7 +18,7 @@
 #include "commands/shared/choices.h"
 #include "commands/shared/opencl_notes.h"
 #include "integrators/all_integrators.h"
-#include "output/tables/listing.h"
+#include "output/tables/table.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"

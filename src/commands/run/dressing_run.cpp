@@ -12,7 +12,7 @@
 #include "commands/shared/fit_body.h"
 #include "commands/shared/progress_line.h"
 #include "garment/fitting/fitting.h"
-#include "output/tables/table_text.h"
+#include "output/tables/table.h"
 #include "platform/machine.h"
 #include "text/error.h"
 
@@ -72,7 +72,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
                  {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
                  {"within", check.within}});
   if (!silent)
-    std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << table_text(fitting);
+    std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << to_text(fitting);
   if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
     std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
               << " s the garment is still moving; a longer --duration gives it more time\n";

@@ -23,7 +23,7 @@
 #include "commands/shared/simulation.h"
 #include "commands/shared/stop_request.h"
 #include "garment/stepping/serial_dressing.h"
-#include "output/tables/table_text.h"
+#include "output/tables/table.h"
 #include "output/traces/energy_curve.h"
 #include "platform/files.h"
 #include "platform/machine.h"

@@ -8,7 +8,7 @@
 #include "backends/interface/backend.h"
 #include "commands/arguments/arguments.h"
 #include "integrators/integrator.h"
-#include "output/tables/listing.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 

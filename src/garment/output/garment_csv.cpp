@@ -8,7 +8,7 @@
 
 #include "garment/output/garment_table.h"
 #include "output/tables/result_table.h"
-#include "output/tables/table_csv.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 namespace {

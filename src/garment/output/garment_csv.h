@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/results/result.h"
-#include "output/tables/csv.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 

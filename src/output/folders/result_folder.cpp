@@ -15,9 +15,7 @@
 #include "output/folders/provenance_file.h"
 #include "output/tables/benchmark_json.h"
 #include "output/tables/github_table.h"
-#include "output/tables/markdown.h"
-#include "output/tables/table_csv.h"
-#include "output/tables/table_json.h"
+#include "output/tables/table.h"
 #include "output/tables/timings_csv.h"
 #include "platform/files.h"
 #include "text/text.h"
@@ -137,7 +135,7 @@ void ResultFolder::write(std::span<const ResultRow> rows) {
 }
 
 void ResultFolder::write_for_github(std::span<const ResultRow> rows) const {
-  write_file_atomically(folder_ / github_name, table_json_text(github_table(rows)));
+  write_file_atomically(folder_ / github_name, to_text(github_table(rows), ListingFormat::json));
 }
 
 void ResultFolder::write(std::span<const ResultTable> tables) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/table_json.h"
+#include "output/tables/table.h"
 #include "statistics/statistics.h"
 
 namespace mssim {

@@ -1,22 +1,14 @@
 #include "output/tables/combination_times.h"
 
-#include <algorithm>
-
-#include "output/tables/csv.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 
 std::vector<CombinationTime> read_combination_times(const std::filesystem::path& file) {
   const CsvTable table(file);
-  const auto column = [&](const std::string& name) {
-    const auto found = std::ranges::find(table.header(), name);
-    if (found == table.header().end())
-      throw CsvError(file.string() + ", line 1: there is no column " + name +
-                     "; use a program that writes it");
-    return static_cast<std::size_t>(found - table.header().begin());
-  };
-  const std::size_t scene = column("scene"), backend = column("backend"), integrator = column("integrator"),
-                    ms = column("ms_per_step_min"), verified = column("verified"), status = column("status");
+  const std::size_t scene = table.column("scene"), backend = table.column("backend"),
+                    integrator = table.column("integrator"), ms = table.column("ms_per_step_min"),
+                    verified = table.column("verified"), status = table.column("status");
   std::vector<CombinationTime> times;
   for (std::size_t row = 0; row < table.size(); ++row) {
     CombinationTime time{table.text(row, scene),

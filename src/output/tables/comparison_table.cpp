@@ -2,10 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "output/tables/markdown.h"
 #include "output/tables/ratio_mark.h"
-#include "output/tables/table_json.h"
-#include "output/tables/table_text.h"
+#include "output/tables/table.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -66,8 +64,8 @@ std::string as_json(const RunComparison& comparison) {
 
 std::string as_text(const RunComparison& comparison) {
   const Table rows = rows_of(comparison);
-  const std::string means = table_text(means_of(comparison)), legend = legend_of_ratios(rows);
-  return table_text(rows) + (means.empty() ? "" : "\n" + means) + (legend.empty() ? "" : legend + "\n");
+  const std::string means = to_text(means_of(comparison)), legend = legend_of_ratios(rows);
+  return to_text(rows) + (means.empty() ? "" : "\n" + means) + (legend.empty() ? "" : legend + "\n");
 }
 
 /// The verdict and its remark.

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "bench/results/comparison.h"
-#include "output/tables/document.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 

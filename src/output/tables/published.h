@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "output/tables/csv.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 

@@ -10,7 +10,7 @@
 
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
-#include "output/tables/document.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 

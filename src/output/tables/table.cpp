@@ -1,8 +1,118 @@
 #include "output/tables/table.h"
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "text/text.h"
 
 namespace mssim {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// A value as text; what formats spell alike.
+struct Spelling {
+  std::string operator()(std::monostate) const { return {}; }
+  std::string operator()(bool truth) const { return truth ? "true" : "false"; }
+  std::string operator()(std::int64_t number) const { return std::to_string(number); }
+  std::string operator()(const std::string& text) const { return text; }
+};
+
+struct CsvSpelling : Spelling {
+  std::string (*real)(double);
+
+  using Spelling::operator();
+  std::string operator()(double number) const { return real(number); }
+};
+
+/// Values as people read them, with their unit.
+struct TerminalSpelling : Spelling {
+  const std::string& unit;
+
+  using Spelling::operator();
+  std::string operator()(std::monostate) const { return "-"; }
+  std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
+  std::string operator()(std::int64_t number) const { return std::to_string(number) + unit; }
+  std::string operator()(double number) const {
+    std::ostringstream text;
+    text.precision(4);
+    text << number << unit;
+    return text.str();
+  }
+};
+
+struct PageSpelling : Spelling {
+  const std::string& unit;
+  bool exact;
+
+  using Spelling::operator();
+  std::string operator()(std::monostate) const { return "–"; }
+  std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
+  std::string operator()(std::int64_t number) const {
+    return grouped(static_cast<std::uint64_t>(number)) + unit;
+  }
+  std::string operator()(double number) const {
+    return (exact ? decimal(number) : three_digits(number)) + unit;
+  }
+};
+
+struct AsJson {
+  ordered_json operator()(std::monostate) const { return nullptr; }
+  template <class Value>
+  ordered_json operator()(const Value& value) const {
+    return value;
+  }
+};
+
+/// With a point or an exponent.
+std::string json_number(double number) { return ordered_json(number).dump(); }
+
+std::string terminal_cell(const Cell& cell, const Column& column) {
+  return std::visit(TerminalSpelling{{}, column.unit}, cell.value) + cell.suffix;
+}
+
+std::string csv_of(const Table& table, std::string (*real)(double)) {
+  if (table.columns.empty()) return {};
+  std::vector<std::string> fields;
+  for (const Column& column : table.columns) fields.push_back(column.name);
+  std::string text = csv_line(fields);
+  for (const std::vector<Cell>& row : table.rows) {
+    fields.clear();
+    for (const Cell& cell : row) fields.push_back(std::visit(CsvSpelling{{}, real}, cell.value));
+    text += csv_line(fields);
+  }
+  return text;
+}
+
+/// Columns side by side.
+std::string terminal_text(const Table& table) {
+  if (table.columns.empty()) return {};
+  std::vector<std::vector<std::string>> lines{{}};
+  for (const Column& column : table.columns) lines.front().push_back(column.name);
+  for (const std::vector<Cell>& row : table.rows) {
+    std::vector<std::string>& line = lines.emplace_back();
+    for (std::size_t i = 0; i < row.size(); ++i) line.push_back(terminal_cell(row[i], table.columns[i]));
+  }
+  std::vector<std::size_t> width(table.columns.size());
+  for (const auto& line : lines)
+    for (std::size_t i = 0; i < line.size(); ++i) width[i] = std::max(width[i], width_of(line[i]));
+  std::string text;
+  for (const auto& line : lines) {
+    std::string padded;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const std::string padding(width[i] - width_of(line[i]), ' ');
+      if (i > 0) padded += "  ";
+      padded += is_right_aligned(table, i) ? padding + line[i] : line[i] + padding;
+    }
+    padded.erase(padded.find_last_not_of(' ') + 1);
+    text += padded + '\n';
+  }
+  return text;
+}
+
+}  // namespace
 
 void Table::add(std::initializer_list<NamedCell> row) {
   if (columns.empty())
@@ -18,6 +128,80 @@ bool is_right_aligned(const Table& table, std::size_t column) {
     const auto& value = row[column].value;
     return !std::holds_alternative<bool>(value) && !std::holds_alternative<std::string>(value);
   });
+}
+
+std::string cell_text(const Cell& cell, const Column& column) {
+  const std::string around = cell.strong ? "**" : "";
+  return around + std::visit(PageSpelling{{}, column.unit, cell.exact}, cell.value) + around + cell.suffix;
+}
+
+std::string to_text(const Table& table, ListingFormat format) {
+  switch (format) {
+    case ListingFormat::csv:
+      return csv_of(table, json_number);
+    case ListingFormat::json:
+      return json_text(table_json(table));
+    case ListingFormat::table:
+      break;
+  }
+  return terminal_text(table);
+}
+
+std::string record_text(const Table& table, std::optional<int> width) {
+  std::string text = terminal_text(table);
+  if (!width || width_of(text.substr(0, text.find('\n'))) <= static_cast<std::size_t>(*width)) return text;
+  std::size_t name_width = 0;
+  for (const Column& column : table.columns) name_width = std::max(name_width, width_of(column.name));
+  text.clear();
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const std::string& name = table.columns[i].name;
+    const Cell& cell = table.rows.at(0)[i];
+    if (std::holds_alternative<std::monostate>(cell.value)) continue;
+    text += name + std::string(name_width - width_of(name) + 2, ' ') + terminal_cell(cell, table.columns[i]) +
+            '\n';
+  }
+  return text;
+}
+
+std::string table_csv(const Table& table) { return csv_of(table, csv_number); }
+
+std::string csv_line(const std::vector<std::string>& fields) {
+  std::string line;
+  for (const std::string& field : fields) {
+    if (&field != &fields.front()) line += ',';
+    // A byte-order mark at the start of a file would be taken for the file's, unless it is quoted.
+    if (field.find_first_of(",\"\r\n") == std::string::npos && without_byte_order_mark(field) == field) {
+      line += field;
+      continue;
+    }
+    line += '"';
+    for (const char character : field) line.append(character == '"' ? 2 : 1, character);
+    line += '"';
+  }
+  return line + '\n';
+}
+
+std::string csv_number(double value) {
+  if (!std::isfinite(value)) throw std::invalid_argument("CSV: a number is not finite");
+  return decimal(value);
+}
+
+ordered_json table_json(const Table& table) {
+  ordered_json rows = ordered_json::array();
+  for (const std::vector<Cell>& row : table.rows) {
+    ordered_json& object = rows.emplace_back(ordered_json::object());
+    for (std::size_t i = 0; i < row.size(); ++i)
+      object[table.columns[i].name] = std::visit(AsJson{}, row[i].value);
+  }
+  return rows;
+}
+
+std::string json_text(const ordered_json& json) {
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+std::string json_string(const std::string& text) {
+  return ordered_json(text).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace mssim

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "output/tables/table_csv.h"
+#include "output/tables/table.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
 

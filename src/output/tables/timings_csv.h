@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bench/results/result.h"
-#include "output/tables/csv.h"
 #include "output/tables/table.h"
 
 namespace mssim {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/csv.h"
+#include "output/tables/table.h"
 #include "output/tables/timings_csv.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/temporary_folder.h"

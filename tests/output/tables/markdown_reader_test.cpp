@@ -1,8 +1,6 @@
-#include "output/tables/markdown_reader.h"
-
 #include <gtest/gtest.h>
 
-#include "output/tables/markdown.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 namespace {

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/markdown.h"
 #include "output/tables/published.h"
-#include "output/tables/table_csv.h"
+#include "output/tables/table.h"
 #include "platform/files.h"
 #include "tests/support/result_fixture.h"
 

@@ -5,8 +5,7 @@
 
 #include <vector>
 
-#include "output/tables/markdown.h"
-#include "output/tables/table_csv.h"
+#include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {

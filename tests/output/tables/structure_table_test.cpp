@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/markdown.h"
 #include "output/tables/published_bodies.h"
-#include "output/tables/table_csv.h"
+#include "output/tables/table.h"
 
 namespace mssim {
 namespace {

@@ -9,12 +9,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "output/tables/listing.h"
-#include "output/tables/markdown.h"
-#include "output/tables/table_csv.h"
-#include "output/tables/table_json.h"
-#include "output/tables/table_text.h"
-
 namespace mssim {
 namespace {
 
@@ -51,11 +45,11 @@ TEST(Table, AsJsonIsAnObjectARow) {
 TEST(Table, AsTextIsAligned) {
   Table table = made_up_table();
   table.rows[0][0] = "plain";
-  EXPECT_EQ(table_text(table),
+  EXPECT_EQ(to_text(table),
             "name     nodes       speed  ok\n"
             "plain  4188004  20.64× (!)  yes\n"
             "`é`          -       2733×  no\n");
-  EXPECT_EQ(table_text({}), "");
+  EXPECT_EQ(to_text({}), "");
 }
 
 TEST(Table, OfOneRowIsTurnedWhereItIsTooWide) {
@@ -63,8 +57,8 @@ TEST(Table, OfOneRowIsTurnedWhereItIsTooWide) {
   table.rows.resize(1);
   table.rows[0][0] = "plain";
   table.rows[0][1] = Cell();
-  EXPECT_EQ(record_text(table, {}), table_text(table));
-  EXPECT_EQ(record_text(table, 32), table_text(table));
+  EXPECT_EQ(record_text(table, {}), to_text(table));
+  EXPECT_EQ(record_text(table, 32), to_text(table));
   EXPECT_EQ(record_text(table, 20),
             "name   plain\n"
             "speed  20.64× (!)\n"

@@ -1,26 +1,12 @@
-#include "output/tables/csv.h"
-
+#include <algorithm>
 #include <cmath>
-#include <system_error>
-#include <utility>
 
+#include "output/tables/table.h"
 #include "platform/files.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
-
-std::string quoted(const std::string& field) {
-  // A byte-order mark at the start of a file would be taken for the file's, unless it is quoted.
-  if (field.find_first_of(",\"\r\n") == std::string::npos && without_byte_order_mark(field) == field)
-    return field;
-  std::string result = "\"";
-  for (const char character : field) {
-    if (character == '"') result += '"';
-    result += character;
-  }
-  return result + '"';
-}
 
 std::string read_text(const std::filesystem::path& file) {
   try {
@@ -31,24 +17,6 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-std::string csv_line(const std::vector<std::string>& fields) {
-  std::string line;
-  for (const std::string& field : fields) {
-    if (&field != &fields.front()) line += ',';
-    line += quoted(field);
-  }
-  return line + '\n';
-}
-
-std::string csv_number(double value) {
-  if (!std::isfinite(value)) throw std::invalid_argument("CSV: a number is not finite");
-  return decimal(value);
-}
-
-std::string csv_number(const std::optional<double>& value) {
-  return value ? csv_number(*value) : std::string();
-}
 
 CsvTable::CsvTable(const std::filesystem::path& file) : CsvTable(file.string(), read_text(file)) {}
 
@@ -100,6 +68,14 @@ void CsvTable::require_columns(const std::vector<std::string_view>& columns) con
       throw CsvError(name_ + ", line 1: column " + std::to_string(column + 1) + " is " +
                      (column < header_.size() ? "\"" + printable(header_[column]) + "\"" : "missing") +
                      " instead of \"" + std::string(columns[column]) + "\"; give a file that mssim wrote");
+}
+
+std::size_t CsvTable::column(std::string_view name) const {
+  const auto found = std::ranges::find(header_, name);
+  if (found == header_.end())
+    throw CsvError(name_ + ", line 1: there is no column " + std::string(name) +
+                   "; use a program that writes it");
+  return static_cast<std::size_t>(found - header_.begin());
 }
 
 CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
