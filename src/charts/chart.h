@@ -1,14 +1,17 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace mssim {
 
+/// Charts as SVG for an HTML page: a Chart says what is to be shown, draw_svg() draws it.
+
 /// Where the values of a series come from, which its look says: measured ones have filled points, solid lines
 /// and shaded bars; published ones open points, dashed lines and bars without a shade. References are
 /// straight lines from point to point in the colour of the text, such as the roofs of a roofline. Where
-/// shapes of points repeat, lines have longer dashes (series_style.h).
+/// shapes of points repeat, lines have longer dashes.
 enum class Origin { measured, published, reference };
 
 /// A sign on single points of other series, or in place of one: larger than points, in the colour of the
@@ -50,5 +53,30 @@ struct Chart {
   /// What is to be said below it, each a sentence without full stop.
   std::vector<std::string> remarks{};
 };
+
+struct DrawnChart {
+  /// An <svg> element without width and height, so that the page says how wide it is: 480 units, in which
+  /// text has 14. Text and axes have the colour of the page's text (currentColor), so that it suits light and
+  /// dark pages. Empty where no value can be drawn.
+  std::string svg;
+  /// The chart's remarks, then what was left out of each series: sentences without full stop.
+  std::vector<std::string> notes;
+};
+
+/// The same chart gives the same bytes. No text of the chart is taken for an element, whatever it holds.
+/// Throws std::invalid_argument for an id or a number of values that breaks the rules above.
+DrawnChart draw_svg(const Chart& chart);
+
+struct Interval {
+  double low, high;
+};
+
+/// The smallest intervals that hold all values that can be drawn, those along y with their intervals.
+struct ChartRange {
+  Interval x, y;
+};
+
+/// None where no value can be drawn. Throws as draw_svg() does for the number of values.
+std::optional<ChartRange> range_of(const Chart& chart);
 
 }  // namespace mssim

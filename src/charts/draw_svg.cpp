@@ -1,31 +1,258 @@
-#include "charts/draw_svg.h"
-
 #include <algorithm>
-#include <csignal>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <array>
+#include <cmath>
 #include <stdexcept>
 
-#include "charts/chart_layout.h"
-#include "charts/chart_text.h"
-#include "charts/gnuplot_script.h"
-#include "charts/page_svg.h"
-#include "charts/plotted_values.h"
-#include "platform/files.h"
-#include "platform/process.h"
+#include "charts/layout.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
 
-namespace fs = std::filesystem;
+/// Shapes of points, from the point on: circle, square, triangles and diamond, pentagon.
+constexpr std::array<std::string_view, 6> point_shapes{"m-4.7,0a4.7,4.7 0 1,0 9.4,0a4.7,4.7 0 1,0 -9.4,0z",
+                                                       "m-4.4,-4.4h8.8v8.8h-8.8z",
+                                                       "m0,-6.3l6.3,9.5h-12.6z",
+                                                       "m0,-6.3l6.3,6.3l-6.3,6.3l-6.3,-6.3z",
+                                                       "m0,6.3l6.3,-9.5h-12.6z",
+                                                       "m0,-5.3l5,3.7l-1.9,5.9h-6.2l-1.9,-5.9z"};
 
-/// A chart takes 0.02 s; what takes this long never ends.
-constexpr unsigned most_cpu_seconds = 20, most_elapsed_seconds = 120;
-/// Charts have some ten kilobytes, and gnuplot draws them in less than 0.3 GB.
-constexpr std::uint64_t most_svg_bytes = std::uint64_t{64} << 20, most_memory_bytes = std::uint64_t{2} << 30;
+/// Those of PointMark.
+constexpr std::array<std::string_view, 4> mark_shapes{
+    "", "m-9.4,0a9.4,9.4 0 1,0 18.8,0a9.4,9.4 0 1,0 -18.8,0z", "m-9.4,-9.4h18.8v18.8h-18.8z",
+    "m-5.8,-5.8l11.6,11.6m0,-11.6l-11.6,11.6"};
+
+/// Patterns of bars that differ without colours.
+constexpr std::array<std::string_view, 6> bar_patterns{"",
+                                                       "M-1,1L1,-1M0,6L6,0M5,7L7,5",
+                                                       "M0,1.5H6M0,4.5H6",
+                                                       "M-1,5L1,7M0,0L6,6M5,-1L7,1",
+                                                       "M1.5,0V6M4.5,0V6",
+                                                       "M0,0L6,6M0,6L6,0"};
+
+/// Dashes: the second where shapes of points repeat, so that twice as many lines differ without colours.
+constexpr std::array<std::string_view, 2> measured_dashes{"", "9,4"}, published_dashes{"4,3", "4,3,1,3"};
+constexpr std::array<std::string_view, 4> reference_dashes{"", "2,3", "10,3,2,3", "14,4"};
+
+/// A coordinate, to a hundredth of a unit.
+std::string number(double value) { return decimal(std::round(100 * value) / 100 + 0.0); }
+
+/// The text in an element or a quoted attribute.
+std::string xml_text(std::string_view shown) {
+  std::string text;
+  for (const char character : shown) {
+    const std::string_view entity = character == '&'   ? "&amp;"
+                                    : character == '<' ? "&lt;"
+                                    : character == '>' ? "&gt;"
+                                    : character == '"' ? "&quot;"
+                                                       : "";
+    entity.empty() ? text.append(1, character) : text.append(entity);
+  }
+  return text;
+}
+
+/// " NAME="VALUE"", or nothing for an empty value.
+std::string attribute(std::string_view name, std::string_view value) {
+  return value.empty() ? "" : ' ' + std::string(name) + "=\"" + std::string(value) + '"';
+}
+
+std::string path(const std::string& d, const std::string& attributes) {
+  return d.empty() ? "" : "<path d=\"" + d + '"' + attributes + "/>\n";
+}
+
+class Drawing {
+ public:
+  Drawing(const Chart& chart, const PlottedValues& values, const ChartLayout& layout)
+      : chart_(chart), values_(values), layout_(layout), looks_(looks_of(chart.series, chart.families)) {}
+
+  std::string made(const std::vector<std::string>& notes) {
+    head(notes);
+    grid_and_axes();
+    texts();
+    std::size_t row = 0;
+    for (std::size_t s = 0; s < chart_.series.size(); ++s)
+      if (!values_.series[s].empty()) series(s, row++);
+    return std::move(svg_) + "</svg>";
+  }
+
+ private:
+  /// The element, and its name and description for those who cannot see it.
+  void head(const std::vector<std::string>& notes) {
+    constexpr std::size_t most = 4000;
+    std::vector<std::string> names;
+    for (const Series& one : chart_.series) names.push_back(one.name);
+    std::string description = "Along: " + words_of(chart_.x) + ". Upwards: " + words_of(chart_.y) +
+                              ". Series: " + join(names, ", ") + '.';
+    for (const std::string& note : notes) description += ' ' + note + '.';
+    const std::string& id = chart_.id;
+    svg_ = "<svg id=\"" + id + "\" class=\"chart\" viewBox=\"0 0 " + number(chart_width) + ' ' +
+           number(layout_.height) +
+           "\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-labelledby=\"" + id +
+           "-title\" aria-describedby=\"" + id +
+           "-description\" font-family=\"system-ui, sans-serif\" font-size=\"" + number(font_size) +
+           "\" fill=\"currentColor\"><title id=\"" + id + "-title\">" +
+           xml_text(shown_text(chart_.title, most)) + "</title><desc id=\"" + id + "-description\">" +
+           xml_text(shown_text(description, most)) + "</desc>\n";
+  }
+
+  static std::string words_of(const Axis& axis) {
+    return axis.label + (axis.logarithmic ? " (logarithmic)" : "");
+  }
+
+  double across(double x) const {
+    return layout_.left + layout_.x.fraction(x) * (layout_.right - layout_.left);
+  }
+  double down(double y) const {
+    return layout_.bottom - layout_.y.fraction(y) * (layout_.bottom - layout_.top);
+  }
+
+  static std::string at(double x, double y) { return number(x) + ',' + number(y); }
+
+  /// `middle` is half the height of its capitals above where it stands.
+  void text(const std::string& shown, double x, double middle, const std::string& attributes = "") {
+    svg_ += "<text x=\"" + number(x) + "\" y=\"" + number(middle + 0.35 * font_size) + '"' + attributes +
+            '>' + xml_text(shown) + "</text>\n";
+  }
+
+  void grid_and_axes() {
+    const double left = layout_.left, right = layout_.right, top = layout_.top, bottom = layout_.bottom;
+    constexpr double tick_length = 5;
+    std::string grid, axes = 'M' + at(left, top) + 'V' + number(bottom) + 'H' + number(right);
+    for (const Tick& tick : layout_.y.ticks) {
+      grid += 'M' + at(left, down(tick.value)) + 'H' + number(right);
+      axes += 'M' + at(left, down(tick.value)) + 'h' + number(tick_length);
+    }
+    for (const Tick& tick : layout_.x.ticks) {
+      grid += 'M' + at(across(tick.value), bottom) + 'V' + number(top);
+      axes += 'M' + at(across(tick.value), bottom) + 'v' + number(-tick_length);
+    }
+    svg_ += path(grid, R"( fill="none" stroke="currentColor" stroke-opacity="0.2" stroke-width="0.7")");
+    svg_ += path(axes, R"( fill="none" stroke="currentColor")");
+  }
+
+  void texts() {
+    const std::string middle = R"( text-anchor="middle")", end = R"( text-anchor="end")";
+    double y = chart_edge + line_height / 2;
+    for (const std::string& line : layout_.title) {
+      text(line, chart_edge, y, R"( font-weight="bold")");
+      y += line_height;
+    }
+    text(layout_.y_label, chart_edge, layout_.y_label_middle);
+    for (const Tick& tick : layout_.y.ticks) text(tick.label, layout_.left - 8, down(tick.value), end);
+    for (const Tick& tick : layout_.x.ticks)
+      text(tick.label, across(tick.value), layout_.tick_labels, middle);
+    for (std::size_t group = 0; group < layout_.groups.size(); ++group) {
+      const double x = across(static_cast<double>(group));
+      text(layout_.groups[group], x, layout_.tick_labels,
+           layout_.groups_tilted
+               ? end + " transform=\"rotate(-35 " + number(x) + ' ' + number(layout_.tick_labels) + ")\""
+               : middle);
+    }
+    text(layout_.x_label, (layout_.left + layout_.right) / 2, layout_.x_label_middle, middle);
+  }
+
+  /// A series and its row of the legend, which fills its columns one after the other.
+  void series(std::size_t s, std::size_t row) {
+    const double column_width = (chart_width - 2 * chart_edge) / static_cast<double>(layout_.legend_columns);
+    const double x = chart_edge + column_width * static_cast<double>(row / layout_.legend_rows),
+                 y = layout_.legend + legend_row * (static_cast<double>(row % layout_.legend_rows) + 0.5);
+    text(layout_.names[s], x + legend_sample - 6, y);
+    if (chart_.form == ChartForm::bars && chart_.series[s].origin != Origin::reference)
+      bars(s, x + 9, y);
+    else
+      line_and_points(s, x + 9, y);
+  }
+
+  static constexpr double sample_width = 36;
+
+  void line_and_points(std::size_t s, double sample_x, double sample_y) {
+    const Series& one = chart_.series[s];
+    const bool reference = one.origin == Origin::reference, published = one.origin == Origin::published;
+    const std::size_t look = looks_[s];
+    const std::string colour(reference ? "currentColor" : series_colours[look % series_colours.size()]);
+    const bool marks = reference && one.mark != PointMark::none;
+    const std::string_view shape = marks       ? mark_shapes[static_cast<std::size_t>(one.mark)]
+                                   : reference ? std::string_view()
+                                               : point_shapes[look % point_shapes.size()];
+    std::string line = 'M' + at(sample_x, sample_y) + 'h' + number(sample_width), points;
+    const auto add_point = [&](double x, double y) {
+      if (!shape.empty()) points += 'M' + at(x, y) + std::string(shape);
+    };
+    add_point(sample_x + sample_width / 2, sample_y);
+    for (const PlottedPoint& point : values_.series[s]) {
+      const double x = x_of(s, point.x), y = down(point.y);
+      line += (point.after_gap || &point == &values_.series[s].front() ? 'M' : 'L') + at(x, y);
+      add_point(x, y);
+    }
+    const std::size_t repeat = look / point_shapes.size();
+    const std::string_view dashes = reference   ? reference_dashes[look % reference_dashes.size()]
+                                    : published ? published_dashes[repeat % published_dashes.size()]
+                                                : measured_dashes[repeat % measured_dashes.size()];
+    svg_ +=
+        "<g fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"" + (reference ? "1.5" : "2") + "\">\n";
+    if (reference ? !marks : chart_.form == ChartForm::lines)
+      svg_ += path(line, attribute("stroke-dasharray", dashes));
+    svg_ += path(intervals(s), attribute("stroke-width", "1.5"));
+    svg_ += path(points, reference || published ? "" : " fill=\"" + colour + "\" stroke=\"none\"");
+    svg_ += "</g>\n";
+  }
+
+  /// Left and right end of the bars of a series in a group.
+  Interval bar(std::size_t s, double group) const {
+    const double width = 0.84 / static_cast<double>(chart_.series.size());
+    const double left = group - 0.42 + width * static_cast<double>(s);
+    return {left, left + width * 0.92};
+  }
+
+  double x_of(std::size_t s, double x) const {
+    if (chart_.form != ChartForm::bars) return across(x);
+    const Interval ends = bar(s, x);
+    return across((ends.low + ends.high) / 2);
+  }
+
+  void bars(std::size_t s, double sample_x, double sample_y) {
+    const bool published = chart_.series[s].origin == Origin::published;
+    const std::string colour(series_colours[looks_[s] % series_colours.size()]);
+    const std::string_view lines = bar_patterns[looks_[s] % bar_patterns.size()];
+    const std::string fill = chart_.id + "-fill-" + std::to_string(s);
+    svg_ += "<pattern id=\"" + fill + R"(" width="6" height="6" patternUnits="userSpaceOnUse">)";
+    if (!published)
+      svg_ += R"(<rect width="6" height="6" fill=")" + colour + '"' +
+              attribute("fill-opacity", lines.empty() ? "" : "0.3") + "/>";
+    svg_ += path(std::string(lines), R"( fill="none" stroke=")" + colour + "\" stroke-width=\"" +
+                                         (published ? "0.8" : "1.5") + '"') +
+            "</pattern>\n";
+    const auto rectangle = [](double left, double right, double top, double bottom) {
+      return 'M' + at(left, top) + 'H' + number(right) + 'V' + number(bottom) + 'H' + number(left) + 'z';
+    };
+    std::string d = rectangle(sample_x, sample_x + sample_width, sample_y - 5, sample_y + 5);
+    for (const PlottedPoint& point : values_.series[s]) {
+      const Interval ends = bar(s, point.x);
+      d += rectangle(across(ends.low), across(ends.high), down(point.y),
+                     down(chart_.y.logarithmic ? layout_.y.low : 0));
+    }
+    svg_ += path(d, " fill=\"url(#" + fill + ")\" stroke=\"" + colour + "\" stroke-width=\"1.5\"");
+    svg_ += path(intervals(s), R"( fill="none" stroke="currentColor" stroke-width="1.5")");
+  }
+
+  std::string intervals(std::size_t s) const {
+    constexpr double half_cap = 3.7;
+    std::string d;
+    for (const PlottedPoint& point : values_.series[s]) {
+      if (!point.interval) continue;
+      const double x = x_of(s, point.x), low = down(point.interval->low), high = down(point.interval->high);
+      d += 'M' + at(x, low) + 'V' + number(high);
+      for (const double end : {low, high}) d += 'M' + at(x - half_cap, end) + 'h' + number(2 * half_cap);
+    }
+    return d;
+  }
+
+  const Chart& chart_;
+  const PlottedValues& values_;
+  const ChartLayout& layout_;
+  std::vector<std::size_t> looks_;
+  std::string svg_;
+};
 
 void require_id(const std::string& id) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -35,76 +262,15 @@ void require_id(const std::string& id) {
                                 "\" of a chart is not letters, digits and hyphens");
 }
 
-std::string axis_words(const Axis& axis) { return axis.label + (axis.logarithmic ? " (logarithmic)" : ""); }
-
-ChartWords words_of(const Chart& chart, const std::vector<std::string>& notes) {
-  constexpr std::size_t most = 4000;
-  std::vector<std::string> names;
-  for (const Series& series : chart.series) names.push_back(series.name);
-  std::string description = "Along: " + axis_words(chart.x) + ". Upwards: " + axis_words(chart.y) +
-                            ". Series: " + join(names, ", ") + '.';
-  for (const std::string& note : notes) description += ' ' + note + '.';
-  return {chart.id, shown_text(chart.title, most), shown_text(description, most)};
-}
-
-std::string how_it_ended(const ChildResult& ended) {
-  if (ended.out_of_time)
-    return "was stopped after " + std::to_string(most_cpu_seconds) + " s of processor time or " +
-           std::to_string(most_elapsed_seconds) + " s in all";
-  if (ended.out_of_memory || ended.signal == SIGKILL) return "was stopped for lack of memory";
-  if (ended.signal != 0) return "ended with signal " + std::to_string(ended.signal);
-  if (ended.exit_code != 0) return "ended with exit code " + std::to_string(ended.exit_code);
-  return "ended without a complete chart";
-}
-
-/// The last line, which says what is wrong; those before it repeat the script.
-std::string last_words(const std::string& output) {
-  std::istringstream lines(output);
-  std::string last;
-  for (std::string line; std::getline(lines, line);)
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  return last.empty() ? last : " and wrote \"" + printable(last, 200) + '"';
-}
-
 }  // namespace
 
 DrawnChart draw_svg(const Chart& chart) {
   require_id(chart.id);
   const PlottedValues values = plotted_values(chart);
-  DrawnChart drawn{{}, {}, chart.remarks};
+  DrawnChart drawn{{}, chart.remarks};
   drawn.notes.insert(drawn.notes.end(), values.notes.begin(), values.notes.end());
-  const auto without = [&](std::string problem) {
-    drawn.problem = std::move(problem);
-    return drawn;
-  };
-  if (values.empty()) return without("there is no value to draw");
-  const auto gnuplot = find_program("gnuplot");
-  if (!gnuplot)
-    return without(
-        "the program gnuplot, which draws charts, is not in PATH; install Debian's package gnuplot-nox");
-
-  const TemporaryFolder folder;
-  const fs::path script = folder.path() / "chart.gp", output = folder.path() / "chart.svg";
-  std::ofstream file(script, std::ios::binary);
-  file << gnuplot_script(chart, values, chart_layout(chart, values), output.filename().string());
-  file.close();
-  if (!file)
-    return without("cannot write " + script.string() + "; make room in the folder of temporary files");
-  // Without the user's own settings, and with a point in numbers.
-  const ChildResult ended = run({*gnuplot,
-                                 {"--default-settings", script.filename().string()},
-                                 {"LC_ALL=C"},
-                                 folder.path(),
-                                 most_cpu_seconds,
-                                 most_elapsed_seconds,
-                                 most_memory_bytes,
-                                 most_svg_bytes});
-  const bool well = ended.signal == 0 && ended.exit_code == 0 && fs::is_regular_file(output) &&
-                    fs::file_size(output) <= most_svg_bytes;
-  if (const auto svg = well ? page_svg(read_file(output), words_of(chart, drawn.notes)) : std::nullopt)
-    drawn.svg = *svg;
-  else
-    drawn.problem = gnuplot->string() + ' ' + how_it_ended(ended) + last_words(ended.output);
+  if (const auto layout = chart_layout(chart, values))
+    drawn.svg = Drawing(chart, values, *layout).made(drawn.notes);
   return drawn;
 }
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <exception>
 
-#include "charts/draw_svg.h"
+#include "charts/chart.h"
 #include "report/guide_charts.h"
 #include "report/html.h"
 #include "report/report_charts.h"
@@ -15,8 +15,8 @@ namespace {
 std::string figure_of(const Chart& chart) {
   const DrawnChart drawn = draw_svg(chart);
   if (drawn.svg.empty())
-    return "<p class=\"problems\">" + html_text(chart.title + ": no chart, because " + drawn.problem) +
-           ".</p>\n";
+    return "<p class=\"problems\">" + html_text(chart.title) +
+           ": no chart, because there is no value to draw.</p>\n";
   // The chart has its title in it.
   const std::string notes =
       drawn.notes.empty() ? "" : "<figcaption>" + html_text(join(drawn.notes, ". ")) + ".</figcaption>";

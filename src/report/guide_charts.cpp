@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "charts/plotted_values.h"
 #include "integrators/all_integrators.h"
 #include "report/report_charts.h"
 #include "text/text.h"
@@ -122,9 +121,9 @@ void add_front(Chart& work, const std::vector<GuideLine>& lines) {
 /// Lines error ~ step^p to hold others against, for the orders p of the chart's integrators: from one point
 /// low on the right, where long steps seldom have small errors, up a part of the way.
 void add_orders(Chart& steps) {
-  const PlottedValues values = plotted_values(steps);
-  if (values.empty()) return;
-  const Interval x = values.x_range(), y = values.y_range();
+  const auto range = range_of(steps);
+  if (!range) return;
+  const auto [x, y] = *range;
   const double decades_across = std::log10(x.high) - std::log10(x.low),
                decades_up = std::log10(y.high) - std::log10(y.low);
   if (!(decades_across > 0 && decades_up > 0)) return;

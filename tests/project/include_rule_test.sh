@@ -104,6 +104,7 @@ shown='
 text                  text error
 statistics            statistics
 cluster               step_model
+charts                chart
 render                draw srgb
 hdf5                  hdf5 hdf5_table
 laws                  host_laws laws-inl

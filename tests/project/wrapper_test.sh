@@ -118,10 +118,10 @@ told "cmake --preset release -S '$place/moved' -B ELSEWHERE" || fail 'the way to
 [[ $(wc -l <"$place/err") == 1 ]] || fail 'one message'
 
 # Another user, who may not install.
-printf '%s\n' libhwy-dev gnuplot-nox >"$place/absent"
+printf '%s\n' libhwy-dev tetgen >"$place/absent"
 tool sudo <<<'exit 1'
 runs 3
 told 'this user may not install packages' || fail 'who may not install is told so'
-told 'apt-get install -y --no-install-recommends gnuplot-nox libhwy-dev' || fail 'what to ask for is told'
-told 'runs without gnuplot-nox: cmake' || fail 'what mssim does without is told'
+told 'apt-get install -y --no-install-recommends libhwy-dev tetgen' || fail 'what to ask for is told'
+told 'runs without tetgen: cmake' || fail 'what mssim does without is told'
 ! noted apt-get || fail 'nothing is tried that is not allowed'
