@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "commands/shared/command.h"
+#include "commands/command.h"
 #include "platform/machine.h"
 
 int main(int argc, char** argv) {

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
+#include "application/prepared_scene.h"
 #include "backends/backends.h"
-#include "commands/shared/prepared_scene.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "statistics/statistics.h"

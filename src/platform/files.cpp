@@ -105,15 +105,13 @@ const char* remedy(int error_number) {
 
 }  // namespace
 
-std::string write_failure(const std::filesystem::path& file, const std::string& action, int error_number,
+std::string write_failure(const fs::path& file, const std::string& action, int error_number,
                           const std::string& reason) {
   const std::string why = !reason.empty() ? reason : std::generic_category().message(error_number);
   return "cannot write " + file.string() + ": " + action + " failed: " + why + "; " + remedy(error_number);
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& file, const std::string& action) {
   throw WriteError(write_failure(file, action, errno));
@@ -273,20 +271,20 @@ int reserve_space(int descriptor, std::uint64_t bytes) {
   return errno;
 }
 
-void release_reserved_space(const std::filesystem::path& file) {
+void release_reserved_space(const fs::path& file) {
   std::error_code ignored;
-  const auto size = std::filesystem::file_size(file, ignored);
-  if (!ignored) std::filesystem::resize_file(file, size, ignored);
+  const auto size = fs::file_size(file, ignored);
+  if (!ignored) fs::resize_file(file, size, ignored);
 }
 
-const std::filesystem::path& make_folder(const std::filesystem::path& folder) {
+const fs::path& make_folder(const fs::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  fs::create_directories(folder, error);
   if (error) throw WriteError(write_failure(folder, "creating the folder", error.value()));
   return folder;
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
+FolderLock::FolderLock(const fs::path& folder)
     : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (!folder_.is_open()) throw WriteError(write_failure(folder, "opening the folder", errno));
   if (!folder_.lock())
@@ -302,7 +300,7 @@ std::optional<TemporaryFolder>& folder_of_process() {
 }
 
 /// The system's folder for temporary files.
-std::filesystem::path system_folder() {
+fs::path system_folder() {
   const char* chosen = std::getenv("TMPDIR");
   return chosen && *chosen ? chosen : "/tmp";
 }
@@ -311,9 +309,9 @@ std::filesystem::path system_folder() {
 
 TemporaryFolder::TemporaryFolder() : TemporaryFolder(system_folder()) {}
 
-TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
+TemporaryFolder::TemporaryFolder(const fs::path& parent) {
   std::error_code none;  // where this process's folder is gone, the name stays as it is, and nothing is made
-  const std::filesystem::path whole = std::filesystem::absolute(parent, none);
+  const fs::path whole = fs::absolute(parent, none);
   std::string name = ((none ? parent : whole) / "mssim-XXXXXX").string();
   if (!::mkdtemp(name.data()))
     throw std::runtime_error("cannot make a temporary folder in " + parent.string() + " (" +
@@ -323,10 +321,10 @@ TemporaryFolder::TemporaryFolder(const std::filesystem::path& parent) {
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  fs::remove_all(path_, ignored);
 }
 
-const std::filesystem::path& temporary_folder_of_process() {
+const fs::path& temporary_folder_of_process() {
   auto& folder = folder_of_process();
   if (!folder) folder.emplace();
   return folder->path();
@@ -336,9 +334,9 @@ void remove_temporary_folder_of_process() { folder_of_process().reset(); }
 
 namespace {
 
-std::filesystem::path own_program() {
+fs::path own_program() {
   std::error_code error;
-  std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error)
     throw std::runtime_error("mssim cannot find its own program file through /proc/self/exe (" +
                              error.message() + "), beside which its data folder lies");
@@ -346,35 +344,31 @@ std::filesystem::path own_program() {
 }
 
 /// What `bin`, which has mssim, and `libexec/mssim`, which has its helpers, lie in.
-std::filesystem::path own_prefix() {
-  const std::filesystem::path folder = own_program().parent_path();
+fs::path own_prefix() {
+  const fs::path folder = own_program().parent_path();
   return folder.parent_path().filename() == "libexec" ? folder.parent_path().parent_path()
                                                       : folder.parent_path();
 }
 
 }  // namespace
 
-std::filesystem::path data_folder() {
+fs::path data_folder() {
   std::error_code error;
-  std::filesystem::path folder = own_prefix() / "share" / "mssim";
-  if (!std::filesystem::is_directory(folder, error))
+  fs::path folder = own_prefix() / "share" / "mssim";
+  if (!fs::is_directory(folder, error))
     throw std::runtime_error(
         "the data folder " + folder.string() + " of " + own_program().string() +
         " is missing: run mssim from its build tree or from where `cmake --install` put it");
   return folder;
 }
 
-std::filesystem::path helper_program(std::string_view name) {
-  return own_prefix() / "libexec" / "mssim" / name;
-}
+fs::path helper_program(std::string_view name) { return own_prefix() / "libexec" / "mssim" / name; }
 
-std::filesystem::path mssim_program() {
+fs::path mssim_program() {
   std::error_code error;
-  const std::filesystem::path emulated = helper_program("mssim");
-  return std::filesystem::exists(emulated, error) ? emulated : own_prefix() / "bin" / "mssim";
+  const fs::path emulated = helper_program("mssim");
+  return fs::exists(emulated, error) ? emulated : own_prefix() / "bin" / "mssim";
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 

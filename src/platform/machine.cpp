@@ -330,7 +330,8 @@ void start_with_short_waits(char** argv) {
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error || setenv(spin_variable, short_spins.data(), 1) != 0) return;
-  // The program started anew would inherit the one CPU that OpenMP has bound this thread to, and find no other.
+  // The program started anew would inherit the one CPU that OpenMP has bound this thread to, and find no
+  // other.
   const OnAllProcessCpus on_all_cpus;
   execv(program.c_str(), argv);
   unsetenv(spin_variable);

@@ -77,22 +77,11 @@ output/exports        text platform geometry model hdf5 output/traces
 output/folders        text platform bench/machine bench/results output/tables garment/output
 report                text platform statistics integrators charts bench/machine bench/results bench/roofline output/tables garment/output output/folders
 
+application           text platform integrators garment/contact model mesh garment/body scene/spec scene backends/interface backends/devices backends/process backends/described garment/stepping backends garment/fitting bench/machine bench/results bench/verification bench guide output/tables output/guide output/traces output/pictures output/folders
+application/bench     text platform integrators scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/windows bench/job bench output/tables garment/output output/traces output/folders application
 commands/arguments    text
-commands/shared       text platform geometry integrators model mesh garment/body garment/contact garment/fitting scene/spec scene backends/interface backends/devices backends/process backends/described backends bench/machine bench/verification output/tables output/traces output/pictures output/folders commands/arguments
-commands/run          text platform model scene garment/stepping garment/fitting backends/interface backends bench bench/verification output/tables output/traces output/pictures commands/arguments commands/shared
-commands/render       text platform render picture garment/spec scene/spec scene output/traces output/pictures commands/arguments commands/shared commands/run
-commands/export       text platform output/exports output/traces commands/arguments commands/shared
-commands/guide        text platform integrators scene/spec scene backends/interface backends bench/machine guide output/tables output/guide output/folders commands/arguments commands/shared
-commands/bench        text platform integrators mesh scene/spec scene backends/interface backends backends/accumulation bench/machine bench/results bench/verification bench/windows bench/job bench output/tables garment/output output/traces output/folders commands/arguments commands/shared commands/guide
-commands/list         text platform geometry integrators scene/fields scene backends/devices backends backends/accumulation output/tables commands/arguments commands/shared commands/bench
-commands/compare      text platform geometry backends/interface bench/results bench output/tables commands/arguments commands/shared commands/bench
-commands/check        text platform integrators scene garment/stepping backends garment/fitting bench output/tables commands/arguments commands/shared commands/run commands/bench
-commands/measure      text platform geometry mesh garment/body garment/pattern garment/spec scene/fields garment/scene scene output/tables commands/arguments commands/shared
-commands/new_backend  text platform backends commands/arguments commands/shared
-commands/report       text platform picture render scene/spec scene bench/machine output/tables output/traces output/pictures report commands/arguments commands/shared commands/run commands/bench
-commands/help         text commands/arguments commands/shared
-commands              text platform geometry scene/fields scene backends/interface backends/devices backends bench/machine output/tables output/traces output/folders commands/arguments commands/shared commands/run commands/render commands/export commands/guide commands/bench commands/list commands/compare commands/check commands/measure commands/new_backend commands/report commands/help
-main.cpp              platform commands/shared
+commands              text picture platform geometry integrators mesh garment/body garment/pattern scene/fields garment/spec garment/scene scene backends/devices garment/stepping backends backends/accumulation garment/fitting bench/machine bench/results bench output/tables output/traces output/pictures output/exports report application application/bench commands/arguments
+main.cpp              platform commands
 ask_opencl.cpp        backends/devices
 supervise.cpp         platform
 mssim_mpi.cpp         platform ranks
@@ -145,18 +134,10 @@ output/pictures       painter picture_folder
 output/traces         trace_content h5md_trace trace_reader energy_curve xdmf
 output/exports        exports vtkhdf_export
 output/folders        result_folder provenance_file
+application           prepared_scene choices console outputs run guide_run
+application/bench     suites bench_plan bench_results bench_run ab_comparison
 commands/arguments    arguments program_parser
-commands/run          run_command run_scene
-commands/render       render_command
-commands/export       export_command
-commands/guide        guide_command guide_run
-commands/list         list_command
-commands/compare      compare_command
-commands/check        check_command
-commands/measure      measure_command
-commands/new_backend  new_backend_command
-commands/report       report_command
-commands/help         help_command
+commands              command
 '
 
 # offences ROOT: prints FILE:LINE: what is wrong with each include under ROOT/src and ROOT/kernels that breaks the rule or
@@ -215,21 +196,21 @@ offences() {
 # The check finds what it is there for.
 made_up=$(mktemp -d)
 trap 'rm -rf "$made_up"' EXIT
-mkdir -p "$made_up"/src/{model,output/tables,commands/run,gadgets,bench/machine} "$made_up/kernels"
+mkdir -p "$made_up"/src/{model,output/tables,application,gadgets,bench/machine} "$made_up/kernels"
 printf '#include <vector>\n#include "model/b.h"\n  #  include "scene/spec/scene_spec.h"\n#include <backends/backends.h>\n' \
   >"$made_up/src/model/a.h"
 printf '#include "bench/results/result.h"\n#include "bench/job/plan.h"\n#include "../bench/plan.h"\n' \
   >"$made_up/src/output/tables/a.cpp"
 printf '#include "mssim/version.h"\n#include <hwy/highway.h>\n' >"$made_up/src/bench/machine/a.cpp"
-printf '#include "scene/scene_file.h"\n#include "commands/bench/bench_plan.h"\n' >"$made_up/src/commands/run/a.cpp"
+printf '#include "scene/scene_file.h"\n#include "commands/command.h"\n' >"$made_up/src/application/a.cpp"
 printf '#include <vector>\n' >"$made_up/src/gadgets/a.h"
 mkdir -p "$made_up/src/bench/verification"
 printf '#include "text/text.h"\n#include "text/words.h"\n' >"$made_up/src/bench/verification/a.h"
 printf '#include "model/system.h"\n' >"$made_up/kernels/a.h"
-printf '#include "commands/shared/command.h"\n' >"$made_up/src/main.cpp"
+printf '#include "commands/command.h"\n' >"$made_up/src/main.cpp"
 expected='kernels/a.h:1: kernels may not include model/system.h
+src/application/a.cpp:2: application may not include commands/command.h
 src/bench/verification/a.h:2: text/words.h is private to its room, which shows text.h, error.h
-src/commands/run/a.cpp:2: commands/run may not include commands/bench/bench_plan.h
 src/gadgets/a.h:1: gadgets has no row in the include rule
 src/model/a.h:3: model may not include scene/spec/scene_spec.h
 src/model/a.h:4: model may not include backends/backends.h

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "application/prepared_scene.h"
 #include "backends/backends.h"
-#include "commands/shared/fit_body.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"

@@ -1,13 +1,140 @@
 #include "commands/arguments/program_parser.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <optional>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
-#include "commands/arguments/help_entry.h"
-#include "commands/arguments/usage_error.h"
+#include "text/text.h"
 
 namespace mssim {
+
 namespace {
+
+/// An entry of a help page, in lines that fit a terminal: `name` on the left, the text on the right in as
+/// many lines as it takes.
+std::string help_entry(const std::string& name, const std::string& text) {
+  constexpr std::size_t left_column = 26, page_width = 80;
+  std::string page = "  " + name, line;
+  // A name that fills its column has a line of its own.
+  if (page.size() + 2 > left_column) page += '\n';
+  const auto put = [&] {
+    const std::size_t start = page.rfind('\n') + 1;
+    page.append(left_column - (page.size() - start), ' ').append(line).append("\n");
+    line.clear();
+  };
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && left_column + line.size() + 1 + word.size() > page_width) put();
+    line.append(line.empty() ? "" : " ").append(word);
+  }
+  put();
+  return page;
+}
+
+/// The command that was being parsed: the subcommand if there is one.
+const CLI::App& command_of(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  return parsed.empty() ? app : *parsed.back();
+}
+
+/// As a user types it.
+std::string typed_name(const CLI::App& command) {
+  return command.get_parent() ? "mssim " + command.get_name() : "mssim";
+}
+
+/// --NAME of what a user typed as an option: without a value behind '=', and with two dashes.
+std::string long_form(std::string_view typed) {
+  typed = typed.substr(0, typed.find('='));
+  typed.remove_prefix(std::min(typed.find_first_not_of('-'), typed.size()));
+  return "--" + std::string(typed);
+}
+
+std::string unknown_option(const std::string& typed, const CLI::App& command) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  const std::string name = long_form(typed);
+  std::string sentence =
+      typed_name(command) + " has no option \"" + printable(typed.substr(0, typed.find('='))) + '"';
+  if (command.get_parent() && !command.get_option_no_throw(name))
+    for (const CLI::App* other : command.get_parent()->get_subcommands({}))
+      if (other->get_option_no_throw(name)) return sentence + ", which is one of " + typed_name(*other);
+  return sentence + did_you_mean(name, std::vector<std::string_view>(known.begin(), known.end()));
+}
+
+/// What is left over: an option that there is not, or a word too many.
+std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord& option_of) {
+  std::vector<std::string> rest = command.remaining();
+  std::erase(rest, "--");  // which only says that no option follows
+  const auto option =
+      std::ranges::find_if(rest, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+  if (option != rest.end()) return unknown_option(*option, command);
+  if (rest.empty()) return std::nullopt;
+  const std::string word = printable(rest.front()), forgotten = option_of(rest.front());
+  return "unexpected argument \"" + word + "\" of " + typed_name(command) +
+         (command.get_option_no_throw(forgotten) ? " (did you mean " + forgotten + ' ' + word + "?)"
+                                                 : ": an option begins with --");
+}
+
+/// What a parser's sentence begins with: the name of the option that it is about.
+std::string subject_of(std::string_view message) {
+  return std::string(message.substr(0, message.find_first_of(": ")));
+}
+
+std::string small_first(std::string text) {
+  if (!text.empty()) text.front() = to_lower(text.substr(0, 1)).front();
+  return text;
+}
+
+/// The option of that name and what it wants.
+std::string missing(const std::string& name, const CLI::App& command) {
+  const CLI::Option* option = command.get_option_no_throw(name);
+  if (option == nullptr) return name + " is missing";
+  if (option->get_positional()) return name + " is missing: give " + small_first(option->get_description());
+  return name + ' ' + option->get_type_name() + " is missing";
+}
+
+std::string wrong_count(const std::string& name, const CLI::App& command) {
+  const CLI::Option* option = command.get_option_no_throw(name);
+  if (option == nullptr || option->get_expected_max() == 0) return name + " takes no value: leave it out";
+  if (option->count() > 1)
+    return name + " is given " + std::to_string(option->count()) + " times: give it once";
+  return name + " needs a value: give " + name + ' ' + option->get_type_name();
+}
+
+/// The first word of the message that looks like an option.
+std::string flag_in(const std::string& message) {
+  const std::size_t start = std::min(message.find("--"), message.size());
+  return message.substr(start, message.find_first_of(": ", start) - start);
+}
+
+std::string problem(const CLI::ParseError& error, const CLI::App& command) {
+  std::string message = error.what();
+  const std::string subject = subject_of(message);
+  const std::string other = message.substr(message.rfind(' ') + 1);
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing(subject, command);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return wrong_count(subject, command);
+  // What takes a value has a check of its own (ValueRule), so this is a flag.
+  if (dynamic_cast<const CLI::ConversionError*>(&error)) return wrong_count(flag_in(message), command);
+  if (dynamic_cast<const CLI::RequiresError*>(&error))
+    return subject + " needs " + other + ": add it, or leave out " + subject;
+  if (dynamic_cast<const CLI::ExcludesError*>(&error))
+    return subject + " and " + other + " exclude each other: leave out one of them";
+  return message;  // of the checks in ValueRule
+}
+
+/// What is wrong with a command line that its parser has refused: one sentence with the option, the value and
+/// the remedy, ending with where help is. `app` is the program, which has parsed the command line as far as
+/// it could; `option_of` is asked about a word that no option stands before.
+std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app, const OptionOfWord& option_of) {
+  const CLI::App& command = command_of(app);
+  // A misspelt option also leaves the right one missing; it is the one to be told.
+  const std::optional<std::string> surplus = leftover(command, option_of);
+  return surplus.value_or(problem(error, command)) + "; see " + typed_name(command) + " --help";
+}
 
 /// How --help looks: usage, commands or options with a word for their value.
 class HelpPage final : public CLI::Formatter {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "commands/shared/prepared_scene.h"
+#include "application/prepared_scene.h"
 #include "garment/scene/garment_body.h"
 #include "garment/scene/garment_cut.h"
 #include "scene/scene_kinds.h"

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "commands/shared/command.h"
+#include "commands/command.h"
 #include "scene/fields/fields.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/contact_fixture.h"

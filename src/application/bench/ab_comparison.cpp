@@ -1,0 +1,331 @@
+#include "application/bench/ab_comparison.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <random>
+#include <thread>
+
+#include "application/bench/bench_plan.h"
+#include "application/console.h"
+#include "backends/interface/backend.h"
+#include "bench/results/comparison.h"
+#include "output/tables/combination_times.h"
+#include "platform/machine.h"
+#include "platform/process.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+namespace fs = std::filesystem;
+/// The least of so many is hardly disturbed, even where other programs want every processor, too: with eight
+/// of them on two processors the ratio of two such spreads by 0.1, that of medians by 0.5.
+constexpr int samples_a_process = 7;
+
+/// A verification may be slow, on a busy machine say: it gets so many times the time budget and a minute.
+constexpr double verification_limit = 3;
+/// Samples take less than a verification, or about as much where each process verifies again.
+constexpr double verifications_a_sample = 10;
+/// A help page takes a moment.
+constexpr double longest_help_s = 60, spare_help_s = 10;
+
+unsigned whole_seconds(double seconds) { return static_cast<unsigned>(seconds + 0.5); }
+
+/// One of the two programs of a comparison, run again and again, each time as a new process. All that runs it
+/// throws UsageError when the program fails, Unavailable when it misses a device, CsvError for results that
+/// cannot be read, and Interrupted, after the process under way has been ended.
+class AbProgram {
+ public:
+  /// Throws MissingProgram for a file that cannot be run.
+  AbProgram(const std::string& file, const AbOptions& options);
+
+  /// Whether its bench takes --verified, as its help says. Throws UsageError where it says nothing in a
+  /// minute.
+  bool takes_verified() const;
+  /// The process that verifies everything, so that what is sampled later can rest on it.
+  ChildProcess verification() const;
+  /// Takes what came of it: the rows of a bench of one round.
+  std::vector<CombinationTime> take_verification(const ChildResult& result);
+  /// After a verification that took so long, samples may take ten times that, where that is more.
+  void allow(double verification_s);
+  /// Samples of these backends and integrators, which verifies them again where no verification was taken.
+  std::vector<CombinationTime> bench(const std::vector<std::string>& backends,
+                                     const std::vector<std::string>& integrators) const;
+
+ private:
+  ChildProcess bench_process(const std::vector<std::string>& backends,
+                             const std::vector<std::string>& integrators, int rounds,
+                             const std::filesystem::path& out) const;
+  std::vector<CombinationTime> rows_of(const ChildResult& result, const std::filesystem::path& out) const;
+  std::filesystem::path verified_folder() const { return folder_.path() / "verified"; }
+  [[noreturn]] void fail(const ChildResult& result) const;
+
+  std::string file_;
+  const AbOptions& options_;
+  ChildProcess child_;  ///< without arguments
+  TemporaryFolder folder_;
+  bool verified_ = false;
+};
+
+AbProgram::AbProgram(const std::string& file, const AbOptions& options) : file_(file), options_(options) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error) || ::access(file.c_str(), X_OK) != 0)
+    throw MissingProgram("cannot run " + file + ": give the path of an mssim program");
+  child_.program = fs::absolute(file);
+  child_.folder = fs::current_path();  // scenes may be files named from here
+  // One that never ends shall not run for ever.
+  child_.cpu_seconds =
+      static_cast<unsigned>(options.time_budget_s + 60) * std::max(1U, std::thread::hardware_concurrency());
+  child_.elapsed_seconds = whole_seconds(verification_limit * (options.time_budget_s + 60));
+}
+
+bool AbProgram::takes_verified() const {
+  ChildProcess child = child_;
+  child.arguments = {"bench", "--help"};
+  child.elapsed_seconds = whole_seconds(std::min(longest_help_s, options_.time_budget_s + spare_help_s));
+  const ChildResult result = run(child);
+  if (result.out_of_time)
+    throw UsageError(file_ + " bench --help has not ended within " + std::to_string(child.elapsed_seconds) +
+                     " s: give the path of an mssim program");
+  return result.signal == 0 && result.exit_code == exit_ok &&
+         result.output.find("--verified") != std::string::npos;
+}
+
+void AbProgram::allow(double verification_s) {
+  child_.elapsed_seconds =
+      std::max(child_.elapsed_seconds, whole_seconds(verifications_a_sample * verification_s));
+}
+
+ChildProcess AbProgram::verification() const {
+  return bench_process(options_.backends, options_.integrators, 1, verified_folder());
+}
+
+std::vector<CombinationTime> AbProgram::take_verification(const ChildResult& result) {
+  verified_ = true;
+  return rows_of(result, verified_folder());
+}
+
+std::vector<CombinationTime> AbProgram::bench(const std::vector<std::string>& backends,
+                                              const std::vector<std::string>& integrators) const {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "results";
+  ChildProcess child = bench_process(backends, integrators, samples_a_process, out);
+  if (verified_) child.arguments.insert(child.arguments.end(), {"--verified", verified_folder().string()});
+  return rows_of(run(child), out);
+}
+
+ChildProcess AbProgram::bench_process(const std::vector<std::string>& backends,
+                                      const std::vector<std::string>& integrators, int rounds,
+                                      const fs::path& out) const {
+  ChildProcess child = child_;
+  child.arguments = {"bench",
+                     "--scene",
+                     join(options_.scenes, ","),
+                     "--backend",
+                     join(backends, ","),
+                     "--integrator",
+                     join(integrators, ","),
+                     "--rounds",
+                     std::to_string(rounds),
+                     "--out",
+                     out.string()};
+  const OwnBackendOptions& own = options_.own_backends;
+  if (!own.folders.empty())
+    child.arguments.insert(child.arguments.end(), {"--backend-folder", join(own.folders, ",")});
+  if (own.limit_s) child.arguments.insert(child.arguments.end(), {"--backend-limit", decimal(*own.limit_s)});
+  if (options_.threads > 0)
+    child.arguments.insert(child.arguments.end(), {"--threads", std::to_string(options_.threads)});
+  return child;
+}
+
+std::vector<CombinationTime> AbProgram::rows_of(const ChildResult& result, const fs::path& out) const {
+  // A row that is not verified ends a bench with 1; the row says so itself.
+  const bool measured = !result.out_of_time && result.signal == 0 &&
+                        (result.exit_code == exit_ok || result.exit_code == exit_not_verified);
+  if (!measured || !fs::exists(out / "timings.csv")) fail(result);
+  return read_combination_times(out / "timings.csv");
+}
+
+void AbProgram::fail(const ChildResult& result) const {
+  std::cerr << result.output;
+  if (!result.output.empty() && !result.output.ends_with('\n')) std::cerr << '\n';
+  if (result.out_of_time)
+    throw UsageError(file_ + " bench has not ended within " + std::to_string(child_.elapsed_seconds) +
+                     " s: run it alone to see why, or give a longer --time-budget");
+  const std::string how = result.signal != 0 ? "was ended by signal " + std::to_string(result.signal)
+                                             : "exited with " + std::to_string(result.exit_code);
+  const std::string sentence = file_ + " bench " + how + " instead of measuring" +
+                               (result.output.empty() ? ", without a message" : "; its messages are above");
+  if (result.signal == 0 && result.exit_code == exit_unavailable) throw Unavailable(sentence);
+  throw UsageError(sentence);
+}
+
+/// A combination under way. Its pairs grow until they are settled.
+struct Series {
+  PairedTimes pairs;
+  bool settled = false;
+};
+
+const CombinationTime* find(const std::vector<CombinationTime>& times, const PairedTimes& pairs) {
+  const auto found =
+      std::ranges::find_if(times, [&](const CombinationTime& time) { return same_combination(time, pairs); });
+  return found == times.end() ? nullptr : &*found;
+}
+
+/// The combinations that both programs have; what only one has, or BASE has no time of, is told and left out.
+std::vector<Series> combinations_of(const std::vector<CombinationTime>& base,
+                                    const std::vector<CombinationTime>& next, const AbOptions& options) {
+  std::vector<Series> series;
+  for (const CombinationTime& time : base) {
+    const PairedTimes pairs{time.scene, time.backend, time.integrator, {}, {}, {}};
+    if (!find(next, pairs))
+      std::cerr << "mssim: only " << options.base << " has " << combination_name(time) << '\n';
+    else if (!time.least_ms)
+      std::cerr << "mssim: " << options.base << " has no time of " << combination_name(time) << ": "
+                << time.status << '\n';
+    else
+      series.push_back({pairs});
+  }
+  if (series.empty())
+    throw UsageError("there is nothing to compare: " + options.base + " and " + options.next +
+                     " have no measured combination in common; choose other backends or integrators");
+  return series;
+}
+
+/// A combination that NEW has no time of is lost; the one that BASE had shows what there was.
+void lose(Series& series, const CombinationTime& base, const std::string& why) {
+  if (series.pairs.base_ms.empty()) series.pairs.base_ms.push_back(*base.least_ms);
+  series.pairs.lost = why;
+  series.settled = true;
+}
+
+/// Adds a round to a combination.
+void add_round(Series& series, const std::vector<CombinationTime>& base,
+               const std::vector<CombinationTime>& next, double threshold) {
+  PairedTimes& pairs = series.pairs;
+  const CombinationTime *a = find(base, pairs), *b = find(next, pairs);
+  if (!a || !b)
+    throw UsageError(
+        combination_name(pairs) +
+        " was measured in one round and is missing in another; run each program separately to see why");
+  if (!a->least_ms)
+    throw UsageError(combination_name(pairs) + " was measured in one round and not in another (" + a->status +
+                     "); run each program separately to see why");
+  if (!b->least_ms) return lose(series, *a, b->status);
+  pairs.base_ms.push_back(*a->least_ms);
+  pairs.new_ms.push_back(*b->least_ms);
+  series.settled = is_settled(pairs, threshold);
+}
+
+/// What the combinations that are not settled have as this member, each name once.
+std::vector<std::string> still_wanted(std::string PairedTimes::*member, const std::vector<Series>& series) {
+  std::vector<std::string> names;
+  for (const Series& one : series)
+    if (!one.settled && std::ranges::find(names, one.pairs.*member) == names.end())
+      names.push_back(one.pairs.*member);
+  return names;
+}
+
+/// Those of the backends that were asked for whose rows are still wanted.
+std::vector<std::string> backends_wanted(const AbOptions& options, const std::vector<Series>& series) {
+  const std::vector<std::string> rows = still_wanted(&PairedTimes::backend, series);
+  std::vector<std::string> asked;
+  for (const std::string& backend : options.backends)
+    if (std::ranges::find(rows, row_name(backend)) != rows.end()) asked.push_back(backend);
+  return asked;
+}
+
+/// Whether the memory does for a bench of either at the same time, with as much again to spare, as far as
+/// this program can tell: one that is compared may have scenes or backends that this one does not know.
+bool both_fit(const AbOptions& options) {
+  BenchOptions bench;
+  bench.scenes = options.scenes;
+  bench.backends = options.backends;
+  bench.own_backends = options.own_backends;
+  bench.integrators = options.integrators;
+  bench.execution.threads = options.threads;
+  bench.dry_run = true;
+  try {
+    return std::ranges::all_of(plan_of(bench).timed, [](const PlannedScene& scene) {
+      return scene.memory_bytes <= available_memory() / 4;
+    });
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// Verifies both programs once, where both can rely on it afterwards, and says which combinations there are.
+/// Otherwise every process of either verifies again, and the first round will say it: none.
+std::vector<Series> verify(std::array<AbProgram, 2>& programs, const AbOptions& options,
+                           ProgressLine& progress) {
+  for (std::size_t which = 0; which < programs.size(); ++which)
+    if (!programs[which].takes_verified()) {
+      std::cerr
+          << "mssim: " << (which == 0 ? options.base : options.next)
+          << " has no bench --verified: each process of both programs verifies again, which takes time\n";
+      return {};
+    }
+  progress.update("verify both", 0);
+  const Stopwatch watch;
+  const std::array processes{programs[0].verification(), programs[1].verification()};
+  // Nothing is timed, and the reference takes one processor.
+  const std::vector<ChildResult> results =
+      both_fit(options) ? run_together(processes) : std::vector{run(processes[0]), run(processes[1])};
+  const std::array rows{programs[0].take_verification(results[0]), programs[1].take_verification(results[1])};
+  for (AbProgram& program : programs) program.allow(watch.seconds());
+  std::vector<Series> series = combinations_of(rows[0], rows[1], options);
+  for (Series& one : series)
+    if (const CombinationTime& next = *find(rows[1], one.pairs); !next.least_ms)
+      lose(one, *find(rows[0], one.pairs), next.status);
+  return series;
+}
+
+}  // namespace
+
+RunComparison compare_programs(const AbOptions& options) {
+  std::array<AbProgram, 2> programs{AbProgram(options.base, options), AbProgram(options.next, options)};
+  std::mt19937_64 random(std::random_device{}());
+  std::vector<Series> series;
+  const auto settled = [&] { return !series.empty() && std::ranges::all_of(series, &Series::settled); };
+  const Stopwatch watch;
+  double longest_s = 0;
+  std::size_t rounds = 0;
+  {
+    ProgressLine progress({1});
+    progress.begin_scene(options.base + " and " + options.next + " alternately");
+    series = verify(programs, options, progress);
+    while (!settled() && (rounds == 0 || watch.seconds() + longest_s <= options.time_budget_s)) {
+      const Stopwatch round_watch;
+      const bool all = series.empty();
+      std::array<std::vector<CombinationTime>, 2> times;
+      const std::size_t first = random() & 1U;
+      for (const std::size_t which : {first, 1 - first})
+        times[which] =
+            programs[which].bench(all ? options.backends : backends_wanted(options, series),
+                                  all ? options.integrators : still_wanted(&PairedTimes::integrator, series));
+      if (all) series = combinations_of(times[0], times[1], options);
+      for (Series& one : series)
+        if (!one.settled) add_round(one, times[0], times[1], options.threshold);
+      ++rounds;
+      longest_s = std::max(longest_s, round_watch.seconds());
+      progress.update("round " + std::to_string(rounds), watch.seconds() / options.time_budget_s);
+    }
+  }
+  std::cerr << "mssim: " << rounds << (rounds == 1 ? " round in " : " rounds in ")
+            << std::lround(watch.seconds()) << " s"
+            << (settled() ? "" : "; the time budget ended before every verdict was settled") << '\n';
+  RunComparison comparison;
+  comparison.threshold = options.threshold;
+  for (const Series& one : series) comparison.rows.push_back(compare_pairs(one.pairs, options.threshold));
+  add_means(comparison);
+  return comparison;
+}
+
+}  // namespace mssim

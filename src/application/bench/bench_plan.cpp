@@ -1,0 +1,268 @@
+#include "application/bench/bench_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "application/bench/bench_results.h"
+#include "application/bench/suites.h"
+#include "application/choices.h"
+#include "application/outputs.h"
+#include "bench/windows/windows.h"
+#include "integrators/stability.h"
+#include "output/traces/energy_curve.h"
+#include "platform/machine.h"
+#include "scene/cloth.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+SceneSize size_of(const SceneSpec& spec, const SceneCounts& counts) {
+  return {counts.nodes, counts.springs_unique, std::holds_alternative<ClothSpec>(spec.content),
+          std::holds_alternative<GarmentSpec>(spec.content)};
+}
+
+PreparedScene UnbuiltScene::prepare() { return prepare_scene(spec, std::exchange(parts, {})); }
+
+namespace {
+
+/// Bytes of the references of windows that run at the same time.
+std::uint64_t window_memory(const BenchSettings& settings, const GridWindow& window, const GridPatch& grid) {
+  double most = 0;
+  for (const Integrator* integrator : settings.integrators)
+    if (!is_implicit(*integrator)) most = std::max(most, window_reference_bytes(*integrator, window, grid));
+  return static_cast<std::uint64_t>(most) * static_cast<std::uint64_t>(settings.execution.threads);
+}
+
+/// A cloth whose backends all have windows gets some where they are asked for, or where the whole does not
+/// fit. Throws UsageError where they are asked for and cannot be had. Throws SceneError where the scene needs
+/// more memory than there is: a user shall not wait for a scene only to see the program killed.
+PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
+  const SceneCounts counts = scene.parts.counts;
+  const SceneSize size = size_of(scene.spec, counts);
+  std::uint64_t memory_bytes = bench_memory_needed(settings, size);
+  const bool can = size.grid && std::ranges::all_of(settings.backends, [](const BackendInfo* backend) {
+                     return has_windows(*backend);
+                   });
+  if (settings.windows && !can)
+    throw UsageError("--windows goes with cloths and backends that have windows, as --backend mpi: " +
+                     scene.spec.name + " and the chosen backends are others; leave it out");
+  std::vector<GridWindow> windows;
+  if (can && (settings.windows || memory_shortage(memory_bytes))) {
+    const auto& cloth = std::get<ClothSpec>(scene.spec.content);
+    const GridPatch grid{cloth.rows, cloth.columns, cloth.spacing_m};
+    const auto ranks = static_cast<std::size_t>(most_ranks_of(settings.backends, settings.execution));
+    const std::size_t count =
+        settings.windows ? static_cast<std::size_t>(*settings.windows) : usual_windows(ranks);
+    if (count < fewest_windows(ranks))
+      throw UsageError("--windows " + std::to_string(count) + " leaves some of " + std::to_string(ranks) +
+                       " ranks without one: give at least " + std::to_string(fewest_windows(ranks)));
+    windows = choose_windows(
+        grid, ranks, cloth.pins ? std::optional<std::uint32_t>(cloth.pins->row) : std::nullopt, count);
+    memory_bytes = window_memory(settings, windows.front(), grid);
+  }
+  std::string remedy = "name fewer with --backend or --integrator, or make the scene smaller";
+  if (size.grid && windows.empty()) remedy += "; a cloth with --backend mpi alone can be verified in windows";
+  require_memory(scene.spec, counts, memory_bytes, remedy);
+  return {std::move(scene),  settings.backends, size, memory_bytes, expected_time(settings, size),
+          std::move(windows)};
+}
+
+}  // namespace
+
+PreparedScene outline_of(const PlannedScene& planned) {
+  PreparedScene scene;
+  scene.spec = planned.spec;
+  scene.system = outline_of_cloth(scene.spec);
+  round_start_to_single(scene.system);
+  scene.counts = planned.parts.counts;
+  if (scene.spec.dt_s) {
+    scene.dt_s = *scene.spec.dt_s;
+    return scene;
+  }
+  // Nodes of all kinds, and around some of them every spring that a node has.
+  constexpr std::uint32_t all_kinds = 9;
+  const auto& cloth = std::get<ClothSpec>(scene.spec.content);
+  scene.dt_s = auto_dt(mode_bound(build_window(
+      scene.spec, {.rows = std::min(cloth.rows, all_kinds), .columns = std::min(cloth.columns, all_kinds)})));
+  return scene;
+}
+
+System build_window(const SceneSpec& spec, const GridWindow& window) {
+  System system = build_cloth_window(spec, window);
+  system.springs = springs_of(std::get<GridPatch>(system.topology));
+  round_start_to_single(system);
+  return system;
+}
+
+std::vector<ExpectedTime> times_of(const std::vector<PlannedScene>& scenes) {
+  std::vector<ExpectedTime> times;
+  for (const PlannedScene& scene : scenes) times.push_back(scene.time);
+  return times;
+}
+
+namespace {
+
+std::vector<std::string> timed_names(const BenchOptions& options) {
+  std::vector<std::string> scenes = scenes_of_suite(options.suite, true);
+  for (const std::string& scene : options.scenes)
+    if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
+  return scenes;
+}
+
+/// Those asked for, or else all of the table and, where the suite compares them, all that are described.
+std::vector<const BackendInfo*> backends_of(const BenchOptions& options, const Comparison& comparison,
+                                            const ExecutionOptions& execution, BackendChoice& choice) {
+  if (!options.backends.empty()) return choice.require_all(options.backends);
+  std::vector<const BackendInfo*> all = comparison.backends();
+  if (comparison.programs)
+    for (const std::string& name : comparison.programs(execution)) all.push_back(&choice.require(name));
+  if (!comparison.described_too) return all;
+  if (choice.described().empty())
+    throw UsageError("--suite " + options.suite +
+                     " compares backends that are described in files, and there are none: run scripts/peers, "
+                     "which makes some, or give their --backend-folder");
+  std::ranges::copy(choice.own(), std::back_inserter(all));
+  return all;
+}
+
+BenchSettings settings_of(const BenchOptions& options, const Comparison& comparison, BackendChoice& choice) {
+  BenchSettings settings;
+  ExecutionOptions execution = options.execution;
+  if (execution.threads == 0) execution.threads = comparison.threads;
+  settings.execution = complete(execution);
+  settings.backends = backends_of(options, comparison, settings.execution, choice);
+  require_use_of_ranks(options.execution, settings.backends);
+  require_device(options.execution, settings.backends);
+  settings.integrators = chosen_integrators(options.integrators, comparison.integrators);
+  settings.windows = options.windows;
+  settings.rounds = options.rounds.value_or(options.time_budget_s ? most_rounds : usual_rounds);
+  return settings;
+}
+
+void require_folder_where_needed(const BenchOutput& output) {
+  if (!output.folder.empty()) return;
+  if (output.trace) throw UsageError("--trace writes into the result folder: give --out too");
+  if (output.resume || output.overwrite)
+    throw UsageError(std::string(output.resume ? "--resume" : "--overwrite") +
+                     " needs the folder of an earlier run: give --out too");
+}
+
+/// Scenes by what they were asked for with, and their parts by their file, each read once.
+class SceneReader {
+ public:
+  std::vector<SceneSpec> read(const std::vector<std::string>& names) {
+    std::vector<SceneSpec> specs;
+    for (const std::string& name : names) {
+      auto found = known_.find(name);
+      if (found == known_.end()) found = known_.emplace(name, find_scene(name)).first;
+      specs.push_back(found->second);
+    }
+    return specs;
+  }
+
+  SceneParts parts_of(const SceneSpec& spec) {
+    auto found = parts_.find(spec.file);
+    if (found == parts_.end()) found = parts_.emplace(spec.file, read_parts(spec)).first;
+    return found->second;
+  }
+
+ private:
+  std::map<std::string, SceneSpec> known_;
+  std::map<std::filesystem::path, SceneParts> parts_;
+};
+
+/// The settings with the backends that the suite has for this scene.
+BenchSettings settings_of_scene(const BenchSettings& all, const Comparison& comparison,
+                                const std::string& scene) {
+  BenchSettings settings = all;
+  if (comparison.is_compared)
+    std::erase_if(settings.backends,
+                  [&](const BackendInfo* backend) { return !comparison.is_compared(scene, backend->name); });
+  return settings;
+}
+
+/// Rows and results are told apart by their scene's name.
+void require_distinct_names(const std::vector<SceneSpec>& scenes) {
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene)
+    for (auto other = scenes.begin(); other != scene; ++other)
+      if (other->name == scene->name)
+        throw UsageError("there are two scenes called " + printable(scene->name) + ", " +
+                         printable(other->file.string()) + " and " + printable(scene->file.string()) +
+                         "; name one of them, or rename a file");
+}
+
+void require_traceable(const SceneSpec& spec) {
+  if (std::holds_alternative<GarmentSpec>(spec.content))
+    throw UsageError("--trace cannot be used with " + spec.name +
+                     ", which is a garment: its verification is not a continuous motion; leave --trace out");
+  if (const auto problem = trace_name_problem(spec.name + ".h5"))
+    throw UsageError("--trace names traces after their scene, and " + *problem);
+}
+
+}  // namespace
+
+double expected_rounds(const BenchPlan& plan) {
+  const double most = plan.settings.rounds;
+  return plan.time_budget_s ? std::min(most, rounds_within(*plan.time_budget_s, total(times_of(plan.timed))))
+                            : most;
+}
+
+BenchPlan plan_of(const BenchOptions& options) {
+  const Comparison& comparison = comparison_of_suite(options.suite);
+  BenchPlan plan;
+  plan.backends = BackendChoice(comparison.backends(), options.own_backends, options.scenes);
+  plan.settings = settings_of(options, comparison, plan.backends);
+  plan.time_budget_s = options.time_budget_s;
+  plan.output = options.output;
+  const std::vector<std::string> timed_ones = timed_names(options);
+  const std::vector<std::string> described_ones = scenes_of_suite(options.suite, false);
+  if (timed_ones.empty() && described_ones.empty())
+    throw UsageError("there is nothing to measure: name a --scene or a --suite");
+  require_folder_where_needed(options.output);
+  plan.published = published_tables();
+  plan.tables = comparison.tables();
+
+  SceneReader scenes;
+  for (SceneSpec& spec : scenes.read(described_ones)) {
+    SceneParts parts = scenes.parts_of(spec);
+    require_memory(spec, parts.counts);
+    plan.described.push_back({std::move(spec), std::move(parts)});
+  }
+  std::vector<SceneSpec> timed = scenes.read(timed_ones);
+  std::erase_if(timed, [&](const SceneSpec& spec) {
+    return settings_of_scene(plan.settings, comparison, spec.name).backends.empty();
+  });
+  if (options.output.trace) std::ranges::for_each(timed, require_traceable);
+  require_distinct_names(timed);
+
+  plan.uses_device = !timed.empty() && std::ranges::any_of(plan.settings.backends, &BackendInfo::uses_device);
+  plan.provenance = run_provenance(plan.settings.execution.threads, plan.uses_device && !options.dry_run);
+  add_programs(plan.provenance, plan.backends.own(), plan.settings.execution);
+  plan.provenance.device_memory = name_of(plan.settings.execution.memory);
+  for (const UnbuiltScene& scene : plan.described)
+    add_scene(plan.provenance, scene.spec.name, scene.spec.source);
+  for (const SceneSpec& spec : timed) add_scene(plan.provenance, spec.name, spec.source);
+  if (!options.verified.empty())
+    plan.settings.verified = verified_rows(options.verified, plan.provenance, plan.settings, timed);
+  for (SceneSpec& spec : timed) {
+    SceneParts parts = scenes.parts_of(spec);
+    const BenchSettings settings = settings_of_scene(plan.settings, comparison, spec.name);
+    plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
+    if (options.output.trace && !plan.timed.back().windows.empty())
+      throw UsageError("--trace needs the whole of " + plan.timed.back().spec.name +
+                       ", which is verified in windows: leave it out");
+  }
+  return plan;
+}
+
+}  // namespace mssim

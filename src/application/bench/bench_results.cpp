@@ -1,0 +1,236 @@
+#include "application/bench/bench_results.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "bench/results/comparison.h"
+#include "integrators/all_integrators.h"
+#include "output/folders/provenance_file.h"
+#include "output/folders/result_folder.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+std::vector<ResultRow> BenchRows::of_scene(const std::string& name) const {
+  std::vector<ResultRow> rows;
+  std::ranges::copy_if(rows_, std::back_inserter(rows),
+                       [&](const ResultRow& row) { return row.scene == name; });
+  return rows;
+}
+
+void BenchRows::replace(const std::string& scene, std::vector<ResultRow> rows) {
+  const auto first = std::ranges::find(rows_, scene, &ResultRow::scene);
+  const auto at =
+      rows_.insert(first, std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+  const auto behind = at + static_cast<std::ptrdiff_t>(rows.size());
+  rows_.erase(std::remove_if(behind, rows_.end(), [&](const ResultRow& row) { return row.scene == scene; }),
+              rows_.end());
+}
+
+bool is_finished(const BenchSettings& settings, const std::string& scene,
+                 const std::vector<ResultRow>& earlier) {
+  if (earlier.empty()) return false;
+  std::set<std::pair<std::string, std::string>> asked, measured;
+  for (const Integrator* integrator : settings.integrators)
+    for (const BackendInfo* backend : settings.backends) asked.emplace(backend->name, integrator->name);
+  for (const ResultRow& row : earlier) measured.emplace(row.backend, row.integrator);
+  if (asked != measured)
+    throw UsageError("the folder has other backends or integrators of " + scene +
+                     " than this command: --resume needs the same ones; choose another --out, "
+                     "or --overwrite to measure anew");
+  return std::ranges::all_of(
+      earlier, [&](const ResultRow& row) { return row.status != "ok" || row.rounds >= settings.rounds; });
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    throw UsageError("there is no " + path.string() + ": give a folder that mssim bench --out wrote");
+  fs::path folder = fs::is_directory(status) ? path
+                    : path.has_parent_path() ? path.parent_path()
+                                             : fs::path(".");
+  if (!fs::exists(folder / "timings.csv", error))
+    throw UsageError(folder.string() + " holds no timings.csv: give a folder that mssim bench --out wrote");
+  return folder;
+}
+
+/// What numbers of a row can be computed from is shorter.
+constexpr double longest_ms = 1e12;
+
+/// What is measured has a time above zero in every round.
+void require_samples(const ResultRow& row, const fs::path& folder) {
+  if (row.status != "ok") return;
+  const std::string where = (folder / "samples.csv").string() + ": " + combination_name(row) + " has ";
+  if (row.samples_ms.empty())
+    throw UsageError(where + "no samples, though timings.csv says ok; measure the folder anew");
+  for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
+    if (!(row.samples_ms[round] > 0 && row.samples_ms[round] <= longest_ms))
+      throw UsageError(where + "no time above zero in round " + std::to_string(round + 1) +
+                       ", or one of more than 1e12 ms; measure the folder anew");
+}
+
+}  // namespace
+
+MeasuredRun read_run(const fs::path& path) {
+  const fs::path folder = folder_of(path);
+  MeasuredRun run{read_provenance(folder / "provenance.json"), read_results(folder)};
+  for (const ResultRow& row : run.rows) require_samples(row, folder);
+  return run;
+}
+
+namespace {
+
+/// Throws UsageError where there are sentences that say why --resume cannot continue in the folder.
+void require_resumable(const std::vector<std::string>& differences, const std::string& folder) {
+  if (!differences.empty())
+    throw UsageError("--resume cannot continue in " + folder + ": " + join(differences, "; ") +
+                     "; choose another --out, or --overwrite to measure anew");
+}
+
+std::string revision(const BuildInfo& build) {
+  return std::string(build.commit) + (build.dirty ? ", changed" : "");
+}
+
+/// One table shall not mix what different programs or machines measured, nor hold rows of which the
+/// provenance says nothing.
+void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
+  std::vector<std::string> all = differences(earlier, now);
+  if (revision(earlier.build) != revision(now.build))
+    all.push_back("the program was built from commit " + revision(earlier.build) + " and is now from " +
+                  revision(now.build));
+  if (earlier.backend_programs != now.backend_programs)
+    all.emplace_back("a program that is a backend is not the same");
+  std::vector<std::string> left_out;
+  for (const SceneHash& scene : earlier.scenes)
+    if (std::ranges::find(now.scenes, scene.name, &SceneHash::name) == now.scenes.end())
+      left_out.push_back(printable(scene.name));
+  if (!left_out.empty())
+    all.push_back("it has results of " + join(left_out, ", ") + ", which this command leaves out");
+  require_resumable(all, folder);
+}
+
+/// What stands in the folder already and is to stay: with --resume what an earlier run of the same program on
+/// the same machine left, with --overwrite nothing. Throws UsageError where the folder has results and
+/// neither was asked for, or where --resume would mix what is not alike or keep scenes that this command does
+/// not have, and what reading them throws.
+std::vector<ResultRow> earlier_rows(ResultFolder& folder, const BenchPlan& plan) {
+  if (!folder.has_results()) return {};
+  const BenchOutput& output = plan.output;
+  if (output.resume) {
+    const Provenance earlier = read_provenance(std::filesystem::path(output.folder) / "provenance.json");
+    require_same_origin(earlier, plan.provenance, output.folder);
+    folder.go_on_with(earlier);
+    return folder.has_rows() ? read_run(output.folder).rows : std::vector<ResultRow>();
+  }
+  if (!output.overwrite)
+    throw UsageError(output.folder +
+                     " already holds results: give another --out, --resume to continue them, "
+                     "or --overwrite to replace them");
+  folder.replace_results();
+  return {};
+}
+
+/// Why what was verified then need not be right now.
+std::vector<std::string> doubts(const Provenance& then, const Provenance& now) {
+  std::vector<std::string> all = differences(then, now);
+  if (!then.program_fnv1a_64 || then.program_fnv1a_64 != now.program_fnv1a_64)
+    all.emplace_back("it was written by another program");
+  if (then.device_memory != now.device_memory)
+    all.push_back("--memory was " + then.device_memory + " and is " + now.device_memory);
+  // None are named by a bench whose backends need none.
+  if (!now.opencl_devices.empty() && then.opencl_devices != now.opencl_devices)
+    all.emplace_back("the OpenCL devices are not the same");
+  for (const BackendProgramRecord& program : now.backend_programs)
+    if (std::ranges::find(then.backend_programs, program) == then.backend_programs.end())
+      all.push_back("the program " + program.name + " is not the same");
+  if (then.tetgen != now.tetgen) all.emplace_back("TetGen is not the same");
+  for (const SceneHash& scene : now.scenes)
+    if (std::ranges::find(then.scenes, scene.name, &SceneHash::name) == then.scenes.end())
+      all.push_back("it has no scene " + scene.name);
+  return all;
+}
+
+void require_row(const std::vector<ResultRow>& rows, const std::string& scene, const BackendInfo& backend,
+                 const Integrator& integrator, const std::string& folder) {
+  const bool found = std::ranges::any_of(rows, [&](const ResultRow& row) {
+    return row.scene == scene && row.backend == backend.name && row.integrator == integrator.name;
+  });
+  if (!found)
+    throw UsageError("--verified " + folder + " has no row of " + scene + ", " + std::string(backend.name) +
+                     ", " + std::string(integrator.name) + ": ask for what it has, or leave --verified out");
+}
+
+}  // namespace
+
+std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance& now,
+                                     const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
+  MeasuredRun earlier = read_run(folder);
+  if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
+    throw UsageError("--verified cannot rely on " + folder + ": " + join(all, "; ") +
+                     "; leave it out to verify anew");
+  for (const SceneSpec& scene : scenes)
+    for (const Integrator* integrator : settings.integrators)
+      for (const BackendInfo* backend : settings.backends)
+        require_row(earlier.rows, scene.name, *backend, *integrator, folder);
+  return std::move(earlier.rows);
+}
+
+namespace {
+
+std::optional<ResultFolder> folder_of(const BenchPlan& plan) {
+  if (plan.output.folder.empty()) return std::nullopt;
+  return std::make_optional<ResultFolder>(plan.output.folder, plan.provenance, plan.tables);
+}
+
+void add_published_times(std::vector<ResultRow>& rows, const BenchPlan& plan) {
+  for (ResultRow& row : rows) {
+    const BackendInfo& backend = **std::ranges::find(plan.settings.backends, row.backend, &BackendInfo::name);
+    for (const PublishedTable& table : plan.published)
+      if (const auto ms = table.ms(find_integrator(row.integrator)->paper_name, backend.paper_configuration,
+                                   row.nodes, row.springs_published))
+        row.paper_ms = ms;
+  }
+}
+
+}  // namespace
+
+BenchResults::BenchResults(const BenchPlan& plan)
+    : plan_(plan),
+      folder_(folder_of(plan)),
+      rows_(folder_ ? earlier_rows(*folder_, plan) : std::vector<ResultRow>()) {
+  if (folder_) folder_->begin();
+}
+
+std::vector<std::string> BenchResults::stems_of_scene(const std::string& name) const {
+  std::vector<std::string> stems = file_stems(rows()), of_scene;
+  for (std::size_t i = 0; i < stems.size(); ++i)
+    if (rows()[i].scene == name) of_scene.push_back(std::move(stems[i]));
+  return of_scene;
+}
+
+void BenchResults::keep(const std::string& scene, std::vector<ResultRow> rows) {
+  require_resumable(differences(of_scene(scene), rows), plan_.output.folder);
+  add_published_times(rows, plan_);
+  rows_.replace(scene, std::move(rows));
+  if (folder_) folder_->write(rows_.all());
+}
+
+void BenchResults::keep(const std::vector<StructureRow>& rows) {
+  if (folder_) folder_->write(rows);
+}
+
+void BenchResults::keep_for_github() const {
+  if (folder_) folder_->write_for_github(rows_.all());
+}
+
+}  // namespace mssim

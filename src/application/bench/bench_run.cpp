@@ -1,0 +1,216 @@
+#include "application/bench/bench_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "application/console.h"
+#include "application/outputs.h"
+#include "application/prepared_scene.h"
+#include "application/run.h"
+#include "bench/bench_scene.h"
+#include "bench/verification/verification.h"
+#include "integrators/all_integrators.h"
+#include "output/traces/h5md_trace.h"
+#include "platform/files.h"
+#include "platform/process.h"
+#include "text/error.h"
+
+namespace mssim {
+
+namespace {
+
+bool is_wrong(const ResultRow& row) {
+  return row.status.starts_with("failed") || (row.status == "ok" && !row.verified);
+}
+
+/// Whether `member` of the row is one of `names`, and no row of the scene that has the same could run: a
+/// backend that has a garment with one of the integrators has it.
+bool is_missed(const ResultRow& row, const std::vector<std::string>& names, std::string ResultRow::*member,
+               const std::vector<ResultRow>& rows) {
+  return std::ranges::find(names, row.*member) != names.end() &&
+         std::ranges::none_of(rows, [&](const ResultRow& other) {
+           return other.scene == row.scene && other.*member == row.*member && other.verified;
+         });
+}
+
+template <class IsBad>
+std::vector<std::string> reasons(const std::vector<ResultRow>& rows, IsBad is_bad) {
+  std::vector<std::string> sentences;
+  for (const ResultRow& row : rows)
+    if (is_bad(row)) sentences.push_back(combination_name(row) + ": " + status_of(row));
+  return sentences;
+}
+
+}  // namespace
+
+BenchVerdict verdict_of(const std::vector<ResultRow>& rows, const std::vector<std::string>& asked_backends,
+                        const std::vector<std::string>& asked_integrators) {
+  BenchVerdict verdict{exit_not_verified, reasons(rows, is_wrong)};
+  if (!verdict.reasons.empty()) return verdict;
+  verdict = {exit_unavailable, reasons(rows, [&](const ResultRow& row) {
+               return is_missed(row, asked_backends, &ResultRow::backend, rows) ||
+                      is_missed(row, asked_integrators, &ResultRow::integrator, rows);
+             })};
+  if (verdict.reasons.empty()) verdict.exit_code = exit_ok;
+  return verdict;
+}
+
+namespace {
+
+/// Frames after the first.
+constexpr int frames = 10;
+
+void write_trace(const std::filesystem::path& file, const SceneJob& job, const PreparedScene& scene,
+                 const ResultRow& row, const Provenance& provenance) {
+  const double duration_s = verification_steps * scene.dt_s;
+  const Integrator& integrator = *find_integrator(row.integrator);
+  const BackendInfo& info = **std::ranges::find(job.backends, row.backend, &BackendInfo::name);
+  const auto backend = make_backend(info, scene.system, integrator, scene.dt_s, job.execution);
+  H5mdTrace trace(file, scene.system, trace_header(scene, *backend, row.backend, integrator, provenance));
+  simulate(*backend, scene.system, integrator, {scene.dt_s, duration_s, frames / duration_s},
+           {[&](const Frame& frame) {
+             trace.write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+           }});
+  trace.close();
+}
+
+}  // namespace
+
+bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::vector<ResultRow>& rows,
+                        const std::vector<std::string>& stems, const Provenance& provenance,
+                        const std::filesystem::path& folder, bool keep_existing, const BenchWatch& watch) {
+  make_folder(folder);
+  bool failed = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ResultRow& row = rows[i];
+    const std::filesystem::path file = folder / (stems[i] + ".h5");
+    if (row.status != "ok" || (keep_existing && std::filesystem::exists(file))) continue;
+    if (watch.stop()) break;
+    const auto fail = [&](const char* reason) {
+      row.status = std::string("failed: ") + reason;
+      row.verified = false;
+      failed = true;
+    };
+    watch.progress("trace " + row.backend + " " + row.integrator, 1);
+    try {
+      write_trace(file, job, scene, row, provenance);
+    } catch (const BackendFailure& failure) {
+      fail(failure.what());
+      row.program_output = failure.output;
+    } catch (const NotVerified& blow_up) {
+      fail(blow_up.what());
+    }
+  }
+  return failed;
+}
+
+namespace {
+
+double seconds_of(TimeBudget::Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+TimeBudget::Clock::duration duration_of(double seconds) {
+  return std::chrono::duration_cast<TimeBudget::Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+TimeBudget::TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> scenes)
+    : scenes_(std::move(scenes)), present_start_(Clock::now()) {
+  if (!seconds) return;
+  const ExpectedTime all = total(scenes_);
+  const double least = all.with(1);
+  if (*seconds < least)
+    throw UsageError("--time-budget is too short: one round of all this takes about " +
+                     std::to_string(std::lround(std::ceil(least))) +
+                     " s; give more, or name fewer scenes, backends or integrators");
+  end_ = present_start_ + duration_of(*seconds);
+}
+
+std::optional<TimeBudget::Clock::time_point> TimeBudget::begin_scene() {
+  if (!end_) return std::nullopt;
+  present_start_ = Clock::now();
+  const double scale = expected_ > 0 ? taken_ / expected_ : 1;
+  const double rounds = rounds_within(seconds_of(*end_ - present_start_) / scale, total(scenes_));
+  present_ = scenes_.front();
+  scenes_.erase(scenes_.begin());
+  return present_start_ + duration_of(scale * (present_.preparation + rounds * present_.round));
+}
+
+void TimeBudget::first_round_done() {
+  expected_ += present_.preparation + present_.round;
+  taken_ += seconds_of(Clock::now() - present_start_);
+}
+
+namespace {
+
+/// Adds to a job what the scene is. `scene` must outlive it.
+void add_scene(SceneJob& job, const PreparedScene& scene) {
+  job.system = &scene.system;
+  job.springs_published = scene.counts.springs_published;
+  job.note = scene.note;
+  job.dt_s = scene.dt_s;
+  if (scene.body) job.garment.emplace(GarmentJob{.body = fit_body(scene.body)});
+}
+
+}  // namespace
+
+void measure_scenes(BenchPlan& plan, TimeBudget& budget, const StopRequest& stop, BenchResults& results) {
+  const double rounds = expected_rounds(plan);
+  std::vector<double> seconds;
+  for (const ExpectedTime& time : times_of(plan.timed)) seconds.push_back(time.with(rounds));
+  ProgressLine progress(seconds, ProgressLine::Log::scenes, budget.end());
+  for (PlannedScene& planned : plan.timed) {
+    SceneJob job{plan.settings};
+    job.backends = planned.backends;
+    job.name = planned.spec.name;
+    job.execution.scene = job.name;
+    job.execution.scene_file = planned.spec.file;
+    job.deadline = budget.begin_scene();
+    job.earlier = results.of_scene(job.name);
+    progress.begin_scene(job.name);
+    const bool finished = is_finished(job, job.name, job.earlier);
+    if (finished && !plan.output.trace) {
+      progress.skip_scene();
+      planned.parts = {};
+      continue;
+    }
+    const PreparedScene scene = planned.windows.empty() ? planned.prepare() : outline_of(planned);
+    warn_of_note(scene);
+    add_scene(job, scene);
+    if (!planned.windows.empty())
+      job.windowed = WindowedCloth{
+          std::get<GridPatch>(scene.system.topology), scene.counts.springs_unique, planned.windows,
+          [&](const GridWindow& window) { return build_window(scene.spec, window); }};
+    job.preparation = planned.time.preparation / planned.time.with(rounds);
+    bool first_round = true;
+    const BenchWatch watch{
+        .progress = [&](const std::string& activity, double done) { progress.update(activity, done); },
+        .after_round =
+            [&](const std::vector<ResultRow>& measured) {
+              if (std::exchange(first_round, false)) budget.first_round_done();
+              results.keep(job.name, measured);
+            },
+        .stop = [&] { return stop.requested(); }};
+    try {
+      std::vector<ResultRow> measured = finished ? std::vector<ResultRow>() : bench_scene(job, watch);
+      if (!measured.empty()) results.keep(job.name, std::move(measured));
+      std::vector<ResultRow> rows = results.of_scene(job.name);
+      if (plan.output.trace && !stop.requested() &&
+          write_bench_traces(job, scene, rows, results.stems_of_scene(job.name), plan.provenance,
+                             std::filesystem::path(plan.output.folder) / "traces", plan.output.resume, watch))
+        results.keep(job.name, std::move(rows));
+    } catch (const Interrupted& interrupted) {
+      // A wait for a program was cut short; the rounds before it are kept.
+      note_ending_signal(interrupted.signal);
+    }
+    if (stop.requested()) return;
+  }
+}
+
+}  // namespace mssim

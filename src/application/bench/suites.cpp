@@ -1,0 +1,223 @@
+#include "application/bench/suites.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "application/choices.h"
+#include "application/guide_run.h"
+#include "backends/accumulation/accumulation_methods.h"
+#include "backends/backends.h"
+#include "garment/output/garment_table.h"
+#include "integrators/all_integrators.h"
+#include "output/tables/cluster_rows.h"
+#include "output/tables/cluster_table.h"
+#include "output/tables/paper_table.h"
+#include "output/tables/peer_table.h"
+#include "output/tables/race_table.h"
+#include "output/tables/scaling_table.h"
+#include "platform/machine.h"
+
+namespace mssim {
+
+namespace {
+
+constexpr std::string_view suites_of_tables = "tables";
+
+constexpr std::array<std::string_view, 6> cloths{"cloth2500", "cloth4900", "cloth10k",
+                                                 "cloth40k",  "cloth200k", "cloth350k"};
+constexpr std::array<std::string_view, 9> single_bodies{"box-small",    "box-medium",    "box-large",
+                                                        "sphere-small", "sphere-medium", "sphere-large",
+                                                        "torus-small",  "torus-medium",  "torus-large"};
+constexpr std::array<std::string_view, 6> body_scenes{"bodies3858",  "bodies4737",  "bodies7282",
+                                                      "bodies10223", "bodies20587", "bodies38233"};
+constexpr std::array<std::string_view, 2> race_scenes{"cloth40k", "bodies20587"};
+constexpr std::array<std::string_view, 6> ever_larger_cloths{"cloth40k", "cloth200k", "cloth350k",
+                                                             "cloth1m",  "cloth4m",   "cloth16m"};
+constexpr std::array<std::string_view, 4> scenes_of_peers{"cloth2500", "cloth40k", "cloth350k",
+                                                          "bodies38233"};
+constexpr std::array<std::string_view, 6> jeans{"jeans1k", "jeans2k",  "jeans4k",
+                                                "jeans8k", "jeans16k", "jeans64k"};
+
+/// The scenes of `--suite cluster`: cloths and bodies that ever more processes share (strong scaling), and
+/// cloths that are wider the more processes there are, NAME-xN (weak scaling).
+constexpr std::array<std::string_view, 10> cluster_scenes{
+    "cloth350k",   "cloth350k-x2", "cloth350k-x4", "cloth350k-x8", "cloth10k",
+    "cloth10k-x2", "cloth10k-x4",  "cloth10k-x8",  "cloth4m",      "bodies38233"};
+
+/// The families of both papers but garments: Hong et al.'s cloths, which Vassilev's panels are made like, and
+/// bodies.
+constexpr auto scenes_of_guide = [] {
+  std::array<std::string_view, cloths.size() + body_scenes.size()> all{};
+  std::ranges::copy(body_scenes, std::ranges::copy(cloths, all.begin()).out);
+  return all;
+}();
+
+/// The real methods, those that are a paper's integrator under its own name.
+constexpr std::array<std::string_view, 3> real_methods{"semi-euler", "midpoint", "rk4"};
+constexpr std::array<std::string_view, 1> cheapest_method{"semi-euler"};
+constexpr auto every_integrator = [] {
+  std::array<std::string_view, all_integrators.size()> names{};
+  std::ranges::transform(all_integrators, names.begin(), &Integrator::name);
+  return names;
+}();
+
+std::vector<const BackendInfo*> all_methods() {
+  std::vector<const BackendInfo*> rows;
+  for (const AccumulationMethod& method : accumulation_methods()) rows.push_back(&method.backend);
+  return rows;
+}
+
+/// What peers and ranks are held against: the plain list and the fastest of the host's.
+std::vector<const BackendInfo*> baseline_and_best() {
+  return {find_backend("serial"), find_backend("openmp")};
+}
+
+/// 1, 2, 4, ... and the largest.
+std::vector<int> rank_counts(const ExecutionOptions& execution) {
+  constexpr int fewest = 4;
+  const auto processors = static_cast<int>(process_cpus().size());
+  const int threads = execution.threads_given ? execution.threads : 1;
+  const int most = execution.ranks > 0 ? execution.ranks : std::max(fewest, processors / threads);
+  std::vector<int> counts;
+  for (int ranks = 1; ranks < most; ranks *= 2) counts.push_back(ranks);
+  counts.push_back(most);
+  return counts;
+}
+
+/// mpi in 1, 2, 4, ... processes up to --ranks, or else up to one for every processor and at least four; and
+/// as many copies that say nothing to each other.
+std::vector<std::string> cluster_programs(const ExecutionOptions& execution) {
+  std::vector<std::string> names;
+  for (const int ranks : rank_counts(execution)) names.push_back(name_in_ranks(ranks_backend, ranks));
+  for (const int ranks : rank_counts(execution))
+    if (ranks > 1) names.push_back(name_in_ranks(copies_backend, ranks));
+  return names;
+}
+
+/// A cloth N times as wide is for N processes, and for no other backend.
+bool is_in_cluster(std::string_view scene, std::string_view backend) {
+  const WideScene wide = wide_scene(scene);
+  return wide.times == 1 || backend == name_in_ranks(ranks_backend, wide.times);
+}
+
+/// No tables, for the suite that is run by guides, which make their tables themselves.
+TableMaker no_tables() {
+  return [](std::span<const ResultRow> /*rows*/, const Provenance& /*provenance*/) {
+    return std::vector<ResultTable>();
+  };
+}
+
+TableMaker tables_of_hong() { return paper_tables(paper_legend(), published_tables()); }
+
+/// Scenes of both papers are compared in the same way, and each in its own tables.
+TableMaker tables_of_the_papers() {
+  return [hong = tables_of_hong(), vassilev = garment_tables()](std::span<const ResultRow> rows,
+                                                                const Provenance& provenance) {
+    std::vector<ResultTable> tables = hong(rows, provenance);
+    std::ranges::move(vassilev(rows, provenance), std::back_inserter(tables));
+    return tables;
+  };
+}
+
+TableMaker table_of_races() {
+  std::vector<RaceLegend> legend;
+  for (const AccumulationMethod& method : accumulation_methods())
+    legend.push_back({std::string(method.backend.name), std::string(method.backend.description),
+                      std::string(method.extra_memory), std::string(method.springs_computed),
+                      std::string(name_of(method.repeatable))});
+  return race_tables(std::move(legend));
+}
+
+TableMaker table_of_cluster() {
+  StageCounts stages;
+  for (const Integrator* integrator : all_integrators)
+    stages.emplace(integrator->name, static_cast<int>(integrator->stage_count));
+  return cluster_tables(std::move(stages));
+}
+
+TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cloths.front())); }
+
+constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
+
+constexpr std::array<Suite, 9> table{{
+    {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
+    {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
+    {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
+    {"races",
+     "what it costs to avoid the data race of the springs, method by method (mssim list methods)",
+     false,
+     true,
+     race_scenes,
+     {all_methods, cheapest_method, table_of_races}},
+    {"scaling",
+     "the cost of a node in cloths of up to 16 million nodes",
+     false,
+     true,
+     ever_larger_cloths,
+     {table_backends, cheapest_method, table_of_scaling}},
+    {"peers",
+     "the same scenes in other languages and libraries, side by side (scripts/peers)",
+     false,
+     true,
+     scenes_of_peers,
+     {baseline_and_best, cheapest_method, peer_tables, true}},
+    {"cluster",
+     "in several processes, on this machine or several: what messages cost, and what larger ones would do",
+     false,
+     true,
+     cluster_scenes,
+     {baseline_and_best, cheapest_method, table_of_cluster, false, cluster_programs, is_in_cluster, 1}},
+    {"garment",
+     "jeans on a body, draped and dressed: Figure 6 of Vassilev",
+     false,
+     true,
+     jeans,
+     {table_backends, cheapest_method, garment_tables}},
+    {guide_suite,
+     "which integrator, backend and step for cloths and bodies: mssim guide, scene by scene",
+     false,
+     true,
+     scenes_of_guide,
+     {guide_backends, every_integrator, no_tables}},
+}};
+
+bool belongs(const Suite& suite, std::string_view name) {
+  return name == suite.name || (name == suites_of_tables && suite.in_tables);
+}
+
+}  // namespace
+
+PaperLegend paper_legend() {
+  PaperLegend legend;
+  for (const BackendInfo& backend : backends())
+    legend.backends.push_back({std::string(backend.name), std::string(backend.paper_configuration)});
+  for (const Integrator* integrator : all_integrators)
+    legend.integrators.push_back({std::string(integrator->name), std::string(integrator->paper_name),
+                                  static_cast<int>(integrator->stage_count)});
+  return legend;
+}
+
+std::span<const Suite> suites() { return table; }
+
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names;
+  for (const Suite& suite : table) names.emplace_back(suite.name);
+  names.emplace_back(suites_of_tables);
+  return names;
+}
+
+std::vector<std::string> scenes_of_suite(std::string_view name, bool timed) {
+  std::vector<std::string> scenes;
+  for (const Suite& suite : table)
+    if (suite.timed == timed && belongs(suite, name))
+      scenes.insert(scenes.end(), suite.scenes.begin(), suite.scenes.end());
+  return scenes;
+}
+
+const Comparison& comparison_of_suite(std::string_view name) {
+  const auto suite = std::ranges::find(table, name, &Suite::name);
+  return suite == table.end() ? of_backends : suite->comparison;
+}
+
+}  // namespace mssim

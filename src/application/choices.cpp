@@ -1,0 +1,314 @@
+#include "application/choices.h"
+
+#include <omp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "backends/described/backend_description.h"
+#include "backends/devices/offer.h"
+#include "backends/process/process_backend.h"
+#include "integrators/all_integrators.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "scene/scene_file.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+/// Those that the process may use, or as many as a container's quota of processor time amounts to.
+int usable_processors() {
+  const int processors = omp_get_num_procs();
+  const std::optional<double> quota = container_limits().processors;
+  return quota ? std::min(processors, static_cast<int>(std::ceil(*quota))) : processors;
+}
+
+}  // namespace
+
+const Integrator& require_integrator(const std::string& name) {
+  if (const Integrator* integrator = find_integrator(name)) return *integrator;
+  std::vector<std::string_view> names;
+  for (const Integrator* integrator : all_integrators) names.push_back(integrator->name);
+  throw UsageError(unknown_name("integrator", name, names));
+}
+
+std::vector<const Integrator*> chosen_integrators(const std::vector<std::string>& asked,
+                                                  std::span<const std::string_view> by_default) {
+  const std::vector<std::string> names =
+      asked.empty() ? std::vector<std::string>(by_default.begin(), by_default.end()) : asked;
+  if (names == std::vector<std::string>{"all"}) return {all_integrators.begin(), all_integrators.end()};
+  std::vector<const Integrator*> named, chosen;
+  for (const std::string& name : names) named.push_back(&require_integrator(name));
+  for (const Integrator* integrator : all_integrators)
+    if (std::ranges::find(named, integrator) != named.end()) chosen.push_back(integrator);
+  return chosen;
+}
+
+std::string name_of(DeviceMemory memory) { return memory == DeviceMemory::copy ? "copy" : "shared"; }
+
+void require_few_threads(int threads) {
+  constexpr int most_a_processor = 8;
+  const int processors = omp_get_num_procs();
+  if (threads > most_a_processor * processors)
+    throw UsageError("--threads " + std::to_string(threads) + " is too many for the " +
+                     pluralize(static_cast<std::uint64_t>(processors), "processor") +
+                     " that this process may use; ask for at most " +
+                     std::to_string(most_a_processor * processors) + ", " + std::to_string(most_a_processor) +
+                     " for each");
+}
+
+ExecutionOptions complete(ExecutionOptions options) {
+  const int limit = omp_get_thread_limit();
+  options.threads_given = options.threads > 0;
+  if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
+  if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
+  if (options.threads > limit)
+    throw UsageError("--threads " + std::to_string(options.threads) +
+                     " is more than OMP_THREAD_LIMIT allows, " + std::to_string(limit) +
+                     "; ask for fewer, or unset it");
+  omp_set_dynamic(0);
+  return options;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view description_extension = ".json";
+
+/// The folder of the user's own descriptions; none where the user has no home.
+std::optional<fs::path> user_folder() {
+  if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder && *folder)
+    return fs::path(folder) / "mssim" / "backends";
+  if (const char* home = std::getenv("HOME"); home && *home)
+    return fs::path(home) / ".config" / "mssim" / "backends";
+  return std::nullopt;
+}
+
+/// The folder of those that come with mssim.
+fs::path shipped_folder() { return data_folder() / "backends"; }
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+bool is_path(const std::string& name) { return name.find('/') != std::string::npos; }
+
+std::string shown(const fs::path& path) { return escaped(path.string()); }
+
+/// The program at a path that the command line names.
+BackendProgram program_at(const std::string& path) {
+  if (!is_file(path))
+    throw MissingProgram("there is no program " + escaped(path) +
+                         ": give the path of a program, or a name (see mssim list backends)");
+  if (::access(path.c_str(), X_OK) != 0)
+    throw MissingProgram(escaped(path) + " may not be executed; chmod +x it, or describe how it is run");
+  BackendProgram program;
+  program.program = fs::absolute(path);
+  program.name = row_name(path);
+  program.description = "the program " + escaped(path);
+  program.command = {path};
+  program.folder = fs::current_path();
+  return program;
+}
+
+}  // namespace
+
+std::string row_name(const std::string& asked) {
+  if (!is_path(asked)) return asked;
+  const fs::path path = asked;
+  return (path.extension() == description_extension ? path.stem() : path.filename()).string();
+}
+
+std::vector<const BackendInfo*> table_backends() {
+  std::vector<const BackendInfo*> rows;
+  for (const BackendInfo& backend : backends()) rows.push_back(&backend);
+  return rows;
+}
+
+BackendChoice::Row::Row(BackendProgram its_program)
+    : program(std::move(its_program)), info(own_backend(program)) {}
+
+BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBackendOptions& options,
+                             const std::vector<std::string>& scenes)
+    : known_(std::move(known)), limit_s_(options.limit_s) {
+  for (const std::string& folder : options.folders) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+      throw UsageError("--backend-folder " + escaped(folder) + " is no folder");
+    folders_.emplace_back(folder);
+  }
+  if (const auto folder = user_folder()) folders_.push_back(*folder);
+  for (const std::string& scene : scenes) {
+    const fs::path folder = fs::path(scene).parent_path();
+    if (is_path_of_scene(scene)) scene_folders_.push_back(folder.empty() ? fs::path(".") : folder);
+  }
+}
+
+const BackendInfo& BackendChoice::require(const std::string& name) {
+  if (is_path(name)) return name.ends_with(description_extension) ? add_file(name) : add(program_at(name));
+  const std::optional<fs::path> file = description_of(name);
+  if (!file)
+    if (const auto in_ranks = in_ranks_of(name)) return add(*in_ranks);
+  const auto row = std::ranges::find(known_, name, &BackendInfo::name);
+  if (row != known_.end()) return **row;
+  if (file) return add_file(*file);
+  std::vector<std::string_view> names;
+  for (const BackendInfo* info : known_) names.push_back(info->name);
+  for (const BackendInfo* info : described()) names.push_back(info->name);
+  for (const BackendInfo* info : shipped()) names.push_back(info->name);
+  if (is_file(name))
+    throw UsageError("unknown backend \"" + printable(name) +
+                     "\": a program of your own is a path with a slash, ./" + printable(name));
+  constexpr std::array<OtherName, 2> others{{{"gpu", "opencl"}, {"cuda", "opencl"}}};
+  throw UsageError(unknown_name("backend", name, names, others));
+}
+
+std::optional<BackendProgram> BackendChoice::in_ranks_of(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const std::string its_name = name.substr(0, colon), count = name.substr(colon + 1);
+  const auto row = std::ranges::find(known_, its_name, &BackendInfo::name);
+  const std::optional<fs::path> file = row == known_.end() ? description_of(its_name) : std::nullopt;
+  if (row == known_.end() && !file) return std::nullopt;
+  BackendProgram program = file ? read_description(*file) : BackendProgram{};
+  if (!program.in_ranks)
+    throw UsageError(printable(name) + " says a number of ranks, and " + its_name +
+                     " runs in one process: leave \":" + printable(count) + "\" out");
+  const std::optional<int> ranks = number_in<int>(count);
+  if (!ranks || *ranks < 1 || *ranks > most_ranks)
+    throw UsageError(printable(name) + " says a number of ranks that cannot be: give one from 1 to " +
+                     std::to_string(most_ranks) + ", as in " + its_name + ":4");
+  program.ranks = *ranks;
+  program.name = its_name + ':' + std::to_string(*ranks);
+  return program;
+}
+
+std::vector<const BackendInfo*> BackendChoice::require_all(const std::vector<std::string>& names) {
+  std::vector<const BackendInfo*> asked, rows;
+  for (const std::string& name : names) asked.push_back(&require(name));
+  for (const BackendInfo* row : known_)
+    if (std::ranges::find(asked, row) != asked.end()) rows.push_back(row);
+  std::ranges::copy(own(), std::back_inserter(rows));
+  return rows;
+}
+
+std::vector<const BackendInfo*> BackendChoice::shipped() { return described_in({shipped_folder()}); }
+
+std::vector<const BackendInfo*> BackendChoice::described_in(const std::vector<fs::path>& folders) {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == description_extension && is_file(entry.path()))
+        files.push_back(entry.path());
+  }
+  std::ranges::sort(files, {}, [](const fs::path& file) { return file.stem(); });
+  std::vector<const BackendInfo*> infos;
+  for (const fs::path& file : files) infos.push_back(&require(file.stem().string()));
+  return infos;
+}
+
+std::vector<const BackendInfo*> BackendChoice::own() const {
+  std::vector<const BackendInfo*> infos;
+  for (const std::unique_ptr<Row>& row : rows_) infos.push_back(&row->info);
+  return infos;
+}
+
+std::optional<fs::path> BackendChoice::description_of(const std::string& name) const {
+  const bool in_table = std::ranges::find(known_, name, &BackendInfo::name) != known_.end();
+  std::vector<fs::path> found;
+  const auto look = [&](const fs::path& folder) {
+    const fs::path file = folder / (name + std::string(description_extension));
+    std::error_code error;
+    const bool known =
+        std::ranges::any_of(found, [&](const fs::path& other) { return fs::equivalent(other, file, error); });
+    if (is_file(file) && !known) found.push_back(file);
+  };
+  std::ranges::for_each(folders_, look);
+  if (in_table && !found.empty())
+    throw UsageError(shown(found.front()) + " is called like the backend " + name + " of mssim; rename it");
+  // A scene may be called as anything.
+  if (!in_table) std::ranges::for_each(scene_folders_, look);
+  look(shipped_folder());
+  if (found.size() > 1)
+    throw UsageError("there are two backends called " + escaped(name) + ", " + shown(found[0]) + " and " +
+                     shown(found[1]) + "; rename one of them");
+  return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
+const BackendInfo& BackendChoice::add_file(const fs::path& file) { return add(read_description(file)); }
+
+const BackendInfo& BackendChoice::add(BackendProgram program) {
+  if (escaped(program.name) != program.name)
+    throw UsageError("a backend cannot be called " + escaped(program.name) +
+                     ": its name has characters that cannot be shown; rename it");
+  if (std::ranges::find(known_, program.name, &BackendInfo::name) != known_.end())
+    throw UsageError(shown(program.program) + " is called like the backend " + program.name +
+                     " of mssim; rename it");
+  for (const std::unique_ptr<Row>& row : rows_) {
+    if (row->program.name != program.name) continue;
+    if (row->program.program == program.program && row->program.command == program.command &&
+        row->program.folder == program.folder)
+      return row->info;
+    throw UsageError("there are two backends called " + program.name + ", " + shown(row->program.program) +
+                     " and " + shown(program.program) + "; rename one of them");
+  }
+  if (limit_s_) program.time_limit_s = *limit_s_;
+  return rows_.emplace_back(std::make_unique<Row>(std::move(program)))->info;
+}
+
+void add_programs(Provenance& provenance, const std::vector<const BackendInfo*>& rows,
+                  const ExecutionOptions& execution) {
+  for (const BackendInfo* info : rows) {
+    const BackendProgram* program = info->program;
+    if (!program) continue;
+    BackendProgramRecord record{.name = program->name, .command = program->command};
+    if (program->in_ranks) {
+      const RankCount count = ranks_of(*program, execution);
+      record.ranks = count.ranks;
+      record.rank_threads = count.threads;
+      record.launcher = execution.launcher;
+    }
+    add_program(provenance, std::move(record), program->program, program->folder);
+  }
+}
+
+void require_use_of_ranks(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
+  const std::string option = given.ranks > 0 ? "--ranks" : "--launcher";
+  if (given.ranks == 0 && given.launcher.empty()) return;
+  const auto in_ranks = [](const BackendInfo* info) { return info->program && info->program->in_ranks; };
+  if (std::ranges::none_of(rows, in_ranks))
+    throw UsageError(option +
+                     " is for backends that run in several processes, and none of these does: add --backend "
+                     "mpi, or leave it out");
+}
+
+void require_device(const ExecutionOptions& given, const std::vector<const BackendInfo*>& rows) {
+  if (!given.device.empty() && std::ranges::any_of(rows, &BackendInfo::uses_device))
+    find_opencl_device(given.device);
+}
+
+int most_ranks_of(const std::vector<const BackendInfo*>& rows, const ExecutionOptions& execution) {
+  int most = 1;
+  for (const BackendInfo* info : rows)
+    if (info->program && info->program->in_ranks)
+      most = std::max(most, ranks_of(*info->program, execution).ranks);
+  return most;
+}
+
+}  // namespace mssim

@@ -1,0 +1,257 @@
+#include "application/guide_run.h"
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "application/choices.h"
+#include "application/console.h"
+#include "application/outputs.h"
+#include "application/prepared_scene.h"
+#include "guide/guide.h"
+#include "output/folders/result_folder.h"
+#include "output/guide/guide_page.h"
+#include "output/guide/guide_table.h"
+#include "output/tables/table.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+/// With that many nodes along a side; its text says so too.
+SceneSpec with_side(SceneSpec spec, std::uint32_t side) {
+  auto& cloth = std::get<ClothSpec>(spec.content);
+  const double height = cloth.ceiling_height_m - spec.floor.height;
+  cloth.ceiling_height_m = spec.floor.height + height * (side - 1) / (cloth.rows - 1);
+  cloth.rows = cloth.columns = side;
+  if (cloth.pins) cloth.pins->row = 0;
+  nlohmann::json text = nlohmann::json::parse(spec.source);
+  nlohmann::json& fields = text.at("cloth");
+  fields["rows"] = fields["columns"] = side;
+  fields["ceiling_height_m"] = cloth.ceiling_height_m;
+  if (cloth.pins) fields["pins"]["row"] = 0;
+  spec.source = text.dump();
+  return spec;
+}
+
+/// Makes square cloths of the same springs, masses, spacing, pins and ripple as this one, which hang as high
+/// above the floor as it does in lengths of a side. None where the scene is no cloth.
+ClothMaker cloth_family(const SceneSpec& spec) {
+  const auto* cloth = std::get_if<ClothSpec>(&spec.content);
+  if (cloth == nullptr || cloth->rows < 2) return {};
+  return [spec, folder = std::make_shared<TemporaryFolder>()](std::uint32_t side) {
+    const SceneSpec one = with_side(spec, side);
+    FamilyCloth made{build_system(one), folder->path() / (std::to_string(side) + ".json")};
+    write_file_atomically(made.file, one.source);
+    return made;
+  };
+}
+
+/// Whether both are cloths of one family: the same but for their size.
+bool same_family(const SceneSpec& a, const SceneSpec& b) {
+  const auto *one = std::get_if<ClothSpec>(&a.content), *other = std::get_if<ClothSpec>(&b.content);
+  if (one == nullptr || other == nullptr) return false;
+  const auto same_springs = [&] {
+    for (std::size_t kind = 0; kind < one->springs.size(); ++kind)
+      if (one->springs[kind].stiffness != other->springs[kind].stiffness ||
+          one->springs[kind].damping != other->springs[kind].damping)
+        return false;
+    return true;
+  };
+  return one->spacing_m == other->spacing_m &&
+         one->areal_density_kg_per_m2 == other->areal_density_kg_per_m2 && same_springs() &&
+         a.gravity_m_per_s2 == b.gravity_m_per_s2 && a.viscous_damping_per_s == b.viscous_damping_per_s;
+}
+
+std::vector<SceneSpec> asked_scenes(const GuideOptions& options) {
+  std::vector<SceneSpec> scenes;
+  for (const std::string& name : options.scenes) {
+    SceneSpec spec = find_scene(name);
+    if (std::holds_alternative<GarmentSpec>(spec.content))
+      throw UsageError(spec.name +
+                       " is a garment, which mssim guide does not measure: name a cloth or bodies");
+    if (std::ranges::find(scenes, spec.name, &SceneSpec::name) == scenes.end())
+      scenes.push_back(std::move(spec));
+  }
+  if (scenes.empty()) throw UsageError("there is nothing to measure: name a --scene");
+  return scenes;
+}
+
+/// The folder, without results that are to stay; null where results are only printed.
+std::unique_ptr<ResultFolder> result_folder(const GuideOptions& options, const Provenance& provenance) {
+  if (options.folder.empty()) {
+    if (options.overwrite) throw UsageError("--overwrite needs the folder of an earlier run: give --out too");
+    return nullptr;
+  }
+  auto folder = std::make_unique<ResultFolder>(options.folder, provenance, TableMaker());
+  if (folder->has_results()) {
+    if (!options.overwrite)
+      throw UsageError(options.folder +
+                       " already holds results: give another --out, or --overwrite to "
+                       "replace them");
+    folder->replace_results();
+  }
+  folder->begin();
+  return folder;
+}
+
+/// Those that were asked for by name and cannot run here.
+void require_available(const GuideOptions& options, const std::vector<const BackendInfo*>& backends,
+                       const ExecutionOptions& execution) {
+  if (options.backends.empty()) return;
+  for (const BackendInfo* info : backends)
+    if (const std::string reason = unavailable_reason(*info, execution); !reason.empty())
+      throw Unavailable(std::string(info->name) + ": " + reason);
+}
+
+void print(const SceneGuide& guide) {
+  std::cout << guide.scene << '\n';
+  if (!guide.trusted.failure.empty()) {
+    std::cout << "No errors were measured: " << guide.trusted.failure << ".\n";
+    return;
+  }
+  for (const std::string& sentence : guide.recommendation.sentences) std::cout << sentence << '\n';
+  std::cout << '\n' << to_text(guide_summary(guide)) << '\n';
+  for (const std::string& sentence : about_trusted_state(guide.trusted)) std::cout << sentence << '\n';
+}
+
+constexpr std::array<std::string_view, 1> every_integrator{"all"};
+
+/// A scene gets so much even where those before it have overrun the whole, s.
+constexpr double least_scene_s = 1;
+
+/// What can be known before anything is measured.
+struct GuidePlan {
+  std::vector<SceneSpec> scenes;
+  std::vector<const BackendInfo*> backends;
+  std::vector<const Integrator*> integrators;
+  ExecutionOptions execution;
+  double seconds = 0;  ///< wall time for all scenes
+};
+
+/// `seconds`: wall time for this scene.
+SceneGuide measured(const GuidePlan& plan, const GuideOptions& options, std::size_t number, double seconds,
+                    ProgressLine& progress, const StopRequest& stop) {
+  const SceneSpec& spec = plan.scenes[number];
+  const PreparedScene scene = prepare_scene(spec);
+  warn_of_note(scene);
+  GuideRequest request{.scene = spec.name,
+                       .system = &scene.system,
+                       .backends = plan.backends,
+                       .integrators = plan.integrators,
+                       .execution = plan.execution,
+                       .wish = options.wish,
+                       .seconds = seconds,
+                       .longest_horizon_s = options.horizon_s,
+                       .make_cloth = {}};
+  request.execution.scene = spec.name;
+  request.execution.scene_file = spec.file;
+  // Once for every family.
+  const auto earlier = plan.scenes.begin() + static_cast<std::ptrdiff_t>(number);
+  if (std::none_of(plan.scenes.begin(), earlier, [&](const SceneSpec& s) { return same_family(s, spec); }))
+    request.make_cloth = cloth_family(spec);
+  return guide_scene(request, {.progress = [&](const std::string& activity,
+                                               double done) { progress.update(activity, done); },
+                               .stop = [&] { return stop.requested(); }});
+}
+
+/// What programs have failed with, and scenes for which the time, `share_s` for each, was too short.
+std::vector<std::string> failures(const std::vector<SceneGuide>& guides, double share_s) {
+  std::vector<std::string> sentences;
+  for (const SceneGuide& guide : guides) {
+    const auto ran_out = [](const std::string& status) { return status.starts_with("no time"); };
+    if (ran_out(guide.trusted.failure) ||
+        (guide.points.empty() && std::ranges::any_of(guide.methods, ran_out, &GuidedMethod::status)))
+      sentences.push_back(guide.scene + ": nothing was measured in " + two_digits(share_s) +
+                          " s: give --time-budget " + two_digits(std::max(usual_guide_s, 2 * share_s)) +
+                          " or more for each scene");
+    for (const GuidedMethod& method : guide.methods)
+      if (method.status.starts_with("failed"))
+        sentences.push_back(guide.scene + ", " + std::string(method.backend->name) + ", " +
+                            std::string(method.integrator->name) + ": " + method.status);
+  }
+  return sentences;
+}
+
+void tell(const GuidePlan& plan) {
+  Table table;
+  for (const SceneSpec& spec : plan.scenes)
+    table.add({{"scene", spec.name},
+               {"integrators", plan.integrators.size()},
+               {"backends", plan.backends.size()},
+               {"expected_s", plan.seconds / static_cast<double>(plan.scenes.size())}});
+  std::cout << to_text(table) << "about " << three_digits(plan.seconds) << " s in all\n";
+}
+
+}  // namespace
+
+std::vector<const BackendInfo*> guide_backends() {
+  return {find_backend("serial"), find_backend("openmp"), find_backend("opencl")};
+}
+
+int run_guide(const GuideOptions& options) {
+  GuidePlan plan;
+  BackendChoice choice(table_backends(), options.own_backends, options.scenes);
+  plan.backends = options.backends.empty() ? guide_backends() : choice.require_all(options.backends);
+  require_use_of_ranks(options.execution, plan.backends);
+  require_device(options.execution, plan.backends);
+  plan.integrators = chosen_integrators(options.integrators, every_integrator);
+  plan.scenes = asked_scenes(options);
+  plan.execution = complete(options.execution);
+  plan.seconds = options.time_budget_s.value_or(usual_guide_s * static_cast<double>(plan.scenes.size()));
+  if (options.dry_run) {
+    tell(plan);
+    return exit_ok;
+  }
+  require_available(options, plan.backends, plan.execution);
+  const bool uses_device = std::ranges::any_of(plan.backends, &BackendInfo::uses_device);
+  Provenance provenance = run_provenance(plan.execution.threads, uses_device);
+  add_programs(provenance, choice.own(), plan.execution);
+  for (const SceneSpec& spec : plan.scenes) add_scene(provenance, spec.name, spec.source);
+  const std::unique_ptr<ResultFolder> folder = result_folder(options, provenance);
+  for (const std::string& noise : provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  if (uses_device) tell_of_opencl();
+
+  std::vector<SceneGuide> guides;
+  bool written = false;
+  StopRequest stop;
+  {
+    ProgressLine progress(std::vector<double>(plan.scenes.size(), 1));
+    const Stopwatch watch;
+    for (std::size_t number = 0; number < plan.scenes.size() && !stop.requested(); ++number) {
+      progress.begin_scene(plan.scenes[number].name);
+      // What a scene leaves goes to those after it, and what it overruns they make good.
+      const double share =
+          (plan.seconds - watch.seconds()) / static_cast<double>(plan.scenes.size() - number);
+      guides.push_back(measured(plan, options, number, std::max(share, least_scene_s), progress, stop));
+      // A guide that was stopped before it had a point replaces nothing.
+      if (!folder || (stop.requested() && guides.back().points.empty())) continue;
+      folder->write(guide_tables(guides, provenance));
+      written = true;
+    }
+  }
+  for (const SceneGuide& guide : guides) {
+    if (&guide != &guides.front()) std::cout << '\n';
+    print(guide);
+  }
+  if (written) std::cerr << "mssim: results are in " << escaped(options.folder) << '\n';
+  if (folder && !written) std::cerr << "mssim: nothing was measured yet, and nothing written\n";
+  stop.throw_if_requested();
+  const std::vector<std::string> failed =
+      failures(guides, plan.seconds / static_cast<double>(plan.scenes.size()));
+  tell_first(failed);
+  return failed.empty() ? exit_ok : exit_not_verified;
+}
+
+}  // namespace mssim

@@ -1,0 +1,112 @@
+#include "application/outputs.h"
+
+#include <algorithm>
+#include <iterator>
+#include <system_error>
+
+#include "backends/devices/offer.h"
+#include "mesh/tetgen.h"
+#include "output/folders/provenance_file.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Without links, "." and "..", as far as the path exists; a link may lead to what does not exist yet.
+fs::path resolved(const fs::path& path) {
+  std::error_code error;
+  fs::path absolute = fs::absolute(path, error);
+  constexpr int most_links = 40;  // as many as Linux follows
+  for (int links = 0; links < most_links && fs::is_symlink(absolute, error); ++links)
+    absolute = absolute.parent_path() / fs::read_symlink(absolute, error);
+  const fs::path canonical = fs::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : canonical;
+}
+
+/// A rename replaces a link, not what it leads to: such a file goes by two names.
+bool is_same(const fs::path& a, const fs::path& b) {
+  const auto in_its_folder = [](const fs::path& path) {
+    return resolved(path.has_parent_path() ? path.parent_path() : fs::path(".")) / path.filename();
+  };
+  std::error_code error;
+  return in_its_folder(a) == in_its_folder(b) || resolved(a) == resolved(b) || fs::equivalent(a, b, error);
+}
+
+void require_other(const NamedFile& a, const NamedFile& b) {
+  if (is_same(a.path, b.path))
+    throw UsageError(a.role + " and " + b.role + " are the same file, " + printable(a.path.string()) +
+                     "; give them different names");
+}
+
+}  // namespace
+
+void require_extension(const NamedFile& file, const std::string& content,
+                       const std::vector<std::string_view>& extensions) {
+  const std::string extension = file.path.extension().string();
+  if (extension.empty() || std::ranges::find(extensions, to_lower(extension)) != extensions.end()) return;
+  throw UsageError(file.role + " is " + printable(file.path.string(), 1000) + ", but what is written is " +
+                   content + ": give " + printable(file.path.stem().string(), 1000) +
+                   std::string(extensions.front()));
+}
+
+void require_distinct(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read) {
+  for (auto file = written.begin(); file != written.end(); ++file) {
+    for (auto other = file + 1; other != written.end(); ++other) {
+      require_other(*file, *other);
+      for (const auto& [under_way, whole] : {std::pair(*file, *other), std::pair(*other, *file)})
+        require_other({"the temporary file of " + under_way.role, temporary_of(under_way.path)}, whole);
+    }
+    for (const NamedFile& input : read) require_other(*file, input);
+  }
+}
+
+namespace {
+
+std::vector<std::string>& arguments() {
+  static std::vector<std::string> remembered;
+  return remembered;
+}
+
+}  // namespace
+
+void remember_arguments(int argc, char** argv) { arguments().assign(argv, argv + argc); }
+
+Provenance run_provenance(int threads, bool uses_device) {
+  Provenance provenance = gather_provenance(arguments(), threads);
+  if (uses_device) {
+    const OpenclOffer& offer = opencl_offer();
+    for (const OpenclDevice& device : offer.devices)
+      provenance.opencl_devices.push_back(device.platform + ": " + device.name + ", driver " +
+                                          device.driver_version);
+    std::ranges::copy(offer.troubles, std::back_inserter(provenance.opencl_devices));
+  }
+  if (const auto tetgen = find_tetgen())
+    provenance.tetgen = tetgen->version + ", fnv1a_64 " + to_hex(tetgen->fnv1a_64);
+  return provenance;
+}
+
+std::string command_line(const Provenance& provenance) {
+  std::string text;
+  for (const std::string& argument : provenance.command_line)
+    text.append(text.empty() ? "" : " ").append(shell_word(argument));
+  return text;
+}
+
+TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, const std::string& backend_name,
+                         const Integrator& integrator, const Provenance& provenance) {
+  TraceHeader header;
+  header.creator_version = build_info().version;
+  header.scene_json = scene.spec.source;
+  header.provenance_json = provenance_text(provenance);
+  header.backend = backend_name + " on " + backend.device();
+  header.integrator = integrator.name;
+  header.dt_s = scene.dt_s;
+  return header;
+}
+
+}  // namespace mssim

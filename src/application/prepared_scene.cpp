@@ -1,0 +1,93 @@
+#include "application/prepared_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <optional>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "garment/contact/solid.h"
+#include "scene/scene_kinds.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+/// Meshes, and bodies to dress, are what does not follow from a scene's file alone.
+std::string difference(const SceneSpec& spec, const SceneCounts& counts,
+                       const std::optional<SceneCounts>& stated) {
+  if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
+    return "";
+  return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
+         std::to_string(counts.springs_unique) + " springs where the scene states " +
+         std::to_string(stated->nodes) + " and " + std::to_string(stated->springs_unique) +
+         (std::holds_alternative<GarmentSpec>(spec.content)
+              ? ": another body, or another pattern, makes other panels; state what they have"
+              : ": another TetGen, or another file, makes another mesh");
+}
+
+}  // namespace
+
+PreparedScene prepare_scene(SceneSpec spec, const SceneParts& parts) {
+  PreparedScene scene;
+  scene.spec = std::move(spec);
+  BuiltScene built = build_scene(scene.spec, parts);
+  scene.system = std::move(built.system);
+  scene.body = std::move(built.body);
+  scene.counts = counts_of(scene.spec, scene.system);
+  scene.note = difference(scene.spec, scene.counts, parts.stated);
+  append_sentence(scene.note, built.note);
+  scene.dt_s = scene.spec.dt_s ? *scene.spec.dt_s : auto_dt(mode_bound(scene.system));
+  return scene;
+}
+
+PreparedScene prepare_scene(SceneSpec spec) {
+  const SceneParts parts = read_parts(spec);
+  return prepare_scene(std::move(spec), parts);
+}
+
+ModeBound mode_bound(const System& system) {
+  const StiffnessBound bound = stiffness_bound(system);
+  return {bound.stiffness, bound.damping, system.viscous_damping};
+}
+
+void warn_of_note(const PreparedScene& scene) {
+  if (!scene.note.empty()) std::cerr << "mssim: " << scene.spec.name << ": " << scene.note << '\n';
+}
+
+namespace {
+
+/// The middle of the leg on the point's side, or of the trunk where that is nearer.
+Vec3d limb_middle(const BodyProfile& profile, const Vec3d& point) {
+  if (profile.has_legs()) {
+    const PlanPoint leg = profile.leg_middle(point.y);
+    if (std::abs(point.x) > leg.x / 2) return {point.x < 0 ? -leg.x : leg.x, point.y, leg.z};
+  }
+  const double height = std::clamp(point.y, profile.lowest(), profile.highest());
+  return {0, point.y, (profile.front(height) + profile.back(height)) / 2};
+}
+
+}  // namespace
+
+FitBody fit_body(const std::shared_ptr<const MeasuredBody>& body) {
+  // What the garment meets: an arm beside the hip is nothing to be inside of.
+  const auto solid = std::make_shared<const Solid>(body->profile.trunk_and_legs().surface);
+  // A hand that was cut off takes some of the hip with it: cloth inside the whole body does not stand off.
+  const auto whole = std::make_shared<const Solid>(body->surface);
+  return {[solid](std::span<const Vec3d> points) { return solid->depths(points); },
+          [body](const Vec3d& point) { return limb_middle(body->profile, point); },
+          [whole, body](std::span<const Vec3d> points, double lowest, double highest) {
+            const BandHull hull(body->profile.trunk_and_legs().surface, lowest, highest);
+            std::vector<double> distances;
+            for (const Vec3d& point : points)
+              distances.push_back(
+                  whole->depth(point) > 0 ? 0 : std::min(whole->distance(point), hull.distance(point)));
+            return distances;
+          }};
+}
+
+}  // namespace mssim

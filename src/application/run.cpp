@@ -1,0 +1,423 @@
+#include "application/run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "application/choices.h"
+#include "application/console.h"
+#include "application/outputs.h"
+#include "application/prepared_scene.h"
+#include "backends/backends.h"
+#include "backends/reference.h"
+#include "bench/estimates.h"
+#include "bench/verification/energy_ledger.h"
+#include "bench/verification/verification.h"
+#include "garment/fitting/fitting.h"
+#include "garment/stepping/serial_dressing.h"
+#include "output/tables/table.h"
+#include "output/traces/energy_curve.h"
+#include "platform/files.h"
+#include "platform/machine.h"
+#include "platform/process.h"
+#include "scene/scene_file.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+/// Longest run, in steps: a frame's steps are counted in an int, and beyond 2^53 times lose whole steps.
+constexpr double most_steps = std::numeric_limits<int>::max();
+
+}  // namespace
+
+std::int64_t count_steps(const SimulationPlan& plan) {
+  const double exact_steps = plan.duration_s / plan.dt_s;
+  if (!(exact_steps >= 0.5 && exact_steps <= most_steps)) {
+    std::ostringstream text;
+    text << "a duration of " << plan.duration_s << " s is " << exact_steps << " steps of " << plan.dt_s
+         << " s; --duration must give between one step and " << most_steps;
+    throw UsageError(text.str());
+  }
+  return static_cast<std::int64_t>(std::llround(exact_steps));
+}
+
+FrameGrid frame_grid(double frames_per_second, double dt_s) {
+  const double steps_per_frame = 1 / (frames_per_second * dt_s);
+  if (!(steps_per_frame >= 1)) {
+    std::ostringstream text;
+    text << "--fps " << frames_per_second << " is more than one frame a step of " << dt_s << " s; take --fps "
+         << (dt_s > 1 ? 1 / dt_s : std::floor(1 / dt_s)) << " or less";
+    throw UsageError(text.str());
+  }
+  return {steps_per_frame};
+}
+
+void simulate(Backend& backend, const System& system, const Integrator& integrator,
+              const SimulationPlan& plan, const SimulationWatch& watch) {
+  const std::int64_t steps = count_steps(plan);
+  const FrameGrid grid = frame_grid(plan.frames_per_second, plan.dt_s);
+  std::optional<EnergyLedger> ledger;
+  if (plan.accounts_for_losses) ledger.emplace(system, integrator, plan.dt_s);
+  const auto losses = [&] { return ledger ? std::optional(ledger->losses()) : std::nullopt; };
+  backend.set_state(system.start);
+  State before = system.start;
+  watch.on_frame({0, 0, before, energy_of(system, before), losses()});
+  std::int64_t done = 0;
+  for (std::int64_t frame = 1; done < steps; ++frame) {
+    const std::int64_t next = std::min(steps, grid.step_of(frame));
+    const int count = static_cast<int>(next - done);
+    if (ledger) {
+      for (int step = 0; step < count; ++step) {
+        watch.on_progress(done + step, steps);
+        ledger->step(backend);
+      }
+    } else {
+      watch.on_progress(done, steps);
+      backend.step(count);
+    }
+    State state = backend.state();
+    if (const auto node = first_bad_node(state)) {
+      const BlowUp blow_up = find_blow_up(backend, before, count).value_or(BlowUp{count, *node});
+      throw NotVerified("the simulation " + describe(blow_up, plan.dt_s, done));
+    }
+    done = next;
+    watch.on_frame({done, static_cast<double>(done) * plan.dt_s, state, energy_of(system, state), losses()});
+    before = std::move(state);
+  }
+}
+
+void require_distinct(const RunFiles& files, const SceneSpec& scene) {
+  std::vector<NamedFile> written, read;
+  if (!files.trace.empty()) {
+    written.push_back({"--trace", files.trace});
+    written.push_back({"the XDMF beside --trace", xdmf_of(files.trace)});
+  }
+  if (!files.energy_curve.empty()) written.push_back({"--energy-curve", files.energy_curve});
+  if (!files.pictures.empty()) written.push_back({"--pictures", files.pictures});
+  for (const std::filesystem::path& file : files_of(scene)) read.push_back({"a file of the scene", file});
+  require_distinct(written, read);
+}
+
+RunRecorder::RunRecorder(const RunFiles& files, const PreparedScene& scene, const FileHeaders& headers)
+    : temporary_(files.temporary) {
+  if (!files.energy_curve.empty()) {
+    std::string comment = headers.command_line;
+    if (const std::string_view work = energies_leave_out(scene.system); !work.empty())
+      comment.append("\nleft out: ").append(work);
+    curve_.emplace(files.energy_curve, comment);
+  }
+  const Surface body = scene.body ? scene.body->surface : Surface{};
+  if (!files.trace.empty()) trace_.emplace(files.trace, scene.system, headers.trace, body);
+  if (!files.pictures.empty())
+    pictures_.emplace(files.pictures, trace_content_of(scene.system, headers.trace, body), headers.pictures);
+}
+
+void RunRecorder::record(const Frame& frame) {
+  const EnergySample sample{frame.time_s, frame.energy};
+  // First the curve, so that it has the energies of every frame of the trace, whichever of the two fails.
+  if (curve_) curve_->append(sample);
+  if (trace_) trace_->write_frame(frame.step, frame.time_s, frame.state, frame.energy, frame.losses);
+  if (pictures_) pictures_->draw(frame.state.position);
+  energies_.push_back(sample);
+}
+
+void RunRecorder::finish_after(const std::function<void()>& simulation) {
+  try {
+    try {
+      simulation();
+    } catch (const NotVerified&) {
+      finish();
+      throw;
+    } catch (const Interrupted&) {
+      finish();
+      throw;
+    }
+    finish();
+  } catch (const WriteError& error) {
+    throw WriteError(error.what() + kept());
+  }
+}
+
+void RunRecorder::finish() {
+  if (curve_) curve_->close();
+  if (trace_) trace_->close();
+  if (temporary_) return;
+  const auto tell = [](const std::string& what) { std::cerr << "mssim: wrote " << what << '\n'; };
+  if (curve_) tell(printable(curve_->name().string(), 1000));
+  if (trace_)
+    tell(printable(trace_->name().string(), 1000) + " and " +
+         printable(xdmf_of(trace_->name()).string(), 1000));
+  if (pictures_)
+    tell(pluralize(pictures_->pictures(), "picture") + " into " +
+         printable(pictures_->name().string(), 1000));
+}
+
+std::string RunRecorder::kept() {
+  std::string text;
+  if (temporary_) return text;
+  if (trace_) text += kept_in_part(trace_->name(), "frames", trace_->give_up());
+  if (curve_) text += kept_in_part(curve_->name(), "energies", curve_->give_up());
+  return text;
+}
+
+namespace {
+
+/// Dresses a garment scene by a backend that was made for it, as long as the rule says, prints how it went
+/// and how the garment fits unless it is to be silent, and says on stderr what is out of bounds. Records the
+/// start, the frames of the grid and how the garment rests. Returns an ExitCode. Throws NotVerified when the
+/// simulation blows up, naming the step, WriteError and Interrupted.
+int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std::string& backend_name,
+                 const SettlingRule& rule, const FrameGrid& frames, RunRecorder& recorder, StopRequest& stop,
+                 bool silent) {
+  const auto require_finite = [](const State& state, std::int64_t iterations) {
+    if (const auto node = first_bad_node(state))
+      throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
+                        std::to_string(*node) + " is not finite");
+  };
+  const auto record = [&](const State& state, std::int64_t iterations) {
+    require_finite(state, iterations);
+    recorder.record({iterations, static_cast<double>(iterations) * scene.dt_s, state,
+                     energy_of(scene.system, state), std::nullopt});
+    stop.throw_if_requested();
+  };
+  DressingResult result;
+  double seconds = 0;
+  recorder.finish_after([&] {
+    const Stopwatch watch;
+    ProgressLine progress({1}, ProgressLine::Log::nothing);
+    progress.begin_scene(scene.spec.name);
+    progress.update("closing seams", 0);
+    result = dress(
+        backend, scene.system, scene.dt_s, rule,
+        [&](const State& state, std::int64_t iterations) {
+          require_finite(state, iterations);
+          stop.throw_if_requested();
+          std::ostringstream activity;
+          activity << (backend.progress().draping ? "draping" : "closing seams") << ", " << std::fixed
+                   << std::setprecision(2) << static_cast<double>(iterations) * scene.dt_s
+                   << " s simulated of at most " << rule.longest_s;
+          progress.update(activity.str(), 0);  // when it will have settled, nobody knows
+          return true;
+        },
+        recorder.wanted() ? DressingFrames{frames, record} : DressingFrames{});
+    seconds = watch.seconds();
+  });
+  const Fit fit = fit_of(scene.system, result.state.position, fit_body(scene.body));
+  Table dressing, fitting;
+  dressing.add({{"scene", scene.spec.name},
+                {"backend", backend_name},
+                {"threads", backend.threads()},
+                {"nodes", scene.system.nodes()},
+                {"dt_s", scene.dt_s},
+                {"seamed_at", result.seamed_at},
+                {"iterations", result.iterations},
+                {"simulated_s", result.simulated_s},
+                {"wall_s", seconds},
+                {"ms_per_iteration", 1e3 * seconds / static_cast<double>(result.iterations)}});
+  for (const FitCheck& check : fit_checks(fit, {}))
+    fitting.add({{"fit", check.name},
+                 {"value", check.value},
+                 {"bound", check.bound ? Cell(check.shown_bound) : Cell()},
+                 {"within", check.within}});
+  if (!silent)
+    std::cout << record_text(dressing, terminal_of(STDOUT_FILENO).width) << '\n' << to_text(fitting);
+  if (!result.settled && rule.longest_s < SettlingRule{}.longest_s)
+    std::cerr << "mssim: " << scene.spec.name << ": after " << result.simulated_s
+              << " s the garment is still moving; a longer --duration gives it more time\n";
+  const std::vector<std::string> found = misfits(result, fit, {});
+  for (const std::string& misfit : found) std::cerr << "mssim: " << scene.spec.name << ": " << misfit << '\n';
+  return found.empty() ? exit_ok : exit_not_verified;
+}
+
+/// Unless asked otherwise 60 frames a simulated second, or one a step where steps are longer.
+double frames_per_second(const RunOptions& options, double dt_s) {
+  return options.fps.value_or(std::min(60.0, 1 / dt_s));
+}
+
+PictureOptions pictures_of(const RunOptions& options) {
+  PictureOptions pictures = options.pictures;
+  pictures.threads = complete(options.execution).threads;
+  return pictures;
+}
+
+/// The chosen backend, made by `in_single`, make_backend or make_dressing_backend, or by `in_double`.
+template <class InSingle, class InDouble>
+auto chosen_backend(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                    const Integrator& integrator, const InSingle& in_single, const InDouble& in_double) {
+  if (options.precision == "single") {
+    ExecutionOptions execution = complete(options.execution);
+    execution.scene = scene.spec.name;
+    execution.scene_file = scene.spec.file;
+    auto backend = in_single(info, scene.system, integrator, scene.dt_s, execution);
+    if (info.uses_device) tell_of_opencl();
+    if (const std::string excess = excess_of(info, *backend, execution); !excess.empty())
+      std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
+    return backend;
+  }
+  if (info.name != "serial")
+    throw UsageError(
+        "--precision double needs --backend serial, not \"" + options.backend +
+        "\": the other backends of mssim compute in single precision only, and a program in its own");
+  return in_double(scene.system, integrator, scene.dt_s);
+}
+
+/// A garment is dressed until it has settled; --duration says how long that may take.
+SettlingRule settling_rule(const RunOptions& options, const SimulationPlan& plan) {
+  SettlingRule rule;
+  if (options.duration_s) rule.longest_s = static_cast<double>(count_steps(plan)) * plan.dt_s;
+  return rule;
+}
+
+/// Tells who waits long why.
+void warn_of_slow_accounting(const SimulationPlan& plan, const System& system, const Integrator& integrator) {
+  constexpr double passes_for_energies = 4;
+  constexpr double springs_per_second = 1e8;  // of the double-precision reference, roughly
+  constexpr double patience_s = 10;
+  const double seconds = static_cast<double>(count_steps(plan)) * static_cast<double>(system.springs.size()) *
+                         (passes_for_energies + expected_evaluations(integrator)) / springs_per_second;
+  if (seconds > patience_s)
+    std::cerr << "mssim: --losses takes a double-precision step for every step, about " << std::round(seconds)
+              << " s in all\n";
+}
+
+/// What the three kinds of energy and the losses add up to at the end, less what they did at the start, over
+/// the largest change that one kind of energy makes from frame to frame: zero in a perfect world.
+std::optional<double> energy_imbalance(const std::vector<EnergySample>& curve, const EnergyLosses& losses) {
+  double in_motion = 0;
+  for (const auto kind : {&Energy::kinetic, &Energy::elastic, &Energy::gravitational}) {
+    const auto [low, high] =
+        std::ranges::minmax(curve, {}, [&](const EnergySample& sample) { return sample.energy.*kind; });
+    in_motion = std::max(in_motion, high.energy.*kind - low.energy.*kind);
+  }
+  if (in_motion == 0) return std::nullopt;
+  return (curve.back().energy.total() + losses.total() - curve.front().energy.total()) / in_motion;
+}
+
+FileHeaders headers_of(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                       const Backend& backend, const Integrator& integrator) {
+  if (!options.files.any()) return {};
+  Provenance provenance = run_provenance(backend.threads(), info.uses_device);
+  add_programs(provenance, {&info}, complete(options.execution));
+  add_scene(provenance, scene.spec.name, scene.spec.source);
+  FileHeaders headers{trace_header(scene, backend, std::string(info.name), integrator, provenance),
+                      command_line(provenance), pictures_of(options)};
+  headers.trace.with_losses = options.losses;
+  headers.trace.in_double = options.precision == "double";
+  return headers;
+}
+
+int run_garment(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                const Integrator& integrator, const SimulationPlan& plan) {
+  const auto backend =
+      chosen_backend(options, info, scene, integrator, make_dressing_backend, make_reference_dressing);
+  if (options.losses)
+    throw UsageError(
+        "--losses cannot be used with a garment: the work of its seams and contacts is not accounted for; "
+        "leave it out");
+  const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
+  // After the headers, for which libraries are loaded that catch signals themselves, and before there is a
+  // file.
+  StopRequest stop;
+  const FrameGrid frames = frame_grid(frames_per_second(options, scene.dt_s), scene.dt_s);
+  const SettlingRule rule = settling_rule(options, plan);
+  RunRecorder recorder(options.files, scene, headers);
+  return run_dressing(scene, *backend, std::string(info.name), rule, frames, recorder, stop, options.silent);
+}
+
+int run_simulation(const RunOptions& options, const BackendInfo& info, const PreparedScene& scene,
+                   const Integrator& integrator, const SimulationPlan& plan) {
+  const auto in_double = [](const System& system, const Integrator& method, double dt_s) {
+    return make_reference(system, method, dt_s);
+  };
+  const auto backend = chosen_backend(options, info, scene, integrator, make_backend, in_double);
+  const FileHeaders headers = headers_of(options, info, scene, *backend, integrator);
+  StopRequest stop;  // where run_garment has it
+  RunRecorder recorder(options.files, scene, headers);
+  if (plan.accounts_for_losses) warn_of_slow_accounting(plan, scene.system, integrator);
+  std::int64_t steps = 0;
+  std::optional<EnergyLosses> losses;
+  double seconds = 0;
+  recorder.finish_after([&] {
+    const Stopwatch watch;
+    ProgressLine progress({1}, ProgressLine::Log::nothing);
+    progress.begin_scene(scene.spec.name);
+    simulate(*backend, scene.system, integrator, plan,
+             {[&](const Frame& frame) {
+                recorder.record(frame);
+                steps = frame.step;
+                losses = frame.losses;
+                stop.throw_if_requested();
+              },
+              [&](std::int64_t done, std::int64_t all) {
+                progress.update_often("step " + std::to_string(done) + " of " + std::to_string(all),
+                                      static_cast<double>(done) / static_cast<double>(all));
+                stop.throw_if_requested();
+              }});
+    seconds = watch.seconds();
+  });
+
+  const std::vector<EnergySample>& curve = recorder.energies();
+  const auto loss = [&](double EnergyLosses::*kind) { return losses ? Cell(*losses.*kind) : Cell(); };
+  const Energy &first = curve.front().energy, &last = curve.back().energy;
+  Table table;
+  table.add({{"scene", scene.spec.name},
+             {"backend", info.name},
+             {"device", backend->device()},
+             {"threads", backend->threads()},
+             {"integrator", options.integrator},
+             {"dt_s", scene.dt_s},
+             {"steps", steps},
+             {"simulated_s", curve.back().time_s},
+             {"wall_s", seconds},
+             {"kinetic_j", last.kinetic},
+             {"elastic_j", last.elastic},
+             {"gravitational_j", last.gravitational},
+             {"total_change_j", last.total() - first.total()},
+             {"damping_loss_j", loss(&EnergyLosses::damping)},
+             {"friction_loss_j", loss(&EnergyLosses::friction)},
+             {"bounce_loss_j", loss(&EnergyLosses::bounce)},
+             {"integration_loss_j", loss(&EnergyLosses::integration)},
+             {"energy_imbalance", losses ? Cell(energy_imbalance(curve, *losses)) : Cell()}});
+  if (!options.silent) std::cout << record_text(table, terminal_of(STDOUT_FILENO).width);
+  return exit_ok;
+}
+
+}  // namespace
+
+int run_scene(RunOptions options) {
+  const auto require_trace_name = [&] {
+    if (options.files.trace.empty()) return;
+    if (const auto problem = trace_name_problem(options.files.trace))
+      throw UsageError("--trace: " + *problem);
+  };
+  require_trace_name();
+  for (std::string* file : {&options.files.trace, &options.files.energy_curve})
+    if (!file->empty()) *file = target_of(*file).string();
+  require_trace_name();
+  const Integrator& integrator = require_integrator(options.integrator);
+  BackendChoice choice(table_backends(), options.own_backends, {options.scene});
+  const BackendInfo& info = choice.require(options.backend);
+  require_use_of_ranks(options.execution, {&info});
+  PreparedScene scene = prepare_scene(find_scene(options.scene));
+  warn_of_note(scene);
+  require_distinct(options.files, scene.spec);
+  if (options.dt_s) scene.dt_s = *options.dt_s;
+  const SimulationPlan plan{scene.dt_s, options.duration_s.value_or(default_duration_s),
+                            frames_per_second(options, scene.dt_s), options.losses};
+  return is_garment(scene.system) ? run_garment(options, info, scene, integrator, plan)
+                                  : run_simulation(options, info, scene, integrator, plan);
+}
+
+}  // namespace mssim

@@ -1,0 +1,337 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "application/bench/bench_plan.h"
+#include "application/bench/bench_results.h"
+#include "application/bench/bench_run.h"
+#include "application/bench/suites.h"
+#include "application/choices.h"
+#include "application/console.h"
+#include "application/guide_run.h"
+#include "application/prepared_scene.h"
+#include "commands/command.h"
+#include "commands/options.h"
+#include "mesh/tet_mesh.h"
+#include "output/tables/github_table.h"
+#include "output/tables/ratio_mark.h"
+#include "output/tables/result_table.h"
+#include "output/tables/row_table.h"
+#include "output/tables/structure_table.h"
+#include "output/tables/table.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// How a bench prints its rows; `github` is github_table().
+enum class SummaryFormat : std::uint8_t { table, csv, json, github };
+
+/// What was asked for, and how it is printed.
+struct BenchRequest : BenchOptions {
+  SummaryFormat format = SummaryFormat::table;
+};
+
+std::string text_of(const Table& table, SummaryFormat format) {
+  if (table.rows.empty() || format == SummaryFormat::github) return "";
+  return to_text(table, format == SummaryFormat::csv    ? ListingFormat::csv
+                        : format == SummaryFormat::json ? ListingFormat::json
+                                                        : ListingFormat::table);
+}
+
+/// "opencl, hybrid ran on DEVICE", for each OpenCL device.
+std::vector<std::string> devices_of(RowPointers rows) {
+  std::map<std::string_view, std::vector<std::string>> backends;
+  for (const ResultRow* row : rows) {
+    const std::string_view device = opencl_device(*row);
+    if (device.empty()) continue;
+    std::vector<std::string>& names = backends[device];
+    if (std::ranges::find(names, row->backend) == names.end()) names.push_back(row->backend);
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [device, names] : backends)
+    sentences.push_back((join(names, ", ") + " ran on ").append(device));
+  return sentences;
+}
+
+/// What stands below `table`, a row_table.
+std::string remarks(RowPointers rows, std::string_view table, const Provenance& provenance,
+                    std::optional<int> width) {
+  std::vector<std::string> sentences = devices_of(rows);
+  sentences.insert(sentences.end(), {legend_of_ratios(table), legend_of_excess(rows, provenance),
+                                     reason_without_speedups(rows)});
+  std::string text;
+  for (const std::string& sentence : sentences)
+    if (!sentence.empty())
+      text += wrapped(sentence, width ? static_cast<std::size_t>(*width) : SIZE_MAX, "") + '\n';
+  return text;
+}
+
+/// The rows for a reader: the columns that answer "how fast, how right". As a table (row_table) they are
+/// written for `terminal`, with what is to know of the numbers below. `provenance` tells what was asked for.
+/// Ends with a newline; empty for a table without rows.
+std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const Provenance& provenance,
+                    const Terminal& terminal) {
+  if (format == SummaryFormat::github) return to_text(github_table(rows), ListingFormat::json);
+  if (format == SummaryFormat::table) {
+    const std::vector<const ResultRow*> pointers = pointers_to(rows);
+    const std::string text = row_table(pointers, provenance, terminal);
+    return text + remarks(pointers, text, provenance, terminal.width);
+  }
+  Table table;
+  for (const ResultRow& row : rows)
+    table.add({{"scene", row.scene},
+               {"nodes", row.nodes},
+               {"springs_published", row.springs_published},
+               {"integrator", row.integrator},
+               {"backend", row.backend},
+               {"threads", row.threads},
+               {"ms_per_step", row.ms_per_step},
+               {"low", row.ms_per_step_low},
+               {"high", row.ms_per_step_high},
+               {"speedup", row.speedup_vs_serial},
+               {"paper_ms", row.paper_ms},
+               {"roofline", row.roofline_fraction},
+               {"position_error", row.position_error},
+               {"verified", row.verified},
+               {"status", row.status}});
+  return text_of(table, format);
+}
+
+/// The rows of scenes of which only the structure is told; none in the format `github`, which is for times.
+std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
+  Table table;
+  for (const StructureRow& row : rows)
+    table.add({{"scene", row.scene},
+               {"nodes", row.nodes},
+               {"springs_unique", row.springs_unique},
+               {"springs_published", row.springs_published},
+               {"tetrahedra", row.tetrahedra},
+               {"smallest_dihedral_angle_deg", row.smallest_dihedral_angle_deg}});
+  return text_of(table, format);
+}
+
+/// Prints what would be measured, and about how long that takes.
+void tell_plan(const BenchPlan& plan) {
+  const ExpectedTime all = total(times_of(plan.timed));
+  const double rounds = expected_rounds(plan);
+  const auto seconds = [&](const ExpectedTime& time) { return std::lround(std::ceil(time.with(rounds))); };
+  Table table;
+  for (const PlannedScene& scene : plan.timed)
+    table.add({{"scene", scene.spec.name},
+               {"nodes", scene.size.nodes},
+               {"springs_unique", scene.size.springs},
+               {"combinations", scene.backends.size() * plan.settings.integrators.size()},
+               {"rounds", std::lround(rounds)},
+               {"expected_s", seconds(scene.time)}});
+  for (const UnbuiltScene& scene : plan.described)
+    std::cout << scene.spec.name << ": not timed; its structure is shown\n";
+  std::cout << to_text(table);
+  std::cout << "about " << seconds(all) << " s in all\n";
+}
+
+/// Before hours of measuring, not after.
+void warn_of_missing_speedups(const BenchPlan& plan) {
+  std::vector<std::string_view> backends;
+  if (!plan.timed.empty())
+    for (const BackendInfo* backend : plan.settings.backends) backends.push_back(backend->name);
+  if (const std::string reason = reason_without_speedups(backends); !reason.empty())
+    std::cerr << "mssim: " << reason << '\n';
+}
+
+void tell_before(const BenchPlan& plan) {
+  if (!plan.timed.empty())
+    for (const std::string& noise : plan.provenance.noise) std::cerr << "mssim: noise: " << noise << '\n';
+  if (plan.uses_device) tell_of_opencl();
+  warn_of_missing_speedups(plan);
+}
+
+/// What the mesh of a scene of bodies is. Throws std::invalid_argument for a scene without tetrahedra.
+StructureRow structure_of(const PreparedScene& scene) {
+  const auto* mesh = std::get_if<TetrahedralMesh>(&scene.system.topology);
+  if (mesh == nullptr) throw std::invalid_argument(scene.spec.name + " has no tetrahedra");
+  StructureRow row;
+  row.scene = scene.spec.name;
+  row.nodes = scene.counts.nodes;
+  row.springs_unique = scene.counts.springs_unique;
+  row.springs_published = scene.counts.springs_published.value();
+  row.tetrahedra = mesh->tetrahedra.size();
+  // At the start a body is turned and moved, but not deformed.
+  row.smallest_dihedral_angle_deg = smallest_dihedral_angle({scene.system.start.position, mesh->tetrahedra});
+  return row;
+}
+
+std::vector<StructureRow> describe_scenes(std::vector<UnbuiltScene>& scenes) {
+  std::vector<StructureRow> rows;
+  for (UnbuiltScene& unbuilt : scenes) {
+    const PreparedScene scene = unbuilt.prepare();
+    warn_of_note(scene);
+    rows.push_back(structure_of(scene));
+  }
+  return rows;
+}
+
+void tell_where_results_are(const BenchPlan& plan, const BenchResults& results, bool stopped) {
+  if (plan.output.folder.empty()) return;
+  const std::string folder = escaped(plan.output.folder);
+  std::cerr << "mssim: ";
+  if (!stopped)
+    std::cerr << "results are in " << folder;
+  else if (results.rows().empty() && plan.output.overwrite)
+    std::cerr << "nothing was measured yet; earlier results are still in " << folder;
+  else if (results.rows().empty())
+    std::cerr << "nothing was measured yet; --resume continues";
+  else
+    std::cerr << "results so far are in " << folder << "; --resume continues";
+  std::cerr << '\n';
+}
+
+/// The rows of those that were asked for, a path among them, by name.
+std::vector<std::string> asked_backends(const BenchOptions& options, const BenchPlan& plan) {
+  std::vector<std::string> names;
+  if (!options.backends.empty())
+    for (const BackendInfo* backend : plan.settings.backends) names.emplace_back(backend->name);
+  return names;
+}
+
+/// The suite whose scenes are measured by guides, which take no samples of a step.
+int run_guide_suite(const BenchRequest& options) {
+  const auto refuse = [&](bool given, const std::string& name) {
+    if (given) throw UsageError(name + " cannot be used with --suite " + options.suite + ": leave it out");
+  };
+  refuse(options.output.resume, "--resume");
+  refuse(options.output.trace, "--trace");
+  refuse(options.rounds.has_value(), "--rounds");
+  refuse(options.windows.has_value(), "--windows");
+  refuse(!options.verified.empty(), "--verified");
+  refuse(options.format != SummaryFormat::table, "--format");
+  GuideOptions guide;
+  guide.scenes = scenes_of_suite(options.suite, true);
+  guide.scenes.insert(guide.scenes.end(), options.scenes.begin(), options.scenes.end());
+  guide.backends = options.backends;
+  guide.own_backends = options.own_backends;
+  guide.integrators = options.integrators;
+  guide.execution = options.execution;
+  guide.time_budget_s = options.time_budget_s;
+  guide.folder = options.output.folder;
+  guide.overwrite = options.output.overwrite;
+  guide.dry_run = options.dry_run;
+  return run_guide(guide);
+}
+
+int run(const BenchRequest& options) {
+  if (options.suite == guide_suite) return run_guide_suite(options);
+  BenchPlan plan = plan_of(options);
+  TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
+  if (options.dry_run) {
+    tell_plan(plan);
+    return exit_ok;
+  }
+  BenchResults results(plan);
+  tell_before(plan);
+  const SummaryFormat format = options.format;
+  if (!plan.described.empty()) {
+    const std::vector<StructureRow> structure = describe_scenes(plan.described);
+    results.keep(structure);
+    std::cout << summary(structure, format);
+  }
+  int code = exit_ok;
+  StopRequest stop;
+  if (!plan.timed.empty()) {
+    measure_scenes(plan, budget, stop, results);
+    if (!plan.described.empty() && format == SummaryFormat::table) std::cout << '\n';
+    std::cout << summary(results.rows(), format, plan.provenance, terminal_of(STDOUT_FILENO));
+    if (format == SummaryFormat::github) results.keep_for_github();
+    const BenchVerdict verdict =
+        verdict_of(results.rows(), asked_backends(options, plan), options.integrators);
+    tell_first(verdict.reasons);
+    code = verdict.exit_code;
+  }
+  tell_where_results_are(plan, results, stop.requested());
+  stop.throw_if_requested();
+  return code;
+}
+
+}  // namespace
+
+std::function<int()> declare_bench(Arguments& arguments) {
+  const auto options = std::make_shared<BenchRequest>();
+  const std::vector<std::string> names = suite_names();
+  const std::vector<std::string_view> suites(names.begin(), names.end());
+  add_scenes(arguments, "--scene", options->scenes,
+             "Scenes to measure: names (see mssim list scenes) or files");
+  arguments
+      .add("--suite", options->suite,
+           "Scenes and what is compared on them: " + listed(suites, "or") +
+               " (see mssim list suites); tables stands for table1, table2 and table3",
+           one_of("suite", names, {{"all", "tables"}}))
+      .value_name("NAME");
+  arguments
+      .add_list(
+          "--backend", options->backends,
+          "Backends, or methods with --suite races (default: all of mssim's); a path with a slash, or a "
+          "described name, is a program of your own",
+          names_and_files_in)
+      .value_name("NAME|FILE,...");
+  declare_backend_folders(arguments, options->own_backends);
+  declare_backend_limit(arguments, options->own_backends);
+  arguments
+      .add_list("--integrator", options->integrators,
+                "Integrators, or all (default: semi-euler,midpoint,rk4; with --suite races, scaling or "
+                "garment semi-euler)")
+      .value_name("NAME,...");
+  declare_execution(arguments, options->execution);
+  arguments
+      .add_number("--rounds", options->rounds,
+                  "Samples of each combination (default: 15); with --time-budget the largest number",
+                  whole_number(1, most_rounds))
+      .value_name("N");
+  arguments
+      .add_number("--time-budget", options->time_budget_s,
+                  "Time for the measurement, in as many rounds as fit; traces take extra time",
+                  positive_number())
+      .value_name("SECONDS");
+  arguments
+      .add_number(
+          "--windows", options->windows,
+          "Verify cloths in N windows, without building the whole (default: only where the whole does "
+          "not fit into the memory, in --ranks + 8); with backends in ranks alone",
+          whole_number(2, 100'000))
+      .value_name("N");
+  arguments.add_flag("--dry-run", options->dry_run,
+                     "Print what would be measured and about how long it would take, then exit");
+  arguments.add("--out", options->output.folder, "Folder for the results: tables, samples, provenance")
+      .value_name("FOLDER");
+  const Argument resume = arguments.add_flag(
+      "--resume", options->output.resume,
+      "Continue an interrupted run of the same command: keep the finished rounds of the folder");
+  arguments.add_flag("--overwrite", options->output.overwrite, "Replace the results that the folder has")
+      .excludes(resume);
+  arguments.add_flag("--trace", options->output.trace,
+                     "Also trace each combination into FOLDER/traces, after it has been timed");
+  arguments.add_choice<SummaryFormat>(
+      "--format", options->format,
+      {{"table", SummaryFormat::table},
+       {"csv", SummaryFormat::csv},
+       {"json", SummaryFormat::json},
+       {"github", SummaryFormat::github}},
+      "What to print: table, csv, json, or github (the input of github-action-benchmark, "
+      "also written into FOLDER) (default: table)");
+  arguments
+      .add("--verified", options->verified,
+           "Result folder in which this program has already verified these combinations: rely on it, "
+           "and only take samples")
+      .value_name("FOLDER");
+  return [options] { return run(*options); };
+}
+
+}  // namespace mssim

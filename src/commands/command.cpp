@@ -1,0 +1,148 @@
+#include "commands/command.h"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "application/outputs.h"
+#include "backends/devices/driver_trial.h"
+#include "backends/driver_trial_run.h"
+#include "bench/machine/build_info.h"
+#include "commands/arguments/program_parser.h"
+#include "platform/files.h"
+#include "platform/process.h"
+#include "scene/scene_file.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::array<Command, 12> table{{
+    {"bench", "Time every backend on scenes, and verify each result",
+     "mssim bench --scene cloth350k --out results/today", declare_bench},
+    {"run", "Simulate one scene; write a trace or an energy curve if asked to",
+     "mssim run --scene cloth2500 --duration 1 --trace fall.h5", declare_run},
+    {"render", "Draw pictures or a movie of a trace or a scene",
+     "mssim render --scene jeans4k --out jeans.png", declare_render},
+    {"export", "Write frames of a trace as OBJ, PLY or VTKHDF for other programs",
+     "mssim export fall.h5 --format vtkhdf --frames all", declare_export},
+    {"guide", "Measure which integrator, backend and step a scene should be simulated with",
+     "mssim guide --scene cloth10k --fps 60 --error 1e-3", declare_guide},
+    {"check", "Check scene files: size, memory, time and stability limit, without a run",
+     "mssim check my-cloth.json", declare_check},
+    {"compare", "Compare two results or programs: which is faster, and is that certain?",
+     "mssim compare results/yesterday results/today", declare_compare},
+    {"report", "Write one HTML page about results: verdict, tables, charts, provenance",
+     "mssim report results/table1 results/table3 --out report.html", declare_report},
+    {"measure", "Measure a person's surface, and write a scene of jeans for it",
+     "mssim measure scan.obj --scene my.json", declare_measure},
+    {"new-backend", "Write a backend of your own to start from, in Python or C++",
+     "mssim new-backend mine --language python", declare_new_backend},
+    {"list", "List scenes, suites, backends, methods, integrators, devices or a schema",
+     "mssim list scenes --format csv", declare_list},
+    {"help", "Show this page, or the page of a command", "mssim help bench", declare_help},
+}};
+
+constexpr std::string_view exit_codes =
+    "Exit codes: 0 all well; 1 a row is not verified, a simulation blew up, a garment\n"
+    "does not fit, or a comparison found a regression; 2 bad usage or input; 3 a\n"
+    "device or program that was asked for is missing; 4 a file could not be read or\n"
+    "written.";
+
+/// A user may name a scene without --scene before it.
+std::string option_of_scene(const std::string& word) { return is_scene(word) ? "--scene" : ""; }
+
+int fail(int code, const std::string& sentence) {
+  std::cerr << "mssim: " << escaped(sentence) << '\n';  // names in it may hold anything
+  return code;
+}
+
+/// The standard library's own sentence names a call in it.
+std::string sentence_of(const std::filesystem::filesystem_error& error) {
+  const std::string file = error.path1().string(), reason = " (" + error.code().message() + "): ";
+  return file.empty() ? "the working folder cannot be found" + reason + "change into a folder that is there"
+                      : file + " cannot be looked up" + reason + "check the path and its permissions";
+}
+
+/// Ends with the exit code of what was thrown, and says why.
+int run_guarded(const std::function<int()>& run) {
+  try {
+    return run();
+  } catch (const Interrupted& interrupted) {
+    remove_temporary_folder_of_process();
+    std::signal(interrupted.signal, SIG_DFL);
+    std::raise(interrupted.signal);
+    return 128 + interrupted.signal;  // where the signal is blocked
+  } catch (const Error& error) {
+    return fail(error.exit_code, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(exit_bad_input, "there is not enough memory; close other programs or use a smaller scene");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(exit_file_error, sentence_of(error));
+  } catch (const std::exception& error) {
+    return fail(exit_file_error, error.what());
+  }
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return table; }
+
+std::string unknown_command(std::string_view name) {
+  constexpr std::array<OtherName, 1> others{{{"version", "--version"}}};
+  std::vector<std::string_view> known;
+  for (const Command& command : commands()) known.push_back(command.name);
+  return unknown_name("command", name, known, others) + "; see mssim --help";
+}
+
+int run_program(int argc, char** argv) {
+  remember_arguments(argc, argv);
+  if (argc > 1 && argv[1] == driver_trial_word)
+    run_driver_trial({argv + 2, static_cast<std::size_t>(argc - 2)});
+  if (argc > 1 && argv[1][0] != '-') {  // the parser would take it for a word too many
+    const std::string_view word = argv[1];
+    if (std::ranges::find(commands(), word, &Command::name) == commands().end())
+      return fail(exit_bad_input, unknown_command(word));
+  }
+  hear_of_slow_drivers([](const std::string& sentence) { std::cerr << "mssim: " + sentence + '\n'; });
+  const BuildInfo& build = build_info();
+  ProgramParser parser(
+      "mssim", "mssim " + build.version + ": benchmark harness for parallel mass-spring simulation",
+      "mssim " + build.version + " (" + build.commit + (build.dirty ? ", changed" : "") + ")");
+  std::string examples;
+  std::map<std::string, std::function<int()>> run;
+  for (const Command& command : commands()) {
+    const std::string name(command.name), example(command.example);
+    Arguments arguments =
+        parser.add_command(name, std::string(command.description), "Example:\n  " + example);
+    run[name] = command.declare(arguments);
+    examples += "\n  " + example;
+  }
+  parser.end_help_with("mssim help COMMAND explains a command and its options.\n\nExamples:" + examples +
+                       "\n\n" + std::string(exit_codes));
+  const ProgramParser::Request request = parser.parse(argc, argv, option_of_scene);
+  if (!request.refusal.empty()) return fail(exit_bad_input, request.refusal);
+  int code = exit_ok;
+  if (!request.page.empty()) {
+    std::cout << request.page;
+  } else if (request.command.empty()) {
+    std::cerr << parser.help_page();
+    return exit_bad_input;
+  } else {
+    code = run_guarded(run.at(request.command));
+  }
+  // Results that could not be written are no results (a full disk; a closed pipe ends the program by
+  // SIGPIPE).
+  if (!std::cout.flush()) return fail(exit_file_error, "standard output could not be written");
+  return code;
+}
+
+}  // namespace mssim

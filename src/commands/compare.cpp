@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "application/bench/ab_comparison.h"
+#include "application/bench/bench_results.h"
+#include "application/choices.h"
+#include "application/console.h"
+#include "bench/results/comparison.h"
+#include "commands/command.h"
+#include "commands/options.h"
+#include "output/tables/comparison_table.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+struct CompareOptions {
+  AbOptions ab;  ///< of which two folders have base, next and threshold
+  bool programs = false;
+  double threshold_percent = 5;
+  ComparisonFormat format = ComparisonFormat::table;
+  bool force = false;
+};
+
+/// Times from unlike machines or builds are no regression and no progress: says how they differ, and refuses
+/// them unless that is what is wanted.
+void require_comparable(const MeasuredRun& base, const MeasuredRun& next, bool force) {
+  std::vector<std::string> all = differences(base.provenance, next.provenance);
+  const std::vector<std::string> of_rows = differences(base.rows, next.rows);
+  all.insert(all.end(), of_rows.begin(), of_rows.end());
+  if (all.empty()) return;
+  const std::string sentence = join(all, "; ");
+  if (!force)
+    throw UsageError("the two runs are not comparable: " + sentence +
+                     "; measure both in the same way, or compare them anyway with --force");
+  std::cerr << "mssim: compared anyway: " << sentence << '\n';
+}
+
+/// One line for combinations that are not in the table, however many.
+void tell(const std::string& what, const std::vector<std::string>& combinations) {
+  if (combinations.empty()) return;
+  std::cerr << "mssim: " << what << ": " << combinations.front();
+  if (combinations.size() > 1) std::cerr << " and " << combinations.size() - 1 << " more";
+  std::cerr << '\n';
+}
+
+/// Why the comparison ends with 1: each combination that is slower or lost.
+std::vector<std::string> regressions(const RunComparison& comparison) {
+  std::vector<std::string> sentences;
+  for (const ComparedRow& row : comparison.rows) {
+    std::ostringstream text;
+    text.precision(3);
+    text << combination_name(row) << ": " << name_of(row.verdict);
+    if (row.verdict == Verdict::slower)
+      text << ", " << row.ratio->ratio << " times the time (" << row.ratio->low << " to " << row.ratio->high
+           << ")";
+    else if (row.verdict == Verdict::lost)
+      text << ", " << row.reason;
+    else
+      continue;
+    sentences.push_back(text.str());
+  }
+  return sentences;
+}
+
+int report(const RunComparison& comparison, ComparisonFormat format) {
+  std::cout << to_text(comparison, format);
+  tell_first(regressions(comparison));
+  const auto undecided = std::ranges::count(comparison.rows, Verdict::undecided, &ComparedRow::verdict);
+  if (undecided > 0)
+    std::cerr << "mssim: " << undecided << " of " << pluralize(comparison.rows.size(), "combination")
+              << (undecided == 1 ? " is undecided\n" : " are undecided\n");
+  return has_regression(comparison) ? exit_regression : exit_ok;
+}
+
+int compare_runs(const CompareOptions& options) {
+  const MeasuredRun base = read_run(options.ab.base), next = read_run(options.ab.next);
+  require_comparable(base, next, options.force);
+  const RunComparison comparison = compare(base.rows, next.rows, options.ab.threshold);
+  if (comparison.rows.empty())
+    throw UsageError(
+        "there is nothing to compare: " + options.ab.base + " and " + options.ab.next +
+        " have no measured combination in common; measure the same scenes, backends and integrators");
+  tell("only BASE has", comparison.only_base);
+  tell("only NEW has", comparison.only_new);
+  tell("without a verified time in BASE", comparison.untimed);
+  return report(comparison, options.format);
+}
+
+int run(CompareOptions options) {
+  options.ab.threshold = options.threshold_percent / 100;
+  if (!options.programs) return compare_runs(options);
+  require_few_threads(options.ab.threads);
+  if (options.ab.scenes.empty()) throw UsageError("--ab needs a --scene to measure");
+  return report(compare_programs(options.ab), options.format);
+}
+
+}  // namespace
+
+std::function<int()> declare_compare(Arguments& arguments) {
+  const auto options = std::make_shared<CompareOptions>();
+  arguments
+      .add("BASE", options->ab.base,
+           "A folder that mssim bench --out wrote, or a file in it; with --ab an mssim program")
+      .required();
+  arguments.add("NEW", options->ab.next, "What is compared with BASE: another folder, or another program")
+      .required();
+  arguments
+      .add_number("--threshold", options->threshold_percent,
+                  "Smallest change that counts, in percent (default: 5)", positive_number())
+      .value_name("PERCENT");
+  arguments.add_choice<ComparisonFormat>("--format", options->format,
+                                         {{"table", ComparisonFormat::table},
+                                          {"markdown", ComparisonFormat::markdown},
+                                          {"json", ComparisonFormat::json}},
+                                         "What to print: table, markdown or json (default: table)");
+  const Argument ab =
+      arguments.add_flag("--ab", options->programs,
+                         "BASE and NEW are mssim programs: run them alternately, as a new process each time");
+  arguments
+      .add_flag("--force", options->force,
+                "Compare runs of different machines, builds, threads or scenes anyway")
+      .excludes(ab);
+  add_scenes(arguments, "--scene", options->ab.scenes, "With --ab: scenes to measure").needs(ab);
+  arguments
+      .add_list("--backend", options->ab.backends,
+                "With --ab: backends, which may be programs of your own (default: openmp)",
+                names_and_files_in)
+      .needs(ab)
+      .value_name("NAME|FILE,...");
+  declare_backend_folders(arguments, options->ab.own_backends).needs(ab);
+  declare_backend_limit(arguments, options->ab.own_backends).needs(ab);
+  arguments.add_list("--integrator", options->ab.integrators, "With --ab: integrators (default: semi-euler)")
+      .needs(ab)
+      .value_name("NAME,...");
+  arguments
+      .add_number("--threads", options->ab.threads, "With --ab: threads (default: all processors)",
+                  whole_number(1, most_threads))
+      .needs(ab)
+      .value_name("N");
+  arguments
+      .add_number("--time-budget", options->ab.time_budget_s, "With --ab: seconds it may take (default: 300)",
+                  number_between(1, 86400))
+      .needs(ab)
+      .value_name("SECONDS");
+  return [options] { return run(*options); };
+}
+
+}  // namespace mssim

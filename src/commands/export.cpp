@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "application/console.h"
+#include "application/outputs.h"
+#include "commands/command.h"
+#include "commands/options.h"
+#include "output/exports/exports.h"
+#include "output/exports/vtkhdf_export.h"
+#include "output/traces/trace_reader.h"
+#include "output/traces/xdmf.h"
+#include "platform/files.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class ExportFormat : std::uint8_t { obj, ply, vtkhdf };
+
+struct ExportOptions {
+  std::string trace, out;
+  ExportFormat format = ExportFormat::obj;
+  FrameOptions frames;
+};
+
+/// Endings of files that have the format; the first is the usual one.
+std::vector<std::string_view> extensions_of(ExportFormat format) {
+  if (format == ExportFormat::vtkhdf) return {".vtkhdf", ".hdf", ".h5", ".hdf5"};
+  return {format == ExportFormat::obj ? ".obj" : ".ply"};
+}
+
+std::string name_of(ExportFormat format) {
+  return format == ExportFormat::obj ? "OBJ" : format == ExportFormat::ply ? "PLY" : "VTKHDF";
+}
+
+/// fall.obj -> fall-000012.obj, numbered as in the trace.
+fs::path numbered(const fs::path& file, std::size_t frame) {
+  constexpr std::size_t digits = 6;  // so that names sort like frames
+  std::string number = std::to_string(frame);
+  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
+  return file.parent_path() / (file.stem().string() + '-' + number + file.extension().string());
+}
+
+/// The frames asked for, each once and in the order of time; the last one where none are.
+std::vector<std::size_t> exported_frames(const FrameOptions& options, const std::vector<double>& times_s) {
+  if (!options.given()) return {times_s.size() - 1};
+  std::vector<std::size_t> frames = chosen_frames(options, times_s);
+  std::ranges::sort(frames);
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
+/// The files for these frames: a format without times has one for each.
+std::vector<fs::path> files_for(const ExportOptions& options, const std::vector<std::size_t>& frames) {
+  const fs::path out =
+      options.out.empty() ? "." / fs::path(options.trace).stem().concat(extensions_of(options.format).front())
+                          : fs::path(options.out);
+  require_extension({"--out", out}, name_of(options.format), extensions_of(options.format));
+  if (options.format == ExportFormat::vtkhdf || frames.size() == 1) return {target_of(out)};
+  std::vector<fs::path> files;
+  for (const std::size_t frame : frames) files.push_back(target_of(numbered(out, frame)));
+  return files;
+}
+
+int run(const ExportOptions& options) {
+  const TraceReader trace(options.trace);
+  const std::vector<std::size_t> frames = exported_frames(options.frames, trace.content().time_s);
+  const std::vector<fs::path> files = files_for(options, frames);
+  for (const fs::path& file : files)
+    require_distinct({{"--out", file}},
+                     {{"the trace", options.trace}, {"the XDMF beside the trace", xdmf_of(options.trace)}});
+  const bool solid = options.format == ExportFormat::vtkhdf;
+  const ExportMesh mesh = solid ? solid_mesh(trace.content()) : surface_mesh(trace.content());
+  if (mesh.triangles.empty() && mesh.tetrahedra.empty())
+    throw UsageError(printable(options.trace) + " has no surface to export");
+  StopRequest stop;
+  if (solid) {
+    VtkhdfExport file(files.front(), mesh);
+    for (const std::size_t frame : frames) {
+      stop.throw_if_requested();
+      file.add(frame_of(trace, mesh, frame));
+    }
+    file.close();
+  } else {
+    const auto text_of = options.format == ExportFormat::obj ? obj_of : ply_of;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      stop.throw_if_requested();
+      write_file_atomically(files[i], text_of(mesh, frame_of(trace, mesh, frames[i])));
+    }
+  }
+  std::cerr << "mssim: wrote " << printable(files.front().string());
+  if (files.size() > 1)
+    std::cerr << " to " << printable(files.back().filename().string()) << ", " << files.size() << " files";
+  std::cerr << '\n';
+  return exit_ok;
+}
+
+}  // namespace
+
+std::function<int()> declare_export(Arguments& arguments) {
+  const auto options = std::make_shared<ExportOptions>();
+  arguments.add("TRACE", options->trace, "Trace to export, NAME.h5 (mssim run --trace)").required();
+  arguments
+      .add_choice("--format", options->format,
+                  {{"obj", ExportFormat::obj}, {"ply", ExportFormat::ply}, {"vtkhdf", ExportFormat::vtkhdf}},
+                  "What to write: obj or ply, triangles, a file a frame; vtkhdf, all frames in one file, "
+                  "bodies as tetrahedra")
+      .required();
+  arguments
+      .add("--out", options->out,
+           "File to write (default: the trace's name, and .obj, .ply or .vtkhdf); several have their frame's "
+           "number behind the name")
+      .value_name("FILE");
+  declare_frames(arguments, options->frames);
+  return [options] { return run(*options); };
+}
+
+}  // namespace mssim

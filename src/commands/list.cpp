@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "application/bench/suites.h"
+#include "application/choices.h"
+#include "application/console.h"
+#include "backends/accumulation/accumulation_methods.h"
+#include "backends/backends.h"
+#include "backends/devices/offer.h"
+#include "commands/command.h"
+#include "commands/options.h"
+#include "integrators/all_integrators.h"
+#include "output/tables/table.h"
+#include "scene/fields/fields.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+struct ListOptions {
+  std::string subject;
+  ListingFormat format = ListingFormat::table;
+  ExecutionOptions execution;
+  OwnBackendOptions own_backends;
+};
+
+/// Counts what scenes really have. Bodies whose mesh cannot be made have no counts, and stderr says why:
+/// once, since one cause (TetGen is missing) is behind all of them.
+class SceneCounter {
+ public:
+  std::optional<SceneCounts> count(const SceneSpec& spec) {
+    try {
+      return counts_of(spec);
+    } catch (const MissingProgram& reason) {
+      note(spec.name, reason.what());
+    } catch (const SceneError& reason) {
+      note(spec.name, reason.what());
+    }
+    return std::nullopt;
+  }
+
+  void report() const {
+    if (uncounted_.empty()) return;
+    const std::vector<std::string_view> names(uncounted_.begin(), uncounted_.end());
+    std::cerr << "mssim: nodes and springs of " << listed(names) << " are left out: " << first_reason_
+              << '\n';
+  }
+
+ private:
+  void note(std::string_view scene, std::string_view reason) {
+    if (uncounted_.empty()) first_reason_ = reason;
+    uncounted_.emplace_back(scene);
+  }
+
+  std::vector<std::string> uncounted_;
+  std::string first_reason_;
+};
+
+Table list_scenes(const ListOptions& /*options*/) {
+  Table table;
+  SceneCounter counter;
+  for (const SceneSpec& spec : shipped_scenes()) {
+    const std::optional<SceneCounts> counts = counter.count(spec);
+    table.add({{"scene", spec.name},
+               {"kind", kind_of(spec).name},
+               {"nodes", counts ? Cell(counts->nodes) : Cell()},
+               {"springs_unique", counts ? Cell(counts->springs_unique) : Cell()},
+               {"springs_published", counts ? Cell(counts->springs_published) : Cell()},
+               {"dt_s", spec.dt_s ? Cell(*spec.dt_s) : Cell("auto")},
+               {"description", spec.description}});
+  }
+  counter.report();
+  return table;
+}
+
+Table list_backends(const ListOptions& options) {
+  Table table;
+  BackendChoice choice(table_backends(), options.own_backends);
+  std::vector<const BackendInfo*> all = table_backends();
+  std::ranges::copy(choice.shipped(), std::back_inserter(all));
+  std::ranges::copy(choice.described(), std::back_inserter(all));
+  for (const BackendInfo* backend : all) {
+    const std::string reason = unavailable_reason(*backend, options.execution);
+    table.add({{"backend", backend->name},
+               {"paper_configuration", backend->paper_configuration},
+               {"available", reason.empty()},
+               {"reason", reason.empty() ? Cell() : Cell(reason)},
+               {"description", backend->description}});
+  }
+  return table;
+}
+
+Table list_methods(const ListOptions& /*options*/) {
+  Table table;
+  for (const AccumulationMethod& method : accumulation_methods())
+    table.add({{"method", method.backend.name},
+               {"extra_memory", method.extra_memory},
+               {"springs_computed", method.springs_computed},
+               {"same_bits", name_of(method.repeatable)},
+               {"description", method.backend.description}});
+  return table;
+}
+
+Table list_suites(const ListOptions& /*options*/) {
+  Table table;
+  for (const Suite& suite : suites())
+    table.add({{"suite", suite.name},
+               {"timed", suite.timed},
+               {"in_tables", suite.in_tables},
+               {"scenes", listed(suite.scenes)},
+               {"description", suite.description}});
+  return table;
+}
+
+Table list_integrators(const ListOptions& /*options*/) {
+  Table table;
+  for (const Integrator* integrator : all_integrators)
+    table.add({{"integrator", integrator->name},
+               {"order", integrator->order},
+               {"damped_order", integrator->damped_order},
+               {"force_evaluations", is_implicit(*integrator) ? Cell() : Cell(integrator->stage_count)},
+               {"description", integrator->description}});
+  return table;
+}
+
+Table list_devices(const ListOptions& /*options*/) {
+  Table table;
+  for (const OpenclDevice& device : opencl_offer().devices)
+    table.add({{"number", device.number},
+               {"name", device.name},
+               {"type", name_of(device.type)},
+               {"platform", device.platform},
+               {"driver", device.driver_version},
+               {"compute_units", device.compute_units},
+               {"memory_bytes", device.global_memory_bytes},
+               {"float_width", device.float_width}});
+  tell_of_opencl();
+  if (opencl_offer().devices.empty() && opencl_offer().troubles.empty())
+    std::cerr << "mssim: there is no OpenCL device here; Debian's pocl-opencl-icd makes the processor one\n";
+  return table;
+}
+
+/// The TABLE of what can be listed.
+struct Listed {
+  std::string_view name;
+  Table (*list)(const ListOptions& options);
+};
+constexpr std::array<Listed, 6> subjects{{{"scenes", list_scenes},
+                                          {"suites", list_suites},
+                                          {"backends", list_backends},
+                                          {"methods", list_methods},
+                                          {"integrators", list_integrators},
+                                          {"devices", list_devices}}};
+
+constexpr std::string_view schema_subject = "schema";
+
+int run_list(const ListOptions& options) {
+  require_device(options.execution, table_backends());
+  if (options.subject == schema_subject) std::cout << scene_schema();
+  for (const Listed& subject : subjects) {
+    if (subject.name != options.subject) continue;
+    std::cout << to_text(subject.list(options), options.format);
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+std::function<int()> declare_list(Arguments& arguments) {
+  const auto options = std::make_shared<ListOptions>();
+  std::vector<std::string_view> known;
+  for (const Listed& subject : subjects) known.push_back(subject.name);
+  known.push_back(schema_subject);
+  arguments
+      .add("WHAT", options->subject, "What to list: " + listed(known, "or") + " of scene files, as JSON",
+           one_of("word", {known.begin(), known.end()}))
+      .required();
+  declare_listing_format(arguments, options->format);
+  arguments
+      .add("--device", options->execution.device,
+           "OpenCL device that backends are checked with: its number or a part of its name or platform")
+      .value_name("N|NAME");
+  declare_backend_folders(arguments, options->own_backends);
+  return [options] { return run_list(*options); };
+}
+
+}  // namespace mssim

@@ -1,0 +1,367 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "application/choices.h"
+#include "commands/command.h"
+#include "commands/options.h"
+#include "garment/body/body_profile.h"
+#include "garment/body/stance.h"
+#include "garment/pattern/jeans.h"
+#include "garment/scene/garment_body.h"
+#include "garment/spec/garment_spec.h"
+#include "geometry/geometry.h"
+#include "geometry/surface.h"
+#include "mesh/surface_file.h"
+#include "output/tables/table.h"
+#include "platform/files.h"
+#include "scene/fields/fields.h"
+#include "scene/scene_file.h"
+#include "scene/scene_kinds.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// What `mssim measure` has found of a body: rows of measure, value, unit and note.
+class BodyListing {
+ public:
+  /// `how` it is known, the same for all three.
+  void add_stance(const BodyStance& stance, const std::string& how);
+  /// `what` has been done about them.
+  void add_openings(std::span<const Opening> openings, const std::string& what);
+  void add_measures(const BodyProfile& profile, const BodyLandmarks& landmarks);
+
+  const Table& rows() const { return rows_; }
+
+ private:
+  void add(const std::string& measure, Cell value, const std::string& unit, const std::string& note = {});
+  void add_landmark(const std::string& name, const Landmark& landmark);
+
+  Table rows_;
+};
+
+/// What jeans for a body from a file are made of.
+struct MeasuredJeans {
+  BodyFile body;  ///< its file as the scene is to name it
+  JeansMeasures measures;
+  double hip_girth = 0;  ///< m, of the body
+};
+
+/// A length for reading, m: to a tenth of a millimetre.
+double to_tenths(double metres) { return std::round(1e4 * metres) / 1e4; }
+
+Vec3d to_tenths(const Vec3d& point) {
+  return {to_tenths(point.x) + 0.0, to_tenths(point.y) + 0.0, to_tenths(point.z) + 0.0};
+}
+
+std::string name_of_unit(double metres) {
+  const auto units = length_units();
+  const auto unit = std::ranges::find(units, metres, &LengthUnit::metres);
+  return unit == units.end() ? "" : std::string(unit->name);
+}
+
+void BodyListing::add(const std::string& measure, Cell value, const std::string& unit,
+                      const std::string& note) {
+  const auto text = [](const std::string& words) { return words.empty() ? Cell() : Cell(words); };
+  rows_.add({{"measure", measure}, {"value", std::move(value)}, {"unit", text(unit)}, {"note", text(note)}});
+}
+
+void BodyListing::add_stance(const BodyStance& stance, const std::string& how) {
+  const std::string name = name_of_unit(stance.unit_m);
+  add("unit", stance.unit_m, "m", name.empty() ? how : name + ", " + how);
+  add("up", up_axis_names.at(static_cast<std::size_t>(stance.up)), "", how);
+  add("facing", facing_names.at(static_cast<std::size_t>(stance.facing)), "", how);
+  if (stance.turn_deg != 0)
+    add("turn", stance.turn_deg, "degrees", "about the upright axis, towards its left");
+  if (!(stance.move == Vec3d{}))
+    add("move", place(stance.move), "m",
+        "to its left, up, ahead: legs on either side of x = 0, feet on the floor");
+}
+
+void BodyListing::add_openings(std::span<const Opening> openings, const std::string& what) {
+  for (std::size_t i = 0; i < openings.size(); ++i)
+    add("opening_" + std::to_string(i + 1), to_tenths(openings[i].size), "m",
+        std::to_string(openings[i].edges()) + " edges around " + place(to_tenths(openings[i].centre)) + ", " +
+            what);
+}
+
+void BodyListing::add_landmark(const std::string& name, const Landmark& landmark) {
+  const std::string note = landmark.by_proportion ? "by proportion: nothing shows it" : "";
+  add(name + "_height", to_tenths(landmark.height), "m", note);
+  add(name + "_girth", landmark.girth ? Cell(to_tenths(*landmark.girth)) : Cell(), "m",
+      landmark.girth ? "" : "the legs are not apart there");
+}
+
+void BodyListing::add_measures(const BodyProfile& profile, const BodyLandmarks& landmarks) {
+  add("height", to_tenths(profile.highest() - profile.lowest()), "m");
+  add_landmark("waist", landmarks.waist);
+  add_landmark("hip", landmarks.hip);
+  add("crotch_height", to_tenths(landmarks.crotch_height), "m");
+  add_landmark("thigh", landmarks.thigh);
+  add_landmark("knee", landmarks.knee);
+  add_landmark("ankle", landmarks.ankle);
+}
+
+using nlohmann::ordered_json;
+
+ordered_json section_of(const BodyFile& body) {
+  ordered_json section{{"file", body.file},
+                       {"unit_m", body.stance.unit_m},
+                       {"up", up_axis_names.at(static_cast<std::size_t>(body.stance.up))},
+                       {"facing", facing_names.at(static_cast<std::size_t>(body.stance.facing))}};
+  if (body.stance.turn_deg != 0) section["turn_deg"] = body.stance.turn_deg;
+  const Vec3d& move = body.stance.move;
+  section["move_m"] = {move.x, move.y, move.z};
+  if (body.close_holes_m) section["close_holes_m"] = *body.close_holes_m;
+  return section;
+}
+
+/// The template's garment with another body, and without what it states for its own.
+ordered_json garment_for(const BodyFile& body, const ordered_json& garment) {
+  ordered_json changed;
+  for (const auto& [key, value] : garment.items()) {
+    if (key == "mannequin")
+      changed["surface_file"] = section_of(body);
+    else if (key != "expected")
+      changed[key] = value;
+  }
+  changed["body"] = "surface_file";
+  return changed;
+}
+
+/// A node of as many in smaller jeans is lighter by as much as its cell is smaller, and dt goes with the root
+/// of its mass. Two digits, downwards; no longer than the template's, which is tried.
+double shorter_dt(double dt_s, const JeansMeasures& jeans, double hip_girth) {
+  const JeansMeasures reference;
+  constexpr double reference_hip = 0.98;
+  const double area = (jeans.waist_height - jeans.hem_height) * hip_girth;
+  const double reference_area = (reference.waist_height - reference.hem_height) * reference_hip;
+  const double dt = dt_s * std::min(1.0, std::sqrt(area / reference_area));
+  const double digits_per_s = std::pow(10, 1 - std::floor(std::log10(dt)));
+  constexpr double rounding = 1e-9;
+  return std::floor(dt * digits_per_s * (1 + rounding)) / digits_per_s;
+}
+
+/// The text of a scene file to start from: jeans4k for this body. Cloth and dressing are that scene's; dt is
+/// shorter by as much as the jeans, of as many nodes, are smaller. `file` is where it is to stand. Throws
+/// SceneError for what no scene file can hold, such as a name that is no UTF-8.
+std::string jeans_scene(const std::filesystem::path& file, const MeasuredJeans& jeans) {
+  try {
+    const SceneSpec example = find_scene("jeans4k");
+    ordered_json scene = ordered_json::parse(example.source);
+    scene.erase("$schema");
+    scene["description"] = "Jeans of about 4,000 nodes for a body that mssim measure has measured";
+    scene["dt_s"] = shorter_dt(example.dt_s.value(), jeans.measures, jeans.hip_girth);
+    scene["garment"] = garment_for(jeans.body, scene.at("garment"));
+    ordered_json& section = scene["garment"]["jeans"];
+    section["waist_height_m"] = jeans.measures.waist_height;
+    section["hip_height_m"] = jeans.measures.hip_height;
+    section["knee_height_m"] = jeans.measures.knee_height;
+    section["hem_height_m"] = jeans.measures.hem_height;
+    section["knee_m"] = jeans.measures.knee;
+    section["hem_m"] = jeans.measures.hem;
+    section["waist_ease_m"] = jeans.measures.waist_ease;
+    std::string text = scene.dump(2) + '\n';
+    parse_scene(file, text);
+    return text;
+  } catch (const ordered_json::exception& error) {
+    throw SceneError(printable(file.string(), 1000) + ": the body's file " +
+                     printable(jeans.body.file, 1000) + " cannot be named in a scene file (" +
+                     printable(error.what(), 200) + "): give it a name in UTF-8");
+  }
+}
+
+namespace fs = std::filesystem;
+
+/// Eyes, mouth, a neck without its head; narrower than any waist.
+constexpr double largest_closed_m = 0.2;
+
+struct MeasureOptions {
+  std::string body;
+  std::string unit;
+  std::optional<UpAxis> up;
+  std::optional<Facing> facing;
+  bool close_holes = false;
+  std::string scene;
+  bool overwrite = false;
+  ListingFormat format = ListingFormat::table;
+};
+
+std::optional<double> unit_given(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  for (const LengthUnit& unit : length_units())
+    if (unit.name == text) return unit.metres;
+  if (const auto metres = number_in<double>(text); metres && *metres > 0 && *metres <= 1e6) return metres;
+  throw UsageError("--unit is \"" + printable(text, 100) + "\": give " + unit_names() +
+                   "or the metres in one unit of the file");
+}
+
+/// A scene is not replaced unasked, and a body never.
+void require_free(const MeasureOptions& options) {
+  const fs::path scene = options.scene;
+  if (scene.extension() != ".json")
+    throw UsageError("--scene is " + printable(options.scene, 1000) +
+                     ": give a file that ends in .json, as mssim run requires");
+  if (escaped(options.body) != options.body)
+    throw UsageError(printable(options.body, 1000) +
+                     " has characters that a scene file cannot hold: give the file another name");
+  if (fs::exists(scene) && !options.overwrite)
+    throw UsageError(printable(options.scene, 1000) +
+                     " already exists: give another --scene, or --overwrite to replace it");
+}
+
+/// A body that has been measured: what its scene file says of it, and what it is.
+struct MeasuredFile {
+  BodyFile body;
+  BodyProfile profile;
+  BodyLandmarks landmarks;
+};
+
+void tell(const MeasureOptions& options, const BodyListing& listing) {
+  std::cout << to_text(listing.rows(), options.format);
+}
+
+void tell_of_ignored_parts(const BodyProfile& profile) {
+  const std::string ignored = ignored_parts(profile.trunk_and_legs());
+  if (!ignored.empty()) std::cerr << "mssim: " << ignored << '\n';
+}
+
+/// Measures the body of a file, printing what is found as far as it goes. Throws InputError.
+MeasuredFile measure_file(const MeasureOptions& options) {
+  auto [surface, note] = read_surface(options.body);
+  if (!note.empty()) std::cerr << "mssim: " << printable(note, 1000) << '\n';
+  require_joined(surface);
+  const StanceGuess guess = guess_stance(surface, {unit_given(options.unit), options.up, options.facing});
+  for (const std::string& doubt : guess.doubts)
+    std::cerr << "mssim: not certain of " << printable(doubt, 1000) << '\n';
+  surface = stood_up(std::move(surface), guess.stance);
+  BodyListing listing;
+  listing.add_stance(guess.stance, "found");
+  BodyFile body{options.body, guess.stance, std::nullopt};
+  try {
+    std::vector<Opening> openings = openings_of(surface);
+    if (options.close_holes && !openings.empty()) {
+      close_openings(surface, largest_closed_m);
+      body.close_holes_m = largest_closed_m;
+    }
+    listing.add_openings(openings, options.close_holes ? "closed" : "open");
+    if (!openings.empty() && !options.close_holes)
+      throw InputError(openings.size() == 1
+                           ? "it has 1 opening: close it where the surface was made, or give --close-holes"
+                           : "it has " + std::to_string(openings.size()) +
+                                 " openings: close them where the surface was made, or give --close-holes");
+    BodyProfile profile(surface, options.body);
+    tell_of_ignored_parts(profile);
+    const BodyLandmarks landmarks = find_landmarks(profile);
+    listing.add_measures(profile, landmarks);
+    tell(options, listing);
+    return {body, std::move(profile), landmarks};
+  } catch (const InputError&) {
+    tell(options, listing);
+    throw;
+  }
+}
+
+/// Writes a scene for the body, and says whether its jeans can be cut.
+int write_scene(const MeasureOptions& options, MeasuredFile found) {
+  const fs::path scene = options.scene;
+  found.body.file = fs::relative(options.body, fs::absolute(scene).parent_path()).string();
+  const std::string text = jeans_scene(scene, {found.body, jeans_for_body(found.profile, found.landmarks),
+                                               found.landmarks.hip.girth.value_or(0)});
+  write_file_atomically(target_of(scene), text);
+  try {
+    build_system(load_scene(scene));
+  } catch (const SceneError& error) {
+    std::cerr << "mssim: " << escaped(options.scene)
+              << " is written, but does not work yet: " << escaped(error.what()) << '\n';
+    return exit_not_verified;
+  }
+  const std::string scene_name = escaped(options.scene);
+  std::cerr << "mssim: wrote " << scene_name << "; mssim run --scene " << scene_name << " dresses it\n";
+  return exit_ok;
+}
+
+std::string extension_of(const std::string& file) { return to_lower(fs::path(file).extension().string()); }
+
+int measure_scene(const MeasureOptions& options) {
+  if (!options.unit.empty() || options.up || options.facing || options.close_holes || !options.scene.empty())
+    throw UsageError(printable(options.body, 1000) +
+                     " is a scene, not an .obj or .stl file, and says how its body stands: leave out --unit, "
+                     "--up, --facing, --close-holes and --scene");
+  const SceneSpec spec = find_scene(options.body);
+  const auto* garment = std::get_if<GarmentSpec>(&spec.content);
+  if (garment == nullptr)
+    throw UsageError(spec.name +
+                     " is a scene without a body to dress: give a garment's, or an .obj or .stl file");
+  const auto* file = std::get_if<BodyFile>(&garment->body);
+  const BodyProfile body = measured_body(spec).profile;
+  tell_of_ignored_parts(body);
+  BodyListing listing;
+  listing.add_stance(file ? file->stance : BodyStance{}, "by the scene");
+  listing.add_measures(body, find_landmarks(body));
+  tell(options, listing);
+  return exit_ok;
+}
+
+int run_measure(const MeasureOptions& options) {
+  try {
+    const std::string extension = extension_of(options.body);
+    if (extension != ".obj" && extension != ".stl") {
+      const bool is_file = !extension.empty() || is_path_of_scene(options.body);
+      if (is_file && extension != ".json")
+        throw UsageError(
+            printable(options.body, 1000) +
+            " ends in neither .obj nor .stl: give a person's surface in one of those formats, or the "
+            "scene of a garment, which ends in .json");
+      return measure_scene(options);
+    }
+    if (!options.scene.empty()) require_free(options);
+    MeasuredFile found = measure_file(options);
+    return options.scene.empty() ? exit_ok : write_scene(options, std::move(found));
+  } catch (const InputError& error) {
+    throw UsageError(printable(options.body, 1000) + " cannot be measured: " + printable(error.what(), 1500));
+  }
+}
+
+/// The words of a table, as choices that set an optional.
+template <class Value, std::size_t n>
+std::map<std::string, std::optional<Value>> choices_of(const std::array<std::string_view, n>& names) {
+  std::map<std::string, std::optional<Value>> choices;
+  for (std::size_t i = 0; i < n; ++i) choices[std::string(names.at(i))] = static_cast<Value>(i);
+  return choices;
+}
+
+}  // namespace
+
+std::function<int()> declare_measure(Arguments& arguments) {
+  const auto options = std::make_shared<MeasureOptions>();
+  arguments.add("BODY", options->body, "A person's surface, an .obj or .stl file; or a garment's scene")
+      .required();
+  arguments
+      .add("--unit", options->unit,
+           "Unit of the file: " + unit_names() + "or its metres (default: found from the height)")
+      .value_name("UNIT");
+  arguments.add_choice("--up", options->up, choices_of<UpAxis>(up_axis_names),
+                       "Axis of the file along which the body stands: y or z (default: found)");
+  arguments.add_choice("--facing", options->facing, choices_of<Facing>(facing_names),
+                       "Where the body looks: +x, -x, +y, -y, +z or -z (default: found)");
+  arguments.add_flag("--close-holes", options->close_holes,
+                     "Fill openings of the surface that are up to 0.2 m across");
+  const Argument scene =
+      arguments.add("--scene", options->scene, "Scene file to write: jeans for the body, for mssim run")
+          .value_name("FILE");
+  arguments.add_flag("--overwrite", options->overwrite, "Replace the scene file if it exists").needs(scene);
+  declare_listing_format(arguments, options->format);
+  return [options] { return run_measure(*options); };
+}
+
+}  // namespace mssim

@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "backends/backends.h"
+#include "commands/command.h"
+#include "platform/files.h"
+#include "platform/process.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// What a backend to start from is written in.
+enum class StarterLanguage : std::uint8_t { python, cpp };
+
+/// A file of a backend to start from.
+struct StarterFile {
+  std::filesystem::path name;
+  std::string text;
+  bool executable = false;
+  bool shared = false;  ///< the same for every backend: one that stands there already serves this one, too
+};
+
+/// A backend to start from: a working example and what goes with it, and how to use it.
+struct Starter {
+  std::vector<StarterFile> files;
+  std::vector<std::string> commands;  ///< for a shell, in the order of their use
+};
+
+namespace fs = std::filesystem;
+
+/// The name of the examples, which gives way to the new one's.
+constexpr std::string_view example_name = "my_backend";
+
+/// What a program of one of these names would import instead of the module that it needs.
+constexpr std::array<std::string_view, 3> needed_modules{"mssim_backend", "numpy", "h5py"};
+
+/// Whether the Python in PATH has a module of that name, of its library or installed: the program's folder
+/// goes before those, so that what the example imports, and all that this imports, would get the program
+/// instead. False where there is no Python, which would run no such program either.
+bool is_module_of_python(const std::string& name) {
+  const auto python = find_program("python3");
+  if (!python || name.find('-') != std::string::npos) return false;  // `import a-b` is none
+  const ChildResult result = run({*python,
+                                  {"-I", "-c",
+                                   "import importlib.util, sys; "
+                                   "print('module', importlib.util.find_spec(sys.argv[1]) is not None)",
+                                   name},
+                                  {},
+                                  "/",
+                                  60,
+                                  60});
+  return result.output.find("module True") != std::string::npos;
+}
+
+void require_usable(const std::string& name) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+  constexpr std::size_t longest = 64;
+  const bool starts_well = !name.empty() && letters.find(name.front()) != std::string_view::npos;
+  if (!starts_well || name.size() > longest ||
+      name.find_first_not_of(std::string(letters) + "0123456789_-") != std::string::npos)
+    throw UsageError("\"" + printable(name) +
+                     "\" cannot be a backend's name: give at most 64 letters, digits, _ and -, the first a "
+                     "letter, without .py or .cpp");
+  if (find_backend(name) != nullptr)
+    throw UsageError("mssim has a backend " + name + " already (mssim list backends): give another name");
+  if (std::ranges::find(needed_modules, name) != needed_modules.end())
+    throw UsageError(name + " is the name of a module that backends need: give another name");
+}
+
+/// The text of an example, with the name of the new backend in it.
+std::string example_for(const std::string& name, std::string_view extension) {
+  std::string text = read_file(data_folder() / "examples" / (std::string(example_name).append(extension)));
+  for (std::size_t at = text.find(example_name); at != std::string::npos;
+       at = text.find(example_name, at + name.size()))
+    text.replace(at, example_name.size(), name);
+  return text;
+}
+
+std::string bench_command(const fs::path& program) {
+  return "mssim bench --scene cloth2500 --backend " + shell_word("serial,openmp," + program.string());
+}
+
+/// The starter of that name, whose files are to lie in `folder`. Throws UsageError for a name that would not
+/// work.
+Starter starter_of(const std::string& name, StarterLanguage language, const fs::path& folder) {
+  require_usable(name);
+  const fs::path program = folder / name;
+  if (language == StarterLanguage::python) {
+    if (is_module_of_python(name))
+      throw UsageError(name + " is the name of a module of python3, which would be imported from " + name +
+                       ".py by all that needs it: give another name, my_" + name + " say");
+    const std::string file = name + ".py";
+    return {{{file, example_for(name, ".py"), true}}, {bench_command(folder / file)}};
+  }
+  const std::string file = name + ".cpp", header = "mssim_backend.h";
+  return {
+      {{file, example_for(name, ".cpp")}, {header, read_file(data_folder() / "cpp" / header), false, true}},
+      {"c++ -std=c++17 -O3 " + shell_word((folder / file).string()) +
+           " $(pkg-config --cflags --libs hdf5) -o " + shell_word(program.string()),
+       bench_command(program)}};
+}
+
+namespace fs = std::filesystem;
+
+struct NewBackendOptions {
+  std::string name, out = ".";
+  StarterLanguage language = StarterLanguage::python;
+};
+
+/// Whether the file is to be written. Throws UsageError where another one stands in its place.
+bool is_wanted(const StarterFile& file, const fs::path& path) {
+  std::error_code none;
+  if (!fs::exists(fs::symlink_status(path, none))) return true;
+  if (!file.shared)
+    throw UsageError(printable(path.string(), 1000) + " already exists: give another name or --out");
+  if (read_file(path) != file.text)
+    throw UsageError(printable(path.string(), 1000) +
+                     " is another version's than this mssim's: give another --out, or remove it");
+  return false;
+}
+
+/// Whoever may read it may run it.
+void make_executable(const fs::path& file) {
+  const fs::perms readers = fs::status(file).permissions() &
+                            (fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
+  fs::permissions(file, static_cast<fs::perms>(static_cast<unsigned>(readers) >> 2U), fs::perm_options::add);
+}
+
+int run_new_backend(const NewBackendOptions& options) {
+  const fs::path folder = options.out;
+  const Starter starter = starter_of(options.name, options.language, folder);
+  std::vector<StarterFile> wanted;
+  for (const StarterFile& file : starter.files)
+    if (is_wanted(file, folder / file.name)) wanted.push_back(file);
+  for (const StarterFile& file : wanted) {
+    const fs::path path = folder / file.name;
+    write_file_atomically(path, file.text);
+    if (file.executable) make_executable(path);
+    std::cerr << "mssim: wrote " << printable(path.string(), 1000) << '\n';
+  }
+  for (const std::string& command : starter.commands) std::cout << command << '\n';
+  return exit_ok;
+}
+
+}  // namespace
+
+std::function<int()> declare_new_backend(Arguments& arguments) {
+  const auto options = std::make_shared<NewBackendOptions>();
+  arguments.add("NAME", options->name, "Name of the backend; its file is NAME.py or NAME.cpp").required();
+  arguments
+      .add_choice(
+          "--language", options->language,
+          {{"python", StarterLanguage::python}, {"c++", StarterLanguage::cpp}},
+          "What to write: python, one file that needs NumPy and h5py; c++, one file and a header that "
+          "needs HDF5's C library")
+      .required();
+  arguments.add("--out", options->out, "Folder to write into (default: this one)").value_name("DIR");
+  return [options] { return run_new_backend(*options); };
+}
+
+}  // namespace mssim

@@ -1,0 +1,251 @@
+#include "commands/options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+
+#include "application/choices.h"
+#include "application/run.h"
+#include "scene/scene_file.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+
+namespace {
+
+std::size_t frame_number(const std::string& word, std::size_t frames) {
+  if (word == "last") return frames - 1;
+  const auto number = number_in<std::int64_t>(word);
+  if (!number || *number < 0)
+    throw UsageError("--frames: \"" + printable(word) +
+                     "\" is no frame; give numbers from 0 on, ranges like 10-20, last, or all");
+  if (static_cast<std::uint64_t>(*number) >= frames)
+    throw UsageError("--frames: there is no frame " + std::to_string(*number) + "; the last one is " +
+                     std::to_string(frames - 1));
+  return static_cast<std::size_t>(*number);
+}
+
+std::vector<std::size_t> all_of(std::size_t frames) {
+  std::vector<std::size_t> list(frames);
+  std::iota(list.begin(), list.end(), std::size_t{0});
+  return list;
+}
+
+}  // namespace
+
+Argument declare_frames(Arguments& arguments, FrameOptions& options) {
+  Argument time = arguments.add_number("--time", options.time_s,
+                                       "Take the frame nearest to this time (default: the last frame)",
+                                       number_between(0, 1e9));
+  time.value_name("SECONDS");
+  arguments
+      .add_list("--frames", options.frames,
+                "Take these frames only: numbers from 0 on, ranges like 10-20, last, all")
+      .value_name("LIST")
+      .excludes(time);
+  return time;
+}
+
+std::vector<std::size_t> chosen_frames(const FrameOptions& options, const std::vector<double>& times_s) {
+  if (options.time_s) return {frame_at(*options.time_s, times_s)};
+  return options.frames.empty() ? all_of(times_s.size()) : listed_frames(options.frames, times_s.size());
+}
+
+std::vector<std::size_t> listed_frames(const std::vector<std::string>& words, std::size_t frames) {
+  std::vector<std::size_t> list;
+  if (words == std::vector<std::string>{"all"}) return all_of(frames);
+  for (const std::string& word : words) {
+    const std::size_t dash = word.find('-', 1);
+    const std::size_t first = frame_number(word.substr(0, dash), frames);
+    const std::size_t last = dash == std::string::npos ? first : frame_number(word.substr(dash + 1), frames);
+    if (last < first) throw UsageError("--frames: \"" + printable(word) + "\" ends before it begins");
+    for (std::size_t frame = first; frame <= last; ++frame) list.push_back(frame);
+  }
+  return list;
+}
+
+std::size_t frame_at(double time_s, const std::vector<double>& times_s) {
+  const auto nearest = std::ranges::min_element(
+      times_s, {}, [&](double frame_time_s) { return std::abs(frame_time_s - time_s); });
+  const double spacing = times_s.size() < 2 ? 0 : times_s.back() - times_s[times_s.size() - 2];
+  if (time_s > times_s.back() + spacing)
+    throw UsageError("--time: " + decimal(time_s) + " s is after the last frame, at " +
+                     decimal(times_s.back()) + " s");
+  return static_cast<std::size_t>(nearest - times_s.begin());
+}
+
+std::vector<std::size_t> spread_over(const std::vector<std::size_t>& frames, std::size_t count) {
+  if (frames.size() <= count) return frames;
+  if (count == 1) return {frames.back()};
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < count; ++i)
+    chosen.push_back(frames[(i * (frames.size() - 1) + (count - 1) / 2) / (count - 1)]);
+  return chosen;
+}
+
+void declare_pictures(Arguments& arguments, PictureChoice& choice, const std::string& usual_size,
+                      std::optional<Argument> needed) {
+  const auto of_pictures = [&](Argument argument) {
+    if (needed) argument.needs(*needed);
+  };
+  of_pictures(arguments
+                  .add("--view", choice.view,
+                       "From where: front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees "
+                       "(default: three-quarter)")
+                  .value_name("VIEW"));
+  of_pictures(
+      arguments.add("--size", choice.size, "Size of a picture in pixels (default: " + usual_size + ')')
+          .value_name("WIDTHxHEIGHT"));
+  of_pictures(arguments.add_choice(
+      "--colour", choice.colour,
+      {{"object", ColourBy::object}, {"panel", ColourBy::panel}, {"strain", ColourBy::strain}},
+      "What colours tell apart: object, panel (of a garment) or strain (default: object)"));
+}
+
+PictureOptions picture_options(const PictureChoice& choice, const std::string& usual_size, int threads) {
+  const auto view = view_direction(choice.view);
+  if (!view)
+    throw UsageError("--view: \"" + printable(choice.view) +
+                     "\" is no view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
+  const auto size = two_numbers(choice.size.empty() ? usual_size : choice.size, most_picture_pixels);
+  if (!size)
+    throw UsageError("--size: \"" + printable(choice.size) + "\" is no size; give WIDTHxHEIGHT, up to " +
+                     std::to_string(most_picture_pixels) + " pixels each");
+  return {*view, size->first, size->second, choice.colour, threads};
+}
+
+std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_view text,
+                                                                   std::uint32_t most) {
+  const std::size_t x = text.find('x');
+  if (x == std::string_view::npos) return std::nullopt;
+  const auto first = number_in<std::int64_t>(std::string(text.substr(0, x)));
+  const auto second = number_in<std::int64_t>(std::string(text.substr(x + 1)));
+  const auto good = [&](const std::optional<std::int64_t>& n) { return n && *n >= 1 && *n <= most; };
+  if (!good(first) || !good(second)) return std::nullopt;
+  return std::pair{static_cast<std::uint32_t>(*first), static_cast<std::uint32_t>(*second)};
+}
+
+namespace {
+
+/// Length of the name or file that the text begins with. The file of a backend is known by what a scene's is:
+/// a path that exists.
+std::size_t length_of_first(std::string_view text) {
+  const std::size_t shortest = std::min(text.find(','), text.size());
+  for (std::size_t end = text.size(); end != std::string_view::npos && end > shortest;
+       end = text.rfind(',', end - 1))
+    if (is_scene(text.substr(0, end))) return end;
+  return shortest;
+}
+
+}  // namespace
+
+std::vector<std::string> names_and_files_in(std::string_view argument) {
+  std::vector<std::string> names;
+  while (!argument.empty()) {
+    const std::size_t length = length_of_first(argument);
+    if (length > 0) names.emplace_back(argument.substr(0, length));
+    argument.remove_prefix(std::min(length + 1, argument.size()));
+  }
+  return names;
+}
+
+Argument add_scenes(Arguments& arguments, const std::string& name, std::vector<std::string>& target,
+                    const std::string& description) {
+  return arguments
+      .add_list(name, target,
+                description + ", separated by commas (but not at a comma in the name of an existing file)",
+                names_and_files_in)
+      .value_name("NAME|FILE,...");
+}
+
+void declare_listing_format(Arguments& arguments, ListingFormat& target) {
+  arguments.add_choice<ListingFormat>(
+      "--format", target,
+      {{"table", ListingFormat::table}, {"csv", ListingFormat::csv}, {"json", ListingFormat::json}},
+      "What to print: table, csv or json (default: table)");
+}
+
+void declare_execution(Arguments& arguments, ExecutionOptions& options) {
+  arguments
+      .add_number(
+          "--threads", options.threads,
+          "Threads, and compute units of an OpenCL device that is a processor (default: one for every "
+          "processor)",
+          whole_number(1, most_threads))
+      .value_name("N");
+  arguments
+      .add_number("--ranks", options.ranks,
+                  "Processes of the backend mpi, of --threads threads each; mpi:N says it of one row "
+                  "(default: as many as --threads, of one thread each)",
+                  whole_number(1, most_ranks))
+      .value_name("N");
+  arguments
+      .add("--launcher", options.launcher,
+           "Command that starts the processes of the backend mpi, to which `-n N PROGRAM` is added (default: "
+           "mpirun)")
+      .value_name("COMMAND");
+  arguments
+      .add("--device", options.device,
+           "OpenCL device: its number or a part of its name or platform (see mssim list devices)")
+      .value_name("N|NAME");
+  arguments.add_choice<DeviceMemory>(
+      "--memory", options.memory,
+      {{name_of(DeviceMemory::copy), DeviceMemory::copy},
+       {name_of(DeviceMemory::shared), DeviceMemory::shared}},
+      "How host and OpenCL device exchange data: shared, without copying where the device can, or copy "
+      "(default: shared)");
+  arguments.add_choice<Roots>(
+      "--roots", options.roots, {{"exact", Roots::exact}, {"fast", Roots::fast}},
+      "How openmp and gather-vectors find the lengths of springs: fast, with AVX-512 by an estimate and a "
+      "Newton step, or "
+      "exact, "
+      "which gives the same bits on every processor that has multiply-adds (default: fast)");
+}
+
+Argument declare_backend_folders(Arguments& arguments, OwnBackendOptions& options) {
+  return arguments
+      .add_list("--backend-folder", options.folders,
+                "Folders with descriptions of backends, NAME.json (see docs/own-backends.md)")
+      .value_name("DIR,...");
+}
+
+Argument declare_backend_limit(Arguments& arguments, OwnBackendOptions& options) {
+  return arguments
+      .add_number("--backend-limit", options.limit_s,
+                  "Longest time in which a program that is a backend must answer (default: 120)",
+                  number_between(0.001, longest_time_limit_s))
+      .value_name("SECONDS");
+}
+
+void declare_stepping(Arguments& arguments, RunOptions& options, const std::string& about_fps,
+                      std::optional<Argument> needed) {
+  const auto of_a_simulation = [&](Argument argument, const std::string& value_name) {
+    argument.value_name(value_name);
+    if (needed) argument.needs(*needed);
+  };
+  of_a_simulation(
+      arguments.add("--backend", options.backend,
+                    "Backend that simulates it: a name (see mssim list backends), or a program of "
+                    "your own, a path with a slash (default: openmp)"),
+      "NAME|FILE");
+  of_a_simulation(declare_backend_folders(arguments, options.own_backends), "DIR,...");
+  of_a_simulation(declare_backend_limit(arguments, options.own_backends), "SECONDS");
+  of_a_simulation(arguments.add("--integrator", options.integrator, "Integrator (default: semi-euler)"),
+                  "NAME");
+  of_a_simulation(
+      arguments.add_number("--duration", options.duration_s,
+                           "Simulated time (default: 1); for a garment the longest time that it may take to "
+                           "settle (default: 4)",
+                           positive_number()),
+      "SECONDS");
+  arguments.add_number("--fps", options.fps, about_fps, positive_number()).value_name("N");
+  of_a_simulation(
+      arguments.add_number("--dt", options.dt_s, "Time of a step (default: the scene's)", positive_number()),
+      "SECONDS");
+  declare_execution(arguments, options.execution);
+}
+
+}  // namespace mssim

@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "application/choices.h"
+#include "application/console.h"
+#include "application/outputs.h"
+#include "application/run.h"
+#include "commands/command.h"
+#include "commands/options.h"
+#include "garment/spec/garment_spec.h"
+#include "output/pictures/painter.h"
+#include "output/traces/trace_reader.h"
+#include "output/traces/xdmf.h"
+#include "picture/animated_png.h"
+#include "picture/png.h"
+#include "picture/sheet.h"
+#include "platform/files.h"
+#include "scene/scene_file.h"
+#include "text/error.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderOptions {
+  std::string trace;
+  RunOptions run;  ///< of --scene; its fps is that of a movie, too
+  std::string out, sheet_size;
+  PictureChoice look;
+  FrameOptions frames;
+  std::optional<std::string> movie;  ///< the file, where it is named here and not by `out`
+};
+
+constexpr double movie_fps = 30;
+constexpr std::uint32_t most_on_a_sheet = 20;  // across and down
+
+using Size = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Columns and rows of the sheet; none where there is none.
+std::optional<Size> sheet_size(const RenderOptions& options) {
+  const auto sheet = two_numbers(options.sheet_size, most_on_a_sheet);
+  if (!sheet && !options.sheet_size.empty())
+    throw UsageError("--sheet: \"" + printable(options.sheet_size) + "\" is no number of pictures; give " +
+                     "COLUMNSxROWS, up to " + std::to_string(most_on_a_sheet) + " each");
+  return sheet;
+}
+
+constexpr const char* size_of_many = "640x480";  // on a sheet and in a movie
+
+PictureOptions pictures_of(const RenderOptions& options) {
+  const bool alone = options.sheet_size.empty() && !options.movie;
+  return picture_options(options.look, alone ? usual_picture_size : size_of_many,
+                         complete(options.run.execution).threads);
+}
+
+/// "bodies20587" of a scene's name or file, "fall" of fall.h5.
+std::string stem_of(const RenderOptions& options) {
+  return fs::path(options.trace.empty() ? options.run.scene : options.trace).stem().string();
+}
+
+fs::path output_of(const RenderOptions& options) {
+  if (options.movie && !options.movie->empty()) return *options.movie;
+  if (!options.out.empty()) return options.out;
+  return fs::path(".") / (stem_of(options) + (options.movie                ? ".apng"
+                                              : options.sheet_size.empty() ? ".png"
+                                                                           : "-sheet.png"));
+}
+
+/// The frames that are drawn, in their order.
+std::vector<std::size_t> drawn_frames(const RenderOptions& options, const TraceContent& content) {
+  std::vector<std::size_t> chosen = chosen_frames(options.frames, content.time_s);
+  if (const auto sheet = sheet_size(options))
+    return spread_over(chosen, std::size_t{sheet->first} * sheet->second);
+  return options.movie ? chosen : std::vector{chosen.back()};
+}
+
+/// At which a movie shows frames as fast as they follow each other in simulated time.
+double natural_fps(const TraceContent& content, const std::vector<std::size_t>& frames) {
+  const double simulated_s = content.time_s[frames.back()] - content.time_s[frames.front()];
+  return simulated_s > 0 ? std::clamp(static_cast<double>(frames.size() - 1) / simulated_s, 0.1, 1000.0)
+                         : movie_fps;
+}
+
+/// Draws the chosen frames of a trace: the bytes of the file, and what is in it.
+std::string drawn_file(const RenderOptions& options, const PictureOptions& picture,
+                       const TraceReader& trace) {
+  const TraceContent& content = trace.content();
+  const std::vector<std::size_t> frames = drawn_frames(options, content);
+  Painter painter(content, trace.positions(0), picture);
+  for (const std::size_t frame : frames) painter.make_room_for(trace.positions(frame));
+  ProgressLine progress({1}, ProgressLine::Log::nothing);
+  progress.begin_scene(stem_of(options));
+  std::optional<AnimatedPng> movie;
+  if (options.movie) movie.emplace(options.run.fps.value_or(natural_fps(content, frames)));
+  std::vector<CaptionedPicture> pictures;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    Picture drawn = painter.picture_of(trace.positions(frames[i]));
+    progress.update_often("picture " + std::to_string(i + 1) + " of " + std::to_string(frames.size()),
+                          static_cast<double>(i + 1) / static_cast<double>(frames.size()));
+    if (movie)
+      movie->add(drawn);
+    else
+      pictures.push_back({std::move(drawn), "t = " + fixed_decimal(content.time_s[frames[i]], 2) + " s"});
+  }
+  if (movie) return movie->bytes();
+  if (const auto sheet = sheet_size(options)) return png_of(sheet_of(pictures, sheet->first));
+  return png_of(pictures.front().picture);
+}
+
+/// Frames per simulated second that the pictures need of a run: a scene may be large, and its trace with it.
+double fps_of_run(const RenderOptions& options) {
+  if (options.run.fps) return *options.run.fps;
+  if (options.movie || options.frames.given()) return movie_fps;
+  const double duration_s = options.run.duration_s.value_or(default_duration_s);
+  const auto sheet = sheet_size(options);
+  const std::uint32_t moments = sheet ? sheet->first * sheet->second : 2;
+  // When a garment has settled nobody knows.
+  if (sheet && std::holds_alternative<GarmentSpec>(find_scene(options.run.scene).content)) return movie_fps;
+  return std::max(moments - 1, 1U) / duration_s;
+}
+
+int render(const RenderOptions& options) {
+  const PictureOptions picture = pictures_of(options);
+  sheet_size(options);  // before anything is simulated
+  if (options.movie && options.run.fps && (*options.run.fps < 0.1 || *options.run.fps > 1000))
+    throw UsageError("--fps: a movie has 0.1 to 1000 frames a second, not " + decimal(*options.run.fps));
+  if (options.movie && !options.movie->empty() && !options.out.empty())
+    throw UsageError("--movie and --out both name the file: \"" + printable(*options.movie) + "\" and \"" +
+                     printable(options.out) + "\"; leave one of them out");
+  if (options.trace.empty() == options.run.scene.empty())
+    throw UsageError(options.movie && fs::path(*options.movie).extension() == ".h5"
+                         ? "--movie took \"" + printable(*options.movie) +
+                               "\" for the file to write; put the trace before it"
+                         : std::string("give either a trace or --scene"));
+  fs::path trace = options.trace;
+  if (is_scene(options.trace) && (trace.extension() == ".json" || !fs::exists(trace)))
+    throw UsageError('"' + printable(options.trace) + "\" is a scene, not a trace: did you mean --scene " +
+                     printable(options.trace) + '?');
+  const fs::path out = target_of(output_of(options));
+  require_extension({options.movie && !options.movie->empty() ? "--movie" : "--out", out}, "PNG",
+                    options.movie ? std::vector<std::string_view>{".apng", ".png"}
+                                  : std::vector<std::string_view>{".png", ".apng"});
+  int code = exit_ok;
+  if (trace.empty()) {
+    RunOptions run = options.run;
+    run.fps = fps_of_run(options);
+    trace = temporary_folder_of_process() / "scene.h5";
+    run.files.trace = trace.string();
+    run.files.temporary = true;
+    std::vector<NamedFile> read;
+    for (const fs::path& file : files_of(find_scene(run.scene)))
+      read.push_back({"a file of the scene", file});
+    require_distinct({{"--out", out}}, read);
+    AtomicFile(out).remove();  // finds what cannot be written before anything is simulated
+    code = run_scene(run);
+  } else {
+    require_distinct({{"--out", out}}, {{"the trace", trace}, {"the XDMF beside the trace", xdmf_of(trace)}});
+  }
+  const TraceReader reader(trace);
+  write_file_atomically(out, drawn_file(options, picture, reader));
+  std::cerr << "mssim: wrote " << printable(out.string()) << '\n';
+  return code;
+}
+
+}  // namespace
+
+std::function<int()> declare_render(Arguments& arguments) {
+  const auto options = std::make_shared<RenderOptions>();
+  const Argument trace = arguments.add("TRACE", options->trace, "Trace to draw, NAME.h5 (mssim run --trace)");
+  const Argument scene =
+      arguments.add("--scene", options->run.scene, "Simulate this scene and draw it: a name or a file")
+          .value_name("NAME|FILE")
+          .excludes(trace);
+  arguments
+      .add("--out", options->out,
+           "File to write (default: the trace's or the scene's name, and .png or .apng)")
+      .value_name("FILE");
+  declare_pictures(arguments, options->look,
+                   std::string(usual_picture_size) + ", and " + size_of_many + " on a sheet and in a movie");
+  const Argument time = declare_frames(arguments, options->frames);
+  const Argument sheet =
+      arguments.add("--sheet", options->sheet_size, "Put so many moments, evenly spread, on one sheet")
+          .value_name("COLUMNSxROWS")
+          .excludes(time);
+  arguments
+      .add_flag_with_text("--movie", options->movie,
+                          "Write an animated PNG of the frames, to this file or that of --out")
+      .value_name("[FILE]")
+      .excludes(sheet)
+      .excludes(time);
+  declare_stepping(
+      arguments, options->run,
+      "Frames per simulated second of a scene (default: as many as are drawn, 30 of a movie), and per "
+      "second of a movie (default: as simulated)",
+      scene);
+  return [options] { return render(*options); };
+}
+
+}  // namespace mssim
