@@ -1,5 +1,3 @@
-#include "report/guide_charts.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,21 +7,11 @@
 #include <utility>
 
 #include "integrators/all_integrators.h"
-#include "report/report_charts.h"
+#include "report/report_internal.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
-
-/// Integrators have the same look in every chart of errors.
-const std::vector<std::string>& integrator_families() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const Integrator* integrator : all_integrators) all.emplace_back(integrator->name);
-    return all;
-  }();
-  return names;
-}
 
 /// A line of a chart: for each step of an integrator, from the longest on, the point of one backend.
 struct GuideLine {
@@ -60,7 +48,8 @@ std::vector<GuideLine> lines_of(const FoundGuide& guide, const std::string& scen
   return lines;
 }
 
-using Along = std::function<std::optional<double>(const GuidePoint&)>;
+/// What errors are drawn over.
+using Along = std::optional<double> GuidePoint::*;
 
 /// A power of ten above all errors that are drawn.
 double edge_of(const std::vector<GuideLine>& lines) {
@@ -72,10 +61,15 @@ double edge_of(const std::vector<GuideLine>& lines) {
 }
 
 /// The lines over `along`, and the marks on them. Methods that have nothing along are left out.
-Chart error_chart(const std::vector<GuideLine>& lines, const Along& along) {
+Chart error_chart(const std::vector<GuideLine>& lines, Along along, const std::string& id,
+                  const std::string& title, const std::string& x_label) {
   Chart chart;
+  chart.id = id;
+  chart.title = title;
+  chart.x = {x_label, true};
   chart.y = {"position error (mean rest lengths)", true};
-  chart.families = integrator_families();
+  // Integrators have the same look in every chart of errors.
+  for (const Integrator* integrator : all_integrators) chart.families.emplace_back(integrator->name);
   const double edge = edge_of(lines);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Series uncompared{.name = "not compared", .origin = Origin::reference, .mark = PointMark::square},
@@ -87,11 +81,11 @@ Chart error_chart(const std::vector<GuideLine>& lines, const Along& along) {
   for (const GuideLine& line : lines) {
     Series series{.name = line.integrator, .family = line.integrator};
     for (const GuidePoint* point : line.points) {
-      const auto x = along(*point);
+      const auto x = point->*along;
       if (!x) continue;
       const double error = point->position_error.value_or(none);
       put(point->diverged ? diverged : series, *x, point->diverged ? edge : error);
-      if (!point->diverged && point->status != compared_status) put(uncompared, *x, error);
+      if (!point->diverged && point->status != "ok") put(uncompared, *x, error);
     }
     if (!series.x.empty()) chart.series.push_back(std::move(series));
   }
@@ -140,14 +134,12 @@ void add_orders(Chart& steps) {
   }
 }
 
-std::optional<double> evaluations_of(const GuidePoint& point) { return point.force_evaluations_per_s; }
-
 /// Integrators that have points, but no number of force evaluations.
 std::vector<std::string> without_evaluations(const std::vector<GuideLine>& lines) {
   std::vector<std::string> names;
   for (const GuideLine& line : lines)
     if (!line.points.empty() && std::ranges::none_of(line.points, [](const GuidePoint* point) {
-          return evaluations_of(*point).has_value();
+          return point->force_evaluations_per_s.has_value();
         }))
       names.push_back(line.integrator);
   return names;
@@ -248,21 +240,16 @@ std::vector<Chart> size_charts(const FoundGuide& guide, const std::string& scene
 
 std::vector<Chart> guide_charts(const FoundGuide& guide, const std::string& scene, const std::string& id) {
   const std::vector<GuideLine> lines = lines_of(guide, scene);
-  Chart work = error_chart(lines, [](const GuidePoint& point) { return point.wall_s_per_s; });
-  work.id = id + "-work-precision";
-  work.title = scene + ": error over cost";
-  work.x = {"wall seconds a simulated second", true};
+  Chart work = error_chart(lines, &GuidePoint::wall_s_per_s, id + "-work-precision",
+                           scene + ": error over cost", "wall seconds a simulated second");
   add_front(work, lines);
   add_remarks(work, guide, scene, lines);
-  Chart steps = error_chart(lines, [](const GuidePoint& point) { return point.dt_s; });
-  steps.id = id + "-error-step";
-  steps.title = scene + ": error over the step";
-  steps.x = {"step (s)", true};
+  Chart steps =
+      error_chart(lines, &GuidePoint::dt_s, id + "-error-step", scene + ": error over the step", "step (s)");
   add_orders(steps);
-  Chart evaluations = error_chart(lines, evaluations_of);
-  evaluations.id = id + "-error-evaluations";
-  evaluations.title = scene + ": error over force evaluations";
-  evaluations.x = {"force evaluations a simulated second", true};
+  Chart evaluations =
+      error_chart(lines, &GuidePoint::force_evaluations_per_s, id + "-error-evaluations",
+                  scene + ": error over force evaluations", "force evaluations a simulated second");
   add_names(evaluations, "Without a fixed number of force evaluations: ", without_evaluations(lines));
   std::vector<Chart> charts;
   for (Chart* chart : {&work, &steps, &evaluations})

@@ -1,43 +1,255 @@
-#include "report/page.h"
-
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <utility>
 
-#include "report/embedded_data.h"
-#include "report/html.h"
-#include "report/page_style.h"
-#include "report/sections.h"
+#include "output/folders/provenance_file.h"
+#include "output/tables/timings_csv.h"
+#include "report/report_internal.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
 
-struct Section {
-  std::string_view id, title;
-  std::string (*content)(const ReportInput& input);
-  bool of_rows = true;  ///< it shows what mssim bench has measured
+std::string element(std::string_view name, std::string_view content, std::string_view attributes = "") {
+  std::string text = "<";
+  return text.append(name)
+      .append(attributes)
+      .append(">")
+      .append(content)
+      .append("</")
+      .append(name)
+      .append(">");
+}
+
+/// A mark of a Document, which is the same in front and behind, and the element that it stands for.
+struct Mark {
+  std::string_view sign, element;
+};
+constexpr std::array<Mark, 3> text_marks{{{"`", "code"}, {"**", "strong"}, {"*", "em"}}};
+
+struct HtmlBlock {
+  int shift;  ///< added to the levels of headings
+
+  std::string operator()(const Heading& heading) const {
+    const int level = std::clamp(heading.level + shift, 1, 6);
+    return element("h" + std::to_string(level), html_prose(heading.text)) + '\n';
+  }
+  std::string operator()(const Paragraph& paragraph) const {
+    return element("p", html_prose(paragraph.text)) + '\n';
+  }
+  std::string operator()(const BulletList& list) const {
+    std::string items;
+    for (const std::string& item : list.items) items += element("li", html_prose(item)) + '\n';
+    return element("ul", '\n' + items) + '\n';
+  }
+  std::string operator()(const Table& table) const { return html_of(table); }
 };
 
-/// In the order in which they stand; one without content is left out.
-constexpr std::array<Section, 12> sections{{
-    {"machine", "Machine and settings", machine_section, false},
-    {"verdict", "Verdict", verdict_section},
-    {"changes", "What changed", changes_section},
-    {"headline", "Times", headline_section},
-    {"published", "Published beside measured", published_section},
-    {"guide", "Guide", guide_section, false},
-    {"speed-up", "Speed-up", speedup_section},
-    {"scaling", "Scaling", scaling_section},
-    {"roofline", "Roofline", roofline_section},
-    {"energy", "Energy", energy_section},
-    {"pictures", "Pictures", picture_section},
-    {"provenance", "Provenance", provenance_section, false},
-}};
+}  // namespace
 
-/// Whether all that there is are guides, which have no rows.
-bool has_only_guides(const ReportInput& input) {
-  return !input.folders.empty() && std::ranges::all_of(input.folders, [](const ReportFolder& folder) {
-    return folder.guide && folder.rows.empty();
-  });
+std::string html_text(std::string_view text) {
+  std::string result;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t line = std::min(rest.find('\n'), rest.size());
+    for (const char character : escaped(rest.substr(0, line))) {
+      if (character == '&')
+        result += "&amp;";
+      else if (character == '<')
+        result += "&lt;";
+      else if (character == '>')
+        result += "&gt;";
+      else if (character == '"')
+        result += "&quot;";
+      else if (character == '\'')
+        result += "&#39;";
+      else
+        result += character;
+    }
+    if (line == rest.size()) break;
+    result += '\n';
+    rest.remove_prefix(line + 1);
+  }
+  return result;
+}
+
+std::string html_prose(std::string_view text) {
+  std::string result, plain;
+  const auto flush = [&] { result += html_text(std::exchange(plain, {})); };
+  for (std::size_t at = 0; at < text.size();) {
+    const auto mark = std::ranges::find_if(
+        text_marks, [&](const Mark& candidate) { return text.substr(at).starts_with(candidate.sign); });
+    const std::size_t inner = mark == text_marks.end() ? at : at + mark->sign.size();
+    const std::size_t end = mark == text_marks.end() ? inner : text.find(mark->sign, inner);
+    if (mark != text_marks.end() && end != std::string_view::npos && end > inner && text[inner] != ' ') {
+      flush();
+      const std::string_view content = text.substr(inner, end - inner);
+      result += element(mark->element, mark->sign == "`" ? html_text(content) : html_prose(content));
+      at = end + mark->sign.size();
+    } else if (text[at] == '\n') {
+      flush();
+      result += "<br>";
+      ++at;
+    } else {
+      plain += text[at++];
+    }
+  }
+  flush();
+  return result;
+}
+
+std::string html_of(const Table& table) {
+  const auto side = [&](std::size_t column) {
+    return is_right_aligned(table, column) ? " class=\"number\"" : "";
+  };
+  std::string head, body;
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    head += element("th", html_prose(table.columns[i].name), std::string(" scope=\"col\"") + side(i));
+  for (const std::vector<Cell>& row : table.rows) {
+    std::string cells;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string content = html_prose(cell_text(row[i], table.columns[i]));
+      cells += i == 0 ? element("th", content, std::string(" scope=\"row\"") + side(i))
+                      : element("td", content, side(i));
+    }
+    body += element("tr", cells) + '\n';
+  }
+  return "<div class=\"wide\" tabindex=\"0\"><table>\n<thead>" + element("tr", head) + "</thead>\n<tbody>\n" +
+         body + "</tbody>\n</table></div>\n";
+}
+
+std::string html_of(const Document& document, int level) {
+  int top = 6;
+  for (const auto& block : document)
+    if (const auto* heading = std::get_if<Heading>(&block)) top = std::min(top, heading->level);
+  std::string text;
+  for (const auto& block : document) text += std::visit(HtmlBlock{level - top}, block);
+  return text;
+}
+
+std::string html_data(std::string_view id, std::string_view json) {
+  // Nothing may end the element; in JSON a "<" stands in texts alone.
+  std::string text = "<script type=\"application/json\" id=\"" + html_text(id) + "\">\n";
+  for (const char character : json)
+    if (character == '<')
+      text += "\\u003c";
+    else
+      text += character;
+  return text + "</script>\n";
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t group = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      group = group << 8 | (i < count ? static_cast<unsigned char>(bytes[at + i]) : 0U);
+    for (std::size_t i = 0; i < 4; ++i) text += i <= count ? digits[group >> (18 - 6 * i) & 63U] : '=';
+  }
+  return text;
+}
+
+namespace {
+
+/// How a report looks: light and dark, narrow and wide, on paper (A4). Wide tables scroll in boxes of their
+/// own on a screen, and are set smaller on paper.
+constexpr std::string_view page_style = R"(
+:root { color-scheme: light dark; --text: #1b1f24; --back: #ffffff; --dim: #57606a; --line: #d0d7de; --fill: #f3f5f7;
+  --yes: #116329; --partly: #7d4e00; --no: #a40e26; }
+@media (prefers-color-scheme: dark) { :root { --text: #e6edf3; --back: #0d1117; --dim: #9da7b3; --line: #3d444d;
+  --fill: #161b22; --yes: #56d364; --partly: #e3b341; --no: #ff8a80; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 1rem; max-width: 75rem; color: var(--text); background: var(--back);
+  font: 16px/1.5 system-ui, sans-serif; overflow-wrap: break-word; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: .5rem 0; }
+h2 { font-size: 1.35rem; margin: 2.2rem 0 .6rem; padding-bottom: .2rem; border-bottom: 1px solid var(--line); }
+h3 { font-size: 1.1rem; margin: 1.6rem 0 .5rem; }
+h4, h5, h6 { font-size: 1rem; margin: 1.2rem 0 .4rem; }
+p, ul { margin: .5rem 0; max-width: 60rem; }
+ul { padding-left: 1.2rem; }
+code { font: .9em ui-monospace, monospace; }
+td code, th code { white-space: nowrap; }
+a { color: inherit; }
+nav ul { list-style: none; padding: 0; display: flex; flex-wrap: wrap; gap: .2rem 1rem; }
+.wide { overflow-x: auto; margin: .6rem 0; max-width: 100%; }
+table { border-collapse: collapse; font-size: .875rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top;
+  font-weight: normal; max-width: 32rem; }
+thead th { font-weight: 600; background: var(--fill); vertical-align: bottom; }
+.number { text-align: right; white-space: nowrap; }
+thead .number { white-space: normal; }
+td.number strong, td strong { font-weight: 600; }
+.findings { list-style: none; padding: 0; }
+.findings li { padding: .3rem .8rem; margin: .4rem 0; border-left: .3rem solid var(--line); background: var(--fill); }
+.findings .yes { border-left-color: var(--yes); }
+.findings .partly { border-left-style: double; border-left-color: var(--partly); }
+.findings .no { border-left-style: dashed; border-left-color: var(--no); }
+.findings .yes > strong:first-child { color: var(--yes); }
+.findings .partly > strong:first-child { color: var(--partly); }
+.findings .no > strong:first-child { color: var(--no); }
+.problems { border-left: .3rem solid var(--no); padding-left: 1.5rem; }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 28rem), 1fr)); gap: 1rem; }
+figure { margin: .5rem 0; min-width: 0; }
+figure svg, figure img { display: block; width: 100%; height: auto; max-width: 38rem; }
+figcaption { color: var(--dim); font-size: .875rem; }
+summary { cursor: pointer; margin: .5rem 0; }
+@media (max-width: 45rem) { table { width: max-content; } th, td { max-width: 15rem; } }
+footer { margin-top: 2rem; color: var(--dim); font-size: .875rem; }
+@page { size: A4; margin: 14mm 12mm; }
+@media print {
+  :root { color-scheme: light; --text: #000000; --back: #ffffff; --dim: #444444; --line: #999999; --fill: #f3f3f3;
+    --yes: #0b4d20; --partly: #5f3b00; --no: #8a0b1f; }
+  body { font-size: 10pt; padding: 0; max-width: none; }
+  nav { display: none; }
+  details { display: none; }
+  .wide { overflow: visible; }
+  table { font-size: 7pt; width: 100%; }
+  th, td { padding: .1rem .25rem; overflow-wrap: break-word; max-width: none; }
+  .number { white-space: normal; }
+  h2, h3, h4, h5 { break-after: avoid; }
+  figure, tr, .findings li { break-inside: avoid; }
+  .figures { grid-template-columns: 1fr 1fr; }
+}
+)";
+
+/// The points of a guide as charts have them.
+Table points_of(const FoundGuide& guide) {
+  Table table;
+  for (const GuidePoint& point : guide.points)
+    table.add({{"scene", point.scene},
+               {"integrator", point.integrator},
+               {"backend", point.backend},
+               {"dt_s", point.dt_s},
+               {"position_error", point.position_error},
+               {"wall_s_per_s", point.wall_s_per_s},
+               {"force_evaluations_per_s", point.force_evaluations_per_s},
+               {"diverged", point.diverged},
+               {"on_front", point.on_front},
+               {"status", point.status}});
+  return table;
+}
+
+std::string json_of(const ReportFolder& folder, const ReportInput& input) {
+  Table verdict{{{"outcome"}, {"sentence"}}, {}};
+  for (const Finding& finding : findings_of(folder, input))
+    verdict.rows.push_back({name_of(finding.outcome), finding.sentence});
+  std::vector<std::string> problems;
+  for (const std::string& problem : folder.problems) problems.push_back(json_string(problem));
+  return "{\"name\": " + json_string(folder.name) + ", \"problems\": [" + join(problems, ", ") +
+         "],\n\"verdict\": " + to_text(verdict, ListingFormat::json) +
+         ", \"timings\": " + to_text(timings_table(folder.rows), ListingFormat::json) +
+         (folder.guide ? ", \"guide\": " + to_text(points_of(*folder.guide), ListingFormat::json) : "") +
+         ", \"provenance\": " + (folder.provenance ? provenance_text(*folder.provenance) : "null") + "}";
+}
+
+std::string embedded_data(const ReportInput& input) {
+  std::vector<std::string> folders;
+  for (const ReportFolder& folder : input.folders) folders.push_back(json_of(folder, input));
+  return "{\"made_by\": " + json_string(input.made_by) + ", \"folders\": [\n" + join(folders, ",\n") +
+         "\n]}\n";
 }
 
 std::string title_of(const ReportInput& input) {
@@ -51,9 +263,12 @@ std::string title_of(const ReportInput& input) {
 
 std::string report_page(const ReportInput& input) {
   std::string links, body;
-  const bool rows = !has_only_guides(input);
-  for (const Section& section : sections) {
-    if (section.of_rows && !rows) continue;
+  const bool only_guides =
+      !input.folders.empty() && std::ranges::all_of(input.folders, [](const ReportFolder& folder) {
+        return folder.guide && folder.rows.empty();
+      });
+  for (const Section& section : report_sections()) {
+    if (section.of_rows && only_guides) continue;
     const std::string content = section.content(input);
     if (content.empty()) continue;
     const std::string id(section.id), title(section.title);

@@ -1,23 +1,25 @@
-#include "report/report_folder.h"
-
 #include <algorithm>
-#include <exception>
 #include <string_view>
 #include <system_error>
 
 #include "garment/output/garment_csv.h"
 #include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
-#include "output/tables/table.h"
 #include "output/tables/timings_csv.h"
 #include "platform/files.h"
-#include "report/readable_records.h"
+#include "report/report.h"
 #include "text/text.h"
 
 namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Larger pictures are not taken into a page, and a larger page is none that mssim guide wrote.
+constexpr std::size_t largest_picture_bytes = std::size_t{8} << 20, largest_page_bytes = std::size_t{4} << 20;
+
+/// The points of a guide, which say that a folder is one.
+constexpr const char* guide_name = "guide.csv";
 
 bool is_there(const fs::path& path) {
   std::error_code error;
@@ -38,20 +40,53 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return entries;
 }
 
-void read_rows(const fs::path& file, ReportFolder& folder) {
-  std::string text;
+/// The text of a file; none, with a problem, where it cannot be read.
+std::optional<std::string> text_of(const fs::path& file, std::size_t most_bytes, const std::string& without,
+                                   std::vector<std::string>& problems) {
   try {
-    text = read_file(file, largest_csv_bytes);
+    return read_file(file, most_bytes);
   } catch (const ReadError& error) {
-    folder.problems.push_back(error.sentence(file, "without it there is nothing to show"));
-    return;
+    problems.push_back(error.sentence(file, without));
+    return std::nullopt;
   }
-  folder.rows = readable_records<ResultRow>(file, text, read_timings, folder.problems);
+}
+
+/// The records of a file, as `read` makes them of a table: all, or where that throws CsvError, each line that
+/// can be read alone; then a problem says why, and how many are left out. So does one where there are none.
+template <class Record>
+std::vector<Record> records_of(const fs::path& file, const std::string& without,
+                               std::vector<Record> (*read)(const CsvTable&),
+                               std::vector<std::string>& problems) {
+  std::vector<Record> records;
+  const auto text = text_of(file, largest_csv_bytes, without, problems);
+  if (!text) return records;
+  try {
+    records = read(CsvTable(file.string(), *text));
+  } catch (const CsvError& error) {
+    const std::size_t head = std::min(text->find('\n'), text->size());
+    std::string_view rest = std::string_view(*text).substr(std::min(head + 1, text->size()));
+    std::size_t lost = 0;
+    while (!rest.empty()) {
+      const std::size_t length = std::min(rest.find('\n'), rest.size());
+      std::string line = text->substr(0, head) + '\n';
+      line.append(rest.substr(0, length)) += '\n';
+      rest.remove_prefix(std::min(length + 1, rest.size()));
+      try {
+        for (Record& record : read(CsvTable(file.string(), line))) records.push_back(std::move(record));
+      } catch (const CsvError&) {
+        ++lost;
+      }
+    }
+    problems.push_back(std::string(error.what()) + "; " + pluralize(lost, "row") + " left out, " +
+                       std::to_string(records.size()) + " shown");
+  }
+  if (records.empty()) problems.push_back(file.string() + " has no row that can be shown");
+  return records;
 }
 
 /// Reads what belongs to the rows from a file beside timings.csv; false where that cannot be read.
-template <class Read>
-bool read_beside(const fs::path& file, ReportFolder& folder, const std::string& without, Read read) {
+bool read_beside(const fs::path& file, ReportFolder& folder, const std::string& without,
+                 void (*read)(const fs::path& file, std::span<ResultRow> rows)) {
   std::vector<ResultRow> rows = folder.rows;
   try {
     read(file, rows);
@@ -77,40 +112,87 @@ void drop_incomplete_samples(const fs::path& file, ReportFolder& folder) {
 
 /// A time that no clock gives would only spoil what is computed of it.
 void drop_impossible_times(ReportFolder& folder) {
+  const auto is_bad = [](double ms) { return !(ms > 0); };
   for (ResultRow& row : folder.rows) {
     if (!counts(row)) continue;
-    const auto bad = [](double ms) { return !(ms > 0); };
-    if (row.ms_per_step && bad(*row.ms_per_step)) row.ms_per_step.reset();
-    if (row.ms_per_step_low && bad(*row.ms_per_step_low)) row.ms_per_step_low.reset();
-    if (row.ms_per_step_high && bad(*row.ms_per_step_high)) row.ms_per_step_high.reset();
-    if (row.speedup_vs_serial && bad(*row.speedup_vs_serial)) row.speedup_vs_serial.reset();
-    if (std::ranges::any_of(row.samples_ms, bad)) row.samples_ms.clear();
+    for (std::optional<double>* time :
+         {&row.ms_per_step, &row.ms_per_step_low, &row.ms_per_step_high, &row.speedup_vs_serial})
+      if (*time && is_bad(**time)) time->reset();
+    if (std::ranges::any_of(row.samples_ms, is_bad)) row.samples_ms.clear();
     if (!row.ms_per_step) row.status = "failed: timings.csv has no time of it";
   }
 }
 
 void read_pictures_and_curves(const fs::path& path, ReportFolder& folder) {
   for (const fs::path& file : entries_of(path)) {
-    const std::string extension = file.extension().string();
-    if (extension != ".png" && extension != ".csv") continue;
-    try {
-      const std::string text =
-          read_file(file, extension == ".png" ? largest_picture_bytes : largest_csv_bytes);
-      if (extension == ".csv") {
-        if (auto curve = energy_curve_in(file.stem().string(), text))
-          folder.curves.push_back(std::move(*curve));
-      } else if (text.starts_with("\x89PNG\r\n\x1a\n")) {
-        folder.pictures.push_back({file.filename().string(), text});
-      } else {
-        folder.problems.push_back(file.string() + " is no PNG picture");
-      }
-    } catch (const ReadError& error) {
-      folder.problems.push_back(error.sentence(file, "it is not shown"));
+    const bool is_picture = file.extension() == ".png";
+    if (!is_picture && file.extension() != ".csv") continue;
+    auto text = text_of(file, is_picture ? largest_picture_bytes : largest_csv_bytes, "it is not shown",
+                        folder.problems);
+    if (!text) continue;
+    if (!is_picture) {
+      if (auto curve = energy_curve_in(file.stem().string(), *text))
+        folder.curves.push_back(std::move(*curve));
+    } else if (text->starts_with("\x89PNG\r\n\x1a\n")) {
+      folder.pictures.push_back({file.filename().string(), std::move(*text)});
+    } else {
+      folder.problems.push_back(file.string() + " is no PNG picture");
     }
   }
 }
 
+std::vector<GuidePoint> points_in(const CsvTable& table) {
+  const auto at = [&](std::string_view name) { return table.column(name); };
+  std::vector<GuidePoint> points;
+  for (std::size_t record = 0; record < table.size(); ++record) {
+    GuidePoint& point = points.emplace_back();
+    point.scene = table.text(record, at("scene"));
+    point.integrator = table.text(record, at("integrator"));
+    point.backend = table.text(record, at("backend"));
+    point.status = table.text(record, at("status"));
+    point.dt_s = table.optional_number(record, at("dt_s"));
+    if (!point.dt_s) continue;
+    point.position_error = table.optional_number(record, at("position_error"));
+    point.wall_s_per_s = table.optional_number(record, at("wall_s_per_s"));
+    point.force_evaluations_per_s = table.optional_number(record, at("force_evaluations_per_s"));
+    point.diverged = table.truth(record, at("diverged"));
+    point.on_front = table.truth(record, at("on_front"));
+  }
+  return points;
+}
+
+std::vector<GuideTime> times_in(const CsvTable& table) {
+  const auto at = [&](std::string_view name) { return table.column(name); };
+  std::vector<GuideTime> times;
+  for (std::size_t record = 0; record < table.size(); ++record)
+    times.push_back({table.text(record, at("scene")), table.text(record, at("integrator")),
+                     table.text(record, at("backend")), table.number(record, at("nodes")),
+                     table.number(record, at("ms_per_step"))});
+  return times;
+}
+
+/// None where the folder has no guide.csv.
+std::optional<FoundGuide> read_guide(const fs::path& folder, std::vector<std::string>& problems) {
+  if (!is_there(folder / guide_name)) return std::nullopt;
+  FoundGuide guide;
+  guide.points = records_of(folder / guide_name, "errors and costs are not shown", points_in, problems);
+  // Guides of bodies have no sizes.
+  if (const fs::path times = folder / "guide-sizes.csv"; is_there(times))
+    guide.times = records_of(times, "times by size are not shown", times_in, problems);
+  if (const auto text = text_of(folder / "guide.md", largest_page_bytes,
+                                "what the guide recommends is not shown", problems))
+    guide.page = document_in(*text);
+  return guide;
+}
+
 }  // namespace
+
+std::vector<std::string> FoundGuide::scenes() const {
+  std::vector<std::string> names;
+  for (const GuidePoint& point : points)
+    if (std::ranges::find(names, point.scene) == names.end()) names.push_back(point.scene);
+  return names;
+}
 
 std::vector<fs::path> result_folders(const fs::path& folder) {
   if (has_results(folder)) return {folder};
@@ -123,14 +205,14 @@ ReportFolder read_report_folder(const fs::path& path) {
   ReportFolder folder;
   folder.name = path.string();
   folder.guide = read_guide(path, folder.problems);
-  if (!folder.guide || is_there(path / timings_name)) read_rows(path / timings_name, folder);
+  if (!folder.guide || is_there(path / timings_name))
+    folder.rows =
+        records_of(path / timings_name, "without it there is nothing to show", read_timings, folder.problems);
   if (!folder.rows.empty()) {
-    if (read_beside(path / samples_name, folder, "intervals of ratios are those of the times",
-                    [](const fs::path& file, std::span<ResultRow> rows) { read_samples(file, rows); }))
+    if (read_beside(path / samples_name, folder, "intervals of ratios are those of the times", read_samples))
       drop_incomplete_samples(path / samples_name, folder);
     if (is_there(path / garment_name))
-      read_beside(path / garment_name, folder, "how garments were dressed is not shown",
-                  [](const fs::path& file, std::span<ResultRow> rows) { read_dressings(file, rows); });
+      read_beside(path / garment_name, folder, "how garments were dressed is not shown", read_dressings);
   }
   drop_impossible_times(folder);
   try {

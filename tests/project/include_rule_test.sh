@@ -134,6 +134,7 @@ output/pictures       painter picture_folder
 output/traces         trace_content h5md_trace trace_reader energy_curve xdmf
 output/exports        exports vtkhdf_export
 output/folders        result_folder provenance_file
+report                report
 application           prepared_scene choices console outputs run guide_run
 application/bench     suites bench_plan bench_results bench_run ab_comparison
 commands/arguments    arguments program_parser

@@ -1,5 +1,3 @@
-#include "report/finding.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/times_as_fast.h"
+#include "report/report_internal.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {
@@ -200,7 +198,7 @@ TEST(RowFindings, NameRowsThatAreNotVerified) {
             Outcome::fact);
   rows[1].verified = false;
   EXPECT_EQ(outcome(row_findings(rows, provenance),
-                    "1 row is not verified, and count nowhere: `openmp` on `cloth2500`, semi-euler"),
+                    "1 row is not verified, and counts nowhere: `openmp` on `cloth2500`, semi-euler"),
             Outcome::warning);
   rows[1] = failed_row("openmp", "unavailable: no device");
   EXPECT_EQ(outcome(row_findings(rows, provenance), "1 row has no time"), Outcome::fact);
@@ -256,16 +254,16 @@ TEST(GarmentFindings, SayWhetherParallelisationIsFaster) {
 
 TEST(TimesAsFast, TakesTheIntervalsOfTimesWhereThereAreNoPairs) {
   ResultRow row = small("openmp", 1), than = small("serial", 4);
-  EXPECT_EQ(times_as_fast(row, than)->low, 4);
+  EXPECT_EQ(times_as_fast(&row, &than)->low, 4);
   row.samples_ms.pop_back();
-  const auto ratio = times_as_fast(row, than);
+  const auto ratio = times_as_fast(&row, &than);
   EXPECT_EQ(ratio->ratio, 4);
   EXPECT_EQ(ratio->low, 1);
   EXPECT_EQ(ratio->high, 16);
   row.ms_per_step_low = row.ms_per_step_high = std::nullopt;
-  EXPECT_EQ(times_as_fast(row, than)->low, 2);
+  EXPECT_EQ(times_as_fast(&row, &than)->low, 2);
   row.verified = false;
-  EXPECT_FALSE(times_as_fast(row, than));
+  EXPECT_FALSE(times_as_fast(&row, &than));
 }
 
 TEST(ExponentOf, IsTheSlopeOnLogarithmicAxes) {

@@ -1,9 +1,9 @@
-#include "report/guide_charts.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "report/report_internal.h"
 
 namespace mssim {
 namespace {

@@ -1,10 +1,9 @@
-#include "report/report_charts.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "report/report_internal.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {

@@ -1,5 +1,3 @@
-#include "report/report_folder.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 
 #include "output/folders/provenance_file.h"
 #include "output/tables/timings_csv.h"
+#include "report/report.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/temporary_folder.h"
 

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include "report/html.h"
-#include "report/page.h"
+#include "report/report_internal.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {

@@ -1,0 +1,185 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "charts/chart.h"
+#include "report/report.h"
+
+namespace mssim {
+
+/// What a page is made of: comparisons of measured with published times, the sentences that follow from them,
+/// charts, and HTML.
+
+/// A ratio and its interval.
+struct RatioInterval {
+  double ratio = 1;
+  double low = 1, high = 1;
+
+  /// 1 where it lies above 1, -1 where it lies below, and 0 where it holds 1.
+  int side_of_one() const { return low > 1 ? 1 : high < 1 ? -1 : 0; }
+};
+
+/// How many times as fast as `than` a row is: the median of the ratios within each round, with its 95 %
+/// interval (statistics.h). Where their samples are no pairs: the quotient of the times, and of the ends of
+/// their intervals, which is wider. None where one of them does not count, or is null.
+std::optional<RatioInterval> times_as_fast(const ResultRow* row, const ResultRow* than);
+
+/// The exponent p of y ~ x^p: the slope of the line of least squares on logarithmic axes. None for fewer than
+/// two different x. All are above zero.
+std::optional<double> exponent_of(std::span<const double> x, std::span<const double> y);
+
+/// A scene of a published table that was measured.
+struct PaperScene {
+  std::string name;
+  std::uint64_t nodes = 0;
+  std::optional<std::uint64_t> springs_published;
+};
+
+/// A published table and the rows that were measured of its scenes: what verdicts and charts ask of both.
+class PaperScenes {
+ public:
+  /// All must outlive it.
+  PaperScenes(std::span<const ResultRow> rows, const PaperLegend& legend, const PublishedTable& published);
+
+  const std::vector<PaperScene>& scenes() const { return scenes_; }  ///< by size
+  const PaperLegend& legend() const { return legend_; }
+  /// "Table 1", for sentences.
+  std::string label() const;
+
+  std::optional<double> published_ms(const PaperScene& scene, std::string_view integrator,
+                                     std::string_view configuration) const;
+  /// Over one thread; none where either time is missing.
+  std::optional<double> published_speedup(const PaperScene& scene, std::string_view integrator,
+                                          std::string_view configuration) const;
+  /// Null where there is none.
+  const ResultRow* row(const PaperScene& scene, std::string_view backend, std::string_view integrator) const;
+  /// The backends that stand for a configuration and have a time.
+  std::vector<std::string> backends_of(std::string_view configuration) const;
+
+ private:
+  std::span<const ResultRow> rows_;
+  const PaperLegend& legend_;
+  const PublishedTable& published_;
+  std::vector<PaperScene> scenes_;
+};
+
+/// The configuration that speed-ups are over.
+inline constexpr std::string_view one_thread_configuration = "cpu-only";
+
+/// What measured rows say about something that a paper says, or about themselves.
+enum class Outcome : std::uint8_t {
+  reproduced,
+  partly,  ///< by some backends, or as far as intervals tell, and contradicted by nothing else
+  not_reproduced,
+  undecided,  ///< the intervals are too wide to say
+  fact,       ///< nothing published stands beside it
+  warning
+};
+
+/// As it stands in front of a sentence.
+std::string_view name_of(Outcome outcome);
+
+/// A sentence of the verdict, computed. With the marks of a Document.
+struct Finding {
+  Outcome outcome = Outcome::fact;
+  std::string sentence;
+};
+
+/// Which of each two configurations of a published table is faster, and from which size on.
+std::vector<Finding> order_findings(const PaperScenes& scenes);
+
+/// Where a speed-up falls as the scenes grow.
+std::vector<Finding> trend_findings(const PaperScenes& scenes);
+
+/// What a step of each integrator costs, in steps of the cheapest.
+std::vector<Finding> cost_findings(const PaperScenes& scenes);
+
+/// What garments say about Figure 6 of Vassilev and the time of a dressing. None without garments.
+std::vector<Finding> garment_findings(std::span<const ResultRow> rows);
+
+/// On which devices rows were measured, which are not verified or have no time, and which speed-ups cannot be
+/// told from 1. None without rows.
+std::vector<Finding> row_findings(std::span<const ResultRow> rows, const Provenance& provenance);
+
+/// All findings of a folder, in the order in which they are shown.
+std::vector<Finding> findings_of(const ReportFolder& folder, const ReportInput& input);
+
+/// How far a measured ratio of costs may lie from the published one, as a factor, to reproduce it.
+inline constexpr double cost_tolerance = 1.25;
+/// A published speed-up that becomes smaller by more than this fraction falls: the papers give no intervals.
+inline constexpr double published_fall = 0.05;
+
+/// Charts. `id` begins their ids, so that those of several folders differ. A chart without anything to show
+/// is none.
+
+/// Backends have the same look in every chart.
+inline const std::vector<std::string> backend_families{"serial", "threads-mutex", "openmp", "opencl",
+                                                       "hybrid"};
+
+/// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
+std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& id);
+
+/// Figure 6 of Vassilev: milliseconds an iteration against vertices, of garments.
+std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::string& id);
+
+/// The time of a step of the first integrator against nodes, for each kind of scene with at least two sizes,
+/// with the slope of every line.
+std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLegend& legend,
+                                  std::span<const PublishedTable> published, const std::string& id);
+
+/// The slopes of all integrators: exponents p of time ~ nodes^p. Without rows where nothing has two sizes.
+Table slope_table(std::span<const ResultRow> rows, const PaperLegend& legend,
+                  std::span<const PublishedTable> published);
+
+/// A dot a backend, on the largest scene that has a roofline, with the first integrator, below the roofs that
+/// the timings tell of.
+std::optional<Chart> roofline_chart(std::span<const ResultRow> rows, const std::string& id);
+
+/// Total energy against time, with the reference curve of the scene that the curve's name begins with, where
+/// there is one.
+Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> references, const std::string& id);
+
+/// The charts of a scene of a guide: work and precision (Hairer, Norsett and Wanner, Solving Ordinary
+/// Differential Equations I, section II.10), errors over steps and over force evaluations, and times by size.
+/// A line is an integrator; each of its points is that of the cheapest backend with this step. Diverged
+/// points stand as crosses at the edge, whatever their error.
+std::vector<Chart> guide_charts(const FoundGuide& guide, const std::string& scene, const std::string& id);
+
+/// Any text (a file's name, a scene's, a message) as HTML shows it, in elements and in quoted attributes. The
+/// one place that escapes: all that stands in a page went through it, or is written in the program.
+std::string html_text(std::string_view text);
+
+/// HTML of a text with the marks of a Document (`code`, *emphasis*, **strong**, line feeds). A mark that
+/// is not closed, or has a blank behind it, stands for itself.
+std::string html_prose(std::string_view text);
+
+/// A table in a box of its own, in which it scrolls where the page is narrower. The first column names the
+/// rows.
+std::string html_of(const Table& table);
+
+/// Blocks one below the other; the first level of its headings becomes `level`.
+std::string html_of(const Document& document, int level);
+
+/// Raw data for programs, in an element that no browser runs or shows. `json` is JSON.
+std::string html_data(std::string_view id, std::string_view json);
+
+/// The bytes in base 64 (RFC 4648), for an address that holds its picture.
+std::string base64(std::string_view bytes);
+
+/// A part of the page under a heading of its own.
+struct Section {
+  std::string_view id, title;
+  /// Its HTML, which says so where there is nothing to show; empty: the section is left out.
+  std::string (*content)(const ReportInput& input);
+  bool of_rows = true;  ///< it shows what mssim bench has measured: left out where all folders are guides
+};
+
+/// In the order in which they stand.
+std::span<const Section> report_sections();
+
+}  // namespace mssim

@@ -1,0 +1,478 @@
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "bench/results/comparison.h"
+#include "output/tables/comparison_table.h"
+#include "report/report_internal.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// What `content` makes of each folder and the beginning of its ids, below its name where there are several;
+/// `without` where all of it is empty.
+template <class Content>
+std::string of_each_folder(const ReportInput& input, const std::string& without, Content content) {
+  std::string text;
+  for (std::size_t i = 0; i < input.folders.size(); ++i) {
+    const ReportFolder& folder = input.folders[i];
+    const std::string part = content(folder, "f" + std::to_string(i + 1));
+    if (part.empty()) continue;
+    if (input.folders.size() > 1) text += "<h3>" + html_text(folder.name) + "</h3>\n";
+    text += part;
+  }
+  return text.empty() ? without : text;
+}
+
+// Machine and provenance
+
+std::string caches_of(const Machine& machine) {
+  std::vector<std::string> caches;
+  for (const Cache& cache : machine.caches)
+    caches.push_back("L" + std::to_string(cache.level) + " " + cache.type + " " +
+                     std::to_string(cache.count) + " × " + grouped(cache.bytes / 1024) + " KiB");
+  return join(caches, ", ");
+}
+
+std::string rounds_of(const ReportFolder& folder) {
+  int least = 0, most = 0;
+  for (const ResultRow& row : folder.rows)
+    if (row.rounds > 0) {
+      least = least == 0 ? row.rounds : std::min(least, row.rounds);
+      most = std::max(most, row.rounds);
+    }
+  return least == most ? std::to_string(most) : std::to_string(least) + " to " + std::to_string(most);
+}
+
+/// What ran in which folder, and what is missing.
+std::string machine_section(const ReportInput& input) {
+  Table table;
+  BulletList problems{input.problems};
+  for (const ReportFolder& folder : input.folders) {
+    problems.items.insert(problems.items.end(), folder.problems.begin(), folder.problems.end());
+    if (!folder.provenance) continue;
+    const Provenance& provenance = *folder.provenance;
+    const Machine& machine = provenance.machine;
+    table.add({{"folder", folder.name},
+               {"processor", cpu_name(machine)},
+               {"logical CPUs", machine.logical_cpus},
+               {"threads", provenance.threads},
+               {"memory", three_digits(static_cast<double>(machine.memory_bytes) / (1U << 30U)) + " GiB"},
+               {"OpenCL devices", join(provenance.opencl_devices, "; ")},
+               {"system", machine.operating_system},
+               {"compiler", provenance.build.compiler + ", " + provenance.build.build_type},
+               {"mssim", made_by(provenance)},
+               {"rounds", rounds_of(folder)}});
+  }
+  for (Column& column : table.columns) column.align = Align::left;
+  std::string text =
+      table.rows.empty() ? "<p>No folder says on which machine it was measured.</p>\n" : html_of(table);
+  // These name files, in which no mark is meant.
+  if (!problems.items.empty()) {
+    text += "<h3>What is missing or damaged</h3>\n<ul class=\"problems\">\n";
+    for (const std::string& problem : problems.items) text += "<li>" + html_text(problem) + ".</li>\n";
+    text += "</ul>\n";
+  }
+  return text;
+}
+
+std::string provenance_of(const Provenance& provenance) {
+  const Machine& machine = provenance.machine;
+  std::vector<std::string> environment, scenes, load;
+  for (const auto& [name, value] : provenance.thread_environment) environment.push_back(name + "=" + value);
+  for (const SceneHash& scene : provenance.scenes)
+    scenes.push_back(scene.name + " " + to_hex(scene.fnv1a_64));
+  for (const double average : machine.load_average) load.push_back(fixed_decimal(average, 2));
+  const auto or_nothing = [](const std::string& text) { return text.empty() ? Cell() : Cell(text); };
+  Table table{{{"what"}, {"value"}}, {}};
+  const auto line = [&](const char* what, Cell value) { table.rows.push_back({what, std::move(value)}); };
+  line("command", join(provenance.command_line, " "));
+  line("started", provenance.started_utc);
+  line("continues runs of", or_nothing(join(provenance.earlier_starts_utc, ", ")));
+  line("commit", provenance.build.commit + (provenance.build.dirty ? ", with uncommitted changes" : ""));
+  line("program", provenance.program_fnv1a_64 ? Cell(to_hex(*provenance.program_fnv1a_64)) : Cell());
+  line("compiler flags", provenance.build.flags);
+  line("caches", or_nothing(caches_of(machine)));
+  line("frequency", three_digits(machine.cpu_mhz / 1000) + " GHz");
+  line("governor", machine.governor ? Cell(*machine.governor) : Cell());
+  line("turbo", machine.turbo ? Cell(*machine.turbo) : Cell());
+  line("kernel", machine.kernel);
+  line("load average", or_nothing(join(load, ", ")));
+  line("environment of threads", or_nothing(join(environment, ", ")));
+  line("memory of devices", or_nothing(provenance.device_memory));
+  line("TetGen", or_nothing(provenance.tetgen));
+  line("hashes of scenes", or_nothing(join(scenes, ", ")));
+  Document page{Paragraph{"Sources of noise that mssim saw when it started:"}, BulletList{provenance.noise}};
+  if (provenance.noise.empty()) page = {Paragraph{"mssim saw no source of noise when it started."}};
+  page.emplace_back(std::move(table));
+  return html_of(page, 4);
+}
+
+/// What one needs to judge the numbers and to measure them again.
+std::string provenance_section(const ReportInput& input) {
+  return of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) {
+    return folder.provenance ? provenance_of(*folder.provenance)
+                             : "<p>provenance.json is missing or damaged: where these numbers come from is "
+                               "not known.</p>\n";
+  });
+}
+
+// Verdict and changes
+
+std::string list_of(const std::vector<Finding>& findings) {
+  // A sign and a class beside the words, so that outcomes differ without colour and at a glance.
+  constexpr std::array<std::pair<const char*, const char*>, 6> looks{
+      {{"✓", "yes"}, {"◐", "partly"}, {"✗", "no"}, {"?", "partly"}, {"•", "fact"}, {"!", "no"}}};
+  std::string text = "<ul class=\"findings\">\n";
+  for (const Finding& finding : findings) {
+    const auto& [sign, style] = looks[static_cast<std::size_t>(finding.outcome)];
+    text.append("<li class=\"").append(style).append("\"><strong>").append(sign).append(" ");
+    text.append(name_of(finding.outcome)).append("</strong> ") += html_prose(finding.sentence) + "</li>\n";
+  }
+  return text + "</ul>\n";
+}
+
+std::string count_of(const std::vector<Finding>& findings) {
+  const auto number = [&](Outcome outcome) {
+    return std::ranges::count(findings, outcome, &Finding::outcome);
+  };
+  const auto published = std::ssize(findings) - number(Outcome::fact) - number(Outcome::warning);
+  if (published == 0) return "<p>Nothing published stands beside these rows.</p>\n";
+  return "<p>Of " + pluralize(static_cast<std::uint64_t>(published), "published statement") + ", " +
+         std::to_string(number(Outcome::reproduced)) + " are reproduced, " +
+         std::to_string(number(Outcome::partly)) + " partly, " +
+         std::to_string(number(Outcome::not_reproduced)) + " are not, and " +
+         std::to_string(number(Outcome::undecided)) + " are undecided.</p>\n";
+}
+
+std::string verdict_section(const ReportInput& input) {
+  return "<p>Each sentence says first what a paper published, then what was measured. A row that is not "
+         "verified counts nowhere. Tables 1 and 3 are those of Hong et al. (2016).</p>\n" +
+         of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
+           const std::vector<Finding> findings = findings_of(folder, input);
+           return findings.empty() ? "<p>There is no row to judge.</p>\n"
+                                   : count_of(findings) + list_of(findings);
+         });
+}
+
+/// The rows that can be compared: those that count have samples.
+std::vector<ResultRow> with_samples(const ReportFolder& folder) {
+  std::vector<ResultRow> rows;
+  std::ranges::copy_if(folder.rows, std::back_inserter(rows),
+                       [](const ResultRow& row) { return !counts(row) || !row.samples_ms.empty(); });
+  return rows;
+}
+
+/// What changed from the first of two folders to the second, as `mssim compare` says it, or why they cannot
+/// be compared; empty for any other number of folders.
+std::string changes_section(const ReportInput& input) {
+  if (input.folders.size() != 2) return {};
+  const ReportFolder &base = input.folders[0], &next = input.folders[1];
+  std::string text = "<p>BASE is " + html_text(base.name) + ", NEW is " + html_text(next.name) + ".</p>\n";
+  std::vector<std::string> unlike{"not both folders say where they come from"};
+  if (base.provenance && next.provenance) unlike = differences(*base.provenance, *next.provenance);
+  std::ranges::move(differences(base.rows, next.rows), std::back_inserter(unlike));
+  if (!unlike.empty())
+    return text + "<p>The two runs are not comparable: " + html_text(join(unlike, "; ")) +
+           ".</p>\n<p><code>mssim compare --force</code> compares them anyway.</p>\n";
+  const RunComparison comparison = compare(with_samples(base), with_samples(next), input.threshold);
+  if (comparison.rows.empty()) return text + "<p>They have no measured combination in common.</p>\n";
+  text += html_of(comparison_page(comparison), 3);
+  const auto name = [&](const char* what, const std::vector<std::string>& combinations) {
+    if (!combinations.empty())
+      text += "<p>" + std::string(what) + ": " + html_text(join(combinations, "; ")) + ".</p>\n";
+  };
+  name("Only BASE has", comparison.only_base);
+  name("Only NEW has", comparison.only_new);
+  name("Without a verified time in BASE", comparison.untimed);
+  return text;
+}
+
+// Tables
+
+std::string interval(double low, double high) { return three_digits(low) + " to " + three_digits(high); }
+
+/// The words say it, the sign only helps to see it.
+std::string verified_mark(const ResultRow& row) {
+  if (counts(row)) return "✓ yes";
+  return row.status == "ok" ? "✗ **no**" : "– " + row.status.substr(0, row.status.find(':'));
+}
+
+Table times_of(const std::vector<const ResultRow*>& rows, RowPointers all) {
+  Table table{{{"scene"},
+               {"integrator"},
+               {"backend"},
+               {"threads"},
+               {"time of a step (ms)", Align::right},
+               {"95 % interval (ms)", Align::right},
+               {"speed-up", Align::right, "×"},
+               {"95 % interval", Align::right},
+               {"published (ms)", Align::right},
+               {"of the roof (%)", Align::right},
+               {"verified"}},
+              {}};
+  for (const ResultRow* row : rows) {
+    const ResultRow* serial = find_row(all, row->scene, "serial", row->integrator);
+    const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
+    const bool shown = counts(*row);
+    Cell published = row->paper_ms;
+    published.exact = true;
+    table.rows.push_back({row->scene, row->integrator, "`" + row->backend + "`",
+                          row->threads > 0 ? Cell(row->threads) : Cell(),
+                          shown ? Cell(row->ms_per_step) : Cell(),
+                          shown && row->ms_per_step_low && row->ms_per_step_high
+                              ? Cell(interval(*row->ms_per_step_low, *row->ms_per_step_high))
+                              : Cell(),
+                          speedup ? Cell(speedup->ratio) : Cell(),
+                          speedup ? Cell(interval(speedup->low, speedup->high)) : Cell(), published,
+                          shown && row->roofline_fraction ? Cell(100 * *row->roofline_fraction) : Cell(),
+                          verified_mark(*row)});
+  }
+  return table;
+}
+
+/// The rows of the largest scene of each kind.
+std::vector<const ResultRow*> headline_rows(RowPointers rows) {
+  std::map<ContentKind, const ResultRow*> largest;
+  for (const ResultRow* row : rows) {
+    if (!counts(*row)) continue;
+    const ResultRow*& known = largest[kind_of(*row)];
+    if (!known || row->nodes > known->nodes) known = row;
+  }
+  std::set<std::string_view> scenes;
+  for (const auto& [kind, row] : largest) scenes.insert(row->scene);
+  std::vector<const ResultRow*> chosen;
+  std::ranges::copy_if(rows, std::back_inserter(chosen),
+                       [&](const ResultRow* row) { return scenes.contains(row->scene); });
+  return chosen;
+}
+
+std::string headline_section(const ReportInput& input) {
+  return "<p>The largest scene of each kind. Times are medians of the rounds; intervals hold the true median "
+         "in 95 % of the cases (with fewer than six rounds they are the smallest and the largest sample). "
+         "Speed-ups are over <code>serial</code>, medians of the ratios within each round.</p>\n" +
+         of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) -> std::string {
+           if (folder.rows.empty()) return "<p>There are no rows.</p>\n";
+           const std::vector<const ResultRow*> all = pointers_to(folder.rows);
+           return html_of(times_of(headline_rows(all), all)) + "<details><summary>All " +
+                  pluralize(all.size(), "row") + "</summary>\n" + html_of(times_of(all, all)) +
+                  "</details>\n";
+         });
+}
+
+/// The tables of the papers, published beside measured.
+std::string published_section(const ReportInput& input) {
+  return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string&) {
+    std::string text;
+    if (input.tables)
+      for (const ResultTable& table : input.tables(folder.rows, folder.provenance.value_or(Provenance())))
+        text += html_of(table.page, 4);
+    return text.empty() ? "<p>No row of this folder belongs into a published table.</p>\n" : text;
+  });
+}
+
+// Charts and pictures
+
+std::string in_figures(const std::string& figures) {
+  return figures.empty() ? figures : "<div class=\"figures\">\n" + figures + "</div>\n";
+}
+
+/// Charts with their notes, or the sentence why there is none.
+std::string figures_of(const std::vector<Chart>& charts) {
+  std::string text;
+  for (const Chart& chart : charts) {
+    const DrawnChart drawn = draw_svg(chart);
+    // The chart has its title in it.
+    const std::string notes =
+        drawn.notes.empty() ? "" : "<figcaption>" + html_text(join(drawn.notes, ". ")) + ".</figcaption>";
+    text += drawn.svg.empty() ? "<p class=\"problems\">" + html_text(chart.title) +
+                                    ": no chart, because there is no value to draw.</p>\n"
+                              : "<figure>" + drawn.svg + notes + "</figure>\n";
+  }
+  return in_figures(text);
+}
+
+std::string pictures_of(const std::vector<FoundPicture>& pictures) {
+  std::string text;
+  for (const FoundPicture& picture : pictures)
+    text += "<figure><img alt=\"" + html_text(picture.caption) + "\" src=\"data:image/png;base64," +
+            base64(picture.png) + "\"><figcaption>" + html_text(picture.caption) + "</figcaption></figure>\n";
+  return in_figures(text);
+}
+
+std::string speedup_section(const ReportInput& input) {
+  return "<p>Published lines are dashed, with open points; measured ones have intervals. Both axes are "
+         "logarithmic in charts of speed-ups, and neither in Figure 6 of Vassilev, which shows its own times "
+         "as curves without numbers.</p>\n" +
+         of_each_folder(input, "<p>No folder has a scene of the papers with a speed-up.</p>\n",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          std::vector<Chart> charts;
+                          for (const PublishedTable& published : input.published) {
+                            const PaperScenes scenes(folder.rows, input.legend, published);
+                            std::ranges::move(
+                                speedup_charts(scenes, id + "-" + std::string(published.info().name)),
+                                std::back_inserter(charts));
+                          }
+                          if (auto figure6 = figure6_chart(folder.rows, id))
+                            charts.push_back(std::move(*figure6));
+                          return figures_of(charts);
+                        });
+}
+
+std::string scaling_section(const ReportInput& input) {
+  return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes: 1 "
+         "where a node costs the same at every size.</p>\n" +
+         of_each_folder(input, "<p>No folder has two sizes of a kind of scene.</p>\n",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          const Table slopes = slope_table(folder.rows, input.legend, input.published);
+                          return figures_of(scaling_charts(folder.rows, input.legend, input.published, id)) +
+                                 (slopes.rows.empty() ? "" : html_of(slopes));
+                        });
+}
+
+std::string roofline_section(const ReportInput& input) {
+  return "<p>Operations and bytes are what a step needs at least. Roofs are what the timings say of the "
+         "machine's peaks, measured in the same process.</p>\n" +
+         of_each_folder(input, "<p>No folder has rows with a roofline; garments have none.</p>\n",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          const auto chart = roofline_chart(folder.rows, id);
+                          return chart ? figures_of({*chart}) : std::string();
+                        });
+}
+
+std::string energies_of(const std::vector<FoundCurve>& curves, const std::vector<FoundCurve>& references,
+                        const std::string& id) {
+  std::vector<Chart> charts;
+  std::vector<std::string> without;
+  for (const FoundCurve& curve : curves) {
+    charts.push_back(energy_chart(curve, references, id + "-energy-" + std::to_string(charts.size())));
+    if (charts.back().series.size() == 1) without.push_back(curve.name);
+  }
+  return figures_of(charts) +
+         (without.empty() ? ""
+                          : "<p>Without a reference curve: " + html_text(join(without, ", ")) + ".</p>\n");
+}
+
+std::string energy_section(const ReportInput& input) {
+  const std::string simulated = input.curves.empty()
+                                    ? ""
+                                    : "<p>Simulated anew for this page, beside a reference in double "
+                                      "precision with steps of rk4.</p>\n" +
+                                          energies_of(input.curves, input.references, "simulated");
+  return simulated +
+         of_each_folder(input,
+                        simulated.empty()
+                            ? "<p>No folder has an energy curve. <code>mssim run --scene cloth2500 "
+                              "--energy-curve FOLDER/cloth2500.csv</code> writes one into a folder.</p>\n"
+                            : "",
+                        [&](const ReportFolder& folder, const std::string& id) {
+                          return energies_of(folder.curves, input.references, id);
+                        });
+}
+
+std::string picture_section(const ReportInput& input) {
+  const std::string drawn =
+      input.pictures.empty()
+          ? ""
+          : "<p>A scene of each kind, simulated anew for this page by <code>openmp</code>.</p>\n" +
+                pictures_of(input.pictures);
+  return drawn +
+         of_each_folder(
+             input,
+             drawn.empty() ? "<p>No folder has a picture. <code>mssim render</code> draws one; put it "
+                             "into a folder as a PNG file.</p>\n"
+                           : "",
+             [](const ReportFolder& folder, const std::string&) { return pictures_of(folder.pictures); });
+}
+
+// Guides
+
+/// The page of a guide from a heading of this level to the next one: what comes before the first is a part of
+/// its own, without a heading.
+std::vector<Document> parts_of(const Document& page, int level) {
+  std::vector<Document> parts(1);
+  for (const auto& block : page) {
+    const auto* heading = std::get_if<Heading>(&block);
+    if (heading && heading->level == level) parts.emplace_back();
+    parts.back().push_back(block);
+  }
+  return parts;
+}
+
+const std::string& heading_of(const Document& part) { return std::get<Heading>(part.front()).text; }
+
+/// Is the part about the scene? Headings go on with its size.
+bool is_about(const Document& part, const std::string& scene) {
+  return heading_of(part) == scene || heading_of(part).starts_with(scene + ":");
+}
+
+std::string to_unfold(const std::string& summary, const Document& blocks, int level) {
+  return blocks.empty() ? ""
+                        : "<details><summary>" + html_text(summary) + "</summary>\n" +
+                              html_of(blocks, level) + "</details>\n";
+}
+
+/// What the page says of a scene in words, the charts, and the page's tables to unfold.
+std::string guide_of_scene(const Document& scene, const std::vector<Chart>& charts, int level) {
+  const std::vector<Document> parts = parts_of(scene, 3);
+  Document words, methods;
+  for (const auto& block : parts.front())
+    (std::holds_alternative<Table>(block) ? methods : words).push_back(block);
+  std::string text = html_of(words, level) + figures_of(charts) + to_unfold("Methods", methods, level + 1);
+  for (std::size_t i = 1; i < parts.size(); ++i)
+    text += to_unfold(heading_of(parts[i]), Document(parts[i].begin() + 1, parts[i].end()), level + 1);
+  return text;
+}
+
+std::string guide_of(const FoundGuide& guide, const std::string& id, int level) {
+  std::vector<Document> parts = parts_of(guide.page, 2);
+  // The title is the section's.
+  std::erase_if(parts.front(), [](const auto& block) { return std::holds_alternative<Heading>(block); });
+  std::string text = html_of(parts.front(), level);
+  const std::vector<std::string> scenes = guide.scenes();
+  for (const std::string& scene : scenes)
+    if (std::none_of(parts.begin() + 1, parts.end(),
+                     [&](const Document& part) { return is_about(part, scene); }))
+      parts.push_back({Heading{2, scene}});
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const auto scene =
+        std::ranges::find_if(scenes, [&](const std::string& name) { return is_about(parts[i], name); });
+    std::vector<Chart> charts;
+    if (scene != scenes.end())
+      charts = guide_charts(guide, *scene, id + "-guide-" + std::to_string(scene - scenes.begin() + 1));
+    text += guide_of_scene(parts[i], charts, level);
+  }
+  return text;
+}
+
+/// Folders of guides, scene by scene. Empty where there is none.
+std::string guide_section(const ReportInput& input) {
+  const int level = input.folders.size() < 2 ? 3 : 4;
+  return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string& id) {
+    return folder.guide ? guide_of(*folder.guide, id, level) : std::string();
+  });
+}
+
+constexpr std::array<Section, 12> sections{{
+    {"machine", "Machine and settings", machine_section, false},
+    {"verdict", "Verdict", verdict_section},
+    {"changes", "What changed", changes_section},
+    {"headline", "Times", headline_section},
+    {"published", "Published beside measured", published_section},
+    {"guide", "Guide", guide_section, false},
+    {"speed-up", "Speed-up", speedup_section},
+    {"scaling", "Scaling", scaling_section},
+    {"roofline", "Roofline", roofline_section},
+    {"energy", "Energy", energy_section},
+    {"pictures", "Pictures", picture_section},
+    {"provenance", "Provenance", provenance_section, false},
+}};
+
+}  // namespace
+
+std::span<const Section> report_sections() { return sections; }
+
+}  // namespace mssim
