@@ -8,6 +8,7 @@
 
 #include "application/choices.h"
 #include "application/run.h"
+#include "picture/lettering.h"
 #include "scene/scene_file.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -114,6 +115,7 @@ PictureOptions picture_options(const PictureChoice& choice, const std::string& u
   if (!size)
     throw UsageError("--size: \"" + printable(choice.size) + "\" is no size; give WIDTHxHEIGHT, up to " +
                      std::to_string(most_picture_pixels) + " pixels each");
+  if (choice.colour != ColourBy::object) require_font();  // of their legends
   return {*view, size->first, size->second, choice.colour, threads};
 }
 

@@ -18,6 +18,7 @@
 #include "output/traces/trace_reader.h"
 #include "output/traces/xdmf.h"
 #include "picture/animated_png.h"
+#include "picture/lettering.h"
 #include "picture/png.h"
 #include "picture/sheet.h"
 #include "platform/files.h"
@@ -129,7 +130,8 @@ double fps_of_run(const RenderOptions& options) {
 
 int render(const RenderOptions& options) {
   const PictureOptions picture = pictures_of(options);
-  sheet_size(options);  // before anything is simulated
+  // Before anything is simulated.
+  if (sheet_size(options)) require_font();
   if (options.movie && options.run.fps && (*options.run.fps < 0.1 || *options.run.fps > 1000))
     throw UsageError("--fps: a movie has 0.1 to 1000 frames a second, not " + decimal(*options.run.fps));
   if (options.movie && !options.movie->empty() && !options.out.empty())

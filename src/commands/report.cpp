@@ -1,3 +1,5 @@
+#include "report/report.h"
+
 #include <algorithm>
 #include <exception>
 #include <filesystem>
@@ -21,7 +23,6 @@
 #include "output/traces/trace_reader.h"
 #include "picture/png.h"
 #include "platform/files.h"
-#include "report/report.h"
 #include "scene/scene_file.h"
 #include "text/error.h"
 #include "text/text.h"

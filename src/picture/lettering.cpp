@@ -1,21 +1,97 @@
 #include "picture/lettering.h"
 
+#include <ft2build.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
+#include <map>
+#include <utility>
 #include <vector>
+#include FT_FREETYPE_H
 
-#include "picture/glyph_raster.h"
-#include "picture/glyphs.h"
+#include "text/error.h"
 
 namespace mssim {
 namespace {
 
-constexpr std::string_view dots = "…";
+/// Where Debian, Fedora and Arch have the font.
+constexpr std::array<const char*, 3> font_files{"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                                                "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+                                                "/usr/share/fonts/TTF/DejaVuSans.ttf"};
 
-/// The whole pixels between the lines of two characters: more where the pen is wider than its lines.
-int letter_gap(double size_px, const Pen& pen) {
-  return std::max(2, static_cast<int>(std::lround(0.14 * size_px + pen.width - pen.line)));
+const char* font_file() {
+  for (const char* file : font_files) {
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) return file;
+  }
+  throw MissingProgram(std::string("the font of letters in pictures is missing, ") + font_files.front() +
+                       ": install Debian's package fonts-dejavu-core");
+}
+
+/// How much of each pixel a character covers, of 255, in rows from the top.
+struct GlyphMask {
+  int left = 0, above = 0;  ///< of its first column from where it begins; rows above the baseline
+  int width = 0, height = 0;
+  int advance = 0;  ///< to where the next character begins
+  std::vector<std::uint8_t> coverage;
+};
+
+void require_success(FT_Error error, const char* what) {
+  if (error)
+    throw std::runtime_error("FreeType failed at " + std::string(what) + ": error " + std::to_string(error));
+}
+
+/// The font, with the characters that were drawn before.
+class Font {
+ public:
+  Font() {
+    require_success(FT_Init_FreeType(&library_), "its start");
+    const FT_Error error = FT_New_Face(library_, font_file(), 0, &face_);
+    if (error) FT_Done_FreeType(library_);
+    require_success(error, font_file());
+  }
+  Font(const Font&) = delete;
+  Font& operator=(const Font&) = delete;
+  ~Font() { FT_Done_FreeType(library_); }  // and what belongs to it
+
+  const GlyphMask& mask_of(char32_t character, double size_px) {
+    const auto size = static_cast<FT_F26Dot6>(std::lround(64 * size_px));
+    const auto [known, is_new] = masks_.try_emplace({character, size});
+    if (is_new) known->second = drawn(character, size);
+    return known->second;
+  }
+
+ private:
+  GlyphMask drawn(char32_t character, FT_F26Dot6 size) {
+    require_success(FT_Set_Char_Size(face_, 0, size, 0, 0), "a size of letters");
+    // Light hinting: horizontal edges lie on whole pixels, widths stay those of the font.
+    require_success(FT_Load_Char(face_, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT), "a letter");
+    const FT_GlyphSlot slot = face_->glyph;
+    GlyphMask mask{slot->bitmap_left,
+                   slot->bitmap_top,
+                   static_cast<int>(slot->bitmap.width),
+                   static_cast<int>(slot->bitmap.rows),
+                   static_cast<int>(std::lround(static_cast<double>(slot->advance.x) / 64)),
+                   {}};
+    for (int row = 0; row < mask.height; ++row) {
+      const unsigned char* begin = slot->bitmap.buffer + std::ptrdiff_t{row} * slot->bitmap.pitch;
+      mask.coverage.insert(mask.coverage.end(), begin, begin + mask.width);
+    }
+    return mask;
+  }
+
+  FT_Library library_ = nullptr;
+  FT_Face face_ = nullptr;
+  std::map<std::pair<char32_t, FT_F26Dot6>, GlyphMask> masks_;
+};
+
+/// FreeType allows one thread for each library.
+Font& font() {
+  thread_local Font loaded;
+  return loaded;
 }
 
 /// The bytes of the UTF-8 character at the beginning of `text`: one if there is none.
@@ -40,48 +116,52 @@ char32_t character_at(std::string_view text, std::size_t size) {
   return character;
 }
 
-/// Calls `use` with each character and the pixels between the left edge of the text and its own.
+/// Calls `use` with each character and the pixels between the left edge of the text and where it begins.
+/// Returns the right edge.
 template <class Use>
 int walk_along(std::string_view text, const Letters& letters, const Use& use) {
-  const Pen pen(letters.size_px);
-  const int gap = letter_gap(letters.size_px, pen);
-  int x = 0;
+  int x = 0, right = 0;
+  bool is_first = true;
   for (std::size_t size = 0; !text.empty(); text.remove_prefix(size)) {
     size = character_size(text);
-    const Glyph& glyph = glyph_of(character_at(text, size));
-    use(glyph, pen, x);
-    x += width_px(glyph, pen) + gap;
+    const GlyphMask& mask = font().mask_of(character_at(text, size), letters.size_px);
+    if (std::exchange(is_first, false)) x = -mask.left;
+    use(mask, x);
+    right = x + (mask.width > 0 ? mask.left + mask.width : mask.advance);
+    x += mask.advance;
   }
-  return std::max(0, x - gap);
+  return right;
 }
 
 }  // namespace
 
-int Letters::capital_height() const {
-  const Pen pen(size_px);
-  return static_cast<int>(std::lround(26 * pen.scale)) + pen.line;
+int Letters::capital_height() const { return font().mask_of(U'H', size_px).above; }
+
+int Letters::descent() const {
+  const GlyphMask& mask = font().mask_of(U'g', size_px);
+  return mask.height - mask.above;
 }
 
-int Letters::descent() const { return static_cast<int>(std::lround(8 * Pen(size_px).scale)); }
-
 int Letters::line_distance() const { return static_cast<int>(std::lround(1.4 * size_px)); }
+
+void require_font() { font_file(); }
 
 double letter_size_for(std::uint32_t picture_height) { return std::max(11.0, 0.025 * picture_height); }
 
 int text_width(std::string_view text, const Letters& letters) {
-  return walk_along(text, letters, [](const Glyph&, const Pen&, int) {});
+  return walk_along(text, letters, [](const GlyphMask&, int) {});
 }
 
 void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
                Alignment alignment) {
   if (alignment != Alignment::left) x -= text_width(text, letters) / (alignment == Alignment::centre ? 2 : 1);
-  walk_along(text, letters, [&](const Glyph& glyph, const Pen& pen, int from_start) {
-    const GlyphMask mask = mask_of(glyph, pen);
+  walk_along(text, letters, [&](const GlyphMask& mask, int from_start) {
+    auto covered = mask.coverage.begin();
     for (int row = 0; row < mask.height; ++row)
-      for (int column = 0; column < mask.width; ++column)
-        if (const std::uint8_t covered = mask.coverage[mask.index_of(column, row)])
-          blend(picture, x + from_start + mask.left + column, baseline + mask.top + row, letters.colour,
-                covered);
+      for (int column = 0; column < mask.width; ++column, ++covered)
+        if (*covered > 0)
+          blend(picture, x + from_start + mask.left + column, baseline - mask.above + row, letters.colour,
+                *covered);
   });
 }
 
@@ -89,7 +169,7 @@ std::string shortened(std::string_view text, int width, const Letters& letters) 
   if (text_width(text, letters) <= width) return std::string(text);
   std::string fitting;
   for (std::size_t end = 0; end < text.size(); end += character_size(text.substr(end))) {
-    const std::string candidate = std::string(text.substr(0, end)) + std::string(dots);
+    const std::string candidate = std::string(text.substr(0, end)) + "…";
     if (text_width(candidate, letters) > width) break;
     fitting = candidate;
   }

@@ -8,8 +8,8 @@
 
 namespace mssim {
 
-/// Letters of one size and colour. `size_px` is that of the font: capitals are about 0.74 of it high, and x
-/// 0.54. Letters are fit for reading from 10 px on.
+/// Letters of one size and colour, of the font DejaVu Sans. `size_px` is that of the font: capitals are about
+/// 0.73 of it high, and x 0.55. Letters are fit for reading from 10 px on.
 struct Letters {
   double size_px = 14;
   Rgb colour = black;
@@ -22,19 +22,22 @@ struct Letters {
   int line_distance() const;
 };
 
+/// All that writes or measures letters throws MissingProgram where the font is not installed, with a sentence
+/// that says how to get it. This asks for it in advance.
+void require_font();
+
 /// The size in pixels of letters on a picture of this height: 2.5 % of it, at least 11.
 double letter_size_for(std::uint32_t picture_height);
 
 /// Which part of a text stands at the column that it is written at.
 enum class Alignment { left, centre, right };
 
-/// Pixels from the left edge of the first character to the right edge of the last. `text` is UTF-8; each of
-/// its characters counts, and each byte that is not part of one.
+/// Pixels from the left edge of the first character to the right edge of the last. `text` is UTF-8; a byte
+/// that is not part of a character counts as U+FFFD.
 int text_width(std::string_view text, const Letters& letters);
 
 /// Draws a line of text at column `x`; the last row of letters without descender is the one above
-/// `baseline`. Printable ASCII and ° × – − µ ± · ² ³ … are known. Another character is an empty box. What
-/// lies outside of the picture is cut off.
+/// `baseline`. A character that the font lacks is an empty box. What lies outside of the picture is cut off.
 void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
                Alignment alignment = Alignment::left);
 

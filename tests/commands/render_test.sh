@@ -55,6 +55,24 @@ cmp -s t.apng named.apng || fail "--movie FILE writes something else than --movi
 expect 2 'put the trace before it' render --movie t.h5
 expect 2 '--movie and --out both name the file' render t.h5 --movie a.apng --out b.apng
 
+# Without the font, a picture with letters is refused before anything is simulated; others are drawn.
+if unshare --mount --map-root-user mount -t tmpfs none /usr/share/fonts 2>err; then
+  # shellcheck disable=SC2016 # the inner shell expands $0 and $@
+  without_font() { unshare --mount --map-root-user sh -c 'mount -t tmpfs none /usr/share/fonts && exec "$0" "$@"' "$mssim" "$@"; }
+  for with_letters in '--colour strain' '--sheet 2x2'; do
+    status=0
+    # shellcheck disable=SC2086 # two words
+    without_font render --scene cloth350k --duration 1000 $with_letters --out no.png >out 2>err || status=$?
+    [ "$status" -eq 3 ] || fail "$with_letters without the font: exit status $status instead of 3"
+    grep -q 'DejaVuSans.ttf: install .*fonts-dejavu-core$' err || fail "$with_letters without the font: $(cat err)"
+  done
+  [ ! -e no.png ] || fail "a picture is left without the font"
+  without_font render t.h5 --size 200x150 --out bare.png >out 2>err || fail "without the font: $(cat err)"
+  cmp -s t.png bare.png || fail "a picture without letters needs the font"
+else
+  echo "not tried: no font ($(cat err))"
+fi
+
 # A garment that has not settled is drawn, too.
 status=0
 "$mssim" render --scene jeans1k --size 160x120 --duration 0.02 --out jeans.png >out 2>err || status=$?
