@@ -17,8 +17,8 @@
 #include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"
 #include "output/traces/xdmf.h"
-#include "picture/animated_png.h"
 #include "picture/lettering.h"
+#include "picture/movie.h"
 #include "picture/png.h"
 #include "picture/sheet.h"
 #include "platform/files.h"
@@ -70,7 +70,7 @@ std::string stem_of(const RenderOptions& options) {
 fs::path output_of(const RenderOptions& options) {
   if (options.movie && !options.movie->empty()) return *options.movie;
   if (!options.out.empty()) return options.out;
-  return fs::path(".") / (stem_of(options) + (options.movie                ? ".apng"
+  return fs::path(".") / (stem_of(options) + (options.movie                ? ".webp"
                                               : options.sheet_size.empty() ? ".png"
                                                                            : "-sheet.png"));
 }
@@ -99,7 +99,7 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   for (const std::size_t frame : frames) painter.make_room_for(trace.positions(frame));
   ProgressLine progress({1}, ProgressLine::Log::nothing);
   progress.begin_scene(stem_of(options));
-  std::optional<AnimatedPng> movie;
+  std::optional<Movie> movie;
   if (options.movie) movie.emplace(options.run.fps.value_or(natural_fps(content, frames)));
   std::vector<CaptionedPicture> pictures;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -111,7 +111,7 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
     else
       pictures.push_back({std::move(drawn), "t = " + fixed_decimal(content.time_s[frames[i]], 2) + " s"});
   }
-  if (movie) return movie->bytes();
+  if (movie) return movie->take_bytes();
   if (const auto sheet = sheet_size(options)) return png_of(sheet_of(pictures, sheet->first));
   return png_of(pictures.front().picture);
 }
@@ -147,9 +147,9 @@ int render(const RenderOptions& options) {
     throw UsageError('"' + printable(options.trace) + "\" is a scene, not a trace: did you mean --scene " +
                      printable(options.trace) + '?');
   const fs::path out = target_of(output_of(options));
-  require_extension({options.movie && !options.movie->empty() ? "--movie" : "--out", out}, "PNG",
-                    options.movie ? std::vector<std::string_view>{".apng", ".png"}
-                                  : std::vector<std::string_view>{".png", ".apng"});
+  require_extension({options.movie && !options.movie->empty() ? "--movie" : "--out", out},
+                    options.movie ? "an animated WebP" : "PNG",
+                    {options.movie ? std::string_view(".webp") : std::string_view(".png")});
   int code = exit_ok;
   if (trace.empty()) {
     RunOptions run = options.run;
@@ -183,7 +183,7 @@ std::function<int()> declare_render(Arguments& arguments) {
           .excludes(trace);
   arguments
       .add("--out", options->out,
-           "File to write (default: the trace's or the scene's name, and .png or .apng)")
+           "File to write (default: the trace's or the scene's name, and .png or .webp)")
       .value_name("FILE");
   declare_pictures(arguments, options->look,
                    std::string(usual_picture_size) + ", and " + size_of_many + " on a sheet and in a movie");
@@ -194,7 +194,7 @@ std::function<int()> declare_render(Arguments& arguments) {
           .excludes(time);
   arguments
       .add_flag_with_text("--movie", options->movie,
-                          "Write an animated PNG of the frames, to this file or that of --out")
+                          "Write an animated WebP of the frames, to this file or that of --out")
       .value_name("[FILE]")
       .excludes(sheet)
       .excludes(time);

@@ -17,8 +17,8 @@ expect_picture() {
   [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"
   [ "$(size_of "$1")" = "$2" ] || fail "$1 has $(size_of "$1") pixels instead of $2"
 }
-# frames_of FILE: how many frames an animated PNG says that it has
-frames_of() { grep -abo acTL "$1" | head -n 1 | { IFS=: read -r at _ && od -An -tu1 -j$((at + 7)) -N1 "$1" | tr -d ' '; }; }
+# frames_of FILE: how many frames an animated WebP has
+frames_of() { grep -abo ANMF "$1" | wc -l; }
 
 cd "$work"
 succeed run --scene cloth2500 --duration 0.2 --fps 20 --trace t.h5
@@ -47,13 +47,18 @@ succeed render t.h5 --sheet 2x2 --size 100x80
 expect_picture t-sheet.png "$(size_of t-sheet.png)"
 [ "$(size_of t-sheet.png | cut -dx -f1)" -gt 200 ] || fail "two pictures do not fit beside each other on the sheet"
 succeed render t.h5 --movie --size 80x60
-[ "$(frames_of t.apng)" -eq 5 ] || fail "the movie has $(frames_of t.apng) frames instead of 5"
-succeed render t.h5 --movie --size 80x60 --frames 1-2,last --out some.apng
-[ "$(frames_of some.apng)" -eq 3 ] || fail "the movie has $(frames_of some.apng) frames instead of 3"
-succeed render t.h5 --size 80x60 --movie named.apng
-cmp -s t.apng named.apng || fail "--movie FILE writes something else than --movie"
+[ "$(frames_of t.webp)" -eq 5 ] || fail "the movie has $(frames_of t.webp) frames instead of 5"
+succeed render t.h5 --movie --size 80x60 --frames 1-2,last --out some.webp
+[ "$(frames_of some.webp)" -eq 3 ] || fail "the movie has $(frames_of some.webp) frames instead of 3"
+succeed render t.h5 --size 80x60 --movie named.webp
+cmp -s t.webp named.webp || fail "--movie FILE writes something else than --movie"
 expect 2 'put the trace before it' render --movie t.h5
-expect 2 '--movie and --out both name the file' render t.h5 --movie a.apng --out b.apng
+for name in movie.png movie.apng; do
+  expect 2 "$name, but .*WebP: give movie.webp" render t.h5 --movie --out "$name"
+  expect 2 "$name, but .*WebP: give movie.webp" render t.h5 --movie "$name"
+done
+expect 2 'PNG: give still.png' render t.h5 --out still.webp
+expect 2 '--movie and --out both name the file' render t.h5 --movie a.webp --out b.webp
 
 # Without the font, a picture with letters is refused before anything is simulated; others are drawn.
 if unshare --mount --map-root-user mount -t tmpfs none /usr/share/fonts 2>err; then
