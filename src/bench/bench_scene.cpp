@@ -236,9 +236,8 @@ int restore(std::vector<Combination>& combinations, const std::vector<ResultRow>
     const auto row = std::ranges::find_if(
         earlier, [&](const ResultRow& other) { return same_combination(other, combination.row); });
     if (row != earlier.end()) {
-      combination.row.samples_ms = row->samples_ms;
-      combination.row.sample_steps = row->sample_steps;
-      take_costs(combination.row, *row);
+      static_cast<Samples&>(combination.row) = *row;
+      static_cast<MeasuredCosts&>(combination.row) = *row;
     }
     complete = std::min(complete, combination.row.samples_ms.size());
   }

@@ -21,11 +21,8 @@
 #include "commands/command.h"
 #include "commands/options.h"
 #include "mesh/tet_mesh.h"
-#include "output/tables/github_table.h"
-#include "output/tables/ratio_mark.h"
-#include "output/tables/result_table.h"
-#include "output/tables/row_table.h"
-#include "output/tables/structure_table.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -87,37 +84,27 @@ std::string summary(std::span<const ResultRow> rows, SummaryFormat format, const
     const std::string text = row_table(pointers, provenance, terminal);
     return text + remarks(pointers, text, provenance, terminal.width);
   }
-  Table table;
-  for (const ResultRow& row : rows)
-    table.add({{"scene", row.scene},
-               {"nodes", row.nodes},
-               {"springs_published", row.springs_published},
-               {"integrator", row.integrator},
-               {"backend", row.backend},
-               {"threads", row.threads},
-               {"ms_per_step", row.ms_per_step},
-               {"low", row.ms_per_step_low},
-               {"high", row.ms_per_step_high},
-               {"speedup", row.speedup_vs_serial},
-               {"paper_ms", row.paper_ms},
-               {"roofline", row.roofline_fraction},
-               {"position_error", row.position_error},
-               {"verified", row.verified},
-               {"status", row.status}});
-  return text_of(table, format);
+  return text_of(table_of(pointers_to(rows), {"scene",
+                                              "nodes",
+                                              "springs_published",
+                                              "integrator",
+                                              "backend",
+                                              "threads",
+                                              "ms_per_step",
+                                              {"low", "ms_per_step_low"},
+                                              {"high", "ms_per_step_high"},
+                                              {"speedup", "speedup_vs_serial"},
+                                              "paper_ms",
+                                              {"roofline", "roofline_fraction"},
+                                              "position_error",
+                                              "verified",
+                                              "status"}),
+                 format);
 }
 
 /// The rows of scenes of which only the structure is told; none in the format `github`, which is for times.
 std::string summary(std::span<const StructureRow> rows, SummaryFormat format) {
-  Table table;
-  for (const StructureRow& row : rows)
-    table.add({{"scene", row.scene},
-               {"nodes", row.nodes},
-               {"springs_unique", row.springs_unique},
-               {"springs_published", row.springs_published},
-               {"tetrahedra", row.tetrahedra},
-               {"smallest_dihedral_angle_deg", row.smallest_dihedral_angle_deg}});
-  return text_of(table, format);
+  return text_of(structure_rows(rows), format);
 }
 
 /// Prints what would be measured, and about how long that takes.

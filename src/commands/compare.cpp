@@ -12,7 +12,7 @@
 #include "bench/results/comparison.h"
 #include "commands/command.h"
 #include "commands/options.h"
-#include "output/tables/comparison_table.h"
+#include "output/tables/results.h"
 #include "text/error.h"
 #include "text/text.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "output/folders/provenance_file.h"
-#include "output/tables/timings_csv.h"
+#include "output/tables/results.h"
 #include "report/report_internal.h"
 #include "text/text.h"
 

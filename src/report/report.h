@@ -10,9 +10,8 @@
 
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
-#include "output/tables/paper_table.h"
-#include "output/tables/published.h"
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 
 namespace mssim {

@@ -5,7 +5,7 @@
 #include "garment/output/garment_csv.h"
 #include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
-#include "output/tables/timings_csv.h"
+#include "output/tables/results.h"
 #include "platform/files.h"
 #include "report/report.h"
 #include "text/text.h"
@@ -86,10 +86,10 @@ std::vector<Record> records_of(const fs::path& file, const std::string& without,
 
 /// Reads what belongs to the rows from a file beside timings.csv; false where that cannot be read.
 bool read_beside(const fs::path& file, ReportFolder& folder, const std::string& without,
-                 void (*read)(const fs::path& file, std::span<ResultRow> rows)) {
+                 void (*read)(const CsvTable& table, std::span<ResultRow> rows)) {
   std::vector<ResultRow> rows = folder.rows;
   try {
-    read(file, rows);
+    read(CsvTable(file), rows);
     folder.rows = std::move(rows);
     return true;
   } catch (const CsvError& error) {

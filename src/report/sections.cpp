@@ -5,7 +5,7 @@
 #include <set>
 
 #include "bench/results/comparison.h"
-#include "output/tables/comparison_table.h"
+#include "output/tables/results.h"
 #include "report/report_internal.h"
 #include "text/text.h"
 

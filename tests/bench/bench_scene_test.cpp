@@ -496,5 +496,20 @@ TEST(Summarise, WorksOutWhatFollowsFromTheSamples) {
   EXPECT_FALSE(row.springs_per_second) << "nobody counts the products of conjugate gradients";
 }
 
+TEST(RequireFinite, FailsARowByAnyNumberOfItsColumns) {
+  std::size_t numbers = 0;
+  for (const ResultColumn& column : result_columns())
+    if (const auto* number = std::get_if<std::optional<double> ResultRow::*>(&column.value)) {
+      ResultRow row;
+      row.verified = true;
+      row.** number = std::numeric_limits<double>::infinity();
+      require_finite(row);
+      EXPECT_EQ(row.status, "failed: " + std::string(column.name) + " is not finite");
+      EXPECT_FALSE(row.**number || row.verified) << column.name;
+      ++numbers;
+    }
+  EXPECT_GE(numbers, 18U);
+}
+
 }  // namespace
 }  // namespace mssim

@@ -6,10 +6,9 @@
 
 #include "fuzz_checks.h"
 #include "garment/output/garment_csv.h"
-#include "output/tables/published.h"
-#include "output/tables/published_bodies.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
-#include "output/tables/timings_csv.h"
 
 namespace mssim {
 namespace {

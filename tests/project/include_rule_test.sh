@@ -131,6 +131,7 @@ bench                 bench_scene estimates
 guide                 guide cloth_sizes
 output/guide          guide_page guide_table
 output/pictures       painter picture_folder
+output/tables         table results suite_tables
 output/traces         trace_content h5md_trace trace_reader energy_curve xdmf
 output/exports        exports vtkhdf_export
 output/folders        result_folder provenance_file

@@ -50,8 +50,8 @@ class GuideFolderTest : public TemporaryFolderTest {
   GuideFolderTest() {
     const std::vector<SceneGuide> guides{made_up_guide()};
     for (const ResultTable& table : guide_tables(guides, made_up_provenance())) {
-      put(table.name + ".csv", table_csv(table.data));
-      if (!table.page.empty()) put(table.name + ".md", markdown(table.page));
+      put(std::string(table.name) + ".csv", table_csv(table.data));
+      if (!table.page.empty()) put(std::string(table.name) + ".md", markdown(table.page));
     }
     put("provenance.json", provenance_text(made_up_provenance()));
   }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "output/folders/provenance_file.h"
-#include "output/tables/timings_csv.h"
+#include "output/tables/results.h"
 #include "report/report.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/temporary_folder.h"

@@ -15,7 +15,7 @@
 #include "geometry/geometry.h"
 #include "mesh/tet_mesh.h"
 #include "mesh/tetgen.h"
-#include "output/tables/published_bodies.h"
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"

@@ -8,8 +8,8 @@
 
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
-#include "output/tables/paper_table.h"
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 
 namespace mssim {
 
@@ -58,13 +58,10 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
 /// A row that nothing was measured for.
 inline ResultRow failed_row(const std::string& backend, const std::string& status) {
   ResultRow row = measured_row(backend, 1, std::nullopt);
-  row.ms_per_step = row.ms_per_step_low = row.ms_per_step_high = row.ms_per_step_min = std::nullopt;
-  row.springs_per_second = row.gigabytes_per_second = row.roofline_fraction = std::nullopt;
-  row.paper_ms = row.position_error = row.energy_drift = std::nullopt;
-  row.state_hash = std::nullopt;
-  row.processors_used = row.waiting_share = row.packing_share = std::nullopt;
-  row.bytes_per_step = row.messages_per_step = std::nullopt;
-  row.latency_us = row.link_gigabytes_per_second = std::nullopt;
+  for (const ResultColumn& column : result_columns())
+    if (const auto* number = std::get_if<std::optional<double> ResultRow::*>(&column.value))
+      (row.**number).reset();
+  row.state_hash.reset();
   row.samples_ms.clear();
   row.sample_steps.clear();
   row.rounds = 0;

@@ -14,7 +14,7 @@
 #include "application/console.h"
 #include "backends/interface/backend.h"
 #include "bench/results/comparison.h"
-#include "output/tables/combination_times.h"
+#include "output/tables/results.h"
 #include "platform/machine.h"
 #include "platform/process.h"
 #include "text/error.h"

@@ -6,7 +6,7 @@
 
 #include "application/choices.h"
 #include "bench/results/comparison.h"
-#include "output/tables/combination_times.h"
+#include "output/tables/results.h"
 #include "platform/files.h"
 #include "platform/process.h"
 

@@ -11,8 +11,8 @@
 #include "bench/estimates.h"
 #include "bench/job/scene_job.h"
 #include "bench/machine/provenance.h"
-#include "output/tables/published.h"
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {

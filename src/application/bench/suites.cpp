@@ -10,12 +10,7 @@
 #include "backends/backends.h"
 #include "garment/output/garment_table.h"
 #include "integrators/all_integrators.h"
-#include "output/tables/cluster_rows.h"
-#include "output/tables/cluster_table.h"
-#include "output/tables/paper_table.h"
-#include "output/tables/peer_table.h"
-#include "output/tables/race_table.h"
-#include "output/tables/scaling_table.h"
+#include "output/tables/suite_tables.h"
 #include "platform/machine.h"
 
 namespace mssim {

@@ -8,8 +8,8 @@
 
 #include "backends/backends.h"
 #include "backends/interface/backend.h"
-#include "output/tables/paper_table.h"
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 
 namespace mssim {
 

@@ -152,9 +152,8 @@ Combination make_combination(const SceneJob& job, const BackendInfo& info, const
 }
 
 void take_verification(Combination& combination, const Verification& verification) {
-  combination.row.position_error = verification.position_error;
-  combination.row.energy_drift = verification.energy_drift;
-  combination.row.state_hash = verification.state_hash;
+  static_cast<Agreement&>(combination.row) = {verification.position_error, verification.energy_drift,
+                                              verification.state_hash};
   combination.row.verified = !verification.failure;
   if (verification.failure) fail(combination, "failed: " + *verification.failure);
 }
@@ -169,9 +168,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
     return fail(combination,
                 "failed: verified was " + subject_of(*found) + ", and this is " + subject_of(row));
-  row.position_error = found->position_error;
-  row.energy_drift = found->energy_drift;
-  row.state_hash = found->state_hash;
+  static_cast<Agreement&>(row) = *found;
   row.dressing = found->dressing;
   row.verified = true;
   append_sentence(row.note, "verified by an earlier process");
@@ -300,22 +297,13 @@ void summarise(ResultRow& row, const ResultRow* serial) {
 }
 
 void require_finite(ResultRow& row) {
-  for (const auto& [name, number] : row_numbers) {
-    if (!(row.*number) || std::isfinite(*(row.*number))) continue;
-    (row.*number).reset();
+  for (const ResultColumn& column : result_columns()) {
+    const auto* value = std::get_if<std::optional<double> ResultRow::*>(&column.value);
+    if (!value || !(row.**value) || std::isfinite(*(row.**value))) continue;
+    (row.**value).reset();
     row.verified = false;
-    if (row.status == "ok") row.status = "failed: " + std::string(name) + " is not finite";
+    if (row.status == "ok") row.status = "failed: " + std::string(column.name) + " is not finite";
   }
-}
-
-void take_costs(ResultRow& row, const ResultRow& earlier) {
-  row.processors_used = earlier.processors_used;
-  row.waiting_share = earlier.waiting_share;
-  row.packing_share = earlier.packing_share;
-  row.bytes_per_step = earlier.bytes_per_step;
-  row.messages_per_step = earlier.messages_per_step;
-  row.latency_us = earlier.latency_us;
-  row.link_gigabytes_per_second = earlier.link_gigabytes_per_second;
 }
 
 void summarise_costs(const Combination& combination, ResultRow& row) {

@@ -90,9 +90,6 @@ void summarise(ResultRow& row, const ResultRow* serial);
 /// have taken no time that a clock sees. A row that was ok has failed by the first of them.
 void require_finite(ResultRow& row);
 
-/// Takes over what an earlier run found of the same.
-void take_costs(ResultRow& row, const ResultRow& earlier);
-
 /// Adds to the row what the samples of this run took beside time: processors, and communication.
 void summarise_costs(const Combination& combination, ResultRow& row);
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <variant>
 #include <vector>
 
 namespace mssim {
@@ -27,74 +27,63 @@ struct DressingRecord {
   std::vector<FitNumberRecord> fit;
 };
 
-/// One combination of scene, backend and integrator, measured and verified: a row of timings.csv.
-/// Values that do not exist (a failed row's times, a paper time that was never published) are empty.
-struct ResultRow {
-  std::string scene;
-  std::uint64_t nodes = 0;
-  std::uint64_t springs_unique = 0;
-  std::optional<std::uint64_t> springs_published;  ///< as Hong et al. count them
-  std::string backend;
-  std::string device;
-  int threads = 0;  ///< processors that compute a step
-  std::string integrator;
-  double dt_s = 0;
-  int rounds = 0;                         ///< samples taken
-  std::optional<double> ms_per_step;      ///< median
-  std::optional<double> ms_per_step_low;  ///< 95 % interval of the median
-  std::optional<double> ms_per_step_high;
-  std::optional<double> ms_per_step_min;
-  std::optional<double> springs_per_second;    ///< unique springs times force evaluations
-  std::optional<double> gigabytes_per_second;  ///< bytes that the step must move at least, over the median
-  std::optional<double>
-      roofline_fraction;  ///< of the peak that bounds the step, measured in the same process
-  std::optional<double> speedup_vs_serial;  ///< median of the per-round ratios
-  std::optional<double> paper_ms;           ///< published for this scene, integrator and configuration
-  std::optional<double>
-      position_error;  ///< largest distance to the double reference over the mean rest length
-  std::optional<double>
-      energy_drift;  ///< difference of total energy to the reference over the energy in motion
-  /// Hash of the state after the verification's steps (model/system.h): rows with the same hash are the same
-  /// to the last bit. None where an older mssim did not tell.
-  std::optional<std::uint64_t> state_hash;
-  bool verified = false;
-  std::string status = "ok";  ///< ok, or failed/unsupported/unavailable/not timed, and why after a colon
-  std::string note;           ///< what a reader of the numbers should know, or empty
-  int warm_up_trials = 0;     ///< before the samples, until the backend was warm
-  int outliers = 0;  ///< samples that lie far from the rest (statistics/statistics.h); they count too
-  std::optional<double> processors_used;  ///< processor seconds a second of the samples, median
-  // Of processes that take the steps together, medians of the samples (Communication).
-  std::optional<double> waiting_share;   ///< of a step, in which a process waits for others; mean of all
-  std::optional<double> packing_share;   ///< of a step, in which it packs and unpacks messages
-  std::optional<double> bytes_per_step;  ///< that the process with most sends
-  std::optional<double> messages_per_step;
-  std::optional<double> latency_us;  ///< of a message to a neighbour
-  std::optional<double> link_gigabytes_per_second;
-  std::string program_output;      ///< what the program behind the backend wrote last, where there is one
+/// How far a row's state is from the reference's after the verification's steps.
+struct Agreement {
+  std::optional<double> position_error, energy_drift;
+  std::optional<std::uint64_t> state_hash;  ///< model/system.h; none where an older mssim did not tell
+};
+
+/// What the steps of a row took beside time, medians of the samples.
+struct MeasuredCosts {
+  std::optional<double> processors_used;
+  // Of processes that take the steps together (Communication).
+  std::optional<double> waiting_share, packing_share, bytes_per_step, messages_per_step, latency_us,
+      link_gigabytes_per_second;
+};
+
+struct Samples {
   std::vector<double> samples_ms;  ///< [rounds] ms per step, in the order of the rounds
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
+};
+
+/// One combination of scene, backend and integrator, measured and verified: a row of timings.csv. Of its
+/// columns result_columns() says what they are. Values that do not exist (a failed row's times, a paper time
+/// that was never published) are empty.
+struct ResultRow : Agreement, MeasuredCosts, Samples {
+  std::string scene;
+  std::uint64_t nodes = 0, springs_unique = 0;
+  std::optional<std::uint64_t> springs_published;
+  std::string backend, device;
+  int threads = 0;
+  std::string integrator;
+  double dt_s = 0;
+  int rounds = 0;
+  std::optional<double> ms_per_step, ms_per_step_low, ms_per_step_high, ms_per_step_min;
+  std::optional<double> springs_per_second, gigabytes_per_second, roofline_fraction;
+  std::optional<double> speedup_vs_serial, paper_ms;
+  bool verified = false;
+  std::string status = "ok", note;
+  int warm_up_trials = 0, outliers = 0;
+
+  // These and the samples stand in files of their own.
+  std::string program_output;  ///< what the program behind the backend wrote last, where there is one
   std::optional<DressingRecord> dressing;  ///< of a garment
 };
 
-/// What is measured of a row or computed from it, by the names of their columns.
-inline constexpr std::array<std::pair<std::string_view, std::optional<double> ResultRow::*>, 16> row_numbers{{
-    {"position_error", &ResultRow::position_error},
-    {"energy_drift", &ResultRow::energy_drift},
-    {"ms_per_step", &ResultRow::ms_per_step},
-    {"ms_per_step_low", &ResultRow::ms_per_step_low},
-    {"ms_per_step_high", &ResultRow::ms_per_step_high},
-    {"ms_per_step_min", &ResultRow::ms_per_step_min},
-    {"springs_per_second", &ResultRow::springs_per_second},
-    {"gigabytes_per_second", &ResultRow::gigabytes_per_second},
-    {"roofline_fraction", &ResultRow::roofline_fraction},
-    {"speedup_vs_serial", &ResultRow::speedup_vs_serial},
-    {"processors_used", &ResultRow::processors_used},
-    {"waiting_share", &ResultRow::waiting_share},
-    {"packing_share", &ResultRow::packing_share},
-    {"bytes_per_step", &ResultRow::bytes_per_step},
-    {"latency_us", &ResultRow::latency_us},
-    {"link_gigabytes_per_second", &ResultRow::link_gigabytes_per_second},
-}};
+/// A column of timings.csv: a value of a row.
+struct ResultColumn {
+  std::string_view name;     ///< ends in its unit where it has one that is no share and no count
+  std::string_view unit;     ///< empty: none
+  std::string_view meaning;  ///< a sentence without its full stop, in Markdown
+  std::variant<std::string ResultRow::*, bool ResultRow::*, int ResultRow::*, std::uint64_t ResultRow::*,
+               std::optional<std::uint64_t> ResultRow::*, double ResultRow::*,
+               std::optional<double> ResultRow::*>
+      value;
+  bool is_hash = false;  ///< 16 hexadecimal digits
+};
+
+/// The TABLE of columns, in their order. Readers rely on it: new ones go to the end.
+std::span<const ResultColumn> result_columns();
 
 /// Are these, whatever is known of them, of the same scene, backend and integrator?
 template <class A, class B>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "garment/output/garment_table.h"
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
 #include "output/tables/table.h"
 
 namespace mssim {
@@ -124,10 +124,6 @@ std::string garment_csv(std::span<const ResultRow> rows) {
     add_fit(fit, *row, cells);
   }
   return table_csv(table);
-}
-
-void read_dressings(const std::filesystem::path& file, std::span<ResultRow> rows) {
-  read_dressings(CsvTable(file), rows);
 }
 
 void read_dressings(const CsvTable& table, std::span<ResultRow> rows) {

@@ -18,6 +18,5 @@ std::string garment_csv(std::span<const ResultRow> rows);
 /// Reads the dressings of a garment.csv into those of `rows` that it has; others stay as they are. Throws
 /// CsvError.
 void read_dressings(const CsvTable& table, std::span<ResultRow> rows);
-void read_dressings(const std::filesystem::path& file, std::span<ResultRow> rows);
 
 }  // namespace mssim

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "output/tables/ratio_mark.h"
+#include "output/tables/results.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -62,7 +62,7 @@ bool is_baseline(const Line& line) { return line.first == "serial"; }
 
 /// A cell of the table of times.
 Cell time_cell(RowPointers rows, const ResultRow& row) {
-  const std::optional<double> ms = counts(row) ? row.ms_per_step : std::nullopt;
+  const std::optional<double> ms = counted_ms(row);
   Cell cell = measured_cell(&row, ms);
   if (ms && row.speedup_vs_serial && row.backend != "serial")
     cell.suffix.append(in_brackets(*row.speedup_vs_serial)).append(mark_of_speedup(rows, row));
@@ -135,7 +135,7 @@ Table data_of(const Layout& layout) {
       }
     };
     using Number = std::optional<double>;
-    add("ms_per_iteration", [](const ResultRow& row) { return counts(row) ? row.ms_per_step : Number(); });
+    add("ms_per_iteration", counted_ms);
     add("speedup_vs_serial",
         [](const ResultRow& row) { return counts(row) ? row.speedup_vs_serial : Number(); });
     add("ns_per_iteration_and_vertex",

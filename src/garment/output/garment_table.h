@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/results/result.h"
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
 
 namespace mssim {
 

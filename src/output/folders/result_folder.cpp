@@ -3,20 +3,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <iterator>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "garment/output/garment_csv.h"
 #include "output/folders/provenance_file.h"
-#include "output/tables/benchmark_json.h"
-#include "output/tables/github_table.h"
+#include "output/tables/results.h"
 #include "output/tables/table.h"
-#include "output/tables/timings_csv.h"
 #include "platform/files.h"
 #include "text/text.h"
 
@@ -25,16 +23,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* benchmark_name = "benchmark.json";
-constexpr const char* github_name = "github.json";
 constexpr const char* provenance_name = "provenance.json";
+constexpr const char* github_name = "github.json";
+
+/// A file that is made of rows.
+struct RowFile {
+  const char* name;
+  /// Empty where none of the rows belongs into it.
+  std::string (*text)(std::span<const ResultRow> rows, const Provenance& provenance);
+};
+
+/// The TABLE of files that are made of the rows of a run, all but tables of results.
+constexpr std::array<RowFile, 4> row_files{{
+    {samples_name, [](std::span<const ResultRow> rows, const Provenance&) { return samples_csv(rows); }},
+    {garment_name, [](std::span<const ResultRow> rows, const Provenance&) { return garment_csv(rows); }},
+    {"benchmark.json", benchmark_json},
+    // Written last: what stands there has its samples.
+    {timings_name, [](std::span<const ResultRow> rows, const Provenance&) { return timings_csv(rows); }},
+}};
 
 std::string csv_of(std::string_view table) { return std::string(table) + ".csv"; }
 std::string markdown_of(std::string_view table) { return std::string(table) + ".md"; }
 
 std::vector<ResultFolder::File> files_of(const ResultTable& table) {
-  if (std::ranges::find(table_names, table.name) == table_names.end())
-    throw std::invalid_argument("the table " + table.name + " is not in table_names");
   std::vector<ResultFolder::File> files{{csv_of(table.name), table_csv(table.data)}};
   if (!table.page.empty()) files.push_back({markdown_of(table.name), markdown(table.page)});
   return files;
@@ -90,13 +101,13 @@ void ResultFolder::clear() const {
   std::vector<std::string> names;
   try {
     if (!fs::is_symlink(folder_ / programs_name))
-      for (const std::string& stem : file_stems(read_timings(folder_ / timings_name)))
+      for (const std::string& stem : file_stems(read_timings(CsvTable(folder_ / timings_name))))
         names.push_back(output_of(stem));
   } catch (const CsvError&) {
     // Rows that cannot be read name no outputs.
   }
-  for (const char* name : {timings_name, samples_name, garment_name, benchmark_name, github_name})
-    names.emplace_back(name);
+  for (const RowFile& file : row_files) names.emplace_back(file.name);
+  names.emplace_back(github_name);
   for (const std::string_view table : table_names) {
     names.push_back(csv_of(table));
     names.push_back(markdown_of(table));
@@ -120,13 +131,12 @@ void ResultFolder::begin() const {
 }
 
 void ResultFolder::write(std::span<const ResultRow> rows) {
-  std::vector<File> files{{samples_name, samples_csv(rows)}};
-  if (std::string garment = garment_csv(rows); !garment.empty())
-    files.push_back({garment_name, std::move(garment)});
-  files.push_back({benchmark_name, benchmark_json(rows, provenance_)});
+  std::vector<File> files;
   for (const ResultTable& table : tables_(rows, provenance_))
     std::ranges::move(files_of(table), std::back_inserter(files));
-  files.push_back({timings_name, timings_csv(rows)});
+  for (const RowFile& file : row_files)
+    if (std::string text = file.text(rows, provenance_); !text.empty())
+      files.push_back({file.name, std::move(text)});
   const std::vector<std::string> stems = file_stems(rows);
   std::vector<File> programs;
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -164,9 +174,9 @@ void ResultFolder::write_files(std::vector<File> files, const std::vector<File>&
 
 std::vector<ResultRow> read_results(const fs::path& folder) {
   if (!fs::exists(folder / timings_name)) return {};
-  std::vector<ResultRow> rows = read_timings(folder / timings_name);
-  read_samples(folder / samples_name, rows);
-  if (fs::exists(folder / garment_name)) read_dressings(folder / garment_name, rows);
+  std::vector<ResultRow> rows = read_timings(CsvTable(folder / timings_name));
+  read_samples(CsvTable(folder / samples_name), rows);
+  if (fs::exists(folder / garment_name)) read_dressings(CsvTable(folder / garment_name), rows);
   return rows;
 }
 

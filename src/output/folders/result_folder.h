@@ -7,8 +7,8 @@
 
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
-#include "output/tables/result_table.h"
-#include "output/tables/structure_table.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 #include "platform/files.h"
 
 namespace mssim {
@@ -48,14 +48,13 @@ class ResultFolder {
 
   /// Writes all that follows from the rows, each file whole or not at all, timings.csv last: what stands
   /// there has its samples. To be called after every round. Throws WriteError, and std::invalid_argument for
-  /// a number that is not finite and a table that is not in table_names, then before any file is touched.
+  /// a number that is not finite, then before any file is touched.
   void write(std::span<const ResultRow> rows);
 
-  /// Writes github.json (github_table.h). Throws WriteError.
+  /// Writes github.json (github_table()). Throws WriteError.
   void write_for_github(std::span<const ResultRow> rows) const;
 
-  /// Writes tables that are not made of rows, NAME.csv and, where it has a page, NAME.md. Throws WriteError,
-  /// and std::invalid_argument for a table that is not in table_names.
+  /// Writes tables that are not made of rows, NAME.csv and, where it has a page, NAME.md. Throws WriteError.
   void write(std::span<const ResultTable> tables);
 
   /// Writes table2.csv and table2.md. Throws WriteError.

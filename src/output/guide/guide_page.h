@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "guide/guide.h"
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
 
 namespace mssim {
 

@@ -1,8 +1,6 @@
-#include "output/tables/comparison_table.h"
-
 #include <nlohmann/json.hpp>
 
-#include "output/tables/ratio_mark.h"
+#include "output/tables/results.h"
 #include "output/tables/table.h"
 #include "text/text.h"
 

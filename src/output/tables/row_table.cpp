@@ -1,5 +1,3 @@
-#include "output/tables/row_table.h"
-
 #include <algorithm>
 #include <array>
 #include <climits>
@@ -7,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "output/tables/results.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -22,7 +21,7 @@ struct RowCell {
 };
 
 /// The columns, in the order in which they stand.
-struct RowColumn {
+struct Shown {
   enum : std::size_t {
     integrator,
     backend,
@@ -37,14 +36,14 @@ struct RowColumn {
     count
   };
 };
-using RowCells = std::array<RowCell, RowColumn::count>;
+using RowCells = std::array<RowCell, Shown::count>;
 
-constexpr std::array<std::string_view, RowColumn::count> row_headers{
+constexpr std::array<std::string_view, Shown::count> row_headers{
     "integrator", "backend",  "threads", "ms/step",  "interval",
     "published",  "roofline", "error",   "verified", "speed-up"};
 constexpr std::string_view gap = "  ";
 
-bool is_flush_right(std::size_t column) { return column >= RowColumn::threads && column <= RowColumn::error; }
+bool is_flush_right(std::size_t column) { return column >= Shown::threads && column <= Shown::error; }
 
 bool cannot_run(const ResultRow& row) { return row.status.starts_with("un"); }  // unsupported, unavailable
 
@@ -69,24 +68,23 @@ RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
 
 RowCells cells_of(RowPointers rows, const ResultRow& row, const Provenance& provenance, bool utf8) {
   RowCells cells;
-  cells[RowColumn::integrator].text = row.integrator;
-  cells[RowColumn::backend].text = row.backend;
-  cells[RowColumn::threads].text = std::to_string(row.threads);
-  cells[RowColumn::verified] = verified_cell(row, utf8);
-  cells[RowColumn::speedup] = speedup_cell(rows, row, utf8);
+  cells[Shown::integrator].text = row.integrator;
+  cells[Shown::backend].text = row.backend;
+  cells[Shown::threads].text = std::to_string(row.threads);
+  cells[Shown::verified] = verified_cell(row, utf8);
+  cells[Shown::speedup] = speedup_cell(rows, row, utf8);
   if (row.ms_per_step)
-    cells[RowColumn::ms] = {three_digits(*row.ms_per_step), {}, mark_of_excess(row, provenance)};
+    cells[Shown::ms] = {three_digits(*row.ms_per_step), {}, mark_of_excess(row, provenance)};
   if (row.ms_per_step_low && row.ms_per_step_high)
-    cells[RowColumn::interval].text = three_digits(*row.ms_per_step_low)
-                                          .append(utf8 ? "–" : "-")
-                                          .append(three_digits(*row.ms_per_step_high));
-  if (row.paper_ms) cells[RowColumn::published].text = decimal(*row.paper_ms);
-  if (row.roofline_fraction)
-    cells[RowColumn::roofline].text = three_digits(100 * *row.roofline_fraction) + " %";
+    cells[Shown::interval].text = three_digits(*row.ms_per_step_low)
+                                      .append(utf8 ? "–" : "-")
+                                      .append(three_digits(*row.ms_per_step_high));
+  if (row.paper_ms) cells[Shown::published].text = decimal(*row.paper_ms);
+  if (row.roofline_fraction) cells[Shown::roofline].text = three_digits(100 * *row.roofline_fraction) + " %";
   if (row.position_error) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1e", *row.position_error);
-    cells[RowColumn::error].text = text;
+    cells[Shown::error].text = text;
   }
   return cells;
 }
@@ -103,7 +101,7 @@ void add_marks(std::vector<RowCells>& lines, std::size_t column) {
 
 /// How wide the columns are, 0 for those that are not shown, and how long the longest bar is.
 struct RowLayout {
-  std::array<std::size_t, RowColumn::count> width{};
+  std::array<std::size_t, Shown::count> width{};
   std::size_t bar = 0;
 
   /// Width of a line without its bar.
@@ -119,27 +117,25 @@ RowLayout layout_of(RowPointers rows, const std::vector<RowCells>& lines, std::o
   RowLayout layout;
   std::size_t ratio_width = 0;
   for (std::size_t line = 0; line < lines.size(); ++line) {
-    for (std::size_t column = 0; column < RowColumn::count; ++column)
+    for (std::size_t column = 0; column < Shown::count; ++column)
       layout.width[column] = std::max(layout.width[column], width_of(lines[line][column].text));
-    if (counts(*rows[line]))
-      ratio_width = std::max(ratio_width, width_of(lines[line][RowColumn::speedup].text));
+    if (counts(*rows[line])) ratio_width = std::max(ratio_width, width_of(lines[line][Shown::speedup].text));
   }
-  for (std::size_t column = 0; column < RowColumn::count; ++column)
+  for (std::size_t column = 0; column < Shown::count; ++column)
     if (layout.width[column] > 0)
       layout.width[column] = std::max(layout.width[column], width_of(row_headers[column]));
   // Beside a bar neither the header nor the word for a row without one needs a wider column.
   RowLayout with_bars = layout;
-  with_bars.width[RowColumn::speedup] = ratio_width;
+  with_bars.width[Shown::speedup] = ratio_width;
   const std::size_t fit = columns ? static_cast<std::size_t>(*columns) : SIZE_MAX;
   const auto has_room = [&] {
     return ratio_width > 0 ? with_bars.total() + gap.size() + shortest_bar <= fit : layout.total() <= fit;
   };
-  for (const std::size_t column :
-       {RowColumn::error, RowColumn::roofline, RowColumn::published, RowColumn::threads})
+  for (const std::size_t column : {Shown::error, Shown::roofline, Shown::published, Shown::threads})
     if (!has_room()) layout.width[column] = with_bars.width[column] = 0;
   // Bars go before the intervals, and come back where those leave room.
   if (!has_room() && layout.total() > fit)
-    layout.width[RowColumn::interval] = with_bars.width[RowColumn::interval] = 0;
+    layout.width[Shown::interval] = with_bars.width[Shown::interval] = 0;
   if (ratio_width == 0 || !has_room()) return layout;
   with_bars.bar = std::min(longest_bar, fit - with_bars.total() - gap.size());
   return with_bars;
@@ -153,7 +149,7 @@ std::string styled(const std::string& text, std::string_view style, bool colours
 /// The columns of the layout side by side; a line does not end with spaces.
 std::string line_of(const RowCells& cells, const RowLayout& layout, bool colours) {
   std::string line, spaces;
-  for (std::size_t column = 0; column < RowColumn::count; ++column) {
+  for (std::size_t column = 0; column < Shown::count; ++column) {
     if (layout.width[column] == 0) continue;
     const std::string& text = cells[column].text;
     const std::string padding(layout.width[column] - std::min(layout.width[column], width_of(text)), ' ');
@@ -205,11 +201,11 @@ std::string row_table(RowPointers rows, const Provenance& provenance, const Term
     lines.push_back(cells_of(rows, *row, provenance, terminal.utf8));
     if (counts(*row)) largest = std::max(largest, row->speedup_vs_serial.value_or(0));
   }
-  add_marks(lines, RowColumn::ms);
-  add_marks(lines, RowColumn::speedup);
+  add_marks(lines, Shown::ms);
+  add_marks(lines, Shown::speedup);
   const RowLayout layout = layout_of(rows, lines, terminal.width);
   RowCells header;
-  for (std::size_t column = 0; column < RowColumn::count; ++column)
+  for (std::size_t column = 0; column < Shown::count; ++column)
     header[column] = {std::string(row_headers[column]), dim};
   std::string text;
   for (std::size_t first = 0, next = 0; first < rows.size(); first = next) {
@@ -219,10 +215,10 @@ std::string row_table(RowPointers rows, const Provenance& provenance, const Term
       RowCells& line = lines[next];
       // An integrator is named once.
       if (next > first && rows[next]->integrator == rows[next - 1]->integrator)
-        line[RowColumn::integrator].text.clear();
+        line[Shown::integrator].text.clear();
       if (const std::optional<double> ratio = rows[next]->speedup_vs_serial; ratio && counts(*rows[next])) {
-        std::string& last = line[RowColumn::speedup].text;
-        last.insert(0, layout.width[RowColumn::speedup] - width_of(last), ' ');
+        std::string& last = line[Shown::speedup].text;
+        last.insert(0, layout.width[Shown::speedup] - width_of(last), ' ');
         if (layout.bar > 0) last.append(gap).append(bar(*ratio / largest, layout.bar, terminal.utf8));
       }
       text += line_of(line, layout, terminal.colours);

@@ -14,11 +14,9 @@
 
 #include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
-#include "output/tables/benchmark_json.h"
-#include "output/tables/paper_table.h"
-#include "output/tables/published.h"
+#include "output/tables/results.h"
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
-#include "output/tables/timings_csv.h"
 #include "platform/files.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/temporary_folder.h"
@@ -35,22 +33,32 @@ using testing::SizeIs;
 
 class ResultFiles : public TemporaryFolderTest {};
 
-TEST_F(ResultFiles, TimingsHaveTheDocumentedColumnsAndQuoteWhatNeedsIt) {
+TEST_F(ResultFiles, TimingsHaveAColumnForEachNumberAndQuoteWhatNeedsIt) {
   const std::vector<ResultRow> rows{measured_row("serial", 0.125, 1.0),
                                     failed_row("opencl", "unavailable: no device \"fast, big\"\nhere")};
-  EXPECT_EQ(
+  EXPECT_THAT(
       timings_csv(rows),
-      "scene,nodes,springs_unique,springs_published,backend,device,threads,integrator,dt_s,rounds,"
-      "ms_per_step,ms_per_step_low,ms_per_step_high,ms_per_step_min,springs_per_second,"
-      "gigabytes_per_second,roofline_fraction,speedup_vs_serial,paper_ms,position_error,energy_drift,"
-      "verified,status,note,warm_up_trials,outliers,state_hash,processors_used,waiting_share,packing_share,"
-      "bytes_per_step,messages_per_step,latency_us,"
-      "link_gigabytes_per_second\n"
-      "cloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,116016000,1.5,"
-      "0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0,0123456789abcdef,1.5,"
-      "0.0625,0.03125,6000,0.5,1.25,8\n"
-      "cloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
-      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0,,,,,,,,\n");
+      AllOf(HasSubstr("\ncloth2500,2500,14502,29004,serial,cpu,2,semi-euler,5e-04,3,0.125,0.0625,0.25,0.0625,"
+                      "116016000,1.5,0.25,1,19.475,1e-05,-2e-07,true,ok,,4,0,0123456789abcdef,1.5,0.0625,"
+                      "0.03125,6000,0.5,1.25,8"),
+            HasSubstr("\ncloth2500,2500,14502,29004,opencl,cpu,2,semi-euler,5e-04,0,,,,,,,,,,,,false,"
+                      "\"unavailable: no device \"\"fast, big\"\"\nhere\",,4,0,,,,,,,,")));
+}
+
+TEST(ResultColumns, AreWhereTheyWere) {
+  const CsvTable earlier(fs::path(MSSIM_SOURCE_DIR) / "results/cluster/zen4/timings.csv");
+  const std::vector<std::string_view> known(earlier.header().begin(), earlier.header().end());
+  EXPECT_NO_THROW(CsvTable("timings.csv", timings_csv({})).require_columns(known));
+}
+
+TEST(ResultColumns, AreThoseOfTheDocumentation) {
+  Table table;
+  for (const ResultColumn& column : result_columns())
+    table.add({{"column", '`' + std::string(column.name) + '`'},
+               {"unit", column.unit},
+               {"what it is", column.meaning}});
+  const std::string wanted = '\n' + markdown({table}) + '\n';
+  EXPECT_THAT(text_of(std::filesystem::path(MSSIM_SOURCE_DIR) / "docs/bench.md"), HasSubstr(wanted));
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {
@@ -90,7 +98,7 @@ TEST_F(ResultFiles, TimingsAllowFurtherColumnsBehindTheirs) {
   std::string header, row;
   std::getline(lines, header);
   std::getline(lines, row);
-  const auto back = read_timings(put("timings.csv", header + ",joules\r\n" + row + ",3\r\n"));
+  const auto back = read_timings(CsvTable(put("timings.csv", header + ",joules\r\n" + row + ",3\r\n")));
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].status, "ok");
 }
@@ -104,7 +112,7 @@ TEST_F(ResultFiles, OfOlderProgramsAreReadToo) {
     text += line + '\n';
   }
   EXPECT_THAT(text, HasSubstr("status,note\n"));
-  const auto back = read_timings(put("timings.csv", text));
+  const auto back = read_timings(CsvTable(put("timings.csv", text)));
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].ms_per_step, 0.5);
   EXPECT_EQ(back[0].warm_up_trials, 0);
@@ -116,7 +124,7 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   const std::string good = timings_csv(std::vector{measured_row("serial", 0.5, 1.0)});
   const auto complaint = [&](const std::string& text) -> std::string {
     try {
-      read_timings(put("timings.csv", text));
+      read_timings(CsvTable(put("timings.csv", text)));
     } catch (const CsvError& error) {
       return error.what();
     }
@@ -137,8 +145,8 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
   EXPECT_THAT(complaint(with("ok", "\"ok")), HasSubstr("line 2: a quoted field does not end"));
   EXPECT_THAT(complaint(with("roofline_fraction", "roof")), HasSubstr("column 17 is \"roof\""));
   EXPECT_THAT(complaint(""), HasSubstr("column 1 is missing"));
-  EXPECT_THROW(read_timings(folder() / "missing.csv"), CsvError);
-  EXPECT_THROW(read_timings(folder()), CsvError);
+  EXPECT_THROW(read_timings(CsvTable(folder() / "missing.csv")), CsvError);
+  EXPECT_THROW(read_timings(CsvTable(folder())), CsvError);
   // Found by fuzzing: whatever stood in the file went into the message.
   EXPECT_THAT(complaint(with("19.475", "\x1b[31m" + std::string(100'000, 'x'))),
               AllOf(HasSubstr("column paper_ms: \"\\u001b[31mxxx"), SizeIs(Lt(300U))));
@@ -147,13 +155,13 @@ TEST_F(ResultFiles, ThatAreWrongAreRefusedWithThePlace) {
 }
 
 TEST_F(ResultFiles, WithoutAnEndAreRefusedAndNotRead) {
-  EXPECT_THROW(read_timings("/dev/zero"), CsvError);
+  EXPECT_THROW(read_timings(CsvTable("/dev/zero")), CsvError);
   const fs::path pipe = folder() / "pipe.csv";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THROW(read_timings(pipe), CsvError);
+  EXPECT_THROW(read_timings(CsvTable(pipe)), CsvError);
   const fs::path huge = put("huge.csv", "");
   fs::resize_file(huge, largest_csv_bytes + 1);  // without its blocks
-  EXPECT_THROW(read_timings(huge), CsvError);
+  EXPECT_THROW(read_timings(CsvTable(huge)), CsvError);
 }
 
 TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
@@ -163,7 +171,7 @@ TEST_F(ResultFiles, SamplesOutOfOrderAreRefused) {
   const fs::path file = put("samples.csv",
                             "scene,backend,integrator,round,steps,ms_per_step\n"
                             "cloth2500,serial,semi-euler,2,10,1\n");
-  EXPECT_THROW(read_samples(file, rows), CsvError);
+  EXPECT_THROW(read_samples(CsvTable(file), rows), CsvError);
 }
 
 TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
@@ -178,10 +186,10 @@ TEST_F(ResultFiles, AreAllThereAfterEveryWriteAndJsonIsValid) {
     EXPECT_EQ(text_of(folder() / "new/out/timings.csv"), timings_csv(rows));
     EXPECT_EQ(text_of(folder() / "new/out/samples.csv"), samples_csv(rows));
     EXPECT_EQ(text_of(folder() / "new/out/benchmark.json"), benchmark_json(rows, made_up_provenance()));
-    const auto table =
-        paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance());
-    EXPECT_EQ(text_of(folder() / "new/out/table1.csv"), table_csv(table.value().data));
-    EXPECT_EQ(text_of(folder() / "new/out/table1.md"), markdown(table.value().page));
+    const ResultTable table =
+        only_table(paper_tables(legend, published_tables())(rows, made_up_provenance()), "table1");
+    EXPECT_EQ(text_of(folder() / "new/out/table1.csv"), table_csv(table.data));
+    EXPECT_EQ(text_of(folder() / "new/out/table1.md"), markdown(table.page));
   }
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder() / "new/out"))
@@ -231,6 +239,7 @@ TEST_F(ResultFiles, AreReplacedWhenThereIsARowAndWithNothingElse) {
   }
   const fs::path output = folder() / programs_name / "cloth2500-mine.py-semi-euler.txt";
   EXPECT_EQ(text_of(output), "cake");
+  for (const std::string_view table : table_names) put(std::string(table) + ".csv", "old");
   const fs::path notes = put("notes.txt", "mine"), theirs = put("programs/mine/more.txt", "mine");
   Provenance provenance = made_up_provenance();
   provenance.started_utc = "2026-02-01T12:00:00Z";
@@ -251,8 +260,10 @@ TEST_F(ResultFiles, AreReplacedWhenThereIsARowAndWithNothingElse) {
   replace({measured_row("openmp", 0.25, 1.0)});
   EXPECT_EQ(read_results(folder()).size(), 1U);
   EXPECT_EQ(text_of(folder() / "provenance.json"), provenance_text(provenance) + '\n');
-  for (const fs::path& old : {output, folder() / "table1.csv", folder() / "table1.md"})
-    EXPECT_FALSE(fs::exists(old)) << old;
+  EXPECT_FALSE(fs::exists(output));
+  EXPECT_FALSE(fs::exists(folder() / "table1.md"));
+  for (const std::string_view table : table_names)
+    EXPECT_FALSE(fs::exists(folder() / (std::string(table) + ".csv"))) << table;
   EXPECT_EQ(text_of(notes), "mine");
   EXPECT_EQ(text_of(theirs), "mine");
 }
@@ -271,9 +282,9 @@ TEST_F(ResultFiles, GoIntoNoFolderThatALinkLeadsTo) {
 TEST_F(ResultFiles, WithAByteOrderMarkAreReadToo) {
   const std::string mark = "\xef\xbb\xbf";
   const std::vector<ResultRow> rows{measured_row("serial", 0.5, 1.0)};
-  std::vector<ResultRow> back = read_timings(put("timings.csv", mark + timings_csv(rows)));
+  std::vector<ResultRow> back = read_timings(CsvTable(put("timings.csv", mark + timings_csv(rows))));
   ASSERT_EQ(back.size(), 1U);
-  read_samples(put("samples.csv", mark + samples_csv(rows)), back);
+  read_samples(CsvTable(put("samples.csv", mark + samples_csv(rows))), back);
   EXPECT_EQ(back[0].samples_ms, rows[0].samples_ms);
   EXPECT_EQ(parse_provenance("p.json", mark + provenance_text(made_up_provenance())).threads, 2);
 }

@@ -1,5 +1,3 @@
-#include "output/tables/benchmark_json.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "output/tables/results.h"
 #include "tests/support/result_fixture.h"
 
 namespace mssim {

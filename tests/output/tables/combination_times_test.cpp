@@ -1,5 +1,3 @@
-#include "output/tables/combination_times.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "output/tables/results.h"
 #include "output/tables/table.h"
-#include "output/tables/timings_csv.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,11 +1,11 @@
-#include "output/tables/comparison_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+
+#include "output/tables/results.h"
 
 namespace mssim {
 namespace {

@@ -1,5 +1,3 @@
-#include "output/tables/paper_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/published.h"
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 #include "platform/files.h"
 #include "tests/support/result_fixture.h"
@@ -21,7 +19,8 @@ using testing::Not;
 
 ResultTable paper_table_of(const std::vector<ResultRow>& rows,
                            const Provenance& provenance = made_up_provenance()) {
-  return paper_table(rows, legend, PublishedTable(published_table_kinds[0]), provenance).value();
+  return only_table(paper_tables(legend, {PublishedTable(published_table_kinds[0])})(rows, provenance),
+                    "table1");
 }
 
 std::string csv_of(const std::vector<ResultRow>& rows) { return table_csv(paper_table_of(rows).data); }
@@ -183,8 +182,7 @@ TEST(PaperTable, ComparesFrozenIntegratorsWithThePublishedMethod) {
 TEST(PaperTable, OfOtherScenesIsEmpty) {
   std::vector<ResultRow> rows{measured_row("serial", 1, 1.0)};
   rows[0].springs_published = 29000;
-  EXPECT_FALSE(
-      paper_table(rows, legend, PublishedTable(published_table_kinds[0]), made_up_provenance()).has_value());
+  EXPECT_TRUE(paper_tables(legend, published_tables())(rows, made_up_provenance()).empty());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include "output/tables/ratio_mark.h"
-
 #include <gtest/gtest.h>
+
+#include "output/tables/results.h"
 
 namespace mssim {
 namespace {

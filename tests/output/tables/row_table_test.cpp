@@ -1,10 +1,9 @@
-#include "output/tables/row_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 
+#include "output/tables/results.h"
 #include "tests/support/result_fixture.h"
 #include "text/text.h"
 

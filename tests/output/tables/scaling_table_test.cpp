@@ -1,10 +1,9 @@
-#include "output/tables/scaling_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
 

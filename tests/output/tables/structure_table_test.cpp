@@ -1,5 +1,3 @@
-#include "output/tables/structure_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "output/tables/published_bodies.h"
+#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 
 namespace mssim {

@@ -1,11 +1,8 @@
-#include "output/tables/result_table.h"
+#include "output/tables/results.h"
 
 #include <algorithm>
 #include <set>
-#include <utility>
-#include <vector>
 
-#include "output/tables/ratio_mark.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -13,6 +10,33 @@ namespace {
 
 /// What a row says of the host where its backend chose an instruction set, which stands behind it.
 constexpr std::string_view host_with_vectors = "cpu ";
+
+/// What the row's backend computed with on the host, where it chose among instruction sets ("AVX3"); else
+/// empty.
+std::string_view instruction_set(const ResultRow& row) {
+  const std::string_view device = row.device;
+  return device.starts_with(host_with_vectors) ? device.substr(host_with_vectors.size()) : std::string_view();
+}
+
+constexpr std::string_view ratio_mark = "†";
+
+/// The number that three digits show.
+double rounded(double value) { return number_in<double>(three_digits(value)).value_or(value); }
+
+bool has_mark(const Table& table) {
+  return std::ranges::any_of(table.rows, [](const std::vector<Cell>& row) {
+    return std::ranges::any_of(
+        row, [](const Cell& cell) { return cell.suffix.find(ratio_mark) != std::string::npos; });
+  });
+}
+
+std::string legend(bool wanted) {
+  if (!wanted) return {};
+  return std::string(ratio_mark) +
+         " the two times shown contradict this ratio: their quotient differs from it by more than a quarter, "
+         "or names the other one as the faster; trust the ratio, which compares single samples instead of "
+         "medians";
+}
 
 }  // namespace
 
@@ -55,11 +79,6 @@ Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
   return {text + "; " + made_by(provenance) + "."};
 }
 
-std::string_view instruction_set(const ResultRow& row) {
-  const std::string_view device = row.device;
-  return device.starts_with(host_with_vectors) ? device.substr(host_with_vectors.size()) : std::string_view();
-}
-
 std::string_view opencl_device(const ResultRow& row) {
   const bool host = row.device == "cpu" || row.device.starts_with(host_with_vectors);
   return host ? std::string_view() : std::string_view(row.device);
@@ -79,6 +98,10 @@ std::string backend_label(RowPointers rows, std::string_view backend, const Prov
   return label;
 }
 
+std::optional<double> counted_ms(const ResultRow& row) {
+  return counts(row) ? row.ms_per_step : std::nullopt;
+}
+
 Cell measured_cell(const ResultRow* row, const std::optional<double>& value) {
   if (row == nullptr) return {};
   const std::string status = status_of(*row);
@@ -86,6 +109,8 @@ Cell measured_cell(const ResultRow* row, const std::optional<double>& value) {
   cell.strong = value.has_value();
   return cell;
 }
+
+std::string interval_text(double low, double high) { return three_digits(low) + " to " + three_digits(high); }
 
 std::optional<double> ns_per_node(const ResultRow& row, const std::optional<double>& ms) {
   if (!counts(row) || !ms) return std::nullopt;
@@ -144,6 +169,26 @@ void add_rows_without_a_time(Document& page, RowPointers rows) {
   BulletList list;
   for (const auto& [reason, scenes] : remarks) list.items.push_back(reason + " (" + scenes + ")");
   page.insert(page.end(), {Heading{2, "Rows without a time"}, std::move(list)});
+}
+
+std::string_view mark_of_ratio(double ratio, double time, double other) {
+  constexpr double largest_difference = 1.25;
+  const double shown = rounded(ratio), quotient = rounded(time) / rounded(other);
+  const bool differs = std::max(shown / quotient, quotient / shown) > largest_difference;
+  return differs || (shown - 1) * (quotient - 1) < 0 ? ratio_mark : "";
+}
+
+std::string legend_of_ratios(const Table& table) { return legend(has_mark(table)); }
+
+std::string legend_of_ratios(std::string_view table) {
+  return legend(table.find(ratio_mark) != std::string_view::npos);
+}
+
+std::string legend_of_ratios(const Document& page) {
+  return legend(std::ranges::any_of(page, [](const auto& block) {
+    const auto* table = std::get_if<Table>(&block);
+    return table != nullptr && has_mark(*table);
+  }));
 }
 
 }  // namespace mssim

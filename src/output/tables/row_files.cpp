@@ -1,0 +1,272 @@
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "output/tables/results.h"
+#include "statistics/statistics.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// "scene/backend/integrator", as other programs name a benchmark.
+std::string benchmark_name(const ResultRow& row) {
+  return row.scene + '/' + row.backend + '/' + row.integrator;
+}
+
+Cell cell_of(const ResultRow& row, const ResultColumn& column) {
+  if (column.is_hash)
+    if (const auto& hash = row.*std::get<std::optional<std::uint64_t> ResultRow::*>(column.value))
+      return to_hex(*hash);
+  return std::visit([&](auto value) { return Cell(row.*value); }, column.value);
+}
+
+/// Where a value stands in a file.
+struct Place {
+  const CsvTable& table;
+  std::size_t record, column;
+  bool is_hash = false;
+
+  const std::string& text() const { return table.text(record, column); }
+  void read(std::string& value) const { value = text(); }
+  void read(bool& value) const { value = table.truth(record, column); }
+  void read(double& value) const { value = table.number(record, column); }
+  void read(int& value) const {
+    const std::uint64_t count = table.count(record, column);
+    if (count > INT_MAX) throw table.complaint(record, column, "is too large");
+    value = static_cast<int>(count);
+  }
+  void read(std::uint64_t& value) const {
+    if (!is_hash) {
+      value = table.count(record, column);
+    } else if (const auto hash = from_hex(text())) {
+      value = *hash;
+    } else {
+      throw table.complaint(record, column, "is not a hash of 16 hexadecimal digits");
+    }
+  }
+  template <class Value>
+  void read(std::optional<Value>& value) const {
+    if (!text().empty()) read(value.emplace());
+  }
+};
+
+/// Files of older programs, which end after one of so many columns or more, are read too.
+constexpr std::size_t oldest_columns = 24;
+
+const std::vector<std::string_view> sample_columns{"scene", "backend",     "integrator", "round",
+                                                   "steps", "ms_per_step", "outlier"};
+constexpr std::size_t oldest_sample_columns = 6;
+
+constexpr double ns_per_ms = 1e6;
+
+ordered_json context_of(const Provenance& provenance) {
+  const Machine& machine = provenance.machine;
+  ordered_json caches = ordered_json::array();
+  for (const Cache& cache : machine.caches)
+    caches.push_back({{"type", cache.type},
+                      {"level", cache.level},
+                      {"size", cache.bytes},
+                      {"num_sharing", cache.sharing}});
+  std::string date = provenance.started_utc;
+  if (date.ends_with('Z')) date.replace(date.size() - 1, 1, "+00:00");  // the form Google Benchmark writes
+  return {{"date", date},
+          {"host_name", ""},
+          {"executable", provenance.command_line.empty() ? "" : provenance.command_line.front()},
+          {"num_cpus", machine.logical_cpus},
+          {"mhz_per_cpu", std::lround(machine.cpu_mhz)},
+          // As Google Benchmark has it: any governor but "performance" may change the frequency.
+          {"cpu_scaling_enabled", machine.governor.has_value() && *machine.governor != "performance"},
+          {"caches", caches},
+          {"load_avg", machine.load_average},
+          {"library_build_type", provenance.build.build_type == "Debug" ? "debug" : "release"},
+          {"json_schema_version", 1},
+          {"cpu_time_note", "not measured; equal to real_time"}};
+}
+
+/// What every entry of a row begins with.
+ordered_json entry_of(const ResultRow& row, std::size_t family, const std::string& suffix,
+                      const std::string& run_type) {
+  const std::string name = benchmark_name(row);
+  return {{"name", name + suffix}, {"family_index", family}, {"per_family_instance_index", 0},
+          {"run_name", name},      {"run_type", run_type},   {"repetitions", row.samples_ms.size()}};
+}
+
+/// In nanoseconds, because compare.py prints times without decimals.
+void add_time(ordered_json& entry, double time_ns) {
+  if (!std::isfinite(time_ns)) throw std::invalid_argument("benchmark.json: a time is not finite");
+  entry["real_time"] = time_ns;
+  entry["cpu_time"] = time_ns;
+  entry["time_unit"] = "ns";
+}
+
+struct Aggregate {
+  std::string name, unit;
+  double value;  ///< ns, or a ratio where the unit is "percentage"
+};
+
+std::vector<Aggregate> aggregates_of(std::span<const double> samples_ms) {
+  const MeanDeviation moments = mean_deviation(samples_ms);
+  return {{"mean", "time", moments.mean * ns_per_ms},
+          {"median", "time", median(samples_ms) * ns_per_ms},
+          {"stddev", "time", moments.deviation * ns_per_ms},
+          {"cv", "percentage", moments.deviation / moments.mean}};
+}
+
+}  // namespace
+
+RowColumn::RowColumn(const char* name, std::string_view column) : head{name} {
+  const auto found = std::ranges::find(result_columns(), column, &ResultColumn::name);
+  if (found == result_columns().end())
+    throw std::invalid_argument("timings.csv has no column " + std::string(column));
+  value = [found](const ResultRow& row) { return cell_of(row, *found); };
+}
+
+std::vector<Column> heads_of(const std::vector<RowColumn>& columns) {
+  std::vector<Column> heads;
+  for (const RowColumn& column : columns) heads.push_back(column.head);
+  return heads;
+}
+
+std::vector<Cell> cells_of(const ResultRow& row, const std::vector<RowColumn>& columns) {
+  std::vector<Cell> cells;
+  for (const RowColumn& column : columns) cells.push_back(column.value(row));
+  return cells;
+}
+
+Table table_of(RowPointers rows, const std::vector<RowColumn>& columns) {
+  if (rows.empty()) return {};
+  Table table{heads_of(columns), {}};
+  for (const ResultRow* row : rows) table.rows.push_back(cells_of(*row, columns));
+  return table;
+}
+
+Table timings_table(std::span<const ResultRow> rows) {
+  Table table;
+  for (const ResultColumn& column : result_columns()) table.columns.push_back({std::string(column.name)});
+  for (const ResultRow& row : rows) {
+    std::vector<Cell>& cells = table.rows.emplace_back();
+    for (const ResultColumn& column : result_columns()) cells.push_back(cell_of(row, column));
+  }
+  return table;
+}
+
+std::string timings_csv(std::span<const ResultRow> rows) { return table_csv(timings_table(rows)); }
+
+std::string samples_csv(std::span<const ResultRow> rows) {
+  Table table;
+  for (const std::string_view name : sample_columns) table.columns.push_back({std::string(name)});
+  for (const ResultRow& row : rows) {
+    if (row.samples_ms.empty()) continue;
+    const std::vector<Outlier> labels = outliers(row.samples_ms);
+    for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
+      table.rows.push_back({row.scene, row.backend, row.integrator, round + 1, row.sample_steps.at(round),
+                            row.samples_ms[round], name_of(labels[round])});
+  }
+  return table_csv(table);
+}
+
+std::vector<ResultRow> read_timings(const CsvTable& table) {
+  std::vector<std::string_view> names;
+  for (const ResultColumn& column : result_columns()) names.push_back(column.name);
+  names.resize(std::clamp(table.header().size(), oldest_columns, names.size()));
+  table.require_columns(names);
+  std::vector<ResultRow> rows(table.size());
+  for (std::size_t record = 0; record < rows.size(); ++record)
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const ResultColumn& column = result_columns()[i];
+      std::visit(
+          [&](auto value) {
+            Place{table, record, i, column.is_hash}.read(rows[record].*value);
+          },
+          column.value);
+    }
+  return rows;
+}
+
+void read_samples(const CsvTable& table, std::span<ResultRow> rows) {
+  table.require_columns({sample_columns.begin(), sample_columns.begin() + oldest_sample_columns});
+  std::map<std::tuple<std::string_view, std::string_view, std::string_view>, ResultRow*> row_of;
+  for (ResultRow& row : rows) row_of.try_emplace({row.scene, row.backend, row.integrator}, &row);
+  for (std::size_t record = 0; record < table.size(); ++record) {
+    const auto found = row_of.find({table.text(record, 0), table.text(record, 1), table.text(record, 2)});
+    if (found == row_of.end()) continue;
+    ResultRow& row = *found->second;
+    if (table.count(record, 3) != row.samples_ms.size() + 1)
+      throw table.complaint(record, 3, "is not the next round of its row; measure anew without --resume");
+    Place{table, record, 4}.read(row.sample_steps.emplace_back());
+    row.samples_ms.push_back(table.number(record, 5));
+  }
+}
+
+std::vector<CombinationTime> read_combination_times(const std::filesystem::path& file) {
+  const CsvTable table(file);
+  const std::size_t scene = table.column("scene"), backend = table.column("backend"),
+                    integrator = table.column("integrator"), ms = table.column("ms_per_step_min"),
+                    verified = table.column("verified"), status = table.column("status");
+  std::vector<CombinationTime> times;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    CombinationTime time{table.text(row, scene),
+                         table.text(row, backend),
+                         table.text(row, integrator),
+                         {},
+                         table.text(row, status)};
+    if (time.status == "ok" && table.text(row, verified) != "true") time.status = "failed: not verified";
+    if (time.status == "ok") {
+      time.least_ms = table.number(row, ms);
+      if (!(*time.least_ms > 0)) throw table.complaint(row, ms, "is not a time above zero");
+    }
+    times.push_back(std::move(time));
+  }
+  return times;
+}
+
+std::string benchmark_json(std::span<const ResultRow> rows, const Provenance& provenance) {
+  ordered_json benchmarks = ordered_json::array();
+  std::size_t family = 0;
+  for (const ResultRow& row : rows) {
+    if (row.status != "ok") continue;
+    for (std::size_t sample = 0; sample < row.samples_ms.size(); ++sample) {
+      ordered_json entry = entry_of(row, family, "", "iteration");
+      entry["repetition_index"] = sample;
+      entry["threads"] = row.threads;
+      entry["iterations"] = row.sample_steps.at(sample);
+      add_time(entry, row.samples_ms[sample] * ns_per_ms);
+      benchmarks.push_back(std::move(entry));
+    }
+    if (row.samples_ms.size() >= 2) {
+      for (const Aggregate& aggregate : aggregates_of(row.samples_ms)) {
+        ordered_json entry = entry_of(row, family, '_' + aggregate.name, "aggregate");
+        entry["threads"] = row.threads;
+        entry["aggregate_name"] = aggregate.name;
+        entry["aggregate_unit"] = aggregate.unit;
+        entry["iterations"] = row.samples_ms.size();
+        add_time(entry, aggregate.value);
+        benchmarks.push_back(std::move(entry));
+      }
+    }
+    ++family;
+  }
+  return json_text({{"context", context_of(provenance)}, {"benchmarks", std::move(benchmarks)}});
+}
+
+Table github_table(std::span<const ResultRow> rows) {
+  const auto text = [](const std::optional<double>& ms) { return ms ? csv_number(*ms) : std::string(); };
+  Table table;
+  for (const ResultRow& row : rows) {
+    if (row.status != "ok" || !row.ms_per_step) continue;
+    table.add({{"name", benchmark_name(row)},
+               {"unit", "ms/step"},
+               {"value", *row.ms_per_step},
+               {"range", text(row.ms_per_step_low) + " to " + text(row.ms_per_step_high)},
+               {"extra", row.device + ", " + pluralize(static_cast<std::uint64_t>(row.threads), "thread")}});
+  }
+  return table;
+}
+
+}  // namespace mssim

@@ -1,0 +1,295 @@
+#include "output/tables/suite_tables.h"
+
+#include <algorithm>
+
+#include "statistics/statistics.h"
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// Adds a table with a heading for every stretch of rows of one scene and integrator.
+void add_blocks(Document& page, RowPointers rows, const std::vector<RowColumn>& columns) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ResultRow& row = *rows[i];
+    if (i == 0 || rows[i - 1]->scene != row.scene || rows[i - 1]->integrator != row.integrator)
+      page.insert(page.end(), {Heading{2, row.scene + ", " + row.integrator + ": " + grouped(row.nodes) +
+                                              " nodes, " + grouped(row.springs_unique) + " springs"},
+                               Table{heads_of(columns), {}}});
+    std::get<Table>(page.back()).rows.push_back(cells_of(row, columns));
+  }
+}
+
+constexpr std::string_view how_to_read_races =
+    "Springs that threads process at the same time add to the forces of nodes that they share: the data race "
+    "of Figure 1 of Hong et al. (2016). Each line is a method to avoid it. All but `gather-vectors` and "
+    "`openmp`, which have vectors and layouts of their own, step the list of springs that `serial` steps, "
+    "with the same layout, force and update, and differ in the accumulation alone. Times are medians with "
+    "their 95 % interval; *ratio* is how many times as fast as `serial` a method is, the median of paired "
+    "samples. *Same bits* says whether a run repeated gives the very same numbers.";
+
+/// What the legend says of the row's method; it has it.
+auto of_legend(const std::vector<RaceLegend>& legend, std::string RaceLegend::*what) {
+  return [&legend, what](const ResultRow& row) -> Cell {
+    return (*std::ranges::find(legend, row.backend, &RaceLegend::method)).*what;
+  };
+}
+
+Table data_of(RowPointers rows, const std::vector<RaceLegend>& legend) {
+  return table_of(rows, {"scene",
+                         "nodes",
+                         "springs_unique",
+                         "integrator",
+                         {"method", "backend"},
+                         "threads",
+                         "ms_per_step",
+                         "ms_per_step_low",
+                         "ms_per_step_high",
+                         "speedup_vs_serial",
+                         {{"extra_memory"}, of_legend(legend, &RaceLegend::extra_memory)},
+                         {{"springs_computed"}, of_legend(legend, &RaceLegend::springs_computed)},
+                         {{"same_bits"}, of_legend(legend, &RaceLegend::repeatable)},
+                         {{"status"}, status_of}});
+}
+
+Document page_of(RowPointers rows, const std::vector<RaceLegend>& legend, const Provenance& provenance) {
+  const std::vector<RowColumn> columns{
+      {{"method"}, [&](const ResultRow& row) { return backend_label(rows, row.backend, provenance); }},
+      {{"ms per step", Align::right},
+       [](const ResultRow& row) { return measured_cell(&row, counted_ms(row)); }},
+      {{"interval", Align::right},
+       [](const ResultRow& row) -> Cell {
+         if (!counted_ms(row) || !row.ms_per_step_low || !row.ms_per_step_high) return {};
+         return interval_text(*row.ms_per_step_low, *row.ms_per_step_high);
+       }},
+      {{"ratio", Align::right, "×"},
+       [&](const ResultRow& row) {
+         if (!counted_ms(row) || !row.speedup_vs_serial) return Cell();
+         Cell ratio = *row.speedup_vs_serial;
+         ratio.suffix = mark_of_speedup(rows, row);
+         return ratio;
+       }},
+      {{"extra memory", Align::left}, of_legend(legend, &RaceLegend::extra_memory)},
+      {{"springs computed", Align::left}, of_legend(legend, &RaceLegend::springs_computed)},
+      {{"same bits", Align::left}, of_legend(legend, &RaceLegend::repeatable)}};
+  Document page{Heading{1, "Methods to avoid the data race of the springs"}, measured_on(rows, provenance),
+                Paragraph{std::string(how_to_read_races)}};
+  add_blocks(page, rows, columns);
+  BulletList descriptions;
+  for (const RaceLegend& method : legend)
+    if (std::ranges::find(rows, method.method, &ResultRow::backend) != rows.end())
+      descriptions.items.push_back("`" + method.method + "`: " + method.description);
+  add_sentence(page, legend_of_ratios(page));
+  page.insert(page.end(), {Heading{2, "The methods"}, std::move(descriptions)});
+  add_sentence(page, reason_without_speedups(rows));
+  add_rows_without_a_time(page, rows);
+  return page;
+}
+
+/// Cost of a node over that of one of the same backend's on `base`.
+std::optional<double> growth(RowPointers rows, const ResultRow& row, const std::string& base) {
+  const ResultRow* small = find_row(rows, base, row.backend, row.integrator);
+  if (!small) return std::nullopt;
+  const auto here = ns_per_node(row, row.ms_per_step), there = ns_per_node(*small, small->ms_per_step);
+  return here && there ? std::optional(*here / *there) : std::nullopt;
+}
+
+Table data_of(RowPointers rows, const std::string& base) {
+  const auto per_node = [](std::optional<double> ResultRow::*ms) {
+    return [ms](const ResultRow& row) { return ns_per_node(row, row.*ms); };
+  };
+  return table_of(rows,
+                  {"integrator",
+                   "backend",
+                   "scene",
+                   "nodes",
+                   "ms_per_step",
+                   {{"ns_per_node"}, per_node(&ResultRow::ms_per_step)},
+                   {{"ns_per_node_low"}, per_node(&ResultRow::ms_per_step_low)},
+                   {{"ns_per_node_high"}, per_node(&ResultRow::ms_per_step_high)},
+                   {{"ratio_to_" + base}, [&](const ResultRow& row) { return growth(rows, row, base); }},
+                   {{"status"}, status_of}});
+}
+
+/// Values of a member, each once, in the order of the rows.
+std::vector<std::string> each_of(RowPointers rows, std::string ResultRow::*member) {
+  std::vector<std::string> values;
+  for (const ResultRow* row : rows)
+    if (std::ranges::find(values, row->*member) == values.end()) values.push_back(row->*member);
+  return values;
+}
+
+/// The ratio is that of the two times shown, so that they always agree.
+Cell cost_cell(RowPointers rows, const ResultRow* row, const std::string& base,
+               const Provenance& provenance) {
+  const auto ns = row ? ns_per_node(*row, row->ms_per_step) : std::nullopt;
+  Cell cell = measured_cell(row, ns);
+  if (!ns) return cell;
+  cell.suffix = mark_of_excess(*row, provenance);
+  if (const auto ratio = growth(rows, *row, base)) cell.suffix += in_brackets(*ratio);
+  return cell;
+}
+
+Document page_of(RowPointers rows, const std::string& base, const Provenance& provenance) {
+  Document page{
+      Heading{1, "Scaling: cost of a node in ever larger cloths"}, measured_on(rows, provenance),
+      Paragraph{"Nanoseconds a node and step, medians; in brackets how many times as much as the same "
+                "backend takes on `" +
+                base + "`. Where a line stays at 1, the cost grows with the number of nodes and no faster."}};
+  const std::vector<std::string> scenes = each_of(rows, &ResultRow::scene);
+  std::vector<Column> columns{{"backend"}};
+  for (const std::string& scene : scenes) {
+    const auto row = std::ranges::find(rows, scene, &ResultRow::scene);
+    columns.push_back(scene_column(**row));
+  }
+  for (const std::string& integrator : each_of(rows, &ResultRow::integrator)) {
+    Table table{columns, {}};
+    for (const std::string& backend : each_of(rows, &ResultRow::backend)) {
+      std::vector<Cell>& cells = table.rows.emplace_back();
+      cells.emplace_back(backend_label(rows, backend, provenance));
+      for (const std::string& scene : scenes)
+        cells.push_back(cost_cell(rows, find_row(rows, scene, backend, integrator), base, provenance));
+    }
+    page.insert(page.end(), {Heading{2, integrator}, std::move(table)});
+  }
+  add_sentence(page, legend_of_excess(rows, provenance));
+  add_rows_without_a_time(page, rows);
+  return page;
+}
+
+constexpr std::string_view yardstick = "openmp";
+
+constexpr std::string_view how_to_read_peers =
+    "The same scene, integrator and time step in other languages and libraries, each written as its own "
+    "documentation would have it, and each run by mssim as a program of its own: verified against the same "
+    "double-precision reference, timed in the same rounds. Times are medians; *times `openmp`* is how many "
+    "times as long as `openmp` a backend takes, the median of the ratios of each round with its 95 % "
+    "interval. *Threads* is how many a backend says it takes, *processors* how many its steps really kept "
+    "busy. *Error* is the largest distance to the reference in mean rest lengths.";
+
+/// Its time over that of `openmp`, round by round; none where either does not count, or where the two were
+/// not measured in the same rounds.
+std::optional<MedianInterval> times_yardstick(RowPointers rows, const ResultRow& row) {
+  const ResultRow* best = find_row(rows, row.scene, yardstick, row.integrator);
+  if (!best || !counts(*best) || !counts(row) || row.samples_ms.empty() ||
+      row.samples_ms.size() != best->samples_ms.size())
+    return std::nullopt;
+  return median_ratio(row.samples_ms, best->samples_ms);
+}
+
+Table data_of(RowPointers rows) {
+  const auto times = [rows](double MedianInterval::*part) {
+    return [rows, part](const ResultRow& row) {
+      const std::optional<MedianInterval> ratio = times_yardstick(rows, row);
+      return ratio ? Cell((*ratio).*part) : Cell();
+    };
+  };
+  return table_of(rows, {"scene",
+                         "nodes",
+                         "integrator",
+                         {"peer", "backend"},
+                         "threads",
+                         "processors_used",
+                         "ms_per_step",
+                         "ms_per_step_low",
+                         "ms_per_step_high",
+                         {{"times_openmp"}, times(&MedianInterval::median)},
+                         {{"times_openmp_low"}, times(&MedianInterval::low)},
+                         {{"times_openmp_high"}, times(&MedianInterval::high)},
+                         "position_error",
+                         "verified",
+                         {{"status"}, status_of},
+                         "note"});
+}
+
+/// The columns of the page; none of them has a number of a row that does not count.
+std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenance) {
+  return {{{"peer"},
+           [=, &provenance](const ResultRow& row) { return backend_label(rows, row.backend, provenance); }},
+          {{"threads", Align::right},
+           [&](const ResultRow& row) {
+             Cell threads = counted_ms(row) ? Cell(row.threads) : Cell();
+             if (counted_ms(row)) threads.suffix = mark_of_excess(row, provenance);
+             return threads;
+           }},
+          {{"processors", Align::right},
+           [](const ResultRow& row) {
+             return counted_ms(row) && row.processors_used ? Cell(fixed_decimal(*row.processors_used, 2))
+                                                           : Cell();
+           }},
+          {{"ms per step", Align::right},
+           [](const ResultRow& row) { return measured_cell(&row, counted_ms(row)); }},
+          {{"times `openmp`", Align::right, "×"},
+           [=](const ResultRow& row) {
+             const auto times = times_yardstick(rows, row);
+             if (!times) return Cell();
+             Cell ratio = times->median;
+             const ResultRow* best = find_row(rows, row.scene, yardstick, row.integrator);
+             ratio.suffix = mark_of_ratio(times->median, *row.ms_per_step, *best->ms_per_step);
+             return ratio;
+           }},
+          {{"interval", Align::right},
+           [=](const ResultRow& row) {
+             const auto times = times_yardstick(rows, row);
+             return times ? Cell(interval_text(times->low, times->high)) : Cell();
+           }},
+          {{"error", Align::right},
+           [](const ResultRow& row) { return counted_ms(row) ? Cell(row.position_error) : Cell(); }}};
+}
+
+/// What the backends say of themselves, each thing once.
+BulletList notes_of(RowPointers rows) {
+  BulletList notes;
+  for (const ResultRow* row : rows) {
+    if (row->note.empty()) continue;
+    const std::string item = "`" + row->backend + "`: " + row->note;
+    if (std::ranges::find(notes.items, item) == notes.items.end()) notes.items.push_back(item);
+  }
+  return notes;
+}
+
+Document page_of(RowPointers rows, const Provenance& provenance) {
+  Document page{Heading{1, "Peers, side by side"}, measured_on(rows, provenance),
+                Paragraph{std::string(how_to_read_peers)}};
+  add_blocks(page, rows, peer_columns(rows, provenance));
+  add_sentence(page, legend_of_ratios(page));
+  add_sentence(page, legend_of_excess(rows, provenance));
+  if (BulletList notes = notes_of(rows); !notes.items.empty())
+    page.insert(page.end(), {Heading{2, "What they say of themselves"}, std::move(notes)});
+  add_rows_without_a_time(page, rows);
+  return page;
+}
+
+}  // namespace
+
+TableMaker race_tables(std::vector<RaceLegend> legend) {
+  return [legend = std::move(legend)](std::span<const ResultRow> all, const Provenance& provenance) {
+    std::vector<const ResultRow*> rows;
+    for (const ResultRow& row : all)
+      if (std::ranges::find(legend, row.backend, &RaceLegend::method) != legend.end()) rows.push_back(&row);
+    std::vector<ResultTable> tables;
+    if (!rows.empty()) tables.push_back({"races", data_of(rows, legend), page_of(rows, legend, provenance)});
+    return tables;
+  };
+}
+
+TableMaker scaling_tables(std::string base) {
+  return [base = std::move(base)](std::span<const ResultRow> rows, const Provenance& provenance) {
+    std::vector<ResultTable> tables;
+    const std::vector<const ResultRow*> pointers = pointers_to(rows);
+    if (!rows.empty())
+      tables.push_back({"scaling", data_of(pointers, base), page_of(pointers, base, provenance)});
+    return tables;
+  };
+}
+
+TableMaker peer_tables() {
+  return [](std::span<const ResultRow> rows, const Provenance& provenance) {
+    std::vector<ResultTable> tables;
+    const std::vector<const ResultRow*> pointers = pointers_to(rows);
+    if (!rows.empty()) tables.push_back({"peers", data_of(pointers), page_of(pointers, provenance)});
+    return tables;
+  };
+}
+
+}  // namespace mssim
