@@ -266,9 +266,10 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
       std::cerr << "mssim: " << options.backend << " runs " << excess << '\n';
     return backend;
   }
-  if (info.name != "serial")
+  if (info.role != BackendRole::baseline)
     throw UsageError(
-        "--precision double needs --backend serial, not \"" + options.backend +
+        "--precision double needs --backend " + std::string(baseline_backend().name) + ", not \"" +
+        options.backend +
         "\": the other backends of mssim compute in single precision only, and a program in its own");
   return in_double(scene.system, integrator, scene.dt_s);
 }

@@ -1,6 +1,8 @@
 #include "backends/backends.h"
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "backends/devices/driver_trial.h"
 #include "backends/devices/offer.h"
@@ -16,6 +18,7 @@
 #include "garment/stepping/opencl_dressing.h"
 #include "garment/stepping/openmp_dressing.h"
 #include "garment/stepping/serial_dressing.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -52,20 +55,34 @@ std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Int
 
 constexpr std::array<BackendInfo, 5> table{{
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
-     false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, dress_serially,
-     make_serial_implicit, serial_implicit_memory},
+     false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, BackendRole::baseline,
+     dress_serially, make_serial_implicit, serial_implicit_memory},
     {"threads-mutex", "multi-thread-cpu",
      "as published: spring groups per thread, a lock around the accumulation", false, ThreadStack::usual,
      make_threads_mutex, spring_list_memory, spring_list_memory, 1.2},
     {"openmp", "multi-thread-cpu", "vectorised and race-free: the same bits at every thread count", false,
-     ThreadStack::openmp, make_openmp, bands, slices, 0.06, dress_by_openmp, make_openmp_implicit,
-     openmp_implicit_memory},
+     ThreadStack::openmp, make_openmp, bands, slices, 0.06, BackendRole::best_of_host, dress_by_openmp,
+     make_openmp_implicit, openmp_implicit_memory},
     {"opencl", "gpu", "fused stage kernels on an OpenCL device", true, std::nullopt, make_opencl, planes,
-     device_slices, 0.12, dress_by_opencl},
+     device_slices, 0.12, BackendRole::contender, dress_by_opencl},
     {"hybrid", "gpu+multi-thread-cpu",
      "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true,
      ThreadStack::openmp, make_hybrid, packed, packed, 0.35},
 }};
+
+/// The names of the rows that have something, in words.
+std::string names_of(bool (*has)(const BackendInfo& row)) {
+  std::vector<std::string_view> names;
+  for (const BackendInfo& row : table)
+    if (has(row)) names.push_back(row.name);
+  return listed(names);
+}
+
+constexpr const BackendInfo& only_row(BackendRole role) {
+  return *std::ranges::find(table, role, &BackendInfo::role);
+}
+static_assert(std::ranges::count(table, BackendRole::baseline, &BackendInfo::role) == 1 &&
+              std::ranges::count(table, BackendRole::best_of_host, &BackendInfo::role) == 1);
 
 /// Throws Unavailable where the system does not make the threads that the backend would.
 void require_threads(const BackendInfo& backend, const ExecutionOptions& options) {
@@ -77,6 +94,10 @@ void require_threads(const BackendInfo& backend, const ExecutionOptions& options
 }  // namespace
 
 std::span<const BackendInfo> backends() { return table; }
+
+const BackendInfo& baseline_backend() { return only_row(BackendRole::baseline); }
+
+const BackendInfo& best_host_backend() { return only_row(BackendRole::best_of_host); }
 
 const BackendInfo* find_backend(std::string_view name) {
   for (const BackendInfo& backend : table)
@@ -110,7 +131,8 @@ std::unique_ptr<Backend> make_backend(const BackendInfo& backend, const System& 
     return step_ahead(make_process_backend(*backend.program, system, integrator, dt_s, options), system,
                       integrator, dt_s);
   if (is_implicit(integrator) && backend.make_implicit == nullptr)
-    throw Unsupported("implicit integrators are stepped by serial and openmp");
+    throw Unsupported("implicit integrators are stepped by " +
+                      names_of([](const BackendInfo& row) { return row.make_implicit != nullptr; }));
   require_threads(backend, options);
   if (is_implicit(integrator)) return backend.make_implicit(system, integrator, dt_s, options);
   return step_ahead(backend.make(system, integrator, dt_s, options), system, integrator, dt_s);
@@ -127,7 +149,7 @@ std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, c
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,
                                                        const Integrator& integrator, double dt_s,
                                                        const ExecutionOptions& options) {
-  if (!dresses(backend)) throw Unsupported("garments are dressed by serial, openmp and opencl");
+  if (!dresses(backend)) throw Unsupported("garments are dressed by " + names_of(dresses));
   require_threads(backend, options);
   return backend.make_dressing(system, integrator, dt_s, options);
 }

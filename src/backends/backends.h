@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,14 @@
 #include "platform/machine.h"
 
 namespace mssim {
+
+/// What a backend is to those who compare backends, or need one that is good for all.
+enum class BackendRole : std::uint8_t {
+  as_published,  ///< what a paper describes, or a program of the user's: measured where it is asked for
+  contender,     ///< written to be fast: a guide tries it, too
+  best_of_host,  ///< the contender that needs no device; one row
+  baseline       ///< what all are compared with, and in double precision the reference; one row
+};
 
 /// A row of the TABLE of backends, or of those that a user brings (own_backend).
 struct BackendInfo {
@@ -31,6 +40,7 @@ struct BackendInfo {
   /// A step of a cloth or of bodies with an explicit integrator, in steps of `serial`, about, on two
   /// processors: for plans (results/table1, results/table3).
   double step_share = 1;
+  BackendRole role = BackendRole::as_published;
   /// Makes one that dresses a garment; null where it has not Algorithm 1.
   std::unique_ptr<DressingBackend> (*make_dressing)(const System& system, const Integrator& integrator,
                                                     double dt_s, const ExecutionOptions& options) = nullptr;
@@ -48,6 +58,10 @@ BackendInfo own_backend(const BackendProgram& program);
 
 /// The TABLE of backends, in the order of every listing and result. A new backend is one row in backends.cpp.
 std::span<const BackendInfo> backends();
+
+/// The one row of that role.
+const BackendInfo& baseline_backend();
+const BackendInfo& best_host_backend();
 
 /// The backend of that name, or nullptr.
 const BackendInfo* find_backend(std::string_view name);

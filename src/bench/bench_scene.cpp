@@ -197,8 +197,8 @@ void for_each_integrator(const SceneJob& job, const std::function<void(std::size
 std::vector<AfterReference> run_references(const SceneJob& job, const std::optional<State>& draped,
                                            const State& start) {
   std::vector<AfterReference> results(job.integrators.size());
-  const auto serial =
-      std::ranges::find_if(job.backends, [](const BackendInfo* info) { return info->name == "serial"; });
+  const auto serial = std::ranges::find_if(
+      job.backends, [](const BackendInfo* info) { return info->role == BackendRole::baseline; });
   for_each_integrator(job, [&](std::size_t i) {
     results[i].most_steps = most_sample_steps(job, *job.integrators[i]);
     if (job.verified) return;
@@ -217,7 +217,7 @@ std::vector<ResultRow> rows_of(const std::vector<Combination>& combinations, con
   std::vector<ResultRow> rows;
   for (const Combination& combination : combinations) {
     const auto serial = std::ranges::find_if(combinations, [&](const Combination& other) {
-      return other.integrator == combination.integrator && other.row.backend == "serial";
+      return other.integrator == combination.integrator && other.row.backend == baseline_backend().name;
     });
     ResultRow& row = rows.emplace_back(combination.row);
     summarise(row, serial == combinations.end() ? nullptr : &serial->row);

@@ -42,7 +42,7 @@ std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize
       const double bytes = memory_of(*backend, *integrator, size.grid)
                                .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
       held += bytes;
-      if (backend->name == "serial") serial += bytes;  // verified while the references run
+      if (backend->role == BackendRole::baseline) serial += bytes;  // verified while the references run
     }
   }
   return static_cast<std::uint64_t>(
@@ -76,7 +76,7 @@ double list_step_time(const Integrator& integrator, const SceneSize& size) {
 double step_time(const BackendInfo& backend, const Integrator& integrator, const SceneSize& size) {
   const double list = list_step_time(integrator, size);
   if (size.garment || is_implicit(integrator))
-    return backend.name == "serial" || backend.program != nullptr ? list : other_methods * list;
+    return backend.role == BackendRole::baseline || backend.program != nullptr ? list : other_methods * list;
   return backend.step_share * list;
 }
 

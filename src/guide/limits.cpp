@@ -215,7 +215,7 @@ void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& r
     const double dt_s = limit.measured.unstable_s;
     // Processes that read the scene's file would find the floor there.
     const bool reads_scene = info.program != nullptr && info.program->in_ranks;
-    const BackendInfo& floorless = reads_scene ? *find_backend("openmp") : info;
+    const BackendInfo& floorless = reads_scene ? best_host_backend() : info;
     limit.floor_is_why = is_stable(*make_backend(floorless, in_the_air, integrator, dt_s, request.execution),
                                    in_the_air, dt_s, search);
   }
@@ -231,7 +231,7 @@ StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& requ
   const StepSearch search = search_for(integrator, limit.theory, request);
   std::vector<const BackendInfo*> order = request.backends;
   std::stable_partition(order.begin(), order.end(),
-                        [](const BackendInfo* info) { return info->name == "openmp"; });
+                        [](const BackendInfo* info) { return info->role == BackendRole::best_of_host; });
   for (const BackendInfo* info : order) {
     StepLimit found = limit;
     std::string status;

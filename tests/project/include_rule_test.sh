@@ -52,7 +52,7 @@ backends/hybrid       integrators model backends/interface backends/vectors back
 backends/process      text platform hdf5 integrators model backends/interface
 backends/described    text platform integrators scene/fields backends/process
 garment/stepping      kernels geometry laws integrators garment/contact garment model garment/layers backends/interface backends/vectors backends/threads backends/layouts backends/devices
-backends              platform integrators model backends/interface backends/devices backends/spring_list backends/implicit backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
+backends              text platform integrators model backends/interface backends/devices backends/spring_list backends/implicit backends/openmp backends/opencl backends/hybrid backends/process garment/stepping
 backends/accumulation integrators model backends/interface backends/vectors backends/threads backends/layouts backends/spring_list backends
 garment/fitting       statistics laws model garment/layers garment/stepping
 

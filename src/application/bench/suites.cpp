@@ -64,9 +64,7 @@ std::vector<const BackendInfo*> all_methods() {
 }
 
 /// What peers and ranks are held against: the plain list and the fastest of the host's.
-std::vector<const BackendInfo*> baseline_and_best() {
-  return {find_backend("serial"), find_backend("openmp")};
-}
+std::vector<const BackendInfo*> baseline_and_best() { return {&baseline_backend(), &best_host_backend()}; }
 
 /// 1, 2, 4, ... and the largest.
 std::vector<int> rank_counts(const ExecutionOptions& execution) {

@@ -28,7 +28,7 @@ constexpr AccumulationMethod of_list(std::string_view name, std::string_view des
 
 const std::array<AccumulationMethod, 9>& table() {
   static const std::array<AccumulationMethod, 9> rows{{
-      {*find_backend("serial"), "none", "once", Repeatable::always},
+      {baseline_backend(), "none", "once", Repeatable::always},
       of_list("mutex-per-group",
               "one lock for all nodes, taken to add the forces of 512 springs (threads-mutex)",
               make_threads_mutex, spring_list_memory, "6 KiB a thread", "once", Repeatable::never,
@@ -54,7 +54,7 @@ const std::array<AccumulationMethod, 9>& table() {
        "a layout of its own",
        "twice",
        Repeatable::always},
-      {*find_backend("openmp"), "a layout of its own", "once, but twice on bodies that differ",
+      {best_host_backend(), "a layout of its own", "once, but twice on bodies that differ",
        Repeatable::always},
   }};
   return rows;

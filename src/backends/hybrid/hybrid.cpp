@@ -136,7 +136,6 @@ template <class Before>
 std::unique_ptr<Backend> make(const System& system, const Integrator& integrator, double dt_s,
                               const OpenclDevice& device, int threads, int lanes, DeviceMemory memory,
                               const Before& before) {
-  refuse_garment(system);
   if (threads < 1)
     throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {

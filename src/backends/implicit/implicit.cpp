@@ -131,19 +131,16 @@ MemoryUse openmp_implicit_memory(const Integrator& integrator, bool grid) {
 
 std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& /*options*/) {
-  refuse_garment(system);
   return steps_of(integrator).serial(system, integrator, dt_s);
 }
 
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
                                                  double dt_s, const std::function<bool()>& stop) {
-  refuse_garment(system);
   return steps_of(integrator).reference(system, integrator, dt_s, stop);
 }
 
 std::unique_ptr<Backend> make_openmp_implicit(const System& system, const Integrator& integrator, double dt_s,
                                               const ExecutionOptions& options) {
-  refuse_garment(system);
   return steps_of(integrator).openmp(system, integrator, dt_s, options);
 }
 

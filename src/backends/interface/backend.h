@@ -102,11 +102,6 @@ inline double require_uniform_mass(const System& system) {
 /// Whether the system's steps are those of Algorithm 1 (garment/stepping/).
 inline bool is_garment(const System& system) { return std::holds_alternative<Garment>(system.topology); }
 
-/// Throws Unsupported for a garment.
-inline void refuse_garment(const System& system) {
-  if (is_garment(system)) throw Unsupported("garments are dressed by serial, openmp and opencl");
-}
-
 /// One simulation under way. All calls block until their work is done: a caller may read the clock around
 /// them.
 class Backend {

@@ -18,7 +18,6 @@ template <class Before>
 std::unique_ptr<Backend> make(const System& system, const Integrator& integrator, double dt_s,
                               const OpenclDevice& device, int lanes, DeviceMemory memory,
                               const Before& before) {
-  refuse_garment(system);
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     if (const auto* grid = std::get_if<GridPatch>(&system.topology)) {
       before(SteppedKind::cloth);

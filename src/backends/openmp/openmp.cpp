@@ -91,7 +91,6 @@ std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options, std::string_view instruction_set) {
-  refuse_garment(system);
   const auto threads = static_cast<std::size_t>(options.threads);
   if (const auto* grid = std::get_if<GridPatch>(&system.topology))
     return std::make_unique<OpenMpGrid>(system, *grid, integrator, dt_s, threads,

@@ -132,7 +132,6 @@ std::invoke_result_t<Work> failing_alone(const Work& work) {
 
 /// Throws Unsupported for what the program is known not to have.
 void require_support(const BackendProgram& program, const System& system, const Integrator& integrator) {
-  refuse_garment(system);
   const bool cloth = std::holds_alternative<GridPatch>(system.topology);
   if (!(cloth ? program.steps_cloths : program.steps_bodies))
     throw Unsupported(std::string("it does not step ") + (cloth ? "cloths" : "bodies"));

@@ -14,7 +14,6 @@ SpringList<Real>::SpringList(const System& system, const Integrator& integrator,
       coefficients_(coefficients_of<Real>(integrator, dt_s)),
       pinned_(system.nodes()),
       force_(system.nodes()) {
-  refuse_garment(system);
   for (const SpringMaterial& material : system.materials)
     materials_.push_back({static_cast<Real>(material.stiffness), static_cast<Real>(material.damping)});
   inverse_mass_.reserve(system.nodes());

@@ -47,8 +47,8 @@ std::unique_ptr<DressingBackend> make_teller(const System& system, const Integra
                                              const ExecutionOptions& /*options*/) {
   return std::make_unique<TellsWhereItBegins>(make_serial_dressing(system, integrator, dt_s));
 }
-constexpr BackendInfo teller{"serial", "",         "tells where it begins", false, {}, nullptr, {}, {},
-                             1,        make_teller};
+constexpr BackendInfo teller{"serial", "", "tells where it begins", false,      {}, nullptr, {},
+                             {},       1,  BackendRole::baseline,   make_teller};
 
 class BenchGarment : public testing::Test {
  protected:

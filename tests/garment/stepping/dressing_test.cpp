@@ -34,8 +34,6 @@ TEST(Dresses, SaysWhichBackendsTakeAGarment) {
       continue;  // without a device nobody knows
     }
     EXPECT_EQ(dresses(backend), !refused) << backend.name;
-    EXPECT_THROW(backend.make(system, semi_euler, dressing_dt_s, {.threads = 1}), Unsupported)
-        << backend.name;
   }
 }
 
