@@ -12,7 +12,7 @@
 #include "backends/interface/backend.h"
 #include "model/energy.h"
 #include "model/system.h"
-#include "output/pictures/picture_folder.h"
+#include "output/pictures/painter.h"
 #include "output/traces/energy_curve.h"
 #include "output/traces/h5md_trace.h"
 

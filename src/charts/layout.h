@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "charts/chart.h"
-#include "picture/ticks.h"
+#include "picture/legend.h"
 
 namespace mssim {
 

@@ -8,7 +8,7 @@
 
 #include "application/choices.h"
 #include "application/run.h"
-#include "picture/lettering.h"
+#include "picture/picture.h"
 #include "scene/scene_file.h"
 #include "text/error.h"
 #include "text/text.h"

@@ -21,7 +21,7 @@
 #include "commands/command.h"
 #include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"
-#include "picture/png.h"
+#include "picture/picture.h"
 #include "platform/files.h"
 #include "scene/scene_file.h"
 #include "text/error.h"

@@ -3,10 +3,208 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "picture/lettering.h"
+#include "text/text.h"
+
 namespace mssim {
+namespace {
+
+/// All of a scale with the same digits behind the point (as many as 10^exponent has), and a minus as wide as
+/// a plus.
+std::string tick_label(double value, int exponent) {
+  if (value == 0) return "0";
+  if (value < 0) return "−" + tick_label(-value, exponent);
+  if (exponent < -6 || value >= 1e9) return decimal(value);
+  return exponent < 0 ? fixed_decimal(value, -exponent)
+                      : grouped(static_cast<std::uint64_t>(std::llround(value)));
+}
+
+/// mantissa * 10^exponent, the nearest number where both factors are exact.
+double decimal_product(double mantissa, int exponent) {
+  return exponent < 0 ? mantissa / std::pow(10.0, -exponent) : mantissa * std::pow(10.0, exponent);
+}
+
+}  // namespace
+
+std::vector<Tick> ticks_between(double low, double high, int most) {
+  const double distance = high - low;
+  if (!std::isfinite(distance) || distance < 0)
+    throw std::invalid_argument("a scale goes from a number to one that is not less");
+  // Multiples of smaller steps could not be counted, nor could steps below the smallest numbers.
+  if (distance <= 1e-9 * std::max(std::abs(low), std::abs(high)) || distance < 1e-290)
+    return {{low, (low < 0 ? "−" : "") + decimal(std::abs(low))}};
+  // Ends that a rounding has moved across a multiple still have it.
+  const double slack = 1e-9;
+  const int largest = static_cast<int>(std::floor(std::log10(distance)));
+  for (int exponent = largest - 2;; ++exponent)
+    for (const int digit : {1, 2, 5}) {
+      const double step = decimal_product(digit, exponent);
+      const double first = std::ceil(low / step - slack), last = std::floor(high / step + slack);
+      if (last - first + 1 > most) continue;
+      std::vector<Tick> ticks;
+      for (double multiple = first; multiple <= last; ++multiple) {
+        const double value = decimal_product(multiple * digit, exponent);
+        ticks.push_back({value, tick_label(value, exponent)});
+      }
+      return ticks;
+    }
+}
+
+namespace {
+
+/// Lightness L* of CIE 1976, from 0 (black) to 100 (white), which is what remains in black and white. Chroma
+/// (0 is grey) and hue of Oklab (B. Ottosson, "A perceptual color space for image processing", 2020), which
+/// keep their look when it changes.
+struct Lch {
+  double lightness, chroma, hue_degrees;
+};
+
+using LinearRgb = std::array<double, 3>;
+
+/// By the matrices of that publication.
+LinearRgb linear_rgb(double oklab_lightness, double chroma, double hue_degrees) {
+  const double angle = hue_degrees * std::numbers::pi / 180;
+  const double a = chroma * std::cos(angle), b = chroma * std::sin(angle);
+  const auto cube = [](double root) { return root * root * root; };
+  const double l = cube(oklab_lightness + 0.3963377774 * a + 0.2158037573 * b);
+  const double m = cube(oklab_lightness - 0.1055613458 * a - 0.0638541728 * b);
+  const double s = cube(oklab_lightness - 0.0894841775 * a - 1.2914855480 * b);
+  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
+          -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+          -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
+}
+
+/// The share of white's light that `colour` has, from its L* by the standard's two formulas.
+double luminance_of(const Lch& colour) {
+  const double root = (colour.lightness + 16) / 116;
+  return colour.lightness > 8 ? root * root * root : colour.lightness * 27 / 24389;
+}
+
+/// The number between `low` and `high` where `above` begins to hold.
+template <class Above>
+double bisected(double low, double high, const Above& above) {
+  for (int halvings = 0; halvings < 20; ++halvings) {
+    const double middle = (low + high) / 2;
+    (above(middle) ? high : low) = middle;
+  }
+  return low;
+}
+
+/// With that chroma instead of its own.
+LinearRgb with_chroma(const Lch& colour, double chroma) {
+  const double wanted = luminance_of(colour);
+  const double lightness = bisected(0, 1, [&](double value) {
+    const LinearRgb rgb = linear_rgb(value, chroma, colour.hue_degrees);
+    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2] > wanted;
+  });
+  return linear_rgb(lightness, chroma, colour.hue_degrees);
+}
+
+/// The colour, or the most colourful one of its lightness and hue that sRGB has.
+Rgb srgb(const Lch& colour) {
+  const auto is_outside = [&](double chroma) {
+    return std::ranges::any_of(with_chroma(colour, chroma),
+                               [](double value) { return value < -1e-4 || value > 1 + 1e-4; });
+  };
+  const bool fits = !is_outside(colour.chroma);
+  const LinearRgb rgb = with_chroma(colour, fits ? colour.chroma : bisected(0, colour.chroma, is_outside));
+  const auto channel = [](double linear) {
+    return static_cast<std::uint8_t>(std::lround(255 * srgb_code(std::clamp(linear, 0.0, 1.0))));
+  };
+  return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
+}
+
+/// The map whose colour at a share is `colour_at(share)`.
+template <class ColourAt>
+ColourMap map_of(const ColourAt& colour_at) {
+  ColourMap map{};
+  for (std::size_t i = 0; i < map.colours.size(); ++i)
+    map.colours[i] = srgb(colour_at(static_cast<double>(i) / static_cast<double>(map.colours.size() - 1)));
+  return map;
+}
+
+}  // namespace
+
+Rgb ColourMap::at(double share) const {
+  if (std::isnan(share)) return {128, 128, 128};
+  const auto last = static_cast<double>(colours.size() - 1);
+  return colours[static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * last))];
+}
+
+const ColourMap& sequential_map() {
+  // The hue goes up through red (20 degrees) to yellow. Chroma is largest in the middle, where sRGB has most
+  // of it.
+  static const ColourMap map = map_of([](double share) {
+    return Lch{12 + 82 * share, 0.12 + 0.24 * share * (1 - share), -75 + 178 * share};
+  });
+  return map;
+}
+
+const ColourMap& diverging_map() {
+  static const ColourMap map = map_of([](double share) {
+    const double distance = std::abs(2 * share - 1);
+    return Lch{94 - 58 * distance, 0.155 * distance, share < 0.5 ? 258.0 : 30.0};
+  });
+  return map;
+}
+
+const std::array<Rgb, 8>& category_colours() {
+  static const std::array<Rgb, 8> colours{
+      srgb({32.5, 0.16, 257}),  // blue
+      srgb({75, 0.16, 65}),     // orange
+      srgb({57.5, 0.14, 152}),  // green
+      srgb({92, 0.16, 102}),    // yellow
+      srgb({19, 0.15, 305}),    // violet
+      srgb({83, 0.09, 225}),    // light blue
+      srgb({41.5, 0.19, 27}),   // red
+      srgb({66.5, 0.16, 350}),  // pink
+  };
+  return colours;
+}
+
+namespace {
+
+/// The sizes of what is written on a picture, in pixels.
+struct LegendSizes {
+  Letters letters;
+  /// Around the content of a panel, and between panel and edge of the picture.
+  int margin;
+  /// What a content may take up, so that most of the picture stays free.
+  int most_width, most_height;
+
+  explicit LegendSizes(const Picture& picture)
+      : letters{letter_size_for(picture.height), Rgb{32, 34, 40}},
+        margin(static_cast<int>(std::lround(0.6 * letters.size_px))),
+        most_width(std::max(0, static_cast<int>(0.45 * picture.width) - 4 * margin)),
+        most_height(std::max(0, static_cast<int>(0.8 * picture.height) - 4 * margin)) {}
+};
+
+/// Draws a slightly translucent panel for a content of this size into a corner. Returns where the content
+/// goes.
+PixelBox draw_panel(Picture& picture, int content_width, int content_height, Corner corner) {
+  constexpr Rgb edge{190, 193, 200};
+  constexpr std::uint8_t coverage = 225;
+  const int margin = LegendSizes(picture).margin;
+  const int width = content_width + 2 * margin, height = content_height + 2 * margin;
+  const bool at_right = corner == Corner::top_right || corner == Corner::bottom_right;
+  const bool at_bottom = corner == Corner::bottom_left || corner == Corner::bottom_right;
+  const int left = at_right ? static_cast<int>(picture.width) - margin - width : margin;
+  const int top = at_bottom ? static_cast<int>(picture.height) - margin - height : margin;
+  fill(picture, {left, top, width, height}, white, coverage);
+  fill(picture, {left, top, width, 1}, edge);
+  fill(picture, {left, top + height - 1, width, 1}, edge);
+  fill(picture, {left, top + 1, 1, height - 2}, edge);
+  fill(picture, {left + width - 1, top + 1, 1, height - 2}, edge);
+  return {left + margin, top + margin, content_width, content_height};
+}
+
+}  // namespace
 
 void draw_legend(Picture& picture, std::span<const LegendEntry> entries, Corner corner) {
   if (entries.empty()) return;
@@ -32,6 +230,98 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries, Corner 
     if (i < shown) fill(picture, {content.left, top, swatch, swatch}, entries[i].colour);
     draw_text(picture, names[i], content.left + names_from, top + 1 + capital, letters);
   }
+}
+
+namespace {
+
+/// Where things lie, in pixels.
+struct BarLayout {
+  LegendSizes sizes;
+  std::vector<Tick> ticks;
+  std::string title;
+  int title_width, title_height;  ///< with the space below it
+  int length, thickness;          ///< of the bar
+  int dash;                       ///< of the line beside a number, and the space after it
+
+  BarLayout(const Picture& picture, const ColourBar& bar) : sizes(picture) {
+    const Letters& letters = sizes.letters;
+    title = shortened(bar.title, sizes.most_width, letters);
+    title_width = text_width(title, letters);
+    title_height = title.empty() ? 0 : letters.line_distance();
+    thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
+    dash = static_cast<int>(std::lround(0.3 * letters.size_px));
+    const int free =
+        bar.upright ? sizes.most_height - title_height - letters.capital_height() : sizes.most_width;
+    length =
+        std::max(8, std::min(free, static_cast<int>(std::lround((bar.upright ? 11 : 16) * letters.size_px))));
+    ticks = ticks_between(bar.low, bar.high, 6);
+    if (bar.upright) return;
+    // As many numbers as have room beside each other.
+    for (int most = 6; most > 2 && widest_label() * 3 / 2 * static_cast<int>(ticks.size()) > length; --most)
+      ticks = ticks_between(bar.low, bar.high, most - 1);
+  }
+
+  int widest_label() const {
+    int widest = 0;
+    for (const Tick& tick : ticks) widest = std::max(widest, text_width(tick.label, sizes.letters));
+    return widest;
+  }
+};
+
+/// The pixel of a bar of `length` pixels at which `value` lies, from its low end.
+int place_of(double value, const ColourBar& bar, int length) {
+  if (bar.low == bar.high) return length / 2;
+  return static_cast<int>(std::lround((value - bar.low) / (bar.high - bar.low) * (length - 1)));
+}
+
+/// Draws the bar with its upper left corner at the place given.
+void draw_bar(Picture& picture, const ColourBar& bar, const BarLayout& layout, int left, int top) {
+  for (int i = 0; i < layout.length; ++i) {
+    const Rgb colour = bar.map.at(static_cast<double>(i) / (layout.length - 1));
+    if (bar.upright)
+      fill(picture, {left, top + layout.length - 1 - i, layout.thickness, 1}, colour);
+    else
+      fill(picture, {left + i, top, 1, layout.thickness}, colour);
+  }
+}
+
+void draw_upright(Picture& picture, const ColourBar& bar, const BarLayout& layout, Corner corner) {
+  const Letters& letters = layout.sizes.letters;
+  const int capital = letters.capital_height(), labels_from = layout.thickness + 2 * layout.dash;
+  const int width = std::max(layout.title_width, labels_from + layout.widest_label());
+  // A number at an end reaches half its height beyond the bar.
+  const int bar_from = layout.title_height + capital / 2;
+  const PixelBox content = draw_panel(picture, width, bar_from + layout.length + capital / 2, corner);
+  draw_text(picture, layout.title, content.left, content.top + capital, letters);
+  draw_bar(picture, bar, layout, content.left, content.top + bar_from);
+  for (const Tick& tick : layout.ticks) {
+    const int y = content.top + bar_from + layout.length - 1 - place_of(tick.value, bar, layout.length);
+    fill(picture, {content.left + layout.thickness, y, layout.dash, 1}, letters.colour);
+    draw_text(picture, tick.label, content.left + labels_from, y + (capital + 1) / 2, letters);
+  }
+}
+
+void draw_lying(Picture& picture, const ColourBar& bar, const BarLayout& layout, Corner corner) {
+  const Letters& letters = layout.sizes.letters;
+  const int capital = letters.capital_height(), half_label = layout.widest_label() / 2;
+  const int labels_from = layout.title_height + layout.thickness + 2 * layout.dash;
+  const int width = std::max(layout.title_width, layout.length + 2 * half_label);
+  const PixelBox content = draw_panel(picture, width, labels_from + capital, corner);
+  draw_text(picture, layout.title, content.left, content.top + capital, letters);
+  const int left = content.left + half_label, top = content.top + layout.title_height;
+  draw_bar(picture, bar, layout, left, top);
+  for (const Tick& tick : layout.ticks) {
+    const int x = left + place_of(tick.value, bar, layout.length);
+    fill(picture, {x, top + layout.thickness, 1, layout.dash}, letters.colour);
+    draw_text(picture, tick.label, x, content.top + labels_from + capital, letters, Alignment::centre);
+  }
+}
+
+}  // namespace
+
+void draw_colour_bar(Picture& picture, const ColourBar& bar, Corner corner) {
+  const BarLayout layout(picture, bar);
+  (bar.upright ? draw_upright : draw_lying)(picture, bar, layout, corner);
 }
 
 }  // namespace mssim

@@ -22,10 +22,6 @@ struct Letters {
   int line_distance() const;
 };
 
-/// All that writes or measures letters throws MissingProgram where the font is not installed, with a sentence
-/// that says how to get it. This asks for it in advance.
-void require_font();
-
 /// The size in pixels of letters on a picture of this height: 2.5 % of it, at least 11.
 double letter_size_for(std::uint32_t picture_height);
 

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace mssim {
@@ -11,6 +13,10 @@ struct Rgb {
   std::uint8_t red = 0, green = 0, blue = 0;
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
+
+/// The code of light (both 0 to 1) in sRGB (IEC 61966-2-1), and the light of a code.
+double srgb_code(double light);
+double srgb_light(double code);
 
 inline constexpr Rgb black{0, 0, 0}, white{255, 255, 255};
 
@@ -51,5 +57,25 @@ void fill(Picture& picture, const PixelBox& box, Rgb colour, std::uint8_t covera
 /// Copies `pasted` into `picture`, its top left pixel to column `left` of row `top`. What lies outside is cut
 /// off.
 void paste(Picture& picture, const Picture& pasted, int left, int top);
+
+/// The bytes of a PNG file of `picture`: 8 bits a channel, sRGB, no alpha. The same picture gives the same
+/// bytes with the same libpng and zlib. Throws std::runtime_error for a picture without pixels or one that
+/// libpng refuses.
+std::string png_of(const Picture& picture);
+
+/// All that writes letters on pictures (sheets with captions, legends, colour bars) throws MissingProgram
+/// where their font is not installed, with a sentence that says how to get it. This asks for it in advance.
+void require_font();
+
+struct CaptionedPicture {
+  Picture picture;
+  std::string caption;
+};
+
+/// The pictures in rows of `columns`, from left to right, each with its caption below it, on white. A row may
+/// be incomplete; fewer pictures than columns are one row. A caption wider than its picture is shortened;
+/// where all captions are empty, there is no room for them. Throws std::invalid_argument without columns,
+/// without pictures, and for pictures of several sizes.
+Picture sheet_of(std::span<const CaptionedPicture> pictures, std::uint32_t columns);
 
 }  // namespace mssim

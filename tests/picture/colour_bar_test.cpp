@@ -1,11 +1,10 @@
-#include "picture/colour_bar.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
+#include "picture/legend.h"
 #include "tests/support/picture_content.h"
 
 namespace mssim {

@@ -1,11 +1,11 @@
-#include "picture/colour_map.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include "picture/legend.h"
 
 namespace mssim {
 namespace {

@@ -1,10 +1,9 @@
-#include "picture/png.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <string>
 
+#include "picture/picture.h"
 #include "tests/support/png_fixture.h"
 
 namespace mssim {

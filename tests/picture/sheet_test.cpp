@@ -1,11 +1,10 @@
-#include "picture/sheet.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "picture/picture.h"
 #include "tests/support/picture_content.h"
 
 namespace mssim {

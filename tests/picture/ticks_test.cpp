@@ -1,10 +1,10 @@
-#include "picture/ticks.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <stdexcept>
 #include <string>
+
+#include "picture/legend.h"
 
 namespace mssim {
 namespace {

@@ -94,7 +94,8 @@ text                  text error
 statistics            statistics
 cluster               step_model
 charts                chart
-render                draw srgb
+picture               picture legend movie
+render                draw
 hdf5                  hdf5 hdf5_table
 laws                  host_laws laws-inl
 garment/contact       body_maps solid
@@ -130,7 +131,7 @@ bench/job             scene_job combination
 bench                 bench_scene estimates
 guide                 guide cloth_sizes
 output/guide          guide_page guide_table
-output/pictures       painter picture_folder
+output/pictures       painter
 output/tables         table results suite_tables
 output/traces         trace_content h5md_trace trace_reader energy_curve xdmf
 output/exports        exports vtkhdf_export

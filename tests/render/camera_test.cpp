@@ -1,9 +1,9 @@
-#include "render/camera.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "render/draw.h"
 
 namespace mssim {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "geometry/depth_raster.h"
-#include "output/pictures/skin.h"
+#include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"
 #include "render/draw.h"
 

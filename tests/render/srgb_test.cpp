@@ -1,6 +1,6 @@
-#include "render/srgb.h"
-
 #include <gtest/gtest.h>
+
+#include "render/draw.h"
 
 namespace mssim {
 namespace {

@@ -3,15 +3,79 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <numbers>
+#include <string>
+#include <system_error>
+#include <utility>
 
+#include "geometry/geometry.h"
 #include "output/traces/trace_content.h"
-#include "picture/colour_bar.h"
-#include "picture/colour_map.h"
 #include "picture/legend.h"
-#include "render/srgb.h"
 #include "scene/fields/fields.h"
 
 namespace mssim {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+Vec3d normal_of(const Triangle& triangle, const std::vector<Vec3d>& points) {
+  const Vec3d& a = points[triangle[0]];
+  const Vec3d normal = cross(points[triangle[1]] - a, points[triangle[2]] - a);
+  const double size = length(normal);
+  return size > 0 ? (1 / size) * normal : Vec3d{};
+}
+
+/// Which corners of triangles share a point: [3 triangle + corner], a number of the set of each. Corners at a
+/// node share one where a way leads from one to the other over edges that bend little.
+DisjointSets smooth_corners(const std::vector<Triangle>& triangles, const std::vector<Vec3d>& start) {
+  const double least_cosine = std::cos(40 * std::numbers::pi / 180);
+  DisjointSets corners(3 * triangles.size());
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_at;  // by edge: its first triangle
+  const auto corner_at = [&](std::uint32_t triangle, std::uint32_t node) {
+    const auto& nodes = triangles[triangle];
+    return 3 * triangle + static_cast<std::uint32_t>(std::ranges::find(nodes, node) - nodes.begin());
+  };
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(triangles[t][i], triangles[t][(i + 1) % 3]);
+      const auto [found, is_first] = first_at.try_emplace({low, high}, t);
+      const std::uint32_t other = found->second;
+      if (is_first || dot(normal_of(triangles[t], start), normal_of(triangles[other], start)) < least_cosine)
+        continue;
+      for (const std::uint32_t node : {low, high}) corners.unite(corner_at(t, node), corner_at(other, node));
+    }
+  return corners;
+}
+
+/// A point for each smooth side of a node.
+void divide_at_creases(Skin& skin, const std::vector<Vec3d>& start) {
+  std::vector<Vec3d> position;
+  position.reserve(skin.node.size());
+  for (const std::uint32_t node : skin.node) position.push_back(start[node]);
+  DisjointSets corners = smooth_corners(skin.triangles, position);
+  std::vector<std::uint32_t> node, part, point(3 * skin.triangles.size());
+  for (std::uint32_t corner = 0; corner < point.size(); ++corner) {
+    std::uint32_t& shown = skin.triangles[corner / 3][corner % 3];
+    if (corners.root(corner) == corner) {
+      point[corner] = static_cast<std::uint32_t>(node.size());
+      node.push_back(skin.node[shown]);
+      part.push_back(skin.part[shown]);
+    }
+    shown = point[corners.root(corner)];
+  }
+  skin.node = std::move(node);
+  skin.part = std::move(part);
+}
+
+}  // namespace
+
+Skin skin_of(const Topology& topology, const std::vector<Vec3d>& start) {
+  Skin skin = surface_of(topology, start.size());
+  if (std::holds_alternative<TetrahedralMesh>(topology)) divide_at_creases(skin, start);
+  return skin;
+}
+
 namespace {
 
 constexpr Rgb skin_tone{201, 188, 178}, denim{58, 88, 140};
@@ -122,6 +186,35 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions) const {
   Picture picture = drawn(subject, shot());
   write_legend(picture);
   return picture;
+}
+
+namespace {
+
+std::string picture_name(std::size_t number) {
+  constexpr std::size_t digits = 6;  // so that listings have them in order
+  const std::string text = std::to_string(number);
+  return "frame-" + std::string(text.size() < digits ? digits - text.size() : 0, '0') + text + ".png";
+}
+
+}  // namespace
+
+PictureFolder::PictureFolder(std::filesystem::path folder, TraceContent content,
+                             const PictureOptions& options)
+    : folder_(std::move(folder)),
+      lock_(make_folder(folder_)),
+      content_(std::move(content)),
+      options_(options) {
+  std::error_code error;
+  if (!std::filesystem::is_empty(folder_, error) || error)
+    throw WriteError("cannot put pictures into " + folder_.string() +
+                     ", which is not empty; empty it or choose another folder");
+}
+
+void PictureFolder::draw(const std::vector<Vec3d>& positions) {
+  if (!painter_) painter_.emplace(content_, positions, options_);
+  painter_->make_room_for(positions);
+  write_file_atomically(folder_ / picture_name(pictures_), png_of(painter_->picture_of(positions)));
+  ++pictures_;
 }
 
 }  // namespace mssim

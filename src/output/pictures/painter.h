@@ -1,16 +1,27 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "output/pictures/skin.h"
+#include "geometry/vec3.h"
+#include "model/node_surface.h"
 #include "output/traces/trace_reader.h"
 #include "picture/picture.h"
+#include "platform/files.h"
 #include "render/draw.h"
 
 namespace mssim {
+
+/// The surface that a picture shows; at a crease several points are the same node.
+using Skin = NodeSurface;
+
+/// The skin of nodes that hang together like `topology` and rest at `start`. Points are divided where a
+/// surface of bodies bends by more than 40 degrees there, so that edges are drawn sharp.
+Skin skin_of(const Topology& topology, const std::vector<Vec3d>& start);
 
 /// What the colours of a picture tell apart.
 enum class ColourBy : std::uint8_t {
@@ -52,6 +63,31 @@ class Painter {
   std::optional<double> floor_;
   std::optional<Box<double>> seen_, world_;
   double most_strain_ = 0;  ///< in either direction, of the colours' ends
+};
+
+/// A folder of pictures of a run, drawn while it runs: frame-000000.png, frame-000001.png and so on. What
+/// comes is not known: where something leaves the picture, the next ones are taken from farther away.
+class PictureFolder {
+ public:
+  /// Creates the folder and those above it. Throws WriteError, also where the folder has something in it or
+  /// is another writer's.
+  PictureFolder(std::filesystem::path folder, TraceContent content, const PictureOptions& options);
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
+
+  /// Draws the next moment; positions are [nodes] m. Throws WriteError.
+  void draw(const std::vector<Vec3d>& positions);
+
+  const std::filesystem::path& name() const { return folder_; }
+  std::size_t pictures() const { return pictures_; }
+
+ private:
+  std::filesystem::path folder_;
+  FolderLock lock_;
+  TraceContent content_;
+  PictureOptions options_;
+  std::optional<Painter> painter_;  ///< of content_; from the first moment on
+  std::size_t pictures_ = 0;
 };
 
 }  // namespace mssim

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "output/pictures/painter.h"
-#include "picture/png.h"
+#include "picture/picture.h"
 #include "platform/files.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/png_fixture.h"

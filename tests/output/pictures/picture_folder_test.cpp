@@ -1,7 +1,6 @@
-#include "output/pictures/picture_folder.h"
-
 #include <set>
 
+#include "output/pictures/painter.h"
 #include "platform/files.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/png_fixture.h"

@@ -1,5 +1,3 @@
-#include "output/pictures/skin.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "geometry/surface.h"
+#include "output/pictures/painter.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 
