@@ -498,7 +498,7 @@ TEST(Summarise, WorksOutWhatFollowsFromTheSamples) {
 
 TEST(RequireFinite, FailsARowByAnyNumberOfItsColumns) {
   std::size_t numbers = 0;
-  for (const ResultColumn& column : result_columns())
+  for (const ResultColumn& column : result_columns)
     if (const auto* number = std::get_if<std::optional<double> ResultRow::*>(&column.value)) {
       ResultRow row;
       row.verified = true;

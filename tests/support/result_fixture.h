@@ -58,7 +58,7 @@ inline ResultRow measured_row(const std::string& backend, double ms, std::option
 /// A row that nothing was measured for.
 inline ResultRow failed_row(const std::string& backend, const std::string& status) {
   ResultRow row = measured_row(backend, 1, std::nullopt);
-  for (const ResultColumn& column : result_columns())
+  for (const ResultColumn& column : result_columns)
     if (const auto* number = std::get_if<std::optional<double> ResultRow::*>(&column.value))
       (row.**number).reset();
   row.state_hash.reset();

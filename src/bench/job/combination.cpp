@@ -297,7 +297,7 @@ void summarise(ResultRow& row, const ResultRow* serial) {
 }
 
 void require_finite(ResultRow& row) {
-  for (const ResultColumn& column : result_columns()) {
+  for (const ResultColumn& column : result_columns) {
     const auto* value = std::get_if<std::optional<double> ResultRow::*>(&column.value);
     if (!value || !(row.**value) || std::isfinite(*(row.**value))) continue;
     (row.**value).reset();

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -46,9 +46,9 @@ struct Samples {
   std::vector<int> sample_steps;   ///< [rounds] steps in each sample
 };
 
-/// One combination of scene, backend and integrator, measured and verified: a row of timings.csv. Of its
-/// columns result_columns() says what they are. Values that do not exist (a failed row's times, a paper time
-/// that was never published) are empty.
+/// One combination of scene, backend and integrator, measured and verified: a row of timings.csv, whose
+/// columns result_columns describes. Values that do not exist (a failed row's times, a paper time that was
+/// never published) are empty.
 struct ResultRow : Agreement, MeasuredCosts, Samples {
   std::string scene;
   std::uint64_t nodes = 0, springs_unique = 0;
@@ -82,8 +82,77 @@ struct ResultColumn {
   bool is_hash = false;  ///< 16 hexadecimal digits
 };
 
-/// The TABLE of columns, in their order. Readers rely on it: new ones go to the end.
-std::span<const ResultColumn> result_columns();
+/// The TABLE of columns, in their order. Readers rely on it: new ones go to the end. docs/bench.md repeats
+/// it.
+inline constexpr auto result_columns = std::to_array<ResultColumn>({
+    {"scene", "", "the scene's name", &ResultRow::scene},
+    {"nodes", "", "its nodes", &ResultRow::nodes},
+    {"springs_unique", "", "its springs, each counted once", &ResultRow::springs_unique},
+    {"springs_published", "", "its springs as Hong et al. count them", &ResultRow::springs_published},
+    {"backend", "", "the backend's name", &ResultRow::backend},
+    {"device", "", "what it ran on: `cpu`, with its instruction set, or an OpenCL device",
+     &ResultRow::device},
+    {"threads", "", "processors that compute a step", &ResultRow::threads},
+    {"integrator", "", "the integrator's name", &ResultRow::integrator},
+    {"dt_s", "s", "time step", &ResultRow::dt_s},
+    {"rounds", "", "samples taken", &ResultRow::rounds},
+    {"ms_per_step", "ms", "time of a step, the median of the samples", &ResultRow::ms_per_step},
+    {"ms_per_step_low", "ms",
+     "lower end of the median's distribution-free 95 % interval; with fewer than six rounds the smallest "
+     "sample",
+     &ResultRow::ms_per_step_low},
+    {"ms_per_step_high", "ms", "upper end of that interval, or the largest sample",
+     &ResultRow::ms_per_step_high},
+    {"ms_per_step_min", "ms", "the smallest sample", &ResultRow::ms_per_step_min},
+    {"springs_per_second", "1/s", "unique springs times force evaluations", &ResultRow::springs_per_second},
+    {"gigabytes_per_second", "GB/s", "the minimum bytes of a step, over the median time",
+     &ResultRow::gigabytes_per_second},
+    {"roofline_fraction", "",
+     "the rate of the minimum bytes (or operations) of a step, over this machine's, measured in the same "
+     "process",
+     &ResultRow::roofline_fraction},
+    {"speedup_vs_serial", "",
+     "times as fast as `serial`: the median of the ratios within each round; empty without `serial`",
+     &ResultRow::speedup_vs_serial},
+    {"paper_ms", "ms", "time published for this scene, integrator and configuration", &ResultRow::paper_ms},
+    {"position_error", "",
+     "largest distance of a node from the double-precision reference after 100 steps, in mean rest lengths",
+     &ResultRow::position_error},
+    {"energy_drift", "",
+     "total energy less the reference's, over the reference's kinetic plus elastic energy; of a scene at "
+     "rest, over a hundred times the energy of what is rounded",
+     &ResultRow::energy_drift},
+    {"verified", "", "whether the steps agree with the reference, and the samples ended where they should",
+     &ResultRow::verified},
+    {"status", "",
+     "`ok`, or `failed`, `unsupported`, `unavailable` or `not timed` (verified all the same) with the "
+     "reason",
+     &ResultRow::status},
+    {"note", "",
+     "what a reader should know, for example that this TetGen made another mesh than the scene states",
+     &ResultRow::note},
+    {"warm_up_trials", "", "trials before the samples, until the backend was warm",
+     &ResultRow::warm_up_trials},
+    {"outliers", "", "samples beyond Tukey's fences, which count like others; `samples.csv` labels them",
+     &ResultRow::outliers},
+    {"state_hash", "", "hash of all positions and velocities after the verification's steps",
+     &ResultRow::state_hash, true},
+    {"processors_used", "",
+     "processor time of the process that steps, over the wall-clock time, in the timed samples; the median",
+     &ResultRow::processors_used},
+    {"waiting_share", "",
+     "share of a step's time in which a process waits for others; the mean of all processes",
+     &ResultRow::waiting_share},
+    {"packing_share", "", "share of a step's time in which a process packs and unpacks messages",
+     &ResultRow::packing_share},
+    {"bytes_per_step", "", "bytes that the process with most messages sends in a step",
+     &ResultRow::bytes_per_step},
+    {"messages_per_step", "", "messages that this process sends in a step", &ResultRow::messages_per_step},
+    {"latency_us", "µs", "time of a message to a neighbour, measured before the first step",
+     &ResultRow::latency_us},
+    {"link_gigabytes_per_second", "GB/s", "rate of a large message to a neighbour, while another one comes",
+     &ResultRow::link_gigabytes_per_second},
+});
 
 /// Are these, whatever is known of them, of the same scene, backend and integrator?
 template <class A, class B>

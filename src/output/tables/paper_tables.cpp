@@ -74,35 +74,6 @@ struct PaperScene {
   std::uint64_t nodes = 0, springs = 0;
 };
 
-/// The rows that belong into the table, by scene, backend and integrator.
-class Measured {
- public:
-  Measured(std::span<const ResultRow> rows, const PublishedTable& published) {
-    for (const ResultRow& row : rows) {
-      if (!published.has_scene(row.nodes, row.springs_published)) continue;
-      rows_.push_back(&row);
-      if (std::ranges::find(scenes_, row.scene, &PaperScene::name) == scenes_.end())
-        scenes_.push_back({row.scene, row.nodes, row.springs_published.value()});
-    }
-    std::ranges::stable_sort(scenes_, {}, &PaperScene::nodes);
-  }
-
-  const std::vector<PaperScene>& scenes() const { return scenes_; }
-  const std::vector<const ResultRow*>& rows() const { return rows_; }
-  bool has(const std::string& integrator) const {
-    return std::ranges::find(rows_, integrator, &ResultRow::integrator) != rows_.end();
-  }
-  bool has(const std::string& integrator, const std::string& backend) const {
-    return std::ranges::any_of(rows_, [&](const ResultRow* row) {
-      return row->integrator == integrator && row->backend == backend;
-    });
-  }
-
- private:
-  std::vector<PaperScene> scenes_;
-  std::vector<const ResultRow*> rows_;
-};
-
 /// A time, and how many times as fast as one thread that is.
 struct Timing {
   std::optional<double> ms, speedup;
@@ -119,73 +90,91 @@ Timing measured_timing(const ResultRow* row) {
   return row && counts(*row) ? Timing{row->ms_per_step, row->speedup_vs_serial} : Timing{};
 }
 
-Table data_of(const Measured& measured, const PaperLegend& legend, const PublishedTable& published) {
-  Table table{{{"integrator"}, {"configuration"}, {"backend"}, {"quantity"}}, {}};
-  std::vector<Cell> nodes{{}, {}, {}, "nodes"}, springs{{}, {}, {}, "springs_published"};
-  for (const PaperScene& scene : measured.scenes()) {
-    table.columns.push_back({scene.name});
-    nodes.emplace_back(scene.nodes);
-    springs.emplace_back(scene.springs);
-  }
-  table.rows = {std::move(nodes), std::move(springs)};
-  for (const auto& integrator : legend.integrators)
-    for (const auto& backend : legend.backends) {
-      if (!measured.has(integrator.name, backend.name)) continue;
-      const auto line = [&](std::string_view quantity, auto cell) {
-        std::vector<Cell>& cells = table.rows.emplace_back();
-        cells = {integrator.name, backend.configuration, backend.name, quantity};
-        for (const PaperScene& scene : measured.scenes())
-          cells.push_back(cell(scene, find_row(measured.rows(), scene.name, backend.name, integrator.name)));
-      };
-      const auto from_paper = [&](const PaperScene& scene) {
-        return published_timing(published, integrator, backend.configuration, scene);
-      };
-      line("published_ms", [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).ms; });
-      line("measured_ms", [](const PaperScene&, const ResultRow* row) { return measured_timing(row).ms; });
-      line("published_speedup",
-           [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).speedup; });
-      line("measured_speedup",
-           [](const PaperScene&, const ResultRow* row) { return measured_timing(row).speedup; });
-      line("status",
-           [](const PaperScene&, const ResultRow* row) { return row ? Cell(status_of(*row)) : Cell(); });
-    }
-  return table;
-}
-
-/// Makes the page, block by block.
-class Page {
+/// One of the published tables, and what was measured of it.
+class PaperTable {
  public:
-  Page(const Measured& measured, const PaperLegend& legend, const PublishedTable& published,
-       const Provenance& provenance)
-      : measured_(measured), legend_(legend), published_(published), provenance_(provenance) {}
+  PaperTable(std::span<const ResultRow> rows, const PaperLegend& legend, const PublishedTable& published,
+             const Provenance& provenance)
+      : legend_(legend), published_(published), provenance_(provenance) {
+    for (const ResultRow& row : rows) {
+      if (!published.has_scene(row.nodes, row.springs_published)) continue;
+      rows_.push_back(&row);
+      if (std::ranges::find(scenes_, row.scene, &PaperScene::name) == scenes_.end())
+        scenes_.push_back({row.scene, row.nodes, row.springs_published.value()});
+    }
+    std::ranges::stable_sort(scenes_, {}, &PaperScene::nodes);
+  }
 
-  Document made() const {
-    Document page{Heading{1, std::string(published_.info().title) + ", published and measured"},
-                  measured_on(measured_.rows(), provenance_),
+  bool empty() const { return rows_.empty(); }
+
+  Table data() const {
+    Table table{{{"integrator"}, {"configuration"}, {"backend"}, {"quantity"}}, {}};
+    std::vector<Cell> nodes{{}, {}, {}, "nodes"}, springs{{}, {}, {}, "springs_published"};
+    for (const PaperScene& scene : scenes_) {
+      table.columns.push_back({scene.name});
+      nodes.emplace_back(scene.nodes);
+      springs.emplace_back(scene.springs);
+    }
+    table.rows = {std::move(nodes), std::move(springs)};
+    for (const auto& integrator : legend_.integrators)
+      for (const auto& backend : legend_.backends) {
+        if (!has(integrator.name, backend.name)) continue;
+        const auto line = [&](std::string_view quantity, auto cell) {
+          std::vector<Cell>& cells = table.rows.emplace_back();
+          cells = {integrator.name, backend.configuration, backend.name, quantity};
+          for (const PaperScene& scene : scenes_)
+            cells.push_back(cell(scene, find_row(rows_, scene.name, backend.name, integrator.name)));
+        };
+        const auto from_paper = [&](const PaperScene& scene) {
+          return published_timing(published_, integrator, backend.configuration, scene);
+        };
+        line("published_ms", [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).ms; });
+        line("measured_ms", [](const PaperScene&, const ResultRow* row) { return measured_timing(row).ms; });
+        line("published_speedup",
+             [&](const PaperScene& scene, const ResultRow*) { return from_paper(scene).speedup; });
+        line("measured_speedup",
+             [](const PaperScene&, const ResultRow* row) { return measured_timing(row).speedup; });
+        line("status",
+             [](const PaperScene&, const ResultRow* row) { return row ? Cell(status_of(*row)) : Cell(); });
+      }
+    return table;
+  }
+
+  Document page() const {
+    Document text{Heading{1, std::string(published_.info().title) + ", published and measured"},
+                  measured_on(rows_, provenance_),
                   Paragraph{std::string(how_to_read_paper_table).append(published_.info().springs_counted) +
                             " the unique ones, by inference from its numbers."},
                   Paragraph{std::string(why_frozen) + (has_frozen() ? "" : " (`--integrator all`)") +
                             " hold them as the paper seems to, and reproduce its ratio of costs."}};
     for (const auto& integrator : legend_.integrators) {
-      if (!measured_.has(integrator.name)) continue;
+      if (!has(integrator.name)) continue;
       const std::string evaluations =
           pluralize(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation");
-      page.insert(page.end(), {Heading{2, integrator.name + ": " + evaluations +
+      text.insert(text.end(), {Heading{2, integrator.name + ": " + evaluations +
                                               " a step, beside the published " + integrator.paper_name},
                                times(integrator)});
     }
     const std::vector<const ResultRow*> shown = shown_rows();
-    add_sentence(page, legend_of_ratios(page));
-    add_sentence(page, legend_of_excess(shown, provenance_));
-    add_sentence(page, reason_without_speedups(shown));
-    add_rows_without_a_time(page, shown);
-    return page;
+    add_sentence(text, legend_of_ratios(text));
+    add_sentence(text, legend_of_excess(shown, provenance_));
+    add_sentence(text, reason_without_speedups(shown));
+    add_rows_without_a_time(text, shown);
+    return text;
   }
 
  private:
+  bool has(const std::string& integrator) const {
+    return std::ranges::find(rows_, integrator, &ResultRow::integrator) != rows_.end();
+  }
+  bool has(const std::string& integrator, const std::string& backend) const {
+    return std::ranges::any_of(rows_, [&](const ResultRow* row) {
+      return row->integrator == integrator && row->backend == backend;
+    });
+  }
   bool has_frozen() const {
     return std::ranges::any_of(legend_.integrators, [&](const auto& integrator) {
-      return integrator.name != integrator.paper_name && measured_.has(integrator.name);
+      return integrator.name != integrator.paper_name && has(integrator.name);
     });
   }
 
@@ -194,21 +183,20 @@ class Page {
     std::vector<const ResultRow*> shown;
     for (const auto& integrator : legend_.integrators)
       for (const auto& backend : legend_.backends)
-        for (const PaperScene& scene : measured_.scenes())
-          if (const auto* row = find_row(measured_.rows(), scene.name, backend.name, integrator.name))
+        for (const PaperScene& scene : scenes_)
+          if (const auto* row = find_row(rows_, scene.name, backend.name, integrator.name))
             shown.push_back(row);
     return shown;
   }
 
   Table times(const PaperLegend::Integrator& integrator) const {
     Table table{{{"nodes\nsprings"}}, {}};
-    for (const PaperScene& scene : measured_.scenes())
+    for (const PaperScene& scene : scenes_)
       table.columns.push_back({grouped(scene.nodes) + '\n' + grouped(scene.springs), Align::right});
     for (const PaperConfiguration& configuration : paper_configurations) {
       bool published = false;
       for (const auto& backend : legend_.backends) {
-        if (backend.configuration != configuration.name || !measured_.has(integrator.name, backend.name))
-          continue;
+        if (backend.configuration != configuration.name || !has(integrator.name, backend.name)) continue;
         if (!std::exchange(published, true)) table.rows.push_back(published_line(integrator, configuration));
         table.rows.push_back(measured_line(integrator, backend));
       }
@@ -220,7 +208,7 @@ class Page {
                                    const PaperConfiguration& configuration) const {
     bool any = false;
     std::vector<Cell> cells{{}};
-    for (const PaperScene& scene : measured_.scenes()) {
+    for (const PaperScene& scene : scenes_) {
       const Timing timing = published_timing(published_, integrator, configuration.name, scene);
       any |= timing.ms.has_value();
       Cell& cell = cells.emplace_back(timing.ms);
@@ -234,20 +222,21 @@ class Page {
 
   std::vector<Cell> measured_line(const PaperLegend::Integrator& integrator,
                                   const PaperLegend::Backend& backend) const {
-    std::vector<Cell> cells{backend_label(measured_.rows(), backend.name, provenance_) + ", **measured**"};
-    for (const PaperScene& scene : measured_.scenes()) {
-      const ResultRow* row = find_row(measured_.rows(), scene.name, backend.name, integrator.name);
+    std::vector<Cell> cells{backend_label(rows_, backend.name, provenance_) + ", **measured**"};
+    for (const PaperScene& scene : scenes_) {
+      const ResultRow* row = find_row(rows_, scene.name, backend.name, integrator.name);
       const Timing timing = measured_timing(row);
       Cell& cell = cells.emplace_back(measured_cell(row, timing.ms));
       if (!timing.ms) continue;
       cell.suffix = mark_of_excess(*row, provenance_);
       if (timing.speedup && backend.configuration != baseline_configuration)
-        cell.suffix.append(in_brackets(*timing.speedup)).append(mark_of_speedup(measured_.rows(), *row));
+        cell.suffix.append(in_brackets(*timing.speedup)).append(mark_of_speedup(rows_, *row));
     }
     return cells;
   }
 
-  const Measured& measured_;
+  std::vector<const ResultRow*> rows_;  ///< those that belong into the table
+  std::vector<PaperScene> scenes_;
   const PaperLegend& legend_;
   const PublishedTable& published_;
   const Provenance& provenance_;
@@ -325,9 +314,8 @@ TableMaker paper_tables(PaperLegend legend, std::vector<PublishedTable> publishe
                                                                         const Provenance& provenance) {
     std::vector<ResultTable> tables;
     for (const PublishedTable& each : published)
-      if (const Measured measured(rows, each); !measured.rows().empty())
-        tables.push_back({each.info().name, data_of(measured, legend, each),
-                          Page(measured, legend, each, provenance).made()});
+      if (const PaperTable table(rows, legend, each, provenance); !table.empty())
+        tables.push_back({each.info().name, table.data(), table.page()});
     return tables;
   };
 }

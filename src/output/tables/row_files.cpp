@@ -121,8 +121,8 @@ std::vector<Aggregate> aggregates_of(std::span<const double> samples_ms) {
 }  // namespace
 
 RowColumn::RowColumn(const char* name, std::string_view column) : head{name} {
-  const auto found = std::ranges::find(result_columns(), column, &ResultColumn::name);
-  if (found == result_columns().end())
+  const auto found = std::ranges::find(result_columns, column, &ResultColumn::name);
+  if (found == result_columns.end())
     throw std::invalid_argument("timings.csv has no column " + std::string(column));
   value = [found](const ResultRow& row) { return cell_of(row, *found); };
 }
@@ -148,10 +148,10 @@ Table table_of(RowPointers rows, const std::vector<RowColumn>& columns) {
 
 Table timings_table(std::span<const ResultRow> rows) {
   Table table;
-  for (const ResultColumn& column : result_columns()) table.columns.push_back({std::string(column.name)});
+  for (const ResultColumn& column : result_columns) table.columns.push_back({std::string(column.name)});
   for (const ResultRow& row : rows) {
     std::vector<Cell>& cells = table.rows.emplace_back();
-    for (const ResultColumn& column : result_columns()) cells.push_back(cell_of(row, column));
+    for (const ResultColumn& column : result_columns) cells.push_back(cell_of(row, column));
   }
   return table;
 }
@@ -173,13 +173,13 @@ std::string samples_csv(std::span<const ResultRow> rows) {
 
 std::vector<ResultRow> read_timings(const CsvTable& table) {
   std::vector<std::string_view> names;
-  for (const ResultColumn& column : result_columns()) names.push_back(column.name);
+  for (const ResultColumn& column : result_columns) names.push_back(column.name);
   names.resize(std::clamp(table.header().size(), oldest_columns, names.size()));
   table.require_columns(names);
   std::vector<ResultRow> rows(table.size());
   for (std::size_t record = 0; record < rows.size(); ++record)
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const ResultColumn& column = result_columns()[i];
+      const ResultColumn& column = result_columns[i];
       std::visit(
           [&](auto value) {
             Place{table, record, i, column.is_hash}.read(rows[record].*value);

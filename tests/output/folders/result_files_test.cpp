@@ -53,7 +53,7 @@ TEST(ResultColumns, AreWhereTheyWere) {
 
 TEST(ResultColumns, AreThoseOfTheDocumentation) {
   Table table;
-  for (const ResultColumn& column : result_columns())
+  for (const ResultColumn& column : result_columns)
     table.add({{"column", '`' + std::string(column.name) + '`'},
                {"unit", column.unit},
                {"what it is", column.meaning}});
