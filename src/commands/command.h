@@ -9,7 +9,7 @@
 
 namespace mssim {
 
-/// A row of the TABLE of subcommands. A new one is one row in commands.cpp and its own file.
+/// A row of the TABLE of subcommands. A new one is one row in command.cpp and a file of its own.
 struct Command {
   std::string_view name;
   std::string_view description;
