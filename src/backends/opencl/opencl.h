@@ -8,9 +8,9 @@
 namespace mssim {
 
 /// Steps a system on an OpenCL device, `lanes` nodes side by side (1, 4, 8 or 16): one fused kernel per
-/// stage, all steps queued one behind the other. Host and device exchange data when a state is set or read
-/// and never within a step, whose time `memory` therefore does not change. See the other make_opencl for
-/// errors.
+/// stage, or with several lanes and a cloth one for all stages of some steps; all are queued in order. Host
+/// and device exchange data when a state is set or read and never within a step, whose time `memory`
+/// therefore does not change. See the other make_opencl for errors.
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int lanes,
                                      DeviceMemory memory = DeviceMemory::shared);
