@@ -108,7 +108,6 @@ StartError become(const ChildProcess& child, char* const* arguments, char* const
   limit(RLIMIT_CORE, 0, 0);
   if (child.memory_bytes > 0) limit(RLIMIT_AS, child.memory_bytes, child.memory_bytes);
   std::signal(SIGXFSZ, SIG_DFL);  // which mssim itself ignores
-  if (child.file_bytes > 0) limit(RLIMIT_FSIZE, child.file_bytes, child.file_bytes);
   if (::chdir(child.folder.c_str()) != 0) return {"entering its folder", errno};
   ::execve(child.program.c_str(), arguments, environment);
   return {execution, errno};

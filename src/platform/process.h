@@ -66,7 +66,6 @@ struct ChildProcess {
   /// Time after which it is killed, with all that it started and all that runs together with it; 0: none.
   unsigned elapsed_seconds = 0;
   std::uint64_t memory_bytes = 0;  ///< the most address space that it gets; 0: as much as this process
-  std::uint64_t file_bytes = 0;    ///< the longest file that it can write; 0: as long as this process can
 };
 
 /// Runs a program to its end: no shell, empty stdin, no core file. Throws std::runtime_error with one
