@@ -36,7 +36,8 @@ Table of_scene(const Table& all, const std::string& scene) {
 }
 
 const Table& table_named(const std::vector<ResultTable>& tables, std::string_view name) {
-  return std::ranges::find(tables, name, &ResultTable::name)->data;
+  const auto is_it = [&](const ResultTable& table) { return std::string_view(table.name) == name; };
+  return std::ranges::find_if(tables, is_it)->data;
 }
 
 Table front_table(const SceneGuide& guide) {
