@@ -267,7 +267,7 @@ std::string report_page(const ReportInput& input) {
       !input.folders.empty() && std::ranges::all_of(input.folders, [](const ReportFolder& folder) {
         return folder.guide && folder.rows.empty();
       });
-  for (const Section& section : report_sections()) {
+  for (const PageSection& section : report_sections()) {
     if (section.of_rows && only_guides) continue;
     const std::string content = section.content(input);
     if (content.empty()) continue;

@@ -172,7 +172,7 @@ std::string html_data(std::string_view id, std::string_view json);
 std::string base64(std::string_view bytes);
 
 /// A part of the page under a heading of its own.
-struct Section {
+struct PageSection {
   std::string_view id, title;
   /// Its HTML, which says so where there is nothing to show; empty: the section is left out.
   std::string (*content)(const ReportInput& input);
@@ -180,6 +180,6 @@ struct Section {
 };
 
 /// In the order in which they stand.
-std::span<const Section> report_sections();
+std::span<const PageSection> report_sections();
 
 }  // namespace mssim

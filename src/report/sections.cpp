@@ -456,7 +456,7 @@ std::string guide_section(const ReportInput& input) {
   });
 }
 
-constexpr std::array<Section, 12> sections{{
+constexpr std::array<PageSection, 12> sections{{
     {"machine", "Machine and settings", machine_section, false},
     {"verdict", "Verdict", verdict_section},
     {"changes", "What changed", changes_section},
@@ -473,6 +473,6 @@ constexpr std::array<Section, 12> sections{{
 
 }  // namespace
 
-std::span<const Section> report_sections() { return sections; }
+std::span<const PageSection> report_sections() { return sections; }
 
 }  // namespace mssim
