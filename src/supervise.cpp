@@ -87,22 +87,37 @@ void for_each_number(const char* folder, Use use) {
   ::closedir(entries);
 }
 
-/// What /proc/PROCESS/stat says.
+/// What /proc/PROCESS/stat says of a process, or /proc/PROCESS/task/THREAD/stat of a thread.
 struct Stat {
+  char state = 'X';  ///< X: there is no such process
   int parent = 0;
   unsigned long waited_user = 0, waited_system = 0;  // of children that it has waited for, in ticks
 
   explicit Stat(pid_t process) {
-    char path[64], text[1024];
+    char path[64];
     std::snprintf(path, sizeof path, "/proc/%d/stat", process);
+    read(path);
+  }
+  Stat(pid_t process, pid_t thread) {
+    char path[64];
+    std::snprintf(path, sizeof path, "/proc/%d/task/%d/stat", process, thread);
+    read(path);
+  }
+  /// It takes no processor time until it is continued, or never again.
+  bool rests() const { return std::strchr("TtZXx", state) != nullptr; }
+
+ private:
+  void read(const char* path) {
+    char text[1024];
     std::FILE* file = std::fopen(path, "re");
     if (file == nullptr) return;
     text[std::fread(text, 1, sizeof text - 1, file)] = 0;
     std::fclose(file);
-    // The name, in parentheses, may have any characters. The parent is two words behind it, the times 14.
+    // The name, in parentheses, may have any characters. The state is the word behind it, the times come 14
+    // later.
     if (const char* rest = std::strrchr(text, ')'))
-      std::sscanf(rest, ") %*c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %lu %lu", &parent, &waited_user,
-                  &waited_system);
+      std::sscanf(rest, ") %c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %lu %lu", &state, &parent,
+                  &waited_user, &waited_system);
   }
 };
 
@@ -146,6 +161,27 @@ void signal_all(pid_t program, int signal) {
     if (signal == SIGCONT || found.count == before) break;
     before = found.count;
   }
+}
+
+/// Whether no thread of all that the program started would take processor time.
+bool all_rest() {
+  const Processes& found = descendants();
+  bool rest = true;
+  char path[64];
+  for (std::size_t i = 0; i < found.count; ++i) {
+    std::snprintf(path, sizeof path, "/proc/%d/task", found.all[i]);
+    for_each_number(path, [&](int thread) { rest = rest && Stat(found.all[i], thread).rests(); });
+  }
+  return rest;
+}
+
+/// Stops all that the program started, and waits until it has stopped: a thread gets its SIGSTOP when it is
+/// next on a processor, which may be while another program is timed. One that waits for a disk or a driver
+/// may not stop for long, and is left to it.
+void pause_all(pid_t program) {
+  signal_all(program, SIGSTOP);
+  constexpr timespec look{0, 200'000};
+  for (int looks = 0; looks < 500 && !all_rest(); ++looks) ::nanosleep(&look, nullptr);
 }
 
 /// Processor time of all that the program started: of those that live by their clocks, and of those that were
@@ -267,7 +303,7 @@ void attend(pid_t program, Output& output, int signals) {
     if (events[0].revents == 0) continue;
     SupervisorRequest request{};
     if (::recv(channel, &request, sizeof request, 0) != sizeof request) return;
-    if (request == SupervisorRequest::pause) signal_all(program, SIGSTOP);
+    if (request == SupervisorRequest::pause) pause_all(program);
     if (request == SupervisorRequest::resume) signal_all(program, SIGCONT);
     const bool timed = request == SupervisorRequest::processor_time;
     say({SupervisorWord::done, 0, timed ? processor_seconds() : 0});

@@ -84,9 +84,10 @@ void compare_with_peaks(const Combination& combination, const StepSize& size, co
 using Verifier = std::function<Verification(Combination& combination)>;
 
 /// Runs the reference. `draped`: the garment, settled; none where the scene is no garment or cannot be
-/// dressed. The verifier is empty where no backend has the scene with this integrator.
-Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
-                       const std::optional<State>& draped) {
+/// dressed. `step_seconds`: is set to what a step of it took where the ends of samples are compared with it,
+/// too. The verifier is empty where no backend has the scene with this integrator.
+Verifier make_verifier(const SceneJob& job, const Integrator& integrator, const std::optional<State>& draped,
+                       double& step_seconds) {
   if (job.garment && !dresses(integrator)) return {};
   if (job.garment)
     return [&job, reference = run_garment_reference(*job.system, integrator, job.dt_s, *draped)](
@@ -108,7 +109,9 @@ Verifier make_verifier(const SceneJob& job, const Integrator& integrator,
       };
       return found;
     };
-  return [&job, reference = run_reference(*job.system, integrator, job.dt_s)](Combination& combination) {
+  Reference reference = run_reference(*job.system, integrator, job.dt_s);
+  step_seconds = reference.step_seconds;
+  return [&job, reference = std::move(reference)](Combination& combination) {
     return verify(*combination.backend, *job.system, reference, job.dt_s);
   };
 }
@@ -125,6 +128,7 @@ int most_sample_steps(const SceneJob& job, const Integrator& integrator) {
 /// What an integrator's reference leaves.
 struct AfterReference {
   int most_steps = max_sample_steps;  ///< of a sample
+  double step_seconds = 0;            ///< that a step of the reference took
   Verifier verifier = {};
   std::optional<SecondStretch> second = {};  ///< where it is part of the verification
   std::optional<Combination> serial = {};    ///< verified, if it is among the job's backends
@@ -202,7 +206,7 @@ std::vector<AfterReference> run_references(const SceneJob& job, const std::optio
   for_each_integrator(job, [&](std::size_t i) {
     results[i].most_steps = most_sample_steps(job, *job.integrators[i]);
     if (job.verified) return;
-    results[i].verifier = make_verifier(job, *job.integrators[i], draped);
+    results[i].verifier = make_verifier(job, *job.integrators[i], draped, results[i].step_seconds);
     if (!job.garment && !job.windowed && !is_implicit(*job.integrators[i]))
       results[i].second = run_second_stretch(*job.system, *job.integrators[i], job.dt_s);
     if (serial != job.backends.end())
@@ -279,11 +283,12 @@ class SampleSecrets {
   SampleSecrets(const SceneJob& job, const State& start)
       : job_(job), start_(start), checks_(!job.garment && !job.windowed && !job.verified) {}
 
-  /// Chooses the round that is checked, of those that there may be.
-  void choose(const FirstRound& first) {
+  /// Chooses the round that is checked, of those that there may be. `end`: when the last one is to have
+  /// ended, with a deadline.
+  void choose(const FirstRound& first, Clock::time_point end) {
     if (job_.deadline)
-      checked_from_ = first.start + std::chrono::duration_cast<Clock::duration>(
-                                        between_0_and_1() * (*job_.deadline - first.start));
+      checked_from_ =
+          first.start + std::chrono::duration_cast<Clock::duration>(between_0_and_1() * (end - first.start));
     else
       checked_round_ = first.number + static_cast<int>(between_0_and_1() * (job_.rounds - first.number));
   }
@@ -343,6 +348,26 @@ class SampleSecrets {
   bool checks_this_ = false, has_checked_ = false;
   std::uint32_t present_ = 0, checked_ = 0;  ///< of which round's start
 };
+
+/// What SampleSecrets::compare will take, about, after samples as long as the combinations' are now.
+Clock::duration expected_check(const SceneJob& job, const std::vector<Combination>& combinations,
+                               const std::vector<AfterReference>& references) {
+  if (job.garment || job.windowed || job.verified) return {};
+  constexpr double both_references = 2.5;  // with rounding the state of one, in steps of the first reference
+  double all = 0, longest = 0;
+  for (std::size_t i = 0; i < job.integrators.size(); ++i) {
+    int steps = 0;
+    for (const Combination& combination : combinations)
+      if (combination.integrator == job.integrators[i] && combination.backend)
+        steps = std::max(steps, combination.steps);
+    const double seconds = both_references * steps * references[i].step_seconds;
+    all += seconds;
+    longest = std::max(longest, seconds);
+  }
+  const double at_once = static_cast<double>(references_at_once(job));
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(std::max(longest, all / at_once)));
+}
 
 /// One sample of every combination, in this order, from `start`. False when it was stopped, and then without
 /// a trace.
@@ -410,9 +435,11 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::mt19937 random(20160101);  // any fixed seed: a run can be repeated
+  const Clock::time_point rounds_end =
+      job.deadline.value_or(Clock::time_point::max()) - expected_check(job, all, references);
   const FirstRound first{restore(all, job.earlier)};
   SampleSecrets secrets(job, start);
-  secrets.choose(first);
+  secrets.choose(first, rounds_end);
   const auto take = [&](int round, bool kept) {
     const State& from = secrets.begin_round(round);
     if (!kept) secrets.check();
@@ -423,9 +450,7 @@ std::vector<ResultRow> bench_scene(const SceneJob& job, const BenchWatch& watch)
     std::ranges::shuffle(order, random);
     if (round < first.number) continue;
     const int measured = round - first.number;
-    if (job.deadline && measured > 0 &&
-        Clock::now() + (Clock::now() - first.start) / measured > *job.deadline)
-      break;
+    if (measured > 0 && Clock::now() + (Clock::now() - first.start) / measured > rounds_end) break;
     if (!take(round, true)) {
       if (round == 0) return {};
       stopped = true;

@@ -11,10 +11,11 @@ mssim=$1
 column() { column_of "$work/results/timings.csv" "$1"; }
 
 start=$(date +%s%N)
-"$mssim" bench --scene cloth2500,cloth4900 --backend serial,opencl --integrator semi-euler --threads 1 --time-budget 6 >"$work/out" 2>"$work/err" ||
+"$mssim" bench --scene cloth2500,cloth4900 --backend serial,opencl --integrator semi-euler --threads 1 --time-budget 12 >"$work/out" 2>"$work/err" ||
   fail "a bench with a time budget exits with $?: $(cat "$work/err")"
 spent=$((($(date +%s%N) - start) / 1000000))
-[ "$spent" -ge 5400 ] && [ "$spent" -le 6600 ] || fail "a time budget of 6 s was $spent ms"
+# What the check of the samples takes can only be expected: a second or three, on a machine whose speed changes from one to the next.
+[ "$spent" -ge 10800 ] && [ "$spent" -le 13200 ] || fail "a time budget of 12 s was $spent ms"
 
 # A bench of every backend and integrator: what it writes, and how near it comes to the limits.
 "$mssim" bench --scene cloth2500 --rounds 2 --threads 2 --trace --out "$work/results" >"$work/out" 2>"$work/err" ||

@@ -139,7 +139,7 @@ std::optional<TimeBudget::Clock::time_point> TimeBudget::begin_scene() {
   const double rounds = rounds_within(seconds_of(*end_ - present_start_) / scale, total(scenes_));
   present_ = scenes_.front();
   scenes_.erase(scenes_.begin());
-  return present_start_ + duration_of(scale * (present_.preparation + rounds * present_.round));
+  return present_start_ + duration_of(scale * present_.with(rounds));
 }
 
 void TimeBudget::first_round_done() {

@@ -50,7 +50,7 @@ class TimeBudget {
 
   /// When all is to have ended; none without a limit.
   std::optional<Clock::time_point> end() const { return end_; }
-  /// When the rounds of the next scene, which begins now, are to end; none without a limit.
+  /// When the next scene, which begins now, is to have been measured and checked; none without a limit.
   std::optional<Clock::time_point> begin_scene();
   /// The scene's first round has ended, which tells how far to believe what was expected.
   void first_round_done();

@@ -74,7 +74,8 @@ struct SceneJob : BenchSettings {
   /// Where nobody has the whole cloth: `system` is an outline then, and all backends have windows.
   std::optional<WindowedCloth> windowed = {};
   double dt_s = 0;
-  /// No round begins that would probably not end before it, but for the first.
+  /// No round begins after which the samples would probably not have been checked before it, but for the
+  /// first.
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
   /// The share of the whole that what precedes the rounds takes, about: for the progress only.
   double preparation = 0.3;

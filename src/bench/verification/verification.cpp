@@ -1,14 +1,17 @@
 #include "bench/verification/verification.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <vector>
 
 #include "backends/reference.h"
 #include "integrators/stability.h"
 #include "model/spectrum.h"
 #include "model/system.h"
+#include "statistics/statistics.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -143,11 +146,15 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
   State before = system.start;
   bool in_the_air = true;
   const int comparable = comparable_steps(system, integrator, dt_s, verification_steps);
+  std::vector<double> step_seconds;
   // To the end even after contact: a blow-up may only show then.
   for (int steps = 0; steps < verification_steps;) {
     const int next = std::min(steps + stride, steps < comparable ? comparable : verification_steps);
+    const auto start = std::chrono::steady_clock::now();
     backend->step(next - steps);
     State state = backend->state();
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    step_seconds.push_back(taken.count() / (next - steps));
     if (const auto node = first_bad_node(state)) {
       const BlowUp blow_up =
           find_blow_up(*backend, before, next - steps).value_or(BlowUp{next - steps, *node});
@@ -167,6 +174,7 @@ Reference run_reference(const System& system, const Integrator& integrator, doub
     return reference;
   }
   reference.energy = energy_of(system, reference.state);
+  reference.step_seconds = median(step_seconds);
   reference.tolerance = position_tolerance(system, integrator, reference.steps);
   return reference;
 }

@@ -64,7 +64,8 @@ struct Reference {
   int steps = 0;  ///< taken from the start; before any node touches the floor, and comparable
   State state;
   Energy energy;
-  double tolerance = 0;                ///< on the position error, in mean rest lengths
+  double tolerance = 0;     ///< on the position error, in mean rest lengths
+  double step_seconds = 0;  ///< that a step of it took: the median, because the first ones are slow
   std::optional<std::string> failure;  ///< why there is no reference
 };
 
