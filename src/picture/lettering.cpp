@@ -67,8 +67,8 @@ class Font {
  private:
   GlyphMask drawn(char32_t character, FT_F26Dot6 size) {
     require_success(FT_Set_Char_Size(face_, 0, size, 0, 0), "a size of letters");
-    // Light hinting: horizontal edges lie on whole pixels, widths stay those of the font.
-    require_success(FT_Load_Char(face_, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT), "a letter");
+    // No hinting: what FreeType makes of it differs from one release to the next, outlines do not.
+    require_success(FT_Load_Char(face_, character, FT_LOAD_RENDER | FT_LOAD_NO_HINTING), "a letter");
     const FT_GlyphSlot slot = face_->glyph;
     GlyphMask mask{slot->bitmap_left,
                    slot->bitmap_top,
