@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "backends/implicit/constraints/constraints.h"
@@ -30,18 +31,14 @@ struct SolverSteps {
   MemoryUse openmp_memory;  ///< for a cloth; for bodies what their slices take comes to it
 };
 
-/// A maker of a room that steps one integrator and need not be told which.
+/// A maker of a room that steps one integrator, and need not be told which, nor when nobody waits for it.
 template <auto make, class... More>
 std::unique_ptr<Backend> of_one_integrator(const System& system, const Integrator& /*integrator*/,
                                            double dt_s, const More&... more) {
-  return make(system, dt_s, more...);
-}
-
-/// Wraps a reference, whose steps end soon enough without being told to.
-template <auto make>
-std::unique_ptr<Backend> reference_of_one_integrator(const System& system, const Integrator& /*integrator*/,
-                                                     double dt_s, const std::function<bool()>& /*stop*/) {
-  return make(system, dt_s);
+  if constexpr (std::is_invocable_v<decltype(make), const System&, double, const More&...>)
+    return make(system, dt_s, more...);
+  else
+    return make(system, dt_s);
 }
 
 /// Memory of a SpringEquation<float>: of a node what PlainNodes hold, six vectors and a block of P; of a
@@ -74,14 +71,14 @@ constexpr SolverSteps newton{
 constexpr SolverSteps local_global{
     .serial = of_one_integrator<make_serial_local_global>,
     .serial_memory = {.node = 150 + matrix_bytes, .doubling_node = cloth_entries * entry_bytes},
-    .reference = reference_of_one_integrator<make_local_global_reference>,
+    .reference = of_one_integrator<make_local_global_reference>,
     .reference_memory = {.node = 250 + matrix_bytes, .doubling_node = cloth_entries * entry_bytes},
     .openmp = of_one_integrator<make_openmp_local_global>,
     .openmp_memory = {.node = 150 + matrix_bytes, .doubling_node = cloth_entries * block_bytes}};
 
 constexpr SolverSteps constraints{.serial = of_one_integrator<make_serial_constraints>,
                                   .serial_memory = {.node = 41, .spring = 16 + 20},
-                                  .reference = reference_of_one_integrator<make_constraints_reference>,
+                                  .reference = of_one_integrator<make_constraints_reference>,
                                   .reference_memory = {.node = 81, .spring = 16 + 32},
                                   .openmp = of_one_integrator<make_openmp_constraints>,
                                   .openmp_memory = {.node = 40}};

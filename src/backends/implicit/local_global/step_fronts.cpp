@@ -10,9 +10,7 @@
 
 #include <algorithm>
 
-#include "backends/implicit/nodes/force_lanes-inl.h"
-#include "backends/implicit/nodes/row_vectors-inl.h"
-#include "backends/implicit/nodes/slice_vectors-inl.h"
+#include "backends/implicit/nodes/node_vectors-inl.h"
 #include "backends/threads/spin_barrier.h"
 
 HWY_BEFORE_NAMESPACE();

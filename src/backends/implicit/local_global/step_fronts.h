@@ -1,15 +1,28 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
-#include "backends/implicit/local_global/block_factor.h"
-#include "backends/implicit/local_global/front_schedule.h"
-#include "backends/implicit/nodes/node_rows.h"
-#include "backends/implicit/nodes/node_slices.h"
-#include "backends/vectors/instruction_sets.h"
+#include "backends/implicit/local_global/factor.h"
+#include "backends/implicit/nodes/node_vectors.h"
+#include "backends/implicit/nodes/vector_backend.h"
 
 namespace mssim {
+
+/// Which thread passes which parts, and when. Phase 0 has whole subtrees of the tree of parts; each later
+/// phase has parts whose children are done. Upwards the phases follow each other, and each thread takes its
+/// items in order; downwards all is reversed. It decides nothing about the result: a part's sums are its own.
+struct FrontSchedule {
+  /// Parts [begin, end), children before parents.
+  struct Item {
+    std::size_t begin, end;
+  };
+  /// [phases][threads]
+  std::vector<std::vector<std::vector<Item>>> phases;
+
+  FrontSchedule(const BlockFactor& factor, std::size_t threads);
+};
 
 /// What the vector code of fast-springs needs to take steps. Nodes: NodeRows or NodeSlices.
 template <class Nodes>
@@ -32,20 +45,17 @@ struct LocalGlobalNodes {
   AlignedArray e;     ///< field: what is missing for w - v = dt a(y, w), m/s
   AlignedArray fronts;
 
-  LocalGlobalNodes(const System& system, double dt_s, Nodes system_nodes, std::size_t lanes,
-                   std::size_t thread_count);
+  LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
+      : LocalGlobalNodes(system, {system, dt_s}, dt_s, lanes, thread_count) {}
   void set_state(const State& state);
   State state() const;
+
+ private:
+  LocalGlobalNodes(const System& system, const StepMatrix& matrix, double dt_s, std::size_t lanes,
+                   std::size_t thread_count);
 };
 
-/// The vector code for one instruction set: takes `count` steps.
-struct LocalGlobalKernel {
-  std::size_t lanes;            ///< floats of a vector
-  const char* instruction_set;  ///< Highway's name for it
-  bool exact_roots;             ///< as inverse_length (backends/vectors/lanes-inl.h) says
-  void (*step_rows)(LocalGlobalNodes<NodeRows>& cloth, int count);
-  void (*step_slices)(LocalGlobalNodes<NodeSlices>& bodies, int count);
-};
+using LocalGlobalKernel = SolverKernel<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>;
 
 /// The kernels for the instruction sets of this processor, at least one, the best first.
 std::vector<LocalGlobalKernel> local_global_kernels();

@@ -3,14 +3,66 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "backends/implicit/newton/solver_goal.h"
+#include "backends/implicit/nodes/plain_nodes.h"
 #include "integrators/integrator.h"
+#include "model/system.h"
 #include "text/text.h"
 
 namespace mssim {
+
+/// Where the methods below end.
+struct SolverGoal {
+  double tolerance = 0;  ///< of newton_step and newtons_method: the part that may be left
+  double rounding = 0;   ///< the norm of r, kg^1/2 m/s, which rounded forces do not let it fall below
+  double rounding_of_motion = 0;  ///< what rounded velocities add to that, in parts of sqrt(w . M w)
+};
+
+/// What a spring's force is off by at most, in u k L: (k - k L / l) d is rounded where d, 1 / l and the
+/// products with k L and with d are.
+inline constexpr double roundings_of_force = 4;
+
+/// The goal of a solver that computes springs in precision Real. Each error below changes from spring to
+/// spring or from node to node, so that squares add up; u is half a unit in the last place of 1.
+///
+/// A spring's force is the difference of k l and k L, each rounded: an error of u k L. Newton's method on the
+/// shipped cloths comes to a third of this, and not further.
+///
+/// Rounding w_j by u |w_j| changes r by column j of A. With a = dt c + dt^2 k of a spring, the largest
+/// eigenvalue of what it adds to A, its square in the norm of M^-1 is at most
+///     (m_j + dt viscous_damping m_j + sum of a)^2 / m_j + sum of a^2 / m_i
+/// over the springs from j to i, times u^2 |w_j|^2; the largest of it over m_j |w_j|^2 is taken for all
+/// nodes. That is an upper bound: it is no goal, but says whether a norm that does not fall is that of
+/// roundings.
+template <class Real>
+SolverGoal solver_goal(const System& system, double dt_s, double tolerance) {
+  constexpr double unit_roundoff = static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
+  double sum = 0;
+  std::vector<double> diagonal, others(system.nodes());
+  for (const double mass : system.node_mass) diagonal.push_back(mass * (1 + dt_s * system.viscous_damping));
+  for (const Spring& spring : system.springs) {
+    const SpringMaterial& material = system.materials[spring.kind];
+    const double tension = material.stiffness * static_cast<double>(spring.rest_length);
+    const double along = dt_s * (material.damping + dt_s * material.stiffness);
+    for (const auto& [end, other] : {std::pair{spring.first, spring.second}, {spring.second, spring.first}}) {
+      sum += tension * tension / system.node_mass[end];
+      diagonal[end] += along;
+      others[end] += along * along / system.node_mass[other];
+    }
+  }
+  double column = 0;
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    const double mass = system.node_mass[i];
+    column = std::max(column, (diagonal[i] * diagonal[i] / mass + others[i]) / mass);
+  }
+  return {tolerance, unit_roundoff * dt_s * std::sqrt(sum), unit_roundoff * std::sqrt(column)};
+}
 
 /// The equation of one step of backward Euler, as the methods below see it. Its unknown is w, the velocities
 /// at the step's end:
@@ -113,8 +165,8 @@ void newton_step(Equation& equation, double tolerance, SolverWork& work) {
 /// where rounding keeps it from falling. The goal is a part of sqrt((w - v) . M (w - v)): no eigenvalue of
 /// M^-1 A is below 1, so that w - v is then off by no larger part, whatever the step, where no spring is
 /// compressed. (A part of the first r would not say so: the longer the step, the more of it is that of stiff
-/// springs.) Linear systems are solved
-/// to a part of what r is then (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982).
+/// springs.) Linear systems are solved to a part of what r is then (an inexact Newton method: Dembo,
+/// Eisenstat and Steihaug 1982).
 ///
 /// A part of s is taken if r becomes less, or if it does not lead far uphill. Without damping, r is the
 /// gradient by w of (w - v) . M (w - v) / 2 + E(x + dt w), E the elastic and gravitational energy; its
@@ -174,5 +226,59 @@ inline std::string note_of(const SolverWork& work) {
   return "the solver ended before its tolerance in " + std::to_string(work.unfinished_steps) + " of " +
          pluralize(work.steps, "step");
 }
+
+/// The BackwardEulerEquation as a straightforward program holds it: arrays of nodes, and for each spring of
+/// the list what it adds to A.
+template <class Real>
+class SpringEquation {
+ public:
+  /// `system` must outlive it.
+  SpringEquation(const System& system, double dt_s);
+
+  void set_state(const State& state) { nodes_.set_state(state); }
+  State state() const { return nodes_.state(); }
+
+  void begin() { w_ = nodes_.v; }
+  void linearise_at_state() { linearise_springs<true>(); }
+  double linearise() { return linearise_springs<false>(); }
+  double start_solving();
+  double turn(double factor);
+  double advance(double factor);
+  void add(double factor);
+  double along_solution() const;
+  double motion() const;
+  double change() const;
+  void end();
+
+ private:
+  /// A spring's part of A: along n n^T + across (I - n n^T), kg.
+  struct SpringSlope {
+    Vec3<Real> n;
+    Real along, across;
+  };
+
+  template <bool at_state>
+  double linearise_springs();
+  /// z = P e. Returns e . z.
+  double precondition();
+  /// The sum of value(node), node by node.
+  template <class Value>
+  double sum_over_nodes(Value value) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) sum += static_cast<double>(value(i));
+    return sum;
+  }
+
+  const std::vector<Spring>& springs_;
+  PlainNodes<Real> nodes_;
+  Real dt_;
+  std::vector<SpringSlope> slopes_;            ///< [springs]
+  std::vector<SymmetricBlock<Real>> inverse_;  ///< [nodes] P, 1/kg; zero where pinned, so that z, p and s are
+  std::vector<Vec3<Real>> w_, z_, p_, s_;      ///< [nodes] m/s
+  std::vector<Vec3<Real>> e_, q_;              ///< [nodes] N s
+};
+
+extern template class SpringEquation<float>;
+extern template class SpringEquation<double>;
 
 }  // namespace mssim

@@ -1,19 +1,374 @@
-// Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+// The threads that take a step together, each running the methods of newton_method.h, and what each function
+// of the equation does to a chunk of nodes. Compiled once per instruction set: hwy/foreach_target.h includes
+// this file again for each.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/implicit/newton/step_newton.cpp"
 #include "backends/implicit/newton/step_newton.h"
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <omp.h>
 
-#include "backends/implicit/newton/team_equation-inl.h"
+#include <optional>
+
+#include "backends/implicit/nodes/node_vectors-inl.h"
+#include "backends/threads/spin_barrier.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
+
+/// A sum of floats in double precision, lane by lane until the end.
+class DoubleSum {
+ public:
+  HWY_INLINE DoubleSum() : low_(hn::Zero(Tag())), high_(hn::Zero(Tag())) {}
+  HWY_INLINE void add(Lanes values) {
+#if HWY_TARGET == HWY_SCALAR
+    low_ = hn::Add(low_, hn::PromoteTo(Tag(), values.v));
+#else
+    const hn::Half<FloatTag> half;
+    low_ = hn::Add(low_, hn::PromoteTo(Tag(), hn::LowerHalf(half, values.v)));
+    high_ = hn::Add(high_, hn::PromoteTo(Tag(), hn::UpperHalf(half, values.v)));
+#endif
+  }
+  HWY_INLINE double total() const { return hn::GetLane(hn::SumOfLanes(Tag(), hn::Add(low_, high_))); }
+
+ private:
+  using Tag = hn::Rebind<double, hn::Half<FloatTag>>;
+  hn::Vec<Tag> low_, high_;
+};
+
+/// What the springs of one place do at the end of a step of dt: `along` of kernels/spring_jacobian.h.
+HWY_INLINE Lanes along_spring(const SpringLanes& spring, Lanes dt) {
+  return dt * mul_add(dt, spring.stiffness, spring.damping);
+}
+
+/// What springs whose ends are d apart (m) add to A at the end of a step of dt.
+HWY_INLINE SlopeLanes slope_of(const SpringLanes& spring, const Lanes3& d, Lanes dt) {
+  const Lanes inverse_root = inverse_length(dot(d, d));
+  return {inverse_root * d,
+          dt * (dt * spring_across_definite(inverse_root, spring.stiffness, spring.stiffness_rest))};
+}
+
+/// The block of P of a vector of nodes, from where it stands in VectorEquation::inverse.
+HWY_INLINE SymmetricBlock<Lanes> load_block(const float* from) {
+  const std::size_t n = lane_count();
+  const auto load = [&](std::size_t i)
+                        MSSIM_INLINE_LAMBDA { return Lanes(hn::Load(FloatTag(), from + i * n)); };
+  return {load(0), load(1), load(2), load(3), load(4), load(5)};
+}
+template <class Free>
+HWY_INLINE void store_block(float* to, Free free, const SymmetricBlock<Lanes>& block) {
+  for (const Lanes& number : {block.xx, block.xy, block.xz, block.yy, block.yz, block.zz}) {
+    hn::Store(keep(free, number).v, FloatTag(), to);
+    to += lane_count();
+  }
+}
+
+/// Calls act(float) with a vector of floats' offset in a field, for all of a chunk's.
+template <class Nodes, class Act>
+HWY_INLINE void for_each_float(const Nodes& nodes, NodeChunk chunk, Act&& act) {
+  const NodeChunk floats = nodes.floats_of(chunk);
+  for (std::size_t i = floats.begin; i < floats.end; i += lane_count()) act(i);
+}
+
+/// e, A and P. Returns e . M^-1 e, undivided. at_state: at x and w = v, and e that of the first Newton step.
+template <bool at_state, class Nodes>
+HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Lanes dt(equation.dt), viscous_damping(equation.nodes.surroundings.viscous_damping),
+      gravity(equation.nodes.surroundings.gravity);
+  const Lanes inertia = mul_add(dt, viscous_damping, Lanes(1.0F));
+  const float *const x = equation.x.data(), *const v = equation.v.data(),
+                     *const w = at_state ? v : equation.w.data();
+  float *const e = equation.e.data(), *const slopes = equation.slopes.data(),
+               *const inverse = equation.inverse.data(), *const y = equation.y.data();
+  DoubleSum norm;
+  for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const NodeLanes node{vector.load(x), vector.load(w)};
+    Lanes3 pull = zero3();
+    SymmetricBlock<Lanes> block{inertia, Lanes(0.0F), Lanes(0.0F), inertia, Lanes(0.0F), inertia};
+    vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
+      const SpringLanes& spring = springs.constants;
+      const Lanes3 u = springs.load(w) - node.v;
+      Lanes3 d = springs.load(x) - node.x;
+      // Not the difference of x + dt w: rounding these would cost most digits of a small stretch.
+      if constexpr (!at_state) d = mul_add(dt, u, d);
+      const Lanes inverse_root = inverse_length(dot(d, d));
+      SlopeLanes slope{inverse_root * d,
+                       spring_across_definite(inverse_root, spring.stiffness, spring.stiffness_rest)};
+      Lanes3 force =
+          spring_pull_at(inverse_root, dot(u, d), spring.stiffness, spring.stiffness_rest, spring.damping) *
+          d;
+      if constexpr (at_state)
+        force = mul_add(dt, spring_jacobian_times(slope.n, spring.stiffness, slope.across, u), force);
+      pull = pull + keep(springs.exists, force);
+      slope.across = dt * (dt * slope.across);
+      slope = keep(springs.exists, slope);
+      if (slopes != nullptr) springs.store_slope(slopes, slope);
+      const Lanes along = keep(springs.exists, along_spring(spring, dt));
+      block = block_sum(block, spring_jacobian(slope.n.x, slope.n.y, slope.n.z, along, slope.across));
+    });
+    Lanes3 missing = dt * node_acceleration(pull, node.v, viscous_damping, gravity);
+    if constexpr (!at_state) missing = missing - (node.v - vector.load(v));
+    missing = keep(vector.free, missing);
+    vector.store(e, missing);
+    if (y != nullptr) vector.store(y, at_state ? node.x : mul_add(dt, node.v, node.x));
+    norm.add(vector.weighted(dot(missing, missing)));
+    store_block(inverse + vector.number * 6 * lane_count(), vector.free, block_inverse(block));
+  });
+  return norm.total();
+}
+
+/// s = 0, p = 0, z = P e. Returns e . z.
+template <class Nodes>
+HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  float *const s = equation.s.data(), *const p = equation.p.data(), *const z = equation.z.data();
+  const float *const e = equation.e.data(), *const inverse = equation.inverse.data();
+  DoubleSum sum;
+  for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    hn::Store(hn::Zero(FloatTag()), FloatTag(), s + i);
+    hn::Store(hn::Zero(FloatTag()), FloatTag(), p + i);
+  });
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 here = vector.load(e),
+                 solved = block_times(load_block(inverse + vector.number * 6 * lane_count()), here);
+    vector.store(z, solved);
+    sum.add(vector.weighted(dot(here, solved)));
+  });
+  return sum.total();
+}
+
+/// p = z + factor p.
+template <class Nodes>
+HWY_NOINLINE void turn_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk, float factor) {
+  const FloatTag d;
+  float* const p = equation.p.data();
+  const float* const z = equation.z.data();
+  const auto f = hn::Set(d, factor);
+  for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    hn::Store(hn::MulAdd(f, hn::Load(d, p + i), hn::Load(d, z + i)), d, p + i);
+  });
+}
+
+/// q = A p. Returns p . q. What it writes for nodes that do not move, or do not exist, is of no use.
+template <class Nodes>
+HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Lanes dt(equation.dt);
+  const Lanes inertia = mul_add(dt, Lanes(equation.nodes.surroundings.viscous_damping), Lanes(1.0F));
+  float* const q = equation.q.data();
+  const float *const p = equation.p.data(), *const slopes = equation.slopes.data();
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 here = vector.load(p);
+    Lanes3 product = inertia * here;
+    vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
+      const SlopeLanes slope = springs.load_slope(slopes);
+      product = product - spring_jacobian_times(slope.n, along_spring(springs.constants, dt), slope.across,
+                                                springs.load(p) - here);
+    });
+    vector.store(q, product);
+    sum.add(vector.weighted(dot(here, product)));
+  });
+  return sum.total();
+}
+
+/// Multiplies where slopes are not kept: they are found again from the positions of the linearisation.
+template <class Nodes>
+HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Lanes dt(equation.dt);
+  const Lanes inertia = mul_add(dt, Lanes(equation.nodes.surroundings.viscous_damping), Lanes(1.0F));
+  float* const q = equation.q.data();
+  const float *const p = equation.p.data(), *const y = equation.y.data();
+  DoubleSum sum;
+  for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 here = vector.load(p), place = vector.load(y);
+    Lanes3 product = inertia * here;
+    vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
+      const SpringLanes& spring = springs.constants;
+      const SlopeLanes slope = slope_of(spring, springs.load(y) - place, dt);
+      product = product - keep(springs.exists, spring_jacobian_times(slope.n, along_spring(spring, dt),
+                                                                     slope.across, springs.load(p) - here));
+    });
+    product = keep(vector.free, product);
+    vector.store(q, product);
+    sum.add(vector.weighted(dot(here, product)));
+  });
+  return sum.total();
+}
+
+/// s += factor p, e -= factor q, z = P e. Returns e . z.
+template <class Nodes>
+HWY_NOINLINE double advance_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk, float factor) {
+  float *const s = equation.s.data(), *const e = equation.e.data(), *const z = equation.z.data();
+  const float *const p = equation.p.data(), *const q = equation.q.data(),
+                     *const inverse = equation.inverse.data();
+  const Lanes forward(factor), back(-factor);
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    vector.store(s, mul_add(forward, vector.load(p), vector.load(s)));
+    const Lanes3 left = mul_add(back, vector.load(q), vector.load(e)),
+                 solved = block_times(load_block(inverse + vector.number * 6 * lane_count()), left);
+    vector.store(e, left);
+    vector.store(z, solved);
+    sum.add(vector.weighted(dot(left, solved)));
+  });
+  return sum.total();
+}
+
+/// to = from + factor step, which may be null: then to = from.
+template <class Nodes>
+HWY_NOINLINE void add_chunk(const Nodes& nodes, NodeChunk chunk, float* to, const float* from, float factor,
+                            const float* step) {
+  const FloatTag d;
+  const auto f = hn::Set(d, factor);
+  for_each_float(nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    const auto value = hn::Load(d, from + i);
+    hn::Store(step == nullptr ? value : hn::MulAdd(f, hn::Load(d, step + i), value), d, to + i);
+  });
+}
+
+/// a . M b, undivided, for fields a and b that are zero where nothing moves.
+template <class Nodes>
+HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, NodeChunk chunk, const float* a,
+                                  const float* b) {
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    sum.add(vector.weighted(dot(vector.load(a), vector.load(b))));
+  });
+  return sum.total();
+}
+
+/// (w - v) . M (w - v), undivided.
+template <class Nodes>
+HWY_NOINLINE double change_chunk(const VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const float *const w = equation.w.data(), *const v = equation.v.data();
+  DoubleSum sum;
+  for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    const Lanes3 change = vector.load(w) - vector.load(v);
+    sum.add(vector.weighted(dot(change, change)));
+  });
+  return sum.total();
+}
+
+/// v = w, x += dt w, and the floor acts.
+template <class Nodes>
+HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+  const Surroundings surroundings = equation.nodes.surroundings;
+  const Lanes dt(equation.dt), height(surroundings.floor_height), restitution(surroundings.restitution),
+      friction(surroundings.friction);
+  float *const x = equation.x.data(), *const v = equation.v.data();
+  const float* const w = equation.w.data();
+  for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
+    Lanes3 velocity = vector.load(w), position = mul_add(dt, velocity, vector.load(x));
+    touch_floor(both(vector.free, hn::Lt(position.y.v, height.v)), height, restitution, friction, position,
+                velocity);
+    vector.store(x, position);
+    vector.store(v, velocity);
+  });
+}
+
+/// A VectorEquation as one of its threads sees it: newton_method.h says what each function does. All threads
+/// call the same functions, and get the same numbers: sums are those of chunks, added in their order.
+template <class Nodes>
+class TeamEquation {
+ public:
+  TeamEquation(VectorEquation<Nodes>& shared, std::size_t thread, std::size_t threads, SpinBarrier& barrier)
+      : shared_(shared),
+        barrier_(barrier),
+        begin_(shared.nodes.chunks.size() * thread / threads),
+        end_(shared.nodes.chunks.size() * (thread + 1) / threads) {}
+
+  void begin() {
+    for_own_chunks([&](NodeChunk chunk) HWY_ATTR {
+      add_chunk(shared_.nodes, chunk, shared_.w.data(), shared_.v.data(), 0, nullptr);
+    });
+  }
+  void linearise_at_state() {
+    barrier_.wait();  // others have written x and v
+    sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return linearise_chunk<true>(shared_, chunk); });
+  }
+  double linearise() {
+    barrier_.wait();  // others have written x and w
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return linearise_chunk<false>(shared_, chunk); });
+  }
+  double start_solving() {
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return start_chunk(shared_, chunk); });
+  }
+  double turn(double factor) {
+    for_own_chunks([&](NodeChunk chunk) HWY_ATTR { turn_chunk(shared_, chunk, static_cast<float>(factor)); });
+    barrier_.wait();
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR {
+      return shared_.keeps_slopes() ? multiply_chunk(shared_, chunk) : multiply_chunk_anew(shared_, chunk);
+    });
+  }
+  double advance(double factor) {
+    return sum_over_chunks(
+        [&](NodeChunk chunk) HWY_ATTR { return advance_chunk(shared_, chunk, static_cast<float>(factor)); });
+  }
+  void add(double factor) {
+    for_own_chunks([&](NodeChunk chunk) HWY_ATTR {
+      add_chunk(shared_.nodes, chunk, shared_.w.data(), shared_.w.data(), static_cast<float>(factor),
+                shared_.s.data());
+    });
+  }
+  double along_solution() { return product(shared_.e.data(), shared_.s.data()); }
+  double motion() { return product(shared_.w.data(), shared_.w.data()); }
+  double change() {
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return change_chunk(shared_, chunk); });
+  }
+  void end() {
+    for_own_chunks([&](NodeChunk chunk) HWY_ATTR { end_chunk(shared_, chunk); });
+  }
+
+ private:
+  template <class Act>
+  void for_own_chunks(Act&& act) {
+    for (std::size_t chunk = begin_; chunk < end_; ++chunk) act(shared_.nodes.chunks[chunk]);
+  }
+
+  double product(const float* a, const float* b) {
+    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return product_chunk(shared_, chunk, a, b); });
+  }
+
+  /// The sum of what act(chunk) returns for all chunks, of all threads, when all have called it.
+  template <class Act>
+  double sum_over_chunks(Act&& act) {
+    // Who is still adding up those of this sum may meet who writes those of the next one, but not of the one
+    // after it.
+    std::vector<double>& sums = shared_.sums[sums_++ % 2];
+    for (std::size_t chunk = begin_; chunk < end_; ++chunk) sums[chunk] = act(shared_.nodes.chunks[chunk]);
+    barrier_.wait();
+    double total = 0;
+    for (const double sum : sums) total += sum;
+    return shared_.nodes.sum_factor() * total;
+  }
+
+  VectorEquation<Nodes>& shared_;
+  SpinBarrier& barrier_;
+  const std::size_t begin_, end_;  ///< of its chunks
+  std::size_t sums_ = 0;
+};
+
+template <class Nodes>
+void take_steps(VectorEquation<Nodes>& shared, int count) {
+  std::optional<SpinBarrier> barrier;
+#pragma omp parallel num_threads(static_cast <int>(shared.threads))
+  {
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+#pragma omp single
+    barrier.emplace(threads);
+    TeamEquation<Nodes> equation(shared, thread, threads, *barrier);
+    SolverWork work;  // the same for all
+    for (int step = 0; step < count; ++step) take_step(equation, *shared.integrator, shared.goal, work);
+    if (thread == 0) shared.work += work;
+  }
+}
+
 NewtonKernel newton_kernel() {
   return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &take_steps<NodeRows>,
           &take_steps<NodeSlices>};
 }
+
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -1,21 +1,75 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
-#include "backends/implicit/newton/vector_equation.h"
-#include "backends/vectors/instruction_sets.h"
+#include "backends/implicit/newton/newton_method.h"
+#include "backends/implicit/nodes/node_vectors.h"
+#include "backends/implicit/nodes/vector_backend.h"
+#include "backends/layouts/aligned_array.h"
 
 namespace mssim {
 
-/// The vector code for one instruction set. Each takes `count` steps.
-struct NewtonKernel {
-  std::size_t lanes;            ///< floats in a vector: that of the nodes must equal it
-  const char* instruction_set;  ///< Highway's name for it
-  bool exact_roots;             ///< as inverse_length (backends/vectors/lanes-inl.h) says
-  void (*step_cloth)(VectorEquation<NodeRows>& equation, int count);
-  void (*step_bodies)(VectorEquation<NodeSlices>& equation, int count);
+/// Slopes of so many bytes are kept. More would come from further away than it takes to compute them again,
+/// from a tenth of the memory. Measured on two Zen 4 cores beside other programs, a product with slopes that
+/// are found again took 2 times as long for 2,500 nodes of a cloth, 0.6 of the time for 350,000 and half of
+/// it for 38,233 of bodies; for 40,000 of a cloth (4 MiB) now one, now the other was faster.
+inline constexpr std::size_t most_slope_bytes = std::size_t{4} << 20;
+
+/// The equation of newton_method.h as the vector code holds it, for Nodes a NodeRows or NodeSlices.
+/// Everything is divided by the mass of its node, and products of vectors are weighted with it: that is the
+/// same in exact arithmetic, and neither springs nor nodes need to know their masses.
+template <class Nodes>
+struct VectorEquation {
+  Nodes nodes;
+  float dt;  ///< s
+  const Integrator* integrator;
+  SolverGoal goal;
+  std::size_t threads;
+  SolverWork work;
+  AlignedArray x;                 ///< field, m
+  AlignedArray v, w, s, z, p, q;  ///< fields, m/s
+  AlignedArray e;                 ///< field, m/s
+  AlignedArray slopes;            ///< of slopes: A without its diagonal; empty where they are not kept
+  AlignedArray y;                 ///< field, m: where A is, if slopes are not kept; else empty
+  AlignedArray inverse;           ///< [vectors][6][lanes] P; zero where nothing moves
+  /// [chunks] what they add to a sum, for every second sum.
+  std::array<std::vector<double>, 2> sums;
+
+  /// With at most `thread_count` threads. Slopes of more than `most_kept` bytes are not kept.
+  VectorEquation(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count,
+                 const Integrator& method, std::size_t most_kept = most_slope_bytes)
+      : nodes(system, lanes),
+        dt(static_cast<float>(dt_s)),
+        integrator(&method),
+        goal(solver_goal<float>(system, dt_s, system.solver.tolerance)),
+        threads(std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, nodes.chunks.size()))),
+        inverse(nodes.vectors() * 6 * lanes) {
+    for (AlignedArray* field : {&x, &v, &w, &s, &z, &p, &q, &e}) *field = AlignedArray(nodes.field_floats());
+    if (nodes.slope_floats() * sizeof(float) <= most_kept)
+      slopes = AlignedArray(nodes.slope_floats());
+    else
+      y = AlignedArray(nodes.field_floats());
+    for (std::vector<double>& sum : sums) sum.resize(nodes.chunks.size());
+    set_state(system.start);
+  }
+
+  std::string note() const { return note_of(work); }
+  bool keeps_slopes() const { return y.size() == 0; }
+
+  void set_state(const State& state) {
+    write_field(nodes, state.position, x.data());
+    write_field(nodes, state.velocity, v.data());
+  }
+  State state() const {
+    return {.position = read_field(nodes, x.data()), .velocity = read_field(nodes, v.data())};
+  }
 };
+
+using NewtonKernel = SolverKernel<VectorEquation<NodeRows>, VectorEquation<NodeSlices>>;
 
 /// The kernels for the instruction sets of this processor, at least one, the best first.
 std::vector<NewtonKernel> newton_kernels();

@@ -1,12 +1,12 @@
 // The factors of fast-springs' matrix against the matrix itself.
+#include "backends/implicit/local_global/factor.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "backends/implicit/local_global/block_factor.h"
-#include "backends/implicit/local_global/factorise.h"
 #include "backends/interface/backend.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/dense_solve.h"

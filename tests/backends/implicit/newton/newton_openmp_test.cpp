@@ -1,6 +1,4 @@
 // implicit-euler and newton-euler with vectors and threads, for every instruction set of this processor.
-#include "backends/implicit/newton/newton_openmp.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "backends/implicit/newton/newton.h"
+#include "backends/implicit/newton/step_newton.h"
 #include "backends/openmp/openmp.h"
 #include "backends/reference.h"
 #include "bench/verification/verification.h"
@@ -47,8 +47,8 @@ class EachNewtonKernelAndIntegrator
   const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
   std::unique_ptr<Backend> make(const System& system, int threads = 2, double dt_s = backend_dt_s,
                                 std::size_t most_kept = most_slope_bytes) const {
-    return make_openmp_newton(system, integrator(), dt_s, {threads, ""},
-                              newton_kernels()[std::get<0>(GetParam())], most_kept);
+    return make_vector_backend(newton_kernels()[std::get<0>(GetParam())], "cpu", system, dt_s, threads,
+                               integrator(), most_kept);
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNewtonKernelAndIntegrator,
@@ -193,7 +193,7 @@ double fastest_step(const std::function<void()>& prepare, const std::function<vo
 
 /// Prints what a step and one of its products A p cost beside a step of semi-implicit Euler.
 template <class Nodes>
-void print_costs(const System& system, double dt_s, int threads, const auto& nodes_of, auto step_of) {
+void print_costs(const System& system, double dt_s, int threads, auto step_of) {
   const NewtonKernel kernel = newton_kernels().front();
   const double plain_s = [&] {
     const auto simulation = make_openmp(system, integrators[0], 5e-5, {threads, ""});
@@ -202,8 +202,8 @@ void print_costs(const System& system, double dt_s, int threads, const auto& nod
                         static_cast<int>(2'000'000 / system.nodes()) + 2);
   }();
   for (const std::string_view name : {"implicit-euler", "newton-euler"}) {
-    VectorEquation<Nodes> equation(system, nodes_of(kernel.lanes), *find_integrator(name), dt_s, kernel.lanes,
-                                   static_cast<std::size_t>(threads));
+    VectorEquation<Nodes> equation(system, dt_s, kernel.lanes, static_cast<std::size_t>(threads),
+                                   *find_integrator(name));
     const double step_s =
         fastest_step([&] { equation.set_state(system.start); },
                      [&](int steps) { (kernel.*step_of)(equation, steps); }, system.nodes() < 10000 ? 10 : 2);
@@ -223,14 +223,10 @@ TEST(NewtonOpenMp, DISABLED_PrintsWhatItCosts) {
     const System system = build_system(load_scene(source_file("scenes/" + std::string(scene) + ".json")));
     for (const double dt_s : {5e-5, 50 * 5e-5})
       for (const int threads : {1, 2})
-        if (const auto* grid = std::get_if<GridPatch>(&system.topology))
-          print_costs<NodeRows>(
-              system, dt_s, threads, [&](std::size_t lanes) { return NodeRows(system, *grid, lanes); },
-              &NewtonKernel::step_cloth);
+        if (std::holds_alternative<GridPatch>(system.topology))
+          print_costs<NodeRows>(system, dt_s, threads, &NewtonKernel::step_cloth);
         else
-          print_costs<NodeSlices>(
-              system, dt_s, threads, [&](std::size_t lanes) { return NodeSlices(system, lanes); },
-              &NewtonKernel::step_bodies);
+          print_costs<NodeSlices>(system, dt_s, threads, &NewtonKernel::step_bodies);
   }
 }
 

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "backends/implicit/newton/newton_method.h"
-#include "backends/implicit/newton/spring_equation.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backward_euler.h"
 #include "tests/support/cloth_system.h"

@@ -1,8 +1,12 @@
-#include "backends/implicit/newton/spring_equation.h"
+#include "backends/implicit/newton/newton.h"
 
 #include <algorithm>
+#include <functional>
+#include <string>
 #include <utility>
 
+#include "backends/implicit/newton/newton_method.h"
+#include "backends/implicit/newton/step_newton.h"
 #include "laws/host_laws.h"
 
 namespace mssim {
@@ -14,24 +18,7 @@ SpringEquation<Real>::SpringEquation(const System& system, double dt_s)
       dt_(static_cast<Real>(dt_s)),
       slopes_(system.springs.size()),
       inverse_(system.nodes()) {
-  for (const SpringMaterial& material : system.materials)
-    materials_.push_back({static_cast<Real>(material.stiffness), static_cast<Real>(material.damping)});
   for (auto* vectors : {&w_, &z_, &p_, &s_, &e_, &q_}) vectors->resize(system.nodes());
-}
-
-template <class Real>
-void SpringEquation<Real>::begin() {
-  w_ = nodes_.v;
-}
-
-template <class Real>
-void SpringEquation<Real>::linearise_at_state() {
-  linearise_springs<true>();
-}
-
-template <class Real>
-double SpringEquation<Real>::linearise() {
-  return linearise_springs<false>();
 }
 
 template <class Real>
@@ -40,7 +27,7 @@ double SpringEquation<Real>::linearise_springs() {
   std::fill(e_.begin(), e_.end(), Vec3<Real>{});
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     const Spring& spring = springs_[i];
-    const auto [stiffness, damping] = materials_[spring.kind];
+    const auto [stiffness, damping] = nodes_.materials[spring.kind];
     const Real stiffness_rest = stiffness * static_cast<Real>(spring.rest_length);
     const Vec3<Real> u = w_[spring.second] - w_[spring.first];
     Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first];
@@ -98,9 +85,7 @@ double SpringEquation<Real>::turn(double factor) {
     q_[first] -= product;
     q_[second] += product;
   }
-  double sum = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) sum += static_cast<double>(dot(p_[i], q_[i]));
-  return sum;
+  return sum_over_nodes([&](std::size_t i) { return dot(p_[i], q_[i]); });
 }
 
 template <class Real>
@@ -115,12 +100,10 @@ double SpringEquation<Real>::advance(double factor) {
 
 template <class Real>
 double SpringEquation<Real>::precondition() {
-  double sum = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+  return sum_over_nodes([&](std::size_t i) {
     z_[i] = block_times(inverse_[i], e_[i]);
-    sum += static_cast<double>(dot(e_[i], z_[i]));
-  }
-  return sum;
+    return dot(e_[i], z_[i]);
+  });
 }
 
 template <class Real>
@@ -130,27 +113,20 @@ void SpringEquation<Real>::add(double factor) {
 
 template <class Real>
 double SpringEquation<Real>::along_solution() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) sum += static_cast<double>(dot(e_[i], s_[i]));
-  return sum;
+  return sum_over_nodes([&](std::size_t i) { return dot(e_[i], s_[i]); });
 }
 
 template <class Real>
 double SpringEquation<Real>::motion() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    sum += static_cast<double>(nodes_.mass[i] * dot(w_[i], w_[i]));
-  return sum;
+  return sum_over_nodes([&](std::size_t i) { return nodes_.mass[i] * dot(w_[i], w_[i]); });
 }
 
 template <class Real>
 double SpringEquation<Real>::change() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+  return sum_over_nodes([&](std::size_t i) {
     const Vec3<Real> change = w_[i] - nodes_.v[i];
-    sum += static_cast<double>(nodes_.mass[i] * dot(change, change));
-  }
-  return sum;
+    return nodes_.mass[i] * dot(change, change);
+  });
 }
 
 template <class Real>
@@ -162,5 +138,76 @@ void SpringEquation<Real>::end() {
 
 template class SpringEquation<float>;
 template class SpringEquation<double>;
+
+namespace {
+
+/// What a step ends with that nobody waits for any longer.
+struct GivenUp {};
+
+/// An equation whose solver asks before each product whether anybody waits for it still.
+template <class Real>
+class AwaitedEquation : public SpringEquation<Real> {
+ public:
+  AwaitedEquation(const System& system, double dt_s, std::function<bool()> stop)
+      : SpringEquation<Real>(system, dt_s), stop_(std::move(stop)) {}
+  double turn(double factor) {
+    if (stop_ && stop_()) throw GivenUp();
+    return SpringEquation<Real>::turn(factor);
+  }
+
+ private:
+  std::function<bool()> stop_;
+};
+
+template <class Real>
+class NewtonSerial final : public Backend {
+ public:
+  NewtonSerial(const System& system, const Integrator& integrator, double dt_s, double tolerance,
+               std::function<bool()> stop = {})
+      : equation_(system, dt_s, std::move(stop)),
+        integrator_(integrator),
+        goal_(solver_goal<Real>(system, dt_s, tolerance)) {}
+
+  void set_state(const State& state) override { equation_.set_state(state); }
+  State state() const override { return equation_.state(); }
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return 1; }
+  std::string note() const override { return note_of(work_); }
+
+  void step(int count) override {
+    try {
+      for (int step = 0; step < count; ++step) take_step(equation_, integrator_, goal_, work_);
+    } catch (const GivenUp&) {
+      // Who gave it up knows.
+    }
+  }
+
+ private:
+  AwaitedEquation<Real> equation_;
+  const Integrator& integrator_;
+  const SolverGoal goal_;
+  SolverWork work_;
+};
+
+/// Part of the norms at which the reference's solvers end, beside which a step's own error is large.
+constexpr double reference_tolerance = 1e-12;
+
+}  // namespace
+
+std::unique_ptr<Backend> make_serial_newton(const System& system, const Integrator& integrator, double dt_s) {
+  return std::make_unique<NewtonSerial<float>>(system, integrator, dt_s, system.solver.tolerance);
+}
+
+std::unique_ptr<Backend> make_newton_reference(const System& system, const Integrator& integrator,
+                                               double dt_s, const std::function<bool()>& stop) {
+  return std::make_unique<NewtonSerial<double>>(system, integrator, dt_s, reference_tolerance, stop);
+}
+
+std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
+                                            const ExecutionOptions& options) {
+  const NewtonKernel kernel = best_kernel(newton_kernels(), options.roots);
+  return make_vector_backend(kernel, std::string("cpu ") + kernel.instruction_set, system, dt_s,
+                             options.threads, integrator);
+}
 
 }  // namespace mssim

@@ -1,4 +1,4 @@
-#include "backends/implicit/nodes/node_slices.h"
+#include "backends/implicit/nodes/node_vectors.h"
 
 #include "backends/layouts/slice_entries.h"
 
@@ -13,6 +13,25 @@ std::uint32_t record_of(std::size_t slot, std::size_t lanes) {
 }
 
 }  // namespace
+
+NodeRows::NodeRows(const System& system, const GridPatch& grid, std::size_t lanes)
+    : layout(grid, lanes),
+      slope_layout(grid, lanes),
+      plane(grid, lanes),
+      springs(spring_constants_of(system, grid)),
+      surroundings(surroundings_of(system)),
+      nodes(system.nodes()),
+      mass(system.node_mass.front()),
+      free(plane.floats()),
+      row_is_free(grid.rows, 1),
+      chunks(balanced_node_chunks(grid.rows, [](std::size_t row) { return row; })) {
+  for (std::size_t row = 0; row < grid.rows; ++row)
+    std::fill_n(free.data() + plane.offset(row, 0), grid.columns, 1.0F);
+  for (const std::uint32_t pin : system.pins) {
+    free.data()[plane.offset(pin / grid.columns, pin % grid.columns)] = 0;
+    row_is_free[pin / grid.columns] = 0;
+  }
+}
 
 NodeSlices::NodeSlices(const System& system, std::size_t slice_lanes)
     : lanes(slice_lanes), surroundings(surroundings_of(system)), nodes(system.nodes()) {

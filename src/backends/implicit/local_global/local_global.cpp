@@ -1,0 +1,219 @@
+#include "backends/implicit/local_global/local_global.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "backends/implicit/local_global/step_fronts.h"
+#include "backends/implicit/nodes/plain_nodes.h"
+
+namespace mssim {
+namespace {
+
+/// Solves A s = e for the three coordinates at once, by the columns of the factor.
+template <class Real>
+class ColumnSolver {
+ public:
+  explicit ColumnSolver(ColumnFactor factor)
+      : order_(std::move(factor.order)), first_(std::move(factor.first)), place_(std::move(factor.place)) {
+    for (const double value : factor.value) value_.push_back(static_cast<Real>(value));
+    solution_.resize(order_.size());
+  }
+
+  /// act(row, s of the row) for all rows. `right(row)` is its e.
+  template <class Right, class Act>
+  void solve(Right&& right, Act&& act) {
+    const std::size_t rows = order_.size();
+    for (std::size_t i = 0; i < rows; ++i) solution_[i] = right(order_[i]);
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::size_t diagonal = first_[i];
+      const Vec3<Real> s = solution_[i] = (1 / value_[diagonal]) * solution_[i];
+      for (std::size_t k = diagonal + 1; k < first_[i + 1]; ++k) solution_[place_[k]] -= value_[k] * s;
+    }
+    for (std::size_t i = rows; i-- > 0;) {
+      const std::size_t diagonal = first_[i];
+      Vec3<Real> s = solution_[i];
+      for (std::size_t k = diagonal + 1; k < first_[i + 1]; ++k) s -= value_[k] * solution_[place_[k]];
+      solution_[i] = (1 / value_[diagonal]) * s;
+    }
+    for (std::size_t i = 0; i < rows; ++i) act(order_[i], solution_[i]);
+  }
+
+ private:
+  std::vector<std::uint32_t> order_;
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> place_;
+  std::vector<Real> value_;
+  std::vector<Vec3<Real>> solution_;  ///< [rows]
+};
+
+template <class Real>
+class LocalGlobalSerial final : public Backend {
+ public:
+  LocalGlobalSerial(const System& system, double dt_s) : LocalGlobalSerial(system, dt_s, {system, dt_s}) {}
+
+  void set_state(const State& state) override { nodes_.set_state(state); }
+  State state() const override { return nodes_.state(); }
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return 1; }
+
+  void step(int count) override {
+    for (int step = 0; step < count; ++step) {
+      w_ = nodes_.v;
+      for (std::uint32_t i = 0; i < system_.solver.iterations; ++i) {
+        add_up_forces();
+        solver_.solve([&](std::uint32_t row) { return residual(row_node_[row]); },
+                      [&](std::uint32_t row, const Vec3<Real>& s) { w_[row_node_[row]] += s; });
+      }
+      for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_.x[i] += dt_ * w_[i];
+      nodes_.v = w_;
+      nodes_.touch_floor();
+    }
+  }
+
+ private:
+  LocalGlobalSerial(const System& system, double dt_s, const StepMatrix& matrix)
+      : system_(system),
+        nodes_(system),
+        dt_(static_cast<Real>(dt_s)),
+        row_node_(matrix.node),
+        solver_(factorise(matrix)),
+        force_(system.nodes()) {}
+
+  /// The local step: the springs' forces at (x + dt w, w), N.
+  void add_up_forces() {
+    force_.assign(nodes_.size(), {});
+    for (const Spring& spring : system_.springs) {
+      const Vec3<Real> u = w_[spring.second] - w_[spring.first];
+      const Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first] + dt_ * u;
+      const auto [stiffness, damping] = nodes_.materials[spring.kind];
+      const Real stiffness_rest = stiffness * static_cast<Real>(spring.rest_length);
+      const Vec3<Real> force = spring_pull(dot(d, d), dot(u, d), stiffness, stiffness_rest, damping) * d;
+      force_[spring.first] += force;
+      force_[spring.second] -= force;
+    }
+  }
+
+  /// What is missing for m (w - v) = dt F, N s.
+  Vec3<Real> residual(std::size_t node) const {
+    const Vec3<Real> a = node_acceleration((1 / nodes_.mass[node]) * force_[node], w_[node],
+                                           nodes_.viscous_damping, nodes_.gravity);
+    return nodes_.mass[node] * (dt_ * a - (w_[node] - nodes_.v[node]));
+  }
+
+  const System& system_;
+  PlainNodes<Real> nodes_;
+  const Real dt_;
+  const std::vector<std::uint32_t> row_node_;  ///< [rows] StepMatrix::node
+  ColumnSolver<Real> solver_;
+  std::vector<Vec3<Real>> w_;      ///< [nodes] m/s, the velocities sought
+  std::vector<Vec3<Real>> force_;  ///< [nodes] N
+};
+
+/// Subtrees for each thread, so that what they cost can be shared evenly.
+constexpr std::size_t subtrees_per_thread = 8;
+
+/// Where the rows of a matrix start, m.
+std::vector<Vec3d> places_of(const System& system, const StepMatrix& matrix) {
+  std::vector<Vec3d> places;
+  places.reserve(matrix.rows());
+  for (const std::uint32_t node : matrix.node) places.push_back(system.start.position[node]);
+  return places;
+}
+
+}  // namespace
+
+FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
+  const auto& parts = factor.fronts.parts;
+  const std::size_t count = parts.size();
+  // Of the subtree below each part, which is the parts from `first` to itself.
+  std::vector<std::size_t> cost(count), first(count);
+  std::size_t all = 0;
+  for (std::size_t part = 0; part < count; ++part) {
+    const auto children = factor.fronts.children_of(part);
+    cost[part] += factor.cost(part);
+    first[part] = children.empty() ? part : first[children.front()];
+    all += factor.cost(part);
+    if (parts[part].parent != Dissection::no_part) cost[parts[part].parent] += cost[part];
+  }
+  // One thread meets nobody: it takes all at once.
+  const std::size_t most = threads == 1 ? all : all / (threads * subtrees_per_thread);
+
+  std::vector<std::size_t> phase(count);  // 0: within a subtree that is one item
+  std::vector<std::vector<Item>> items(1);
+  for (std::size_t part = 0; part < count; ++part) {
+    const bool is_top = parts[part].parent == Dissection::no_part || cost[parts[part].parent] > most;
+    if (cost[part] <= most) {
+      if (is_top) items[0].push_back({first[part], part + 1});
+      continue;
+    }
+    for (const std::uint32_t child : factor.fronts.children_of(part))
+      phase[part] = std::max(phase[part], phase[child]);
+    ++phase[part];
+    if (phase[part] == items.size()) items.emplace_back();
+    items[phase[part]].push_back({part, part + 1});
+  }
+  for (std::vector<Item>& of_phase : items) {
+    const auto item_cost = [&](const Item& item) {
+      return item.end - item.begin == 1 ? factor.cost(item.begin) : cost[item.end - 1];
+    };
+    // The dearest first, each to who has least: then in order again.
+    std::ranges::stable_sort(of_phase, std::ranges::greater{}, item_cost);
+    std::vector<std::vector<Item>> shares(threads);
+    std::vector<std::size_t> load(threads);
+    for (const Item& item : of_phase) {
+      const auto thread = static_cast<std::size_t>(std::ranges::min_element(load) - load.begin());
+      shares[thread].push_back(item);
+      load[thread] += item_cost(item);
+    }
+    for (std::vector<Item>& share : shares) std::ranges::sort(share, {}, &Item::begin);
+    phases.push_back(std::move(shares));
+  }
+}
+
+template <class Nodes>
+LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix& matrix, double dt_s,
+                                          std::size_t lanes, std::size_t thread_count)
+    : nodes(system, lanes),
+      factor(matrix, places_of(system, matrix), lanes),
+      threads(std::max<std::size_t>(1, thread_count)),
+      schedule(factor, threads),
+      dt(static_cast<float>(dt_s)),
+      iterations(system.solver.iterations),
+      fronts(factor.front_floats) {
+  for (const std::uint32_t row : factor.order) {
+    const std::uint32_t node = matrix.node[row];
+    places.push_back({nodes.offset(node), static_cast<float>(system.node_mass[node])});
+  }
+  for (AlignedArray* field : {&x, &v, &y, &w, &e}) *field = AlignedArray(nodes.field_floats());
+  set_state(system.start);
+}
+
+template <class Nodes>
+void LocalGlobalNodes<Nodes>::set_state(const State& state) {
+  write_field(nodes, state.position, x.data());
+  write_field(nodes, state.velocity, v.data());
+}
+
+template <class Nodes>
+State LocalGlobalNodes<Nodes>::state() const {
+  return {.position = read_field(nodes, x.data()), .velocity = read_field(nodes, v.data())};
+}
+
+template struct LocalGlobalNodes<NodeRows>;
+template struct LocalGlobalNodes<NodeSlices>;
+
+std::unique_ptr<Backend> make_serial_local_global(const System& system, double dt_s) {
+  return std::make_unique<LocalGlobalSerial<float>>(system, dt_s);
+}
+
+std::unique_ptr<Backend> make_local_global_reference(const System& system, double dt_s) {
+  return std::make_unique<LocalGlobalSerial<double>>(system, dt_s);
+}
+
+std::unique_ptr<Backend> make_openmp_local_global(const System& system, double dt_s,
+                                                  const ExecutionOptions& options) {
+  return make_vector_backend(best_kernel(local_global_kernels(), options.roots), "cpu", system, dt_s,
+                             options.threads);
+}
+
+}  // namespace mssim

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "backends/interface/backend.h"
+#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/row_layout.h"
+#include "backends/layouts/spring_constants.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// Nodes as implicit integrators with vectors see them: NodeRows of a cloth, NodeSlices of bodies. What they
+/// compute with are fields, arrays with a vector in space for each node, zero where no node is, as a new
+/// AlignedArray is. The vector code (node_vectors-inl.h) walks over the nodes and loads any field at a node
+/// or at its neighbours.
+
+/// What a thread takes at a time, and whose sum is a number of its own: rows of a cloth or slices of bodies
+/// [begin, end). Chunks depend on the system alone, so that sums over them do, too.
+struct NodeChunk {
+  std::size_t begin, end;
+};
+
+/// Chunks of a system: enough for the threads of one machine to have about the same work, few enough that
+/// adding up their sums takes no time.
+inline constexpr std::size_t most_node_chunks = 256;
+
+/// Cuts `count` things into at most most_node_chunks chunks of about the same cost. cost_before(i): what
+/// those before the i-th cost in all.
+template <class CostBefore>
+std::vector<NodeChunk> balanced_node_chunks(std::size_t count, CostBefore cost_before) {
+  const std::size_t parts = std::min(count, most_node_chunks);
+  std::vector<NodeChunk> chunks;
+  std::size_t end = 0;
+  for (std::size_t part = 1; part <= parts; ++part) {
+    const std::size_t begin = end;
+    while (end < count && cost_before(end + 1) * parts <= cost_before(count) * part) ++end;
+    if (end > begin) chunks.push_back({begin, end});
+  }
+  return chunks;
+}
+
+/// A cloth.
+struct NodeRows {
+  using Layout = RowLayout<3>;  ///< of a field: x y z
+  using Plane = RowLayout<1>;   ///< of one number a node
+
+  static constexpr std::size_t spring_slopes = 4;  ///< numbers of a spring in a field of slopes
+  /// Slopes of a field: those of the springs of grid_stencil, at the nodes that own them.
+  using SlopeLayout = RowLayout<grid_stencil.size() * spring_slopes>;
+
+  Layout layout;
+  SlopeLayout slope_layout;
+  Plane plane;
+  std::vector<SpringConstants> springs;  ///< [kinds] divided by the mass of a node
+  Surroundings surroundings{};
+  std::size_t nodes = 0;
+  double mass = 0;                        ///< of each node, kg
+  AlignedArray free;                      ///< [Plane::floats] 1 at nodes that move, 0 at pins and outside
+  std::vector<std::uint8_t> row_is_free;  ///< [rows] 1 where no node of the row is pinned
+  std::vector<NodeChunk> chunks;          ///< of rows
+
+  /// Of a system that is a cloth. `lanes`: floats of a vector. Throws Unsupported where the nodes differ in
+  /// mass.
+  NodeRows(const System& system, std::size_t lanes)
+      : NodeRows(system, std::get<GridPatch>(system.topology), lanes) {}
+
+  /// Floats of a field.
+  std::size_t field_floats() const { return layout.floats(); }
+  /// What a sum over nodes of RowVector::weighted() is to be multiplied with, so that weights are masses.
+  double sum_factor() const { return mass; }
+  /// Floats of a field of slopes.
+  std::size_t slope_floats() const { return slope_layout.floats(); }
+  std::size_t row_vectors() const { return (layout.columns + layout.lanes - 1) / layout.lanes; }
+  std::size_t vectors() const { return layout.rows * row_vectors(); }
+  /// The floats of a field that belong to a chunk's nodes, whole vectors; and zeros beside them.
+  NodeChunk floats_of(NodeChunk chunk) const {
+    return {(chunk.begin + Layout::ring) * layout.row_floats(),
+            (chunk.end + Layout::ring) * layout.row_floats()};
+  }
+  /// Where the x of a node, by its number in the scene, stands in a field.
+  std::size_t offset(std::size_t node) const {
+    return layout.offset(node / layout.columns, node % layout.columns);
+  }
+  /// Floats from a component of a node to its next one.
+  std::size_t component_step() const { return layout.pitch; }
+
+ private:
+  NodeRows(const System& system, const GridPatch& grid, std::size_t lanes);
+};
+
+/// Bodies, in the slices of SlicedGraph. A field is an array of records x y z 0: a vector of neighbours is
+/// gathered by loading whole records and transposing them in registers. Functions are as NodeRows has them.
+struct NodeSlices {
+  static constexpr std::size_t record_floats = 4;
+  /// Numbers of each node in `constants`.
+  enum Constant : std::size_t { stiffness, damping, free, mass, constant_count };
+
+  std::size_t lanes = 0;
+  Surroundings surroundings{};
+  std::size_t nodes = 0;
+  std::vector<std::uint32_t> record;       ///< [nodes] the number of a node's record
+  std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
+  AlignedArray entries;                    ///< slice_entries()
+  /// [slices][constant_count][lanes] SlicedGraph's stiffness and damping, 1 where a node moves or else 0, and
+  /// mass in kg, 0 where no node is.
+  AlignedArray constants;
+  std::vector<NodeChunk> chunks;  ///< of slices
+
+  /// Throws Unsupported like SlicedGraph, and for more nodes than entries can name.
+  NodeSlices(const System& system, std::size_t lanes);
+
+  std::size_t slices() const { return first_entry.size() - 1; }
+  std::size_t field_floats() const { return slices() * lanes * record_floats; }
+  static constexpr double sum_factor() { return 1; }
+  /// Four of every entry.
+  std::size_t slope_floats() const { return first_entry.back() * 4 * lanes; }
+  std::size_t vectors() const { return slices(); }
+  NodeChunk floats_of(NodeChunk chunk) const {
+    const std::size_t slice_floats = lanes * record_floats;
+    return {chunk.begin * slice_floats, chunk.end * slice_floats};
+  }
+  std::size_t offset(std::size_t node) const { return record[node] * record_floats; }
+  static constexpr std::size_t component_step() { return 1; }
+};
+
+/// Writes an array in the scene's node order to a field. Rounds to float.
+template <class Nodes>
+void write_field(const Nodes& nodes, const std::vector<Vec3d>& values, float* field) {
+  const std::size_t step = nodes.component_step();
+  for (std::size_t node = 0; node < values.size(); ++node) {
+    float* const to = field + nodes.offset(node);
+    to[0] = static_cast<float>(values[node].x);
+    to[step] = static_cast<float>(values[node].y);
+    to[2 * step] = static_cast<float>(values[node].z);
+  }
+}
+
+template <class Nodes>
+std::vector<Vec3d> read_field(const Nodes& nodes, const float* field) {
+  std::vector<Vec3d> values;
+  values.reserve(nodes.nodes);
+  const std::size_t step = nodes.component_step();
+  for (std::size_t node = 0; node < nodes.nodes; ++node) {
+    const float* const from = field + nodes.offset(node);
+    values.push_back(vec3_cast<double>(Vec3<float>{from[0], from[step], from[2 * step]}));
+  }
+  return values;
+}
+
+}  // namespace mssim

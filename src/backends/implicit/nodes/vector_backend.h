@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "backends/interface/backend.h"
+#include "backends/vectors/instruction_sets.h"
+
+namespace mssim {
+
+/// The vector code of a solver for one instruction set. Cloth and Bodies are what it steps: made of a system,
+/// dt in s, `lanes`, the most threads and what else the solver asks for; with set_state(), state() and
+/// `threads`, how many it takes.
+template <class Cloth, class Bodies>
+struct SolverKernel {
+  std::size_t lanes;            ///< floats of a vector
+  const char* instruction_set;  ///< Highway's name for it
+  bool exact_roots;             ///< as inverse_length (backends/vectors/lanes-inl.h) says
+  void (*step_cloth)(Cloth& cloth, int count);
+  void (*step_bodies)(Bodies& bodies, int count);
+};
+
+template <class Layout>
+class VectorBackend final : public Backend {
+ public:
+  using Step = void (*)(Layout& layout, int count);
+
+  template <class... Arguments>
+  VectorBackend(std::string device, Step take_steps, const Arguments&... arguments)
+      : device_(std::move(device)), step_(take_steps), layout_(arguments...) {}
+
+  void set_state(const State& state) override { layout_.set_state(state); }
+  State state() const override { return layout_.state(); }
+  void step(int count) override { step_(layout_, count); }
+  std::string device() const override { return device_; }
+  int threads() const override { return static_cast<int>(layout_.threads); }
+  std::string note() const override {
+    if constexpr (requires { layout_.note(); }) return layout_.note();
+    return {};
+  }
+
+ private:
+  const std::string device_;
+  const Step step_;
+  Layout layout_;
+};
+
+/// Steps a cloth or bodies; `more` is what else the solver asks for.
+template <class Cloth, class Bodies, class... More>
+std::unique_ptr<Backend> make_vector_backend(const SolverKernel<Cloth, Bodies>& kernel, std::string device,
+                                             const System& system, double dt_s, int threads,
+                                             const More&... more) {
+  const auto most_threads = static_cast<std::size_t>(threads);
+  if (std::holds_alternative<GridPatch>(system.topology))
+    return std::make_unique<VectorBackend<Cloth>>(std::move(device), kernel.step_cloth, system, dt_s,
+                                                  kernel.lanes, most_threads, more...);
+  return std::make_unique<VectorBackend<Bodies>>(std::move(device), kernel.step_bodies, system, dt_s,
+                                                 kernel.lanes, most_threads, more...);
+}
+
+}  // namespace mssim
