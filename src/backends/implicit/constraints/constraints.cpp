@@ -1,0 +1,400 @@
+#include "backends/implicit/constraints/constraints.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string>
+#include <tuple>
+#include <variant>
+
+#include "backends/implicit/constraints/step_constraints.h"
+#include "backends/implicit/nodes/plain_nodes.h"
+#include "backends/layouts/cuthill_mckee.h"
+
+namespace mssim {
+namespace {
+
+#define MSSIM_INLINE inline
+#include "backends/implicit/constraints/carried_sum-inl.h"
+#undef MSSIM_INLINE
+
+ClothColour colour_of(const GridPatch& grid, const Spring& spring) {
+  const auto [first, second] = std::minmax(spring.first, spring.second);
+  const std::uint32_t row = first / grid.columns, column = first % grid.columns;
+  const bool odd_row = row % 2 != 0;
+  if (second / grid.columns == row) {  // to the right
+    if (spring.kind == bending) return column % 4 < 2 ? bending_from_columns_01 : bending_from_columns_23;
+    return column % 2 == 0 ? structural_from_even_columns : structural_from_odd_columns;
+  }
+  if (spring.kind == bending) return row % 4 < 2 ? bending_below_rows_01 : bending_below_rows_23;
+  if (spring.kind == structural) return odd_row ? structural_below_odd_rows : structural_below_even_rows;
+  if (second % grid.columns > column) return odd_row ? falling_below_odd_rows : falling_below_even_rows;
+  return odd_row ? rising_below_odd_rows : rising_below_even_rows;
+}
+
+template <class Real>
+class SerialConstraints final : public Backend {
+ public:
+  SerialConstraints(const System& system, double dt_s)
+      : nodes_(system),
+        rest_(system.nodes()),
+        substeps_(system.solver.substeps),
+        h_(static_cast<Real>(dt_s / system.solver.substeps)) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      mobility_.push_back(nodes_.pinned[i] ? Real{} : static_cast<Real>(1 / system.node_mass[i]));
+    const double h_s = dt_s / system.solver.substeps;
+    springs_.reserve(system.springs.size());
+    for (const Spring& spring : spring_order(system).springs)
+      springs_.push_back({spring.first, spring.second,
+                          Compliance<Real>(system.materials[spring.kind], spring.rest_length, h_s,
+                                           static_cast<double>(mobility_[spring.first]) +
+                                               static_cast<double>(mobility_[spring.second]))});
+  }
+
+  void set_state(const State& state) override {
+    nodes_.set_state(state);
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      rest_[i] = vec3_cast<Real>(state.position[i] - vec3_cast<double>(nodes_.x[i]));
+  }
+  State state() const override {
+    State state = nodes_.state();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) state.position[i] += vec3_cast<double>(rest_[i]);
+    return state;
+  }
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return 1; }
+
+  void step(int count) override {
+    for (int step = 0; step < count; ++step) {
+      for (std::uint32_t substep = 0; substep < substeps_; ++substep) {
+        fall();
+        for (const CompliantSpring& spring : springs_) project(spring);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) carry_sum(nodes_.x[i], rest_[i], h_, nodes_.v[i]);
+      }
+      touch_floor();
+    }
+  }
+
+ private:
+  struct CompliantSpring {
+    std::uint32_t first, second;
+    Compliance<Real> compliance;
+  };
+
+  /// Gravity and the damping of the air, of a small step: v becomes (v - h g) / (1 + h c).
+  void fall() {
+    const Real kept = 1 / (1 + h_ * nodes_.viscous_damping);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (nodes_.pinned[i]) continue;
+      Vec3<Real>& v = nodes_.v[i];
+      v.y -= h_ * nodes_.gravity;
+      v = kept * v;
+    }
+  }
+
+  void touch_floor() {
+    nodes_.touch_floor();
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (!(nodes_.x[i].y > nodes_.floor_height)) rest_[i].y = 0;
+  }
+
+  void project(const CompliantSpring& spring) {
+    Vec3<Real>&v1 = nodes_.v[spring.first], &v2 = nodes_.v[spring.second];
+    const Vec3<Real> u = v2 - v1;
+    const Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first] + h_ * u;
+    const Compliance<Real>& c = spring.compliance;
+    const Vec3<Real> impulse =
+        spring_pull(dot(d, d), dot(u, d), c.stiffness, c.stiffness_rest, c.damping) * d;
+    v1 += mobility_[spring.first] * impulse;
+    v2 -= mobility_[spring.second] * impulse;
+  }
+
+  PlainNodes<Real> nodes_;
+  std::vector<Vec3<Real>> rest_;          // [nodes] m, what their x lacks
+  std::vector<Real> mobility_;            // [nodes] 1/kg, 0 where pinned
+  std::vector<CompliantSpring> springs_;  // in the order of the method
+  const std::uint32_t substeps_;
+  const Real h_;  // s, the small step
+};
+
+/// A cloth of so many bytes or fewer, which the caches nearest to the processors hold, needs no more than one
+/// small step a pass; a larger one takes so many. Measured on Zen 4, on which a small step of 350,000 nodes
+/// took 2.2 times as long as one of semi-implicit Euler with one a pass, 1.9 times with two, and 1.7 times
+/// with five or ten; of 40,000 nodes 2.4 times with any number. More leave more to be done between the
+/// threads, which only some of them do.
+constexpr std::size_t cached_bytes = std::size_t{4} << 20, most_depth = 4;
+
+/// An odd number of vectors: rows and components whose distance is a power of two share a few sets of the
+/// first-level cache.
+std::size_t pitch_of(std::size_t floats, std::size_t lanes) {
+  const std::size_t vectors = (floats + lanes - 1) / lanes;
+  return (vectors + (vectors % 2 == 0 ? 1 : 0)) * lanes;
+}
+
+/// Fewest blocks that a thread needs for passes of so many small steps.
+constexpr std::size_t least_blocks(std::size_t depth) { return 4 * depth; }
+
+/// Where parts end: where no spring goes on, and the part has some nodes.
+std::vector<std::size_t> part_ends(const System& system, const std::vector<std::uint32_t>& place) {
+  constexpr std::size_t fewest_nodes = 256;
+  std::vector<std::size_t> ends;
+  std::size_t begin = 0;
+  for (const std::size_t end : component_ends(system.springs, place)) {
+    if (end - begin < fewest_nodes && end < place.size()) continue;
+    ends.push_back(end);
+    begin = end;
+  }
+  return ends;
+}
+
+/// What threads lose at a barrier, in vectors of springs, which take 40 ns each on Zen 4: a guess at an idle
+/// machine. On a busy one TeamGain lets a thread work alone.
+constexpr double barrier_cost = 6;
+
+struct PartCost {
+  std::size_t part;
+  double vectors;
+  double barriers;
+};
+
+/// Gives the parts to threads, largest first, each to the one that has least. The smallest are shared, as
+/// many as makes the step shortest: one body beside many of its size, or one alone.
+void distribute(SpringBatches& bodies, std::vector<PartCost> costs, std::size_t threads) {
+  std::ranges::stable_sort(costs, std::ranges::greater(), &PartCost::vectors);
+  double best = HUGE_VAL;
+  for (std::size_t own = costs.size() + 1; own-- > 0;) {
+    std::vector<double> load(threads, 0);
+    std::vector<std::vector<std::size_t>> parts(threads);
+    for (std::size_t i = 0; i < own; ++i) {
+      const auto least = std::ranges::min_element(load);
+      *least += costs[i].vectors;
+      parts[static_cast<std::size_t>(least - load.begin())].push_back(costs[i].part);
+    }
+    double time = *std::ranges::max_element(load);
+    std::vector<std::size_t> shared;
+    for (std::size_t i = own; i < costs.size(); ++i) {
+      time += costs[i].vectors / static_cast<double>(threads) + barrier_cost * costs[i].barriers;
+      shared.push_back(costs[i].part);
+    }
+    if (time >= best) continue;
+    best = time;
+    bodies.own_parts = std::move(parts);
+    bodies.shared_parts = std::move(shared);
+  }
+}
+
+}  // namespace
+
+SpringColouring spring_order(const System& system) {
+  const auto* grid = std::get_if<GridPatch>(&system.topology);
+  if (grid == nullptr) return colour_springs(system.springs, system.nodes());
+  std::array<std::size_t, cloth_colours> next{};  // place of each colour's next spring
+  for (const Spring& spring : system.springs) ++next[colour_of(*grid, spring)];
+  SpringColouring order{std::vector<Spring>(system.springs.size()), {0}};
+  for (std::size_t& place : next) {
+    order.first.push_back(order.first.back() + place);
+    place = order.first[order.first.size() - 2];
+  }
+  for (const Spring& spring : system.springs) order.springs[next[colour_of(*grid, spring)]++] = spring;
+  return order;
+}
+
+QuarterLayout::QuarterLayout(const GridPatch& grid, std::size_t lane_count)
+    : lanes(lane_count),
+      rows(grid.rows),
+      columns(grid.columns),
+      pitch(pitch_of((columns + streams - 1) / streams, lanes)) {}
+
+QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
+    : SmallSteps(system, dt_s),
+      layout(std::get<GridPatch>(system.topology), lanes),
+      nodes(layout.rows * layout.row_floats() + lanes),  // a vector of the last nodes may begin one further
+      rest(layout.rows * layout.rest_row_floats()) {
+  const auto& grid = std::get<GridPatch>(system.topology);
+  const double mass = require_uniform_mass(system);
+  for (const GridSpringKind kind : {structural, shear, bending}) {
+    const SpringMaterial by_mass{system.materials[kind].stiffness / mass,
+                                 system.materials[kind].damping / mass};
+    const auto rest_length = static_cast<double>(grid.rest_length(kind));
+    of_free.emplace_back(by_mass, rest_length, small_s, 2);
+    of_pinned.emplace_back(by_mass, rest_length, small_s, 1);
+  }
+
+  std::set<std::size_t> pinned_rows;
+  for (const std::uint32_t node : system.pins) pinned_rows.insert(node / layout.columns);
+  const std::size_t row_flags = QuarterLayout::streams * layout.pitch;
+  free = AlignedArray((1 + pinned_rows.size()) * row_flags + lanes);
+  const auto flag = [&](std::size_t row, std::size_t column) -> float& {
+    return free.data()[row * row_flags + column % QuarterLayout::streams * layout.pitch +
+                       column / QuarterLayout::streams];
+  };
+  for (std::size_t row = 0; row <= pinned_rows.size(); ++row)
+    for (std::size_t column = 0; column < layout.columns; ++column) flag(row, column) = 1;
+  free_of_row.assign(layout.rows, free.data());
+  for (std::size_t i = 0; const std::size_t row : pinned_rows)
+    free_of_row[row] = free.data() + ++i * row_flags;
+  for (const std::uint32_t node : system.pins) {
+    const auto row = std::distance(pinned_rows.begin(), pinned_rows.find(node / layout.columns));
+    flag(1 + static_cast<std::size_t>(row), node % layout.columns) = 0;
+  }
+
+  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, blocks() / least_blocks(1)));
+  if (nodes.bytes() > cached_bytes) depth = most_depth;
+  while (threads > 1 && depth > 1 && blocks() / threads < least_blocks(depth)) --depth;
+  set_state(system.start);
+}
+
+void QuarteredRows::set_state(const State& state) {
+  for (std::size_t node = 0; node < state.position.size(); ++node) {
+    const std::size_t row = node / layout.columns, column = node % layout.columns;
+    const Vec3d &x = state.position[node], &v = state.velocity[node];
+    float* out = nodes.data() + layout.offset(row, column);
+    for (const double value : {x.x, x.y, x.z, v.x, v.y, v.z}) {
+      *out = static_cast<float>(value);
+      out += layout.pitch;
+    }
+    out = rest.data() + layout.rest_offset(row, column);
+    for (const double value : {x.x, x.y, x.z}) {
+      *out = static_cast<float>(value - static_cast<double>(static_cast<float>(value)));
+      out += layout.pitch;
+    }
+  }
+}
+
+State QuarteredRows::state() const {
+  State state;
+  state.position.reserve(layout.rows * layout.columns);
+  state.velocity.reserve(layout.rows * layout.columns);
+  const auto vector_at = [&](const float* in) {
+    return vec3_cast<double>(Vec3<float>{in[0], in[layout.pitch], in[2 * layout.pitch]});
+  };
+  for (std::size_t row = 0; row < layout.rows; ++row)
+    for (std::size_t column = 0; column < layout.columns; ++column) {
+      const float* in = nodes.data() + layout.offset(row, column);
+      state.position.push_back(vector_at(in) + vector_at(rest.data() + layout.rest_offset(row, column)));
+      state.velocity.push_back(vector_at(in + 3 * layout.pitch));
+    }
+  return state;
+}
+
+SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane_count,
+                             std::size_t thread_count)
+    : SmallSteps(system, dt_s), lanes(lane_count), threads(std::max<std::size_t>(1, thread_count)) {
+  const std::vector<std::uint32_t> node_at = reverse_cuthill_mckee(system.nodes(), system.springs);
+  const std::vector<std::uint32_t> place = places_in(node_at);
+  const std::vector<std::size_t> ends = part_ends(system, place);
+
+  slot.resize(system.nodes());
+  std::vector<std::uint32_t> part_of(system.nodes());  // by scene node
+  std::size_t slots = 0, begin = 0;
+  for (const std::size_t end : ends) {
+    const std::size_t first = slots;
+    for (; begin < end; ++begin) {
+      part_of[node_at[begin]] = static_cast<std::uint32_t>(parts.size());
+      slot[node_at[begin]] = static_cast<std::uint32_t>(slots++);
+    }
+    slots = (slots + lanes - 1) / lanes * lanes;
+    parts.push_back({first / lanes, slots / lanes, 0, 0});
+  }
+  nodes = AlignedArray(slots * record_floats);
+  rest = AlignedArray(slots * 3);
+  free = AlignedArray(slots);
+  std::vector<double> mobility(system.nodes());
+  for (std::size_t node = 0; node < system.nodes(); ++node) mobility[node] = 1 / system.node_mass[node];
+  for (const std::uint32_t node : system.pins) mobility[node] = 0;
+  for (std::size_t node = 0; node < system.nodes(); ++node) free.data()[slot[node]] = mobility[node] > 0;
+
+  // By part, colour and constants.
+  const SpringColouring order = spring_order(system);
+  using Constants = std::tuple<std::uint32_t, double, double>;
+  std::vector<std::vector<std::map<Constants, std::vector<Spring>>>> sorted(parts.size());
+  for (std::size_t colour = 0; colour < order.colours(); ++colour) {
+    std::vector<std::map<Constants, std::vector<Spring>>> of_part(parts.size());
+    for (const Spring& spring : order.of_colour(colour))
+      of_part[part_of[spring.first]][{spring.kind, mobility[spring.first], mobility[spring.second]}]
+          .push_back(spring);
+    for (std::size_t part = 0; part < parts.size(); ++part)
+      if (!of_part[part].empty()) sorted[part].push_back(std::move(of_part[part]));
+  }
+  std::vector<float> entries;
+  std::vector<PartCost> costs;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    parts[part].first_colour = colours.size();
+    const std::size_t first_vector = entries.size() / (3 * lanes);
+    for (auto& colour : sorted[part]) {
+      const std::size_t first_batch = batches.size();
+      for (auto& [constants, list] : colour) {
+        std::ranges::sort(list, {}, [&](const Spring& spring) { return slot[spring.first]; });
+        const double first_mobility = std::get<1>(constants), second_mobility = std::get<2>(constants);
+        const auto compliance = [&](const Spring& spring) {
+          return Compliance<float>(system.materials[spring.kind], spring.rest_length, small_s,
+                                   first_mobility + second_mobility);
+        };
+        Batch batch{entries.size() / (3 * lanes),       0,
+                    compliance(list.front()).stiffness, compliance(list.front()).damping,
+                    static_cast<float>(first_mobility), static_cast<float>(second_mobility)};
+        batch.end = batch.begin + (list.size() + lanes - 1) / lanes;
+        list.resize((batch.end - batch.begin) * lanes, list.back());
+        for (std::size_t i = 0; i < list.size(); i += lanes) {
+          for (std::size_t lane = 0; lane < lanes; ++lane)
+            entries.push_back(std::bit_cast<float>(slot[list[i + lane].first]));
+          for (std::size_t lane = 0; lane < lanes; ++lane)
+            entries.push_back(std::bit_cast<float>(slot[list[i + lane].second]));
+          for (std::size_t lane = 0; lane < lanes; ++lane)
+            entries.push_back(compliance(list[i + lane]).stiffness_rest);
+        }
+        batches.push_back(batch);
+      }
+      colours.push_back({first_batch, batches.size()});
+    }
+    parts[part].end_colour = colours.size();
+    const std::size_t vectors = entries.size() / (3 * lanes) - first_vector;
+    costs.push_back({part, static_cast<double>(vectors), static_cast<double>(sorted[part].size() + 1)});
+  }
+  springs = AlignedArray(entries.size());
+  std::ranges::copy(entries, springs.data());
+  distribute(*this, std::move(costs), threads);
+  set_state(system.start);
+}
+
+void SpringBatches::set_state(const State& state) {
+  write_records(state, slot, nodes.data());
+  for (std::size_t node = 0; node < slot.size(); ++node) {
+    float* out = rest.data() + rest_offset(slot[node]);
+    const Vec3d& x = state.position[node];
+    for (const double value : {x.x, x.y, x.z}) {
+      *out = static_cast<float>(value - static_cast<double>(static_cast<float>(value)));
+      out += lanes;
+    }
+  }
+}
+
+State SpringBatches::state() const {
+  State state = read_records(nodes.data(), slot);
+  for (std::size_t node = 0; node < slot.size(); ++node) {
+    const float* in = rest.data() + rest_offset(slot[node]);
+    state.position[node] += vec3_cast<double>(Vec3<float>{in[0], in[lanes], in[2 * lanes]});
+  }
+  return state;
+}
+
+std::unique_ptr<Backend> make_serial_constraints(const System& system, double dt_s) {
+  return std::make_unique<SerialConstraints<float>>(system, dt_s);
+}
+
+std::unique_ptr<Backend> make_constraints_reference(const System& system, double dt_s) {
+  return std::make_unique<SerialConstraints<double>>(system, dt_s);
+}
+
+std::unique_ptr<Backend> make_openmp_constraints(const System& system, double dt_s,
+                                                 const ExecutionOptions& options) {
+  const ConstraintKernel kernel = best_kernel(constraint_kernels(), options.roots);
+  return make_vector_backend(kernel, std::string("cpu ") + kernel.instruction_set, system, dt_s,
+                             options.threads);
+}
+
+}  // namespace mssim

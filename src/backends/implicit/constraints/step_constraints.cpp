@@ -1,0 +1,515 @@
+// Small steps of xpbd: what moves a vector of nodes, of a cloth pass by pass, of bodies colour by colour.
+// Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "backends/implicit/constraints/step_constraints.cpp"
+#include "backends/implicit/constraints/step_constraints.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+
+#include "backends/layouts/records-inl.h"
+#include "backends/threads/spin_barrier.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+#include "backends/implicit/constraints/carried_sum-inl.h"
+
+/// Gravity and the damping of the air: v becomes (v - h g) / (1 + h c) where a node moves. `fall` = h g,
+/// `kept` = 1 / (1 + h c).
+HWY_INLINE Lanes3 fallen(Mask moves, const Lanes3& v, Lanes fall, Lanes kept) {
+  return select(moves, Lanes3{kept * v.x, kept * (v.y - fall), kept * v.z}, v);
+}
+
+/// The floor, at the end of a step. What lies on it has no rest, which could be negative.
+HWY_INLINE void meet_floor(Mask moves, const Surroundings& surroundings, NodeLanes& node, Lanes3& rest) {
+  const auto height = hn::Set(FloatTag(), surroundings.floor_height);
+  touch_floor(hn::And(moves, hn::Lt(node.x.y.v, height)), Lanes(height), Lanes(surroundings.restitution),
+              Lanes(surroundings.friction), node.x, node.v);
+  rest.y = keep(hn::Gt(node.x.y.v, height), rest.y);
+}
+
+/// Constants of springs in registers.
+struct ComplianceLanes {
+  Lanes stiffness, stiffness_rest, damping;
+  HWY_INLINE explicit ComplianceLanes(const Compliance<float>& c)
+      : stiffness(c.stiffness), stiffness_rest(c.stiffness_rest), damping(c.damping) {}
+  HWY_INLINE ComplianceLanes(Mask first, const ComplianceLanes& a, const ComplianceLanes& b)
+      : stiffness(select(first, a.stiffness, b.stiffness)),
+        stiffness_rest(select(first, a.stiffness_rest, b.stiffness_rest)),
+        damping(select(first, a.damping, b.damping)) {}
+};
+
+/// Three components of a vector of nodes that need not begin where a vector does.
+HWY_INLINE Lanes3 load_part(const float* from, std::size_t pitch) {
+  const FloatTag d;
+  return {hn::LoadU(d, from), hn::LoadU(d, from + pitch), hn::LoadU(d, from + 2 * pitch)};
+}
+HWY_INLINE void store_part(EveryLane, const Lanes3& value, float* to, std::size_t pitch) {
+  const FloatTag d;
+  hn::StoreU(value.x.v, d, to);
+  hn::StoreU(value.y.v, d, to + pitch);
+  hn::StoreU(value.z.v, d, to + 2 * pitch);
+}
+HWY_INLINE void store_part(Mask lanes, const Lanes3& value, float* to, std::size_t pitch) {
+  const FloatTag d;
+  hn::BlendedStore(value.x.v, lanes, d, to);
+  hn::BlendedStore(value.y.v, lanes, d, to + pitch);
+  hn::BlendedStore(value.z.v, lanes, d, to + 2 * pitch);
+}
+
+/// The springs of a vector of `first` and one of `second`: where the x of the nodes begin. The ends that move
+/// are those of the lanes given.
+template <class FirstLanes, class SecondLanes>
+HWY_INLINE void project(float* first, float* second, std::size_t pitch, Lanes h, const ComplianceLanes& c,
+                        FirstLanes first_moves, SecondLanes second_moves) {
+  const NodeLanes a{load_part(first, pitch), load_part(first + 3 * pitch, pitch)};
+  const NodeLanes b{load_part(second, pitch), load_part(second + 3 * pitch, pitch)};
+  const Lanes3 u = b.v - a.v, way = mul_add(h, u, b.x - a.x);
+  const Lanes pull =
+      spring_pull_at(inverse_length(dot(way, way)), dot(u, way), c.stiffness, c.stiffness_rest, c.damping);
+  store_part(first_moves, mul_add(pull, way, a.v), first + 3 * pitch, pitch);
+  store_part(second_moves, mul_add(-pull, way, b.v), second + 3 * pitch, pitch);
+}
+
+/// Springs of a colour: from nodes of a stream, in `rows` rows, each `row_step` rows further, to nodes `down`
+/// rows and `right` columns further.
+struct Springs {
+  std::size_t first_row, rows, row_step;
+  std::ptrdiff_t down;
+  std::size_t stream, right;
+  GridSpringKind kind;
+};
+
+HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& springs) {
+  const QuarterLayout& layout = cloth.layout;
+  const std::size_t pitch = layout.pitch, lanes = lane_count();
+  const std::size_t count = layout.springs(springs.stream, springs.right), whole = count / lanes * lanes;
+  const Mask rest = below(hn::Iota(IndexTag(), 0), static_cast<std::uint32_t>(count - whole));
+
+  const std::size_t target = springs.stream + springs.right;
+  const std::size_t other = target % QuarterLayout::streams, further = target / QuarterLayout::streams;
+  const Lanes h(cloth.h_s);
+  const ComplianceLanes c(cloth.of_free[springs.kind]);
+  for (std::size_t i = 0; i < springs.rows; ++i) {
+    const std::size_t row = springs.first_row + i * springs.row_step;
+    const std::size_t other_row = row + static_cast<std::size_t>(springs.down);
+    float* const first =
+        cloth.nodes.data() + row * layout.row_floats() + springs.stream * QuarterLayout::components * pitch;
+    float* const second = cloth.nodes.data() + other_row * layout.row_floats() +
+                          other * QuarterLayout::components * pitch + further;
+    if (cloth.has_pins(row) || cloth.has_pins(other_row)) {
+      const float* const first_free = cloth.free_of_row[row] + springs.stream * pitch;
+      const float* const second_free = cloth.free_of_row[other_row] + other * pitch + further;
+      const ComplianceLanes of_pinned(cloth.of_pinned[springs.kind]);
+      const FloatTag d;
+      for (std::size_t at = 0; at < count; at += lanes) {
+        const Mask there = below(hn::Iota(IndexTag(), 0), static_cast<std::uint32_t>(count - at));
+        const Mask first_moves = hn::And(there, hn::Ne(hn::LoadU(d, first_free + at), hn::Zero(d)));
+        const Mask second_moves = hn::And(there, hn::Ne(hn::LoadU(d, second_free + at), hn::Zero(d)));
+        project(first + at, second + at, pitch, h,
+                ComplianceLanes(hn::And(first_moves, second_moves), c, of_pinned), first_moves, second_moves);
+      }
+      continue;
+    }
+    for (std::size_t at = 0; at < whole; at += lanes)
+      project(first + at, second + at, pitch, h, c, EveryLane(), EveryLane());
+    if (whole < count) project(first + whole, second + whole, pitch, h, c, rest, rest);
+  }
+}
+
+/// Gravity and the damping of the air in `rows` rows.
+HWY_NOINLINE inline void let_fall(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
+  const FloatTag d;
+  const std::size_t pitch = cloth.layout.pitch, nodes = cloth.layout.springs(0, 0);
+  const Lanes gravity(cloth.fall), kept(cloth.kept);
+  for (std::size_t row = first_row; row < first_row + rows; ++row)
+    for (std::size_t stream = 0; stream < QuarterLayout::streams; ++stream) {
+      float* const v = cloth.nodes.data() + row * cloth.layout.row_floats() +
+                       (stream * QuarterLayout::components + 3) * pitch;
+      const float* const free = cloth.free_of_row[row] + stream * pitch;
+      for (std::size_t at = 0; at < nodes; at += lane_count()) {
+        const Mask moves = hn::Ne(hn::Load(d, free + at), hn::Zero(d));
+        store_part(EveryLane(), fallen(moves, load_part(v + at, pitch), gravity, kept), v + at, pitch);
+      }
+    }
+}
+
+/// The colours along rows.
+HWY_INLINE void project_along_rows(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
+  for (const std::size_t stream : {0U, 2U, 1U, 3U})
+    project_springs(cloth, {first_row, rows, 1, 0, stream, 1, structural});
+  for (const std::size_t stream : {0U, 1U, 2U, 3U})
+    project_springs(cloth, {first_row, rows, 1, 0, stream, 2, bending});
+}
+
+/// The structural and shear colours between each of `pairs` rows, every other one from `first_row` on, and
+/// the row below it.
+HWY_INLINE void project_between_rows(QuarteredRows& cloth, std::size_t first_row, std::size_t pairs) {
+  for (const std::size_t stream : {0U, 1U, 2U, 3U})
+    project_springs(cloth, {first_row, pairs, 2, 1, stream, 0, structural});
+  for (const std::size_t stream : {0U, 1U, 2U, 3U})
+    project_springs(cloth, {first_row, pairs, 2, 1, stream, 1, shear});
+  for (const std::size_t stream : {0U, 1U, 2U, 3U})
+    project_springs(cloth, {first_row + 1, pairs, 2, -1, stream, 1, shear});
+}
+
+/// The bending springs between each of `rows` rows and the next but one.
+HWY_INLINE void project_across_rows(QuarteredRows& cloth, std::size_t first_row, std::size_t rows) {
+  for (const std::size_t stream : {0U, 1U, 2U, 3U})
+    project_springs(cloth, {first_row, rows, 1, 2, stream, 0, bending});
+}
+
+/// The end of a small step, x += h v, and at the end of a step the floor.
+HWY_NOINLINE inline void advance(QuarteredRows& cloth, std::size_t first_row, std::size_t rows,
+                                 bool meets_floor) {
+  const FloatTag d;
+  const std::size_t pitch = cloth.layout.pitch, nodes = cloth.layout.springs(0, 0);
+  const Lanes h(cloth.h_s);
+  for (std::size_t row = first_row; row < first_row + rows; ++row)
+    for (std::size_t stream = 0; stream < QuarterLayout::streams; ++stream) {
+      float* const x =
+          cloth.nodes.data() + row * cloth.layout.row_floats() + stream * QuarterLayout::components * pitch;
+      float* const rest = cloth.rest.data() + row * cloth.layout.rest_row_floats() + stream * 3 * pitch;
+      for (std::size_t at = 0; at < nodes; at += lane_count()) {
+        NodeLanes node{load_part(x + at, pitch), load_part(x + at + 3 * pitch, pitch)};
+        Lanes3 lacks = load_part(rest + at, pitch);
+        carry_sum(node.x, lacks, h, node.v);  // pins have no velocity
+        if (meets_floor) {
+          meet_floor(hn::Ne(hn::Load(d, cloth.free_of_row[row] + stream * pitch + at), hn::Zero(d)),
+                     cloth.surroundings, node, lacks);
+          store_part(EveryLane(), node.v, x + at + 3 * pitch, pitch);
+        }
+        store_part(EveryLane(), node.x, x + at, pitch);
+        store_part(EveryLane(), lacks, rest + at, pitch);
+      }
+    }
+}
+
+/// A small step of a cloth by blocks of four rows, in levels that wait for each other:
+///
+///     own        falling, springs along its rows, and between rows 0 and 1 and rows 2 and 3,
+///     join       springs between the last row of the block before it and its row 0, and rows 1 and 2,
+///     bend       bending springs from its rows 0 and 1,
+///     bend_join  those from rows 2 and 3 of the block before it,
+///     advance    x += h v.
+///
+/// A level of a block needs the level before it, of that block and of one neighbour. So a pass goes down the
+/// cloth once, the levels of several small steps behind each other, each `lag` blocks behind the first.
+enum class BlockLevel : std::size_t { own, join, bend, bend_join, advance };
+constexpr std::size_t block_levels = 5, block_rows = QuarteredRows::block_rows;
+
+/// How many blocks a level of a small step stays behind the first level of the pass.
+constexpr std::size_t lag(std::size_t small_step, BlockLevel level) {
+  constexpr std::array<std::size_t, block_levels> behind{0, 0, 1, 1, 2};
+  return 2 * small_step + behind[static_cast<std::size_t>(level)];
+}
+
+/// Blocks [begin, end) of a level that a thread can do without what its neighbours do in this pass: those of
+/// its own, less some at each end that is not the cloth's.
+struct BlockRange {
+  std::size_t begin, end;
+};
+
+/// A thread's blocks of a cloth of `all` blocks.
+struct BlockShare {
+  std::size_t begin, end, all;
+
+  BlockShare(std::size_t thread, std::size_t threads, std::size_t blocks)
+      : begin(blocks * thread / threads), end(blocks * (thread + 1) / threads), all(blocks) {}
+
+  /// What it can do alone.
+  BlockRange alone(std::size_t small_step, BlockLevel level) const {
+    constexpr std::array<std::size_t, block_levels> missing_before{0, 1, 1, 2, 2};
+    const std::size_t before = 2 * small_step + missing_before[static_cast<std::size_t>(level)];
+    return {begin == 0 ? 0 : begin + before, end == all ? all : end - lag(small_step, level)};
+  }
+};
+
+/// One level of a block of rows. `meets_floor`: the small step is the last of a step.
+HWY_INLINE void do_level(QuarteredRows& cloth, BlockLevel level, std::size_t block, bool meets_floor) {
+  const std::size_t rows = cloth.layout.rows, first = block * block_rows;
+  const std::size_t end = std::min(first + block_rows, rows);
+  const auto pairs_from = [&](std::size_t row, std::size_t most) {
+    return row + 1 < rows ? std::min(most, (rows - row) / 2) : 0;
+  };
+  switch (level) {
+    case BlockLevel::own:
+      let_fall(cloth, first, end - first);
+      project_along_rows(cloth, first, end - first);
+      project_between_rows(cloth, first, pairs_from(first, 2));
+      return;
+    case BlockLevel::join:
+      if (block > 0)
+        project_between_rows(cloth, first - 1, pairs_from(first - 1, 2));
+      else
+        project_between_rows(cloth, 1, pairs_from(1, 1));
+      return;
+    case BlockLevel::bend:
+      project_across_rows(cloth, first, std::min<std::size_t>(2, rows - std::min(rows, first + 2)));
+      return;
+    case BlockLevel::bend_join:
+      if (block == 0) return;
+      project_across_rows(cloth, first - 2, std::min<std::size_t>(2, rows - first));
+      return;
+    case BlockLevel::advance:
+      advance(cloth, first, end - first, meets_floor);
+      return;
+  }
+}
+
+/// Goes down the cloth with all levels of the small steps `begin` to `end` - 1 of a call, each in
+/// range(number of the small step in the pass, level).
+template <class Range>
+HWY_NOINLINE void walk_down(QuarteredRows& cloth, std::size_t begin, std::size_t end, Range range) {
+  std::size_t first = cloth.blocks(), last = 0;
+  const auto for_each_level = [&](auto&& act) MSSIM_INLINE_LAMBDA {
+    for (std::size_t small = 0; small < end - begin; ++small)
+      for (std::size_t level = 0; level < block_levels; ++level) act(small, static_cast<BlockLevel>(level));
+  };
+  for_each_level([&](std::size_t small, BlockLevel level) HWY_ATTR {
+    const BlockRange blocks = range(small, level);
+    first = std::min(first, blocks.begin + lag(small, level));
+    last = std::max(last, blocks.end + lag(small, level));
+  });
+  for (std::size_t front = first; front < last; ++front)
+    for_each_level([&](std::size_t small, BlockLevel level) HWY_ATTR {
+      const BlockRange blocks = range(small, level);
+      const std::size_t block = front - lag(small, level);
+      if (front < blocks.begin + lag(small, level) || block >= blocks.end) return;
+      do_level(cloth, level, block, (begin + small + 1) % cloth.substeps == 0);
+    });
+}
+
+/// Takes `count` steps.
+void step_cloth(QuarteredRows& cloth, int count) {
+  // Whatever the threads are, each spring sees what the colours before its own have left: the result is the
+  // same to the last bit for any number of threads and of small steps in a pass.
+  const std::size_t small_steps = static_cast<std::size_t>(count) * cloth.substeps;
+  const std::size_t passes = (small_steps + cloth.depth - 1) / cloth.depth;
+  const std::size_t blocks = cloth.blocks();
+  const auto walk = [&](std::size_t pass, auto&& range) HWY_ATTR {
+    walk_down(cloth, pass * cloth.depth, std::min((pass + 1) * cloth.depth, small_steps), range);
+  };
+  const auto pass_alone = [&](std::size_t pass) HWY_ATTR {
+    if (pass >= passes) return false;
+    walk(pass, [&](std::size_t, BlockLevel) HWY_ATTR { return BlockRange{0, blocks}; });
+    return true;
+  };
+  const std::size_t begin = cloth.team_gain.take_rounds(pass_alone);
+  if (begin == passes) return;
+  std::optional<SpinBarrier> barrier;
+#pragma omp parallel num_threads(static_cast <int>(cloth.threads))
+  {
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
+#pragma omp single
+    barrier.emplace(threads, cloth.team_gain);
+    const BlockShare own(thread, threads, blocks);
+    for (std::size_t pass = begin; pass < passes; ++pass) {
+      walk(pass, [&](std::size_t small, BlockLevel level) HWY_ATTR { return own.alone(small, level); });
+      if (threads == 1) continue;
+      barrier->wait();
+      if (thread + 1 < threads) {
+        const BlockShare next(thread + 1, threads, blocks);
+        walk(pass, [&](std::size_t small, BlockLevel level) HWY_ATTR {
+          return BlockRange{own.alone(small, level).end, next.alone(small, level).begin};
+        });
+      }
+      pass += barrier->end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); });
+    }
+  }
+}
+
+constexpr std::size_t vector_springs = hn::MaxLanes(FloatTag());
+
+/// Writes the velocities of the nodes whose records lie at record(0), record(1) ..., one a lane, in stores of
+/// blocks of four floats. Scatter instructions, one for each component, made a step of 38,233 and of 3,858
+/// nodes take 1.8 to 2 times as long on Zen 4.
+#if HWY_TARGET == HWY_SCALAR
+template <class Record>
+HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
+  const FloatTag d;
+  hn::Store(v.x.v, d, record(0) + 4);
+  hn::Store(v.y.v, d, record(0) + 5);
+  hn::Store(v.z.v, d, record(0) + 6);
+}
+#else
+template <class Tag, class V, class Record>
+HWY_INLINE void store_blocks(Tag d, V blocks, std::size_t first, Record record) {
+  if constexpr (hn::MaxLanes(Tag()) == 4) {
+    hn::Store(blocks, d, record(first) + 4);
+  } else {
+    const hn::Half<Tag> half;
+    store_blocks(half, hn::LowerHalf(half, blocks), first, record);
+    store_blocks(half, hn::UpperHalf(half, blocks), first + hn::MaxLanes(Tag()) / 2, record);
+  }
+}
+template <class Record>
+HWY_INLINE void scatter_velocities(const Lanes3& v, Record record) {
+  const FloatTag d;
+  hn::Vec<FloatTag> blocks[4];  // block b of number i is that of lane 4 b + i
+  transpose_blocks<hn::Vec<FloatTag> >(v.x.v, v.y.v, v.z.v, hn::Zero(d), blocks);
+  for (std::size_t i = 0; i < 4; ++i) store_blocks(d, blocks[i], i, record);
+}
+#endif
+
+/// The springs of vectors [begin, end) of a batch.
+HWY_INLINE void project_batch(SpringBatches& bodies, const SpringBatches::Batch& batch, std::size_t begin,
+                              std::size_t end) {
+  const FloatTag d;
+  float* const nodes = bodies.nodes.data();
+  const Lanes h(bodies.h_s), stiffness(batch.stiffness), damping(batch.damping);
+  const Lanes first_mobility(batch.first_mobility), second_mobility(batch.second_mobility);
+  const float* const last = bodies.springs.data() + end * 3 * vector_springs;
+  for (const float* entry = bodies.springs.data() + begin * 3 * vector_springs; entry < last;
+       entry += 3 * vector_springs) {
+    const auto first = [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+      return nodes + std::size_t{std::bit_cast<std::uint32_t>(entry[i])} * SpringBatches::offset_floats;
+    };
+    const auto second = [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+      return nodes + std::size_t{std::bit_cast<std::uint32_t>(entry[vector_springs + i])} *
+                         SpringBatches::offset_floats;
+    };
+    const NodeLanes a = load_records<vector_springs>(first), b = load_records<vector_springs>(second);
+    const Lanes3 u = b.v - a.v, way = mul_add(h, u, b.x - a.x);
+    const Lanes pull = spring_pull_at(inverse_length(dot(way, way)), dot(u, way), stiffness,
+                                      Lanes(hn::Load(d, entry + 2 * vector_springs)), damping);
+    scatter_velocities(mul_add(first_mobility * pull, way, a.v), first);
+    scatter_velocities(mul_add(-(second_mobility * pull), way, b.v), second);
+  }
+}
+
+/// A thread's share, by vectors, of a colour.
+HWY_NOINLINE inline void project_colour(SpringBatches& bodies, const SpringBatches::Colour& colour,
+                                        std::size_t thread, std::size_t threads) {
+  const std::size_t first = bodies.batches[colour.begin].begin, vectors = bodies.vectors(colour);
+  const std::size_t begin = first + vectors * thread / threads,
+                    end = first + vectors * (thread + 1) / threads;
+  for (std::size_t i = colour.begin; i < colour.end; ++i) {
+    const SpringBatches::Batch& batch = bodies.batches[i];
+    project_batch(bodies, batch, std::max(begin, batch.begin), std::min(end, batch.end));
+  }
+}
+
+/// What happens to the nodes between the springs of one small step and those of the next.
+struct Between {
+  bool advances;     ///< x += h v: not before the first one
+  bool meets_floor;  ///< behind that: the small step was the last of a step
+  bool falls;        ///< v = (v - h g) / (1 + h c): not after the last one
+};
+
+/// That, at vectors [begin, end) of nodes.
+HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& between, std::size_t begin,
+                                    std::size_t end) {
+  const FloatTag d;
+  const Lanes h(bodies.h_s), gravity(bodies.fall), kept(bodies.kept);
+  for (std::size_t vector = begin; vector < end; ++vector) {
+    float* const records = bodies.nodes.data() + vector * vector_springs * record_floats;
+    NodeLanes node = load_records<vector_springs>(
+        [&](std::size_t i) MSSIM_INLINE_LAMBDA { return records + i * record_floats; });
+    const Mask moves = hn::Ne(hn::Load(d, bodies.free.data() + vector * vector_springs), hn::Zero(d));
+    if (between.advances) {
+      float* const rest = bodies.rest.data() + vector * 3 * vector_springs;
+      Lanes3 lacks = load3(rest);
+      carry_sum(node.x, lacks, h, node.v);  // pins have no velocity
+      if (between.meets_floor) meet_floor(moves, bodies.surroundings, node, lacks);
+      store3(rest, lacks);
+    }
+    if (between.falls) node.v = fallen(moves, node.v, gravity, kept);
+    store_records<vector_springs>(records, node);
+  }
+}
+
+/// How a thread meets those that share a part with it: not at all.
+struct Alone {
+  HWY_INLINE void meet() const {}
+  template <class TakeRound>
+  HWY_INLINE std::size_t end_round(TakeRound&& /*take_round*/) const {
+    return 0;
+  }
+};
+
+/// At a barrier. One of them may take small steps for all.
+struct Together {
+  SpinBarrier& barrier;
+  HWY_INLINE void meet() const { barrier.wait(); }
+  template <class TakeRound>
+  HWY_INLINE std::size_t end_round(TakeRound&& take_round) const {
+    return barrier.end_round(take_round);
+  }
+};
+
+/// A thread's share of a small step of a part, up to the last colour; what moves its nodes stands before it.
+template <class Team>
+HWY_INLINE void step_colours(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t small,
+                             std::size_t thread, std::size_t threads, const Team& team) {
+  const std::size_t vectors = part.end - part.begin;
+  move_nodes(bodies, {small > 0, small > 0 && small % bodies.substeps == 0, true},
+             part.begin + vectors * thread / threads, part.begin + vectors * (thread + 1) / threads);
+  for (std::size_t colour = part.first_colour; colour < part.end_colour; ++colour) {
+    team.meet();
+    project_colour(bodies, bodies.colours[colour], thread, threads);
+  }
+}
+
+/// A thread's share of `count` small steps of a part.
+template <class Team>
+HWY_INLINE void step_part(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t count,
+                          std::size_t thread, std::size_t threads, const Team& team) {
+  if (count == 0) return;
+  for (std::size_t small = 0; small < count; ++small) {
+    step_colours(bodies, part, small, thread, threads, team);
+    small += team.end_round([&](std::size_t taken) HWY_ATTR {
+      const std::size_t next = small + 1 + taken;
+      if (next >= count) return false;
+      step_colours(bodies, part, next, 0, 1, Alone());
+      return true;
+    });
+  }
+  const std::size_t vectors = part.end - part.begin;
+  move_nodes(bodies, {true, true, false}, part.begin + vectors * thread / threads,
+             part.begin + vectors * (thread + 1) / threads);
+}
+
+/// Takes `count` steps.
+void step_bodies(SpringBatches& bodies, int count) {
+  // The springs of a colour share no node, and parts share nothing: the result is the same to the last bit
+  // for any number of threads.
+  const std::size_t small_steps = static_cast<std::size_t>(count) * bodies.substeps;
+  std::optional<SpinBarrier> barrier;
+#pragma omp parallel num_threads(static_cast <int>(bodies.threads))
+  {
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
+#pragma omp single
+    barrier.emplace(threads, bodies.team_gain);
+    for (const std::size_t part : bodies.shared_parts)
+      step_part(bodies, bodies.parts[part], small_steps, thread, threads, Together{*barrier});
+    for (std::size_t owner = thread; owner < bodies.own_parts.size(); owner += threads)
+      for (const std::size_t part : bodies.own_parts[owner])
+        step_part(bodies, bodies.parts[part], small_steps, 0, 1, Alone());
+  }
+}
+
+ConstraintKernel constraint_kernel() {
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &step_cloth, &step_bodies};
+}
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace mssim {
+HWY_EXPORT(constraint_kernel);
+std::vector<ConstraintKernel> constraint_kernels() {
+  return kernels_of_this_processor(HWY_DISPATCH_TABLE(constraint_kernel));
+}
+}  // namespace mssim
+#endif

@@ -1,0 +1,209 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "backends/implicit/nodes/vector_backend.h"
+#include "backends/interface/backend.h"
+#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/node_records.h"
+#include "backends/layouts/spring_colouring.h"
+#include "backends/threads/team_gain.h"
+#include "model/system.h"
+
+namespace mssim {
+
+/// A spring as the compliant constraint C = l - L of XPBD (M. Macklin, M. Müller, N. Chentanez, 2016), with
+/// which a small step of h seconds from x, v goes on from the positions y = x + h v that the velocities lead
+/// to. One iteration, as M. Macklin et al. (2019) advise, begins at lambda = 0; their Eq. 26 is then
+///
+///     dlambda = (-C - gamma n.(p2 - p1)) / ((1 + gamma) (w1 + w2) + alpha~),
+///
+/// n = (y2 - y1)/l, p = y - x, w: inverse mass, alpha~ = 1/(k h^2). The dissipation potential of a damping c
+/// is c (dC/dt)^2 / 2, so beta~ = c h^2 and gamma = alpha~ beta~ / h = c/(k h). By Eq. 17 y1 changes by
+/// -w1 dlambda n and y2 by the opposite. With p = h v, and all multiplied by k h^2, the velocity v1 changes
+/// by
+///
+///     w1 h (k C + c n.(v2 - v1)) n / (1 + (h^2 k + h c) (w1 + w2)):
+///
+/// the force of kernels/spring_law.h at (y, v), for h seconds, divided by what it changes itself in that
+/// time. So the same law gives the impulse, from other constants; velocities carry the displacements, which
+/// single precision would lose in differences of positions; and a spring without stiffness is no exception.
+///
+/// These are the constants of the law with which its pull is that impulse divided by the vector to the other
+/// end, kg/s. They are finite for all k and c that are not negative.
+template <class Real>
+struct Compliance {
+  Real stiffness;       ///< h k / (1 + ...), kg/s
+  Real stiffness_rest;  ///< that times the rest length, kg m/s
+  Real damping;         ///< h c / (1 + ...), kg
+
+  /// rest_length in m; h_s: the small step; mobility: w1 + w2, 1/kg, 0 for an end that is held.
+  Compliance(const SpringMaterial& material, double rest_length, double h_s, double mobility) {
+    const double impulse_per_force =
+        h_s / (1 + (h_s * h_s * material.stiffness + h_s * material.damping) * mobility);
+    stiffness = static_cast<Real>(material.stiffness * impulse_per_force);
+    stiffness_rest = static_cast<Real>(material.stiffness * rest_length * impulse_per_force);
+    damping = static_cast<Real>(material.damping * impulse_per_force);
+  }
+};
+
+/// The colours of a cloth, in their order: springs along rows, then those between the rows of a pair, then
+/// bending springs across rows. In that order a walk down the rows can do all colours of a row that those of
+/// other rows do not wait for (BlockLevel in step_constraints.cpp), and no colour needs a pass over the cloth
+/// of its own.
+enum ClothColour : std::uint8_t {
+  structural_from_even_columns,
+  structural_from_odd_columns,
+  bending_from_columns_01,  ///< from columns 0 and 1 of every four
+  bending_from_columns_23,
+  structural_below_even_rows,
+  falling_below_even_rows,  ///< shear springs down and to the right
+  rising_below_even_rows,   ///< shear springs up and to the right
+  structural_below_odd_rows,
+  falling_below_odd_rows,
+  rising_below_odd_rows,
+  bending_below_rows_01,  ///< from rows 0 and 1 of every four
+  bending_below_rows_23,
+  cloth_colours
+};
+
+/// The springs of a cloth or of bodies in the order in which xpbd takes them, whatever the backend: this
+/// order is part of the method. A cloth has the colours of ClothColour, empty ones too; bodies have those of
+/// colour_springs.
+SpringColouring spring_order(const System& system);
+
+/// The small steps of a system.
+struct SmallSteps {
+  double small_s;        ///< the small step
+  float h_s;             ///< the same
+  float fall;            ///< m/s, of gravity in a small step
+  float kept;            ///< part of the velocity that the air leaves in a small step
+  std::size_t substeps;  ///< in a step
+  Surroundings surroundings;
+
+  SmallSteps(const System& system, double dt_s)
+      : small_s(dt_s / system.solver.substeps),
+        h_s(static_cast<float>(small_s)),
+        fall(static_cast<float>(small_s * system.gravity)),
+        kept(static_cast<float>(1 / (1 + small_s * system.viscous_damping))),
+        substeps(system.solver.substeps),
+        surroundings(surroundings_of(system)) {}
+};
+
+/// Where the nodes of a cloth lie: the columns of a row in four streams, by the column's number modulo four,
+///
+///     [row][column % 4][x y z u v w][column / 4]      (u v w: velocity).
+///
+/// The springs of a colour (ClothColour) that begin in one stream all end in one stream, of the same row or
+/// of another: a vector of the one and a vector of the other, beginning at the same place or one node
+/// further, are the ends of as many springs. So there is nothing to shuffle or to gather. Each component
+/// begins a vector.
+struct QuarterLayout {
+  static constexpr std::size_t streams = 4, components = 6;
+
+  std::size_t lanes, rows, columns;
+  std::size_t pitch;  ///< floats from one component of a stream to the next, an odd number of vectors
+
+  QuarterLayout(const GridPatch& grid, std::size_t lane_count);
+
+  std::size_t row_floats() const { return streams * components * pitch; }
+  std::size_t rest_row_floats() const { return streams * 3 * pitch; }
+  /// Floats from the start to the x of a node.
+  std::size_t offset(std::size_t row, std::size_t column) const {
+    return row * row_floats() + column % streams * components * pitch + column / streams;
+  }
+  std::size_t rest_offset(std::size_t row, std::size_t column) const {
+    return row * rest_row_floats() + column % streams * 3 * pitch + column / streams;
+  }
+  /// Nodes of a stream that have a node of their row `right` columns further: springs that begin in it.
+  std::size_t springs(std::size_t stream, std::size_t right) const {
+    const std::size_t end = stream + right;
+    return end < columns ? (columns - end - 1) / streams + 1 : 0;
+  }
+};
+
+/// A cloth, for vectors of springs of a colour.
+struct QuarteredRows : SmallSteps {
+  static constexpr std::size_t block_rows = 4;  ///< rows that a pass takes at a time
+  QuarterLayout layout;
+  AlignedArray nodes;  ///< [QuarterLayout::row_floats] for each row; padding is zero
+  AlignedArray rest;   ///< [rows][streams][x y z][pitch] m, what x y z lack (carried_sum-inl.h)
+  /// [1 + rows with pins][streams][pitch] 1 where a node may move, 0 for a pin and for padding.
+  AlignedArray free;
+  std::vector<const float*> free_of_row;  ///< [rows] into `free`; its start where the row has no pin
+
+  /// By GridSpringKind, between free nodes and between a free one and a pin; divided by the mass of a node,
+  /// so that what acts on a free end is its change of velocity.
+  std::vector<Compliance<float>> of_free, of_pinned;
+  std::size_t threads = 1;
+  std::size_t depth = 1;  ///< small steps that one pass over the cloth takes
+  TeamGain team_gain;
+
+  /// Of a system that is a cloth. Throws Unsupported where the nodes differ in mass.
+  QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count);
+  void set_state(const State& state);
+  State state() const;
+  std::size_t blocks() const { return (layout.rows + block_rows - 1) / block_rows; }
+  bool has_pins(std::size_t row) const { return free_of_row[row] != free.data(); }
+};
+
+/// Bodies for vectors of `lanes` springs of a colour: the nodes as records (node_records.h), renumbered so
+/// that neighbours stand near each other (reverse Cuthill-McKee), and the springs side by side. What no
+/// spring connects is stepped apart, in parts, each of which stays in a thread's cache for all small steps
+/// of a call.
+struct SpringBatches : SmallSteps {
+  /// Springs of a colour whose constants are the same, in vectors [begin, end) of `springs`.
+  struct Batch {
+    std::size_t begin, end;
+    float stiffness, damping;               ///< as in Compliance
+    float first_mobility, second_mobility;  ///< 1/kg
+  };
+  /// Batches [begin, end) of a colour.
+  struct Colour {
+    std::size_t begin, end;
+  };
+  /// Vectors [begin, end) of nodes and colours [first_colour, end_colour) of one or several bodies.
+  struct Part {
+    std::size_t begin, end;
+    std::size_t first_colour, end_colour;
+  };
+
+  std::size_t lanes = 0;
+  std::vector<std::uint32_t> slot;  ///< [nodes] the record of the scene's node
+  AlignedArray nodes;               ///< [slots][record_floats]
+  AlignedArray rest;                ///< [slots / lanes][x y z][lanes] m, what x y z lack (carried_sum-inl.h)
+  AlignedArray free;                ///< [slots] 1 where a node may move, 0 for a pin and where there is none
+  /// [vectors][3][lanes] where the records of both ends begin, in units of offset_floats and as
+  /// std::uint32_t, then the stiffness of Compliance times the rest length. The last vector of a batch
+  /// repeats its last spring, which writes the same once more.
+  AlignedArray springs;
+  static constexpr std::size_t offset_floats = record_floats;
+  std::vector<Batch> batches;
+  std::vector<Colour> colours;
+  std::vector<Part> parts;
+
+  std::size_t threads = 1;
+  std::vector<std::vector<std::size_t>> own_parts;  ///< [threads] what a thread does alone
+  std::vector<std::size_t> shared_parts;            ///< what all do together, colour by colour
+
+  TeamGain team_gain;  ///< of the threads that share parts
+
+  SpringBatches(const System& system, double dt_s, std::size_t lane_count, std::size_t thread_count);
+  void set_state(const State& state);
+  State state() const;
+
+  /// Floats from the start of `rest` to the x of a slot.
+  std::size_t rest_offset(std::size_t at) const { return at / lanes * 3 * lanes + at % lanes; }
+  std::size_t vectors(const Colour& colour) const {
+    return batches[colour.end - 1].end - batches[colour.begin].begin;
+  }
+};
+
+using ConstraintKernel = SolverKernel<QuarteredRows, SpringBatches>;
+
+/// The kernels for the instruction sets of this processor, at least one, the best first.
+std::vector<ConstraintKernel> constraint_kernels();
+
+}  // namespace mssim
