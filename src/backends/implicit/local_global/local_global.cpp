@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "backends/implicit/local_global/step_fronts.h"
+#include "backends/implicit/local_global/step_local_global.h"
 #include "backends/implicit/nodes/plain_nodes.h"
 
 namespace mssim {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/implicit/local_global/step_fronts.h"
+#include "backends/implicit/local_global/step_local_global.h"
 #include "backends/implicit/newton/newton.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"

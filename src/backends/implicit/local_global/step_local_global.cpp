@@ -1,8 +1,8 @@
 // Steps of fast-springs with vectors: forces of whole vectors of nodes, products of dense blocks with three
 // vectors at once. Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "backends/implicit/local_global/step_fronts.cpp"
-#include "backends/implicit/local_global/step_fronts.h"
+#define HWY_TARGET_INCLUDE "backends/implicit/local_global/step_local_global.cpp"
+#include "backends/implicit/local_global/step_local_global.h"
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
