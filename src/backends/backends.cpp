@@ -53,7 +53,7 @@ std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Int
                               DressingShape::of(device, lanes_for(device)));
 }
 
-constexpr std::array<BackendInfo, 5> table{{
+constexpr auto table = std::to_array<BackendInfo>({
     {"serial", "cpu-only", "one thread, spring list: the baseline, and in double precision the reference",
      false, std::nullopt, make_serial, spring_list_memory, spring_list_memory, 1, BackendRole::baseline,
      dress_serially, make_serial_implicit, serial_implicit_memory},
@@ -68,7 +68,7 @@ constexpr std::array<BackendInfo, 5> table{{
     {"hybrid", "gpu+multi-thread-cpu",
      "OpenCL computes spring forces into shared memory, OpenMP sums and integrates", true,
      ThreadStack::openmp, make_hybrid, packed, packed, 0.35},
-}};
+});
 
 /// The names of the rows that have something, in words.
 std::string names_of(bool (*has)(const BackendInfo& row)) {

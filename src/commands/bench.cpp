@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "application/prepared_scene.h"
 #include "commands/command.h"
 #include "commands/options.h"
+#include "integrators/all_integrators.h"
 #include "mesh/tet_mesh.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
@@ -248,6 +250,24 @@ int run(const BenchRequest& options) {
   return code;
 }
 
+/// The integrators that are compared where none are named, suite by suite where they differ from the usual
+/// ones.
+std::string default_integrators() {
+  const auto named = [](std::span<const std::string_view> integrators) {
+    return integrators.size() == all_integrators.size()
+               ? "all"
+               : join(std::vector<std::string>(integrators.begin(), integrators.end()), ",");
+  };
+  const std::string usual = named(comparison_of_suite("").integrators);
+  std::map<std::string, std::vector<std::string>> others;
+  for (const Suite& suite : suites())
+    if (const std::string own = named(suite.comparison.integrators); own != usual)
+      others[own].emplace_back(suite.name);
+  std::string text = usual;
+  for (const auto& [own, names] : others) text += "; with --suite " + listed(names, "or") + ' ' + own;
+  return text;
+}
+
 }  // namespace
 
 std::function<int()> declare_bench(Arguments& arguments) {
@@ -273,8 +293,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
   declare_backend_limit(arguments, options->own_backends);
   arguments
       .add_list("--integrator", options->integrators,
-                "Integrators, or all (default: semi-euler,midpoint,rk4; with --suite races, scaling or "
-                "garment semi-euler)")
+                "Integrators, or all (default: " + default_integrators() + ")")
       .value_name("NAME,...");
   declare_execution(arguments, options->execution);
   arguments

@@ -25,7 +25,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<Command, 12> table{{
+constexpr auto table = std::to_array<Command>({
     {"bench", "Time every backend on scenes, and verify each result",
      "mssim bench --scene cloth350k --out results/today", declare_bench},
     {"run", "Simulate one scene; write a trace or an energy curve if asked to",
@@ -49,7 +49,7 @@ constexpr std::array<Command, 12> table{{
     {"list", "List scenes, suites, backends, methods, integrators, devices or a schema",
      "mssim list scenes --format csv", declare_list},
     {"help", "Show this page, or the page of a command", "mssim help bench", declare_help},
-}};
+});
 
 constexpr std::string_view exit_codes =
     "Exit codes: 0 all well; 1 a row is not verified, a simulation blew up, a garment\n"
@@ -97,7 +97,7 @@ int run_guarded(const std::function<int()>& run) {
 std::span<const Command> commands() { return table; }
 
 std::string unknown_command(std::string_view name) {
-  constexpr std::array<OtherName, 1> others{{{"version", "--version"}}};
+  constexpr auto others = std::to_array<OtherName>({{"version", "--version"}});
   std::vector<std::string_view> known;
   for (const Command& command : commands()) known.push_back(command.name);
   return unknown_name("command", name, known, others) + "; see mssim --help";

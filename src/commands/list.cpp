@@ -155,12 +155,12 @@ struct Listed {
   std::string_view name;
   Table (*list)(const ListOptions& options);
 };
-constexpr std::array<Listed, 6> subjects{{{"scenes", list_scenes},
-                                          {"suites", list_suites},
-                                          {"backends", list_backends},
-                                          {"methods", list_methods},
-                                          {"integrators", list_integrators},
-                                          {"devices", list_devices}}};
+constexpr auto subjects = std::to_array<Listed>({{"scenes", list_scenes},
+                                                 {"suites", list_suites},
+                                                 {"backends", list_backends},
+                                                 {"methods", list_methods},
+                                                 {"integrators", list_integrators},
+                                                 {"devices", list_devices}});
 
 constexpr std::string_view schema_subject = "schema";
 

@@ -31,7 +31,7 @@ static_assert(integrators[0].name == "semi-euler");
 /// (backends/backends.h). All but xpbd step towards backward Euler,
 ///
 ///     v+ = v + dt a(x+, v+),   x+ = x + dt v+.
-inline constexpr std::array<Integrator, 4> implicit_integrators{{
+inline constexpr auto implicit_integrators = std::to_array<Integrator>({
     {.name = "implicit-euler",
      .order = 1,
      .description = "one Newton step of backward Euler by conjugate gradients (Baraff and Witkin 1998)",
@@ -48,7 +48,7 @@ inline constexpr std::array<Integrator, 4> implicit_integrators{{
      .order = 1,
      .description = "compliant constraints, spring after spring, in small steps (Macklin et al. 2016, 2019)",
      .solver = Solver::constraints},
-}};
+});
 
 /// All integrators, in the order of every listing and result.
 inline constexpr auto all_integrators = [] {

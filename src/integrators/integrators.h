@@ -14,7 +14,7 @@ namespace mssim {
 /// Numbering of the equations: Hong et al. 2016. Their published times fit one force evaluation a step for
 /// all three methods (midpoint costs 1.04 and RK4 1.22 Euler steps), so beside the real methods stand
 /// `-frozen` ones, which hold the acceleration over the step and take the trial steps with it.
-inline constexpr std::array<Integrator, 6> integrators{{
+inline constexpr auto integrators = std::to_array<Integrator>({
     // Eq. (2): v+ = v + dt a(x, v), x+ = x + dt v+.
     {"semi-euler",
      1,
@@ -100,7 +100,7 @@ inline constexpr std::array<Integrator, 6> integrators{{
      {{{Pair::state,
         {{{Slot::x_next, {{{1, 0, Slot::x}, {1, 1, Slot::v}}}},
           {Slot::v_next, {{{1, 0, Slot::v}, {1, 1, Slot::a}}}}}}}}}},
-}};
+});
 
 constexpr bool all_gather_safely() {
   for (const Integrator& integrator : integrators)

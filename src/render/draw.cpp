@@ -41,12 +41,12 @@ Rgb colour_of(const Light& light) { return {channel_of(light.x), channel_of(ligh
 
 namespace {
 
-constexpr std::array<NamedView, 4> views{{
+constexpr auto views = std::to_array<NamedView>({
     {"front", {0, 8}},
     {"side", {90, 8}},
     {"back", {180, 8}},
     {"three-quarter", {35, 18}},
-}};
+});
 
 std::optional<double> degrees(std::string_view text) {
   double value = 0;

@@ -371,12 +371,12 @@ std::vector<Finding> garment_findings(std::span<const ResultRow> rows) {
   for (const ResultRow& row : rows)
     if (row.dressing && counts(row)) by_backend[row.backend].push_back(&row);
   for (const auto& [backend, list] : by_backend) {
-    if (backend == "serial") continue;
+    if (backend == baseline_name) continue;
     std::size_t all = 0, faster = 0, slower = 0;
     const ResultRow* largest = list.front();
     for (const ResultRow* row : list) {
       if (row->nodes >= largest->nodes) largest = row;
-      const auto ratio = times_as_fast(row, find_row(pointers, row->scene, "serial", row->integrator));
+      const auto ratio = times_as_fast(row, find_row(pointers, row->scene, baseline_name, row->integrator));
       if (!ratio) continue;
       ++all;
       faster += ratio->side_of_one() == 1;
@@ -423,7 +423,7 @@ Finding about_speedups(std::span<const ResultRow> rows) {
   std::vector<std::string> near_one;
   std::size_t all = 0;
   for (const ResultRow& row : rows) {
-    const ResultRow* serial = find_row(pointers, row.scene, "serial", row.integrator);
+    const ResultRow* serial = find_row(pointers, row.scene, baseline_name, row.integrator);
     const auto ratio = serial == &row ? std::nullopt : times_as_fast(&row, serial);
     if (!ratio) continue;
     ++all;

@@ -93,7 +93,7 @@ std::optional<Chart> figure6_chart(std::span<const ResultRow> rows, const std::s
   for (const ResultRow& row : rows) {
     if (!row.dressing || !counts(row)) continue;
     const std::string name =
-        row.backend + (row.backend == "serial" ? ", without parallelisation" : ", with parallelisation");
+        row.backend + (row.backend == baseline_name ? ", without parallelisation" : ", with parallelisation");
     auto series = std::ranges::find(chart.series, name, &Series::name);
     if (series == chart.series.end())
       series = chart.series.insert(series, measured_series(name, row.backend));

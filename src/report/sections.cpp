@@ -215,7 +215,7 @@ Table times_of(const std::vector<const ResultRow*>& rows, RowPointers all) {
                {"verified"}},
               {}};
   for (const ResultRow* row : rows) {
-    const ResultRow* serial = find_row(all, row->scene, "serial", row->integrator);
+    const ResultRow* serial = find_row(all, row->scene, baseline_name, row->integrator);
     const auto speedup = serial != row ? times_as_fast(row, serial) : std::nullopt;
     const bool shown = counts(*row);
     Cell published = row->paper_ms;
@@ -456,7 +456,7 @@ std::string guide_section(const ReportInput& input) {
   });
 }
 
-constexpr std::array<PageSection, 12> sections{{
+constexpr auto sections = std::to_array<PageSection>({
     {"machine", "Machine and settings", machine_section, false},
     {"verdict", "Verdict", verdict_section},
     {"changes", "What changed", changes_section},
@@ -469,7 +469,7 @@ constexpr std::array<PageSection, 12> sections{{
     {"energy", "Energy", energy_section},
     {"pictures", "Pictures", picture_section},
     {"provenance", "Provenance", provenance_section, false},
-}};
+});
 
 }  // namespace
 

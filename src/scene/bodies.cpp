@@ -112,7 +112,7 @@ struct ShapeKind {
   Field section;
   void (*visit_fields)(FieldVisitor& fields, BodySpec& body);
 };
-constexpr std::array<ShapeKind, 6> shape_kinds{{
+constexpr auto shape_kinds = std::to_array<ShapeKind>({
     {{"box", "A box, its sides along the axes, its surface cut into squares of two triangles each."},
      visit_box},
     {{"sphere", "A sphere, its surface a finer icosahedron."}, visit_sphere},
@@ -121,7 +121,7 @@ constexpr std::array<ShapeKind, 6> shape_kinds{{
     {{"surface", "A closed surface in an OBJ or STL file, to be filled with tetrahedra."},
      visit_surface_file},
     {{"scene", "The shape of the first body of another scene."}, visit_scene_shape},
-}};
+});
 static_assert(shape_kinds.size() == std::variant_size_v<BodyShape>);
 
 /// The scene whose shape is meant; a path that is not absolute starts at `folder`.

@@ -10,7 +10,7 @@
 namespace mssim {
 
 /// Names the fields that say what shape a body has: the text `shape` and the section of that name, with their
-/// targets in `body`. The TABLE of shapes stands in body_shapes.cpp.
+/// targets in `body`.
 void visit_shape_fields(FieldVisitor& fields, BodySpec& body);
 
 /// A shape that is not that of another scene any more.
@@ -35,7 +35,7 @@ SceneCounts least_counts(const OwnShape& shape);
 TetMesh mesh_of(const OwnShape& shape);
 
 /// The row "bodies" of the table of scene kinds (scene_kinds.h says what each function is for). All of them
-/// but visit_bodies_fields need a spec whose body is a BodiesSpec.
+/// but visit_bodies_fields need a spec whose content is a BodiesSpec.
 
 void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec);
 

@@ -10,7 +10,7 @@
 namespace mssim {
 
 /// The row "cloth" of the table of scene kinds (scene_kinds.h says what each function is for). All of them
-/// but visit_cloth_fields need a spec whose body is a ClothSpec.
+/// but visit_cloth_fields need a spec whose content is a ClothSpec.
 
 void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec);
 

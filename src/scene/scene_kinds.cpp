@@ -12,7 +12,7 @@
 namespace mssim {
 namespace {
 
-constexpr std::array<SceneKind, 3> table{{
+constexpr auto table = std::to_array<SceneKind>({
     // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
     // both of its ends.
     {"cloth",
@@ -28,7 +28,7 @@ constexpr std::array<SceneKind, 3> table{{
      visit_bodies_fields, check_bodies, 3, stated_bodies_counts, read_bodies},
     {"garment", "Panels that are drawn together around a body along their seams, and draped.",
      visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, read_garment},
-}};
+});
 static_assert(table.size() == std::variant_size_v<decltype(SceneSpec::content)>);
 
 SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {

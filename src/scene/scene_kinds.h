@@ -13,7 +13,7 @@ namespace mssim {
 
 /// A row of the TABLE of scene kinds.
 struct SceneKind {
-  std::string_view name;  ///< value of the file's `kind`, and the key of the section that describes the body
+  std::string_view name;         ///< value of the file's `kind`, and the key of the section that describes it
   std::string_view description;  ///< of that section, in the schema
   /// Names the section's fields, with their targets in spec.content, which it sets to its alternative.
   void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
@@ -28,7 +28,7 @@ struct SceneKind {
   SceneParts (*read)(const SceneSpec& spec);
 };
 
-/// The TABLE of scene kinds, in the order of SceneSpec::body's alternatives. A new kind is one row in
+/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is one row in
 /// scene_kinds.cpp and one alternative.
 std::span<const SceneKind> scene_kinds();
 

@@ -69,7 +69,7 @@ grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timi
 # Data copied between host and device: the rows that do so say it.
 "$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite \
   >"$work/out" 2>"$work/err" || fail "bench --memory copy exits with $?"
-[ "$(column verified | grep -c true)" -eq 5 ] || fail "not 5 verified rows with copied memory"
+[ "$(column verified | sort -u)" = true ] || fail "not every row is verified with copied memory"
 [ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
 
 # Devices that are missing: rows say so, and it is an error where they were asked for.
@@ -103,7 +103,7 @@ for arguments in '--help' 'bench --help' 'run --help' 'check --help' 'compare --
   [ ! -s "$work/err" ] || fail "$arguments writes to stderr"
 done
 "$mssim" list scenes --format csv | grep '^cloth350k,cloth,350000,2094002,4188004,' >/dev/null || fail "list scenes"
-[ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq 11 ] || fail "list integrators"
+[ "$("$mssim" list integrators --format json | grep -c '"order"')" -eq "$(names_of integrators | wc -l)" ] || fail "list integrators"
 "$mssim" list backends | grep '^hybrid ' >/dev/null || fail "list backends"
 "$mssim" list methods --format csv | grep '^thread-private,12 bytes a node and thread,once,' >/dev/null || fail "list methods"
 "$mssim" list suites --format csv | grep '^scaling,true,false,"cloth40k, .* and cloth16m",' >/dev/null || fail "list suites"

@@ -34,20 +34,20 @@ notes() { ! grep ',mpi,' bits/timings.csv | grep -v -- "$1" || fail "the note do
 # One body, with every explicit integrator.
 scene one.json 0 "$(box 3 20 0 0.3 0)"
 for ranks in 1 2 3 4; do
-  same_bits ./one.json "$ranks" 1 "$explicit" 7
+  same_bits ./one.json "$ranks" 1 "$explicit" "$explicit_count"
   [ "$ranks" -eq 1 ] || notes ', 1 body divided"'
 done
-same_bits ./one.json 2 2 "$explicit" 7
+same_bits ./one.json 2 2 "$explicit" "$explicit_count"
 same_bits sphere-medium 4 2 semi-euler,rk4 2
 same_bits box-large 3 1 semi-euler,rk4 2
 
 # Several: whole ones where that is even, and as few as possible divided elsewhere. The last one is small.
 scene three.json 0 "$(box 3 20 0 0.3 0)" "$(box 3 20 0.3 0.3 0)" "$(box 3 20 0.6 0.3 0)"
 for ranks in 1 3; do
-  same_bits ./three.json "$ranks" 1 "$explicit" 7
+  same_bits ./three.json "$ranks" 1 "$explicit" "$explicit_count"
   notes ', whole bodies"'
 done
-same_bits ./three.json 2 1 "$explicit" 7
+same_bits ./three.json 2 1 "$explicit" "$explicit_count"
 notes ', 2 bodies whole, 1 divided"'
 same_bits ./three.json 4 2 semi-euler,rk4 2
 notes ', 3 bodies divided"'

@@ -31,6 +31,12 @@ column_of() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$1"
 }
 
+# names_of LIST: the first column of mssim list LIST, a line each
+names_of() { "$mssim" list "$1" --format csv | awk -F, 'NR > 1 { print $1 }'; }
+
+# explicit_integrators: their names, a line each
+explicit_integrators() { "$mssim" list integrators --format csv | awk -F, 'NR > 1 && $4 != "" { print $1 }'; }
+
 # run_python SOURCE SCRIPT ARGUMENTS...: SOURCE/tests/SCRIPT, by the Python with the modules that read traces: that of .ci/run
 # (scripts/lib/readers.sh), else Debian's own
 run_python() {

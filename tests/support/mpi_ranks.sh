@@ -37,9 +37,9 @@ rank_of() {
 # hashes FOLDER: of the states of all integrators, each once; notes before them hold commas
 hashes() { sed -nE 's/^([^,]*,){7}([^,]*),.*,([0-9a-f]{16}),.*/\2 \3/p' "$1/timings.csv" | sort -u; }
 
-# All explicit integrators.
-# shellcheck disable=SC2034 # tests use it
-explicit=semi-euler,midpoint,rk4,midpoint-frozen,rk4-frozen,explicit-euler,verlet
+# All explicit integrators, and how many they are.
+# shellcheck disable=SC2034 # tests use them
+explicit=$(explicit_integrators | paste -sd,) explicit_count=$(explicit_integrators | wc -l)
 
 # same_bits SCENE RANKS THREADS INTEGRATORS COUNT: mpi is verified with each of these COUNT integrators, and has the bits of openmp;
 # the results are in the folder bits

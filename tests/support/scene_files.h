@@ -10,9 +10,7 @@
 namespace mssim {
 
 /// The committed files, for tests.
-inline std::filesystem::path source_file(std::string_view relative) {
-  return std::filesystem::path(MSSIM_SOURCE_DIR) / relative;
-}
+std::filesystem::path source_file(std::string_view relative);
 
 /// `text` with its one `old_part` replaced; a test that replaces nothing would test nothing.
 inline std::string with_change(std::string text, std::string_view old_part, std::string_view new_part) {

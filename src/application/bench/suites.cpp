@@ -133,7 +133,7 @@ TableMaker table_of_scaling() { return scaling_tables(std::string(ever_larger_cl
 
 constexpr Comparison of_backends{table_backends, real_methods, tables_of_the_papers};
 
-constexpr std::array<Suite, 9> table{{
+constexpr auto table = std::to_array<Suite>({
     {"table1", "cloths: Table 1 of Hong et al.", true, true, cloths, of_backends},
     {"table2", "what the single bodies are: Table 2 of Hong et al.", true, false, single_bodies, of_backends},
     {"table3", "several bodies: Table 3 of Hong et al.", true, true, body_scenes, of_backends},
@@ -173,7 +173,7 @@ constexpr std::array<Suite, 9> table{{
      true,
      scenes_of_guide,
      {guide_backends, every_integrator, no_tables}},
-}};
+});
 
 bool belongs(const Suite& suite, std::string_view name) {
   return name == suite.name || (name == suites_of_tables && suite.in_tables);

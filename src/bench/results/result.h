@@ -10,6 +10,10 @@
 
 namespace mssim {
 
+/// The backend whose rows the others are compared with (speedup_vs_serial): the one that is marked
+/// BackendRole::baseline.
+inline constexpr std::string_view baseline_name = "serial";
+
 /// A number that says how a dressed garment fits.
 struct FitNumberRecord {
   std::string name;             ///< ends in its unit

@@ -297,7 +297,7 @@ struct FitNumber {
 constexpr double mm = 1e3;
 constexpr double percent = 100;
 
-constexpr std::array<FitNumber, 15> numbers{{
+constexpr auto numbers = std::to_array<FitNumber>({
     {"largest_gap_mm",
      [](const Fit& f) { return f.largest_gap; },
      &FitBounds::largest_gap,
@@ -376,7 +376,7 @@ constexpr std::array<FitNumber, 15> numbers{{
      .bound = nullptr,
      .per_unit = 1,
      .exists = [](const Fit& f) { return f.side_distance_height.has_value(); }},
-}};
+});
 
 bool exists(const FitNumber& number, const Fit& fit) {
   return number.exists == nullptr || number.exists(fit);

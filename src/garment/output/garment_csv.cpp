@@ -29,7 +29,7 @@ Cell of_dressing(const ResultRow& row, Value DressingRecord::*value) {
 
 /// The TABLE of columns, in their order; the numbers of the fit follow.
 constexpr std::size_t iterations_column = 12;
-constexpr std::array<GarmentColumn, 20> columns{{
+constexpr auto columns = std::to_array<GarmentColumn>({
     {"scene", [](const ResultRow& row) { return Cell(row.scene); }},
     {"nodes", [](const ResultRow& row) { return Cell(row.nodes); }},
     {"backend", [](const ResultRow& row) { return Cell(row.backend); }},
@@ -68,7 +68,7 @@ constexpr std::array<GarmentColumn, 20> columns{{
      [](const ResultRow& row) { return row.dressing ? Cell(ms_per_iteration(*row.dressing)) : Cell(); }},
     {"verified", [](const ResultRow& row) { return Cell(row.verified); }},
     {"status", [](const ResultRow& row) { return Cell(row.status); }},
-}};
+});
 static_assert(columns[iterations_column].name == "dressing_iterations");
 
 constexpr std::string_view within_suffix = "_within";

@@ -58,13 +58,13 @@ class Layout {
   std::vector<Line> lines_;
 };
 
-bool is_baseline(const Line& line) { return line.first == "serial"; }
+bool is_baseline(const Line& line) { return line.first == baseline_name; }
 
 /// A cell of the table of times.
 Cell time_cell(RowPointers rows, const ResultRow& row) {
   const std::optional<double> ms = counted_ms(row);
   Cell cell = measured_cell(&row, ms);
-  if (ms && row.speedup_vs_serial && row.backend != "serial")
+  if (ms && row.speedup_vs_serial && row.backend != baseline_name)
     cell.suffix.append(in_brackets(*row.speedup_vs_serial)).append(mark_of_speedup(rows, row));
   return cell;
 }

@@ -8,7 +8,7 @@
 namespace mssim {
 
 /// The row "garment" of the table of scene kinds (scene_kinds.h says what each function is for). All of them
-/// but visit_garment_fields need a spec whose body is a GarmentSpec.
+/// but visit_garment_fields need a spec whose content is a GarmentSpec.
 
 void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec);
 

@@ -34,13 +34,13 @@ struct RowFile {
 };
 
 /// The TABLE of files that are made of the rows of a run, all but tables of results.
-constexpr std::array<RowFile, 4> row_files{{
+constexpr auto row_files = std::to_array<RowFile>({
     {samples_name, [](std::span<const ResultRow> rows, const Provenance&) { return samples_csv(rows); }},
     {garment_name, [](std::span<const ResultRow> rows, const Provenance&) { return garment_csv(rows); }},
     {"benchmark.json", benchmark_json},
     // Written last: what stands there has its samples.
     {timings_name, [](std::span<const ResultRow> rows, const Provenance&) { return timings_csv(rows); }},
-}};
+});
 
 std::string csv_of(std::string_view table) { return std::string(table) + ".csv"; }
 std::string markdown_of(std::string_view table) { return std::string(table) + ".md"; }

@@ -122,7 +122,7 @@ Column scene_column(const ResultRow& row) { return {row.scene + '\n' + grouped(r
 std::string in_brackets(double ratio) { return " (" + three_digits(ratio) + "×)"; }
 
 std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row) {
-  const ResultRow* serial = find_row(rows, row.scene, "serial", row.integrator);
+  const ResultRow* serial = find_row(rows, row.scene, baseline_name, row.integrator);
   if (serial == nullptr || !serial->ms_per_step || !row.ms_per_step || !row.speedup_vs_serial) return "";
   return mark_of_ratio(*row.speedup_vs_serial, *serial->ms_per_step, *row.ms_per_step);
 }
@@ -143,8 +143,8 @@ std::string legend_of_excess(RowPointers rows, const Provenance& provenance) {
 }
 
 std::string reason_without_speedups(std::span<const std::string_view> backends) {
-  if (backends.empty() || std::ranges::find(backends, "serial") != backends.end()) return {};
-  std::string all = "serial";
+  if (backends.empty() || std::ranges::find(backends, baseline_name) != backends.end()) return {};
+  std::string all(baseline_name);
   for (const std::string_view backend : backends) all.append(",").append(backend);
   return "speed-ups are missing, since serial is not among the backends; add it: --backend " + all;
 }

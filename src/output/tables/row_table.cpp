@@ -60,7 +60,7 @@ RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
   if (!row.speedup_vs_serial) return {};
   const double ratio = *row.speedup_vs_serial;
   return {three_digits(ratio) + (utf8 ? "×" : "x"),
-          row.backend == "serial" ? dim
+          row.backend == baseline_name ? dim
           : ratio < 1             ? red
                                   : green,
           mark_of_speedup(rows, row)};

@@ -20,12 +20,12 @@ struct PaperConfiguration {
   std::string_view name;
   std::string_view caption;
 };
-inline constexpr std::array<PaperConfiguration, 4> paper_configurations{{
+inline constexpr auto paper_configurations = std::to_array<PaperConfiguration>({
     {"cpu-only", "CPU only"},
     {"multi-thread-cpu", "Multi-thread CPU"},
     {"gpu", "GPU"},
     {"gpu+multi-thread-cpu", "GPU + multi-thread CPU"},
-}};
+});
 
 /// A row of the TABLE of published tables of times.
 struct PublishedTableInfo {
@@ -33,10 +33,10 @@ struct PublishedTableInfo {
   std::string_view title;            ///< what it measures, and its number in the paper
   std::string_view springs_counted;  ///< how often the published counts contain a unique spring
 };
-inline constexpr std::array<PublishedTableInfo, 2> published_table_kinds{{
+inline constexpr auto published_table_kinds = std::to_array<PublishedTableInfo>({
     {"table1", "Cloth: Table 1 of Hong et al. (2016)", "twice"},
     {"table3", "Bodies: Table 3 of Hong et al. (2016)", "three times"},
-}};
+});
 
 /// One published table of times.
 class PublishedTable {

@@ -24,7 +24,7 @@ struct UnitInfo {
 /// In the notation of H5MD's units module. They stand apart, under /parameters/units, because MDAnalysis
 /// refuses a `unit` attribute that is a fixed-length string and knows no metres; without any it must be told
 /// convert_units=False.
-constexpr std::array<UnitInfo, 8> units{{
+constexpr auto units = std::to_array<UnitInfo>({
     {"position", "m"},
     {"velocity", "m s-1"},
     {"time", "s"},
@@ -33,7 +33,7 @@ constexpr std::array<UnitInfo, 8> units{{
     {"rest_length", "m"},
     {"stiffness", "N m-1"},
     {"damping", "N s m-1"},
-}};
+});
 
 void write_metadata(hid_t file, const TraceHeader& header) {
   constexpr std::array<std::int64_t, 2> h5md_version{1, 1};
@@ -170,7 +170,7 @@ struct ObservableInfo {
   bool is_loss;
   double (*value)(const Energy&, const EnergyLosses&);
 };
-constexpr std::array<ObservableInfo, 8> observable_kinds{{
+constexpr auto observable_kinds = std::to_array<ObservableInfo>({
     {"/observables/kinetic_energy", false, [](const Energy& energy, auto&) { return energy.kinetic; }},
     {"/observables/elastic_energy", false, [](const Energy& energy, auto&) { return energy.elastic; }},
     {"/observables/gravitational_energy", false,
@@ -181,7 +181,7 @@ constexpr std::array<ObservableInfo, 8> observable_kinds{{
     {"/observables/bounce_loss", true, [](auto&, const EnergyLosses& losses) { return losses.bounce; }},
     {"/observables/integration_loss", true,
      [](auto&, const EnergyLosses& losses) { return losses.integration; }},
-}};
+});
 
 /// Series of single numbers. Their chunks hold many frames and are rewritten in place at every flush, which
 /// needs chunks whose stored size never changes: no deflation.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "bench/results/result.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 
@@ -27,6 +28,10 @@ TEST(Suites, NameScenesAndIntegratorsThatExist) {
       EXPECT_NE(find_integrator(integrator), nullptr) << suite.name << ": " << integrator;
     EXPECT_FALSE(suite.comparison.integrators.empty() || suite.comparison.backends().empty()) << suite.name;
   }
+}
+
+TEST(Suites, CompareWithTheBackendThatResultsCallTheBaseline) {
+  EXPECT_EQ(baseline_backend().name, baseline_name);
 }
 
 TEST(Suites, CalledTablesAreThoseOfThePaperAlone) {

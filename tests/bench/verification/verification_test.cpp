@@ -20,6 +20,7 @@
 #include "scene/scene_file.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
+#include "tests/support/scene_files.h"
 
 namespace mssim {
 namespace {
@@ -181,7 +182,7 @@ TEST(Verification, FindsTheFaultsThatDocsBenchSaysItFinds) {
     EXPECT_GT(distance, 5) << fault.name;
     table << (distance > 1 ? " found |" : " - |") << '\n';
   }
-  std::ifstream page(MSSIM_SOURCE_DIR "/docs/bench.md");
+  std::ifstream page(source_file("docs/bench.md"));
   const std::string text(std::istreambuf_iterator<char>(page), {});
   EXPECT_NE(text.find(table.str()), std::string::npos) << "docs/bench.md should have\n" << table.str();
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/support/result_fixture.h"
+#include "tests/support/scene_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {
@@ -86,8 +87,7 @@ TEST_F(ProvenanceFile, ReadsBackWhatWasWritten) {
 
 TEST_F(ProvenanceFile, ReadsTheFilesUnderResults) {
   int read = 0;
-  for (const auto& folder :
-       std::filesystem::directory_iterator(std::filesystem::path(MSSIM_SOURCE_DIR) / "results"))
+  for (const auto& folder : std::filesystem::directory_iterator(source_file("results")))
     if (const auto file = folder.path() / "provenance.json"; exists(file)) {
       EXPECT_FALSE(read_provenance(file).scenes.empty()) << file;
       ++read;

@@ -19,6 +19,7 @@
 #include "output/tables/table.h"
 #include "platform/files.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/scene_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace mssim {
@@ -46,7 +47,7 @@ TEST_F(ResultFiles, TimingsHaveAColumnForEachNumberAndQuoteWhatNeedsIt) {
 }
 
 TEST(ResultColumns, AreWhereTheyWere) {
-  const CsvTable earlier(fs::path(MSSIM_SOURCE_DIR) / "results/cluster/zen4/timings.csv");
+  const CsvTable earlier(source_file("results/cluster/zen4/timings.csv"));
   const std::vector<std::string_view> known(earlier.header().begin(), earlier.header().end());
   EXPECT_NO_THROW(CsvTable("timings.csv", timings_csv({})).require_columns(known));
 }
@@ -58,7 +59,7 @@ TEST(ResultColumns, AreThoseOfTheDocumentation) {
                {"unit", column.unit},
                {"what it is", column.meaning}});
   const std::string wanted = '\n' + markdown({table}) + '\n';
-  EXPECT_THAT(text_of(std::filesystem::path(MSSIM_SOURCE_DIR) / "docs/bench.md"), HasSubstr(wanted));
+  EXPECT_THAT(text_of(source_file("docs/bench.md")), HasSubstr(wanted));
 }
 
 TEST_F(ResultFiles, TimingsAndSamplesComeBackAsTheyWere) {

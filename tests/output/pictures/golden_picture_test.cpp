@@ -18,6 +18,7 @@
 #include "platform/files.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/png_fixture.h"
+#include "tests/support/scene_files.h"
 #include "tests/support/solid_system.h"
 #include "tests/support/temporary_folder.h"
 
@@ -45,7 +46,7 @@ int largest_difference(const Picture& a, const Picture& b) {
 }
 
 void expect_golden(const Picture& drawn, const std::string& name) {
-  const std::string committed = MSSIM_SOURCE_DIR "/tests/output/pictures/golden/" + name;
+  const std::string committed = source_file("tests/output/pictures/golden/" + name);
   const Picture golden = std::filesystem::exists(committed) ? decoded(text_of(committed)) : Picture();
   const bool same_size = golden.width == drawn.width && golden.height == drawn.height;
   const int difference = same_size ? largest_difference(golden, drawn) : 255;

@@ -7,6 +7,7 @@
 #include "output/traces/energy_curve.h"
 #include "output/traces/h5md_trace.h"
 #include "tests/support/output_fixture.h"
+#include "tests/support/scene_files.h"
 
 namespace mssim {
 namespace {
@@ -55,8 +56,8 @@ class CheckEnergy : public TemporaryFolderTest {
   /// Runs the script with these arguments, in the environment that `before` sets.
   Verdict run(const std::string& arguments, const std::string& before = "") const {
     const auto out = folder() / "out", err = folder() / "err";
-    const std::string command = "cd '" + folder().string() + "' && " + before +
-                                " '" MSSIM_SOURCE_DIR "/scripts/check-energy' " + arguments + " >'" +
+    const std::string command = "cd '" + folder().string() + "' && " + before + " '" +
+                                source_file("scripts/check-energy").string() + "' " + arguments + " >'" +
                                 out.string() + "' 2>'" + err.string() + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};

@@ -1,0 +1,12 @@
+#include "tests/support/scene_files.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace mssim {
+
+std::filesystem::path source_file(std::string_view relative) {
+  return std::filesystem::path(MSSIM_SOURCE_DIR) / relative;
+}
+
+}  // namespace mssim
