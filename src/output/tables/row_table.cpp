@@ -61,8 +61,8 @@ RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
   const double ratio = *row.speedup_vs_serial;
   return {three_digits(ratio) + (utf8 ? "×" : "x"),
           row.backend == baseline_name ? dim
-          : ratio < 1             ? red
-                                  : green,
+          : ratio < 1                  ? red
+                                       : green,
           mark_of_speedup(rows, row)};
 }
 
