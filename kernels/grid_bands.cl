@@ -1,6 +1,6 @@
 /* The walk over a grid where a work-item has several lanes: the shape that suits a CPU. What a stage does in
  * a column, and the kernel that takes steps, are generated from the table of integrators
- * (src/backends/opencl/grid_program.cpp) and follow this text.
+ * (src/backends/opencl/programs.cpp) and follow this text.
  *
  * The layout is that of BandLayout (src/backends/layouts/band_grid.h): the rows are cut into MSSIM_LANES
  * bands of `height` rows, lane b holds band b, and a pair is

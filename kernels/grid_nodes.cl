@@ -1,6 +1,6 @@
 /* What the stage kernels of a grid have in common where a work-item owns one node, gathers the forces of all
  * its springs and runs the stage's assignments on it: the shape that suits a GPU. The kernels themselves are
- * generated from the tables of integrators and of the stencil (src/backends/opencl/grid_program.cpp) and
+ * generated from the tables of integrators and of the stencil (src/backends/opencl/programs.cpp) and
  * follow this text.
  *
  * Memory of a pair: six planes (x, y, z, u, v, w) of `plane` floats. Node (row, column) lies at

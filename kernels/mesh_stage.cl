@@ -1,5 +1,5 @@
 /* What the stage kernels of a tetrahedral body have in common. The kernels themselves are generated from the
- * table of integrators (src/backends/opencl/mesh_program.cpp) and follow this text: a work-item takes tiles
+ * table of integrators (src/backends/opencl/programs.cpp) and follow this text: a work-item takes tiles
  * of MSSIM_LANES nodes, one after the other, and every node gathers the forces of all its springs.
  *
  * A pair is an array of records (records.h). The springs are those of a sliced graph (SlicedGraph in

@@ -1,5 +1,5 @@
 // Asks all OpenCL drivers for their devices. A driver that ends the process that asks it ends this one, and
-// not mssim, which runs it before it asks itself (backends/devices/offer.h). The arguments are the libraries
+// not mssim, which runs it before it asks itself (backends/devices/drivers.h). The arguments are the libraries
 // of the registered drivers. Of each that offers no platform stdout says why: a line of obstacle_mark, its
 // number and what it does not do.
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/devices/registered_drivers.h"
+#include "backends/devices/driver_environment.h"
 
 namespace {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "backends/described/backend_description.h"
-#include "backends/devices/offer.h"
+#include "backends/devices/drivers.h"
 #include "backends/process/process_backend.h"
 #include "integrators/all_integrators.h"
 #include "platform/files.h"

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "backends/devices/offer.h"
+#include "backends/devices/drivers.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "platform/process.h"

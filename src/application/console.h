@@ -66,7 +66,7 @@ class ProgressLine {
 void tell_first(const std::vector<std::string>& sentences);
 
 /// Says on stderr, once in a process, what the drivers of OpenCL devices lack. For a command that uses such a
-/// device: it asks the drivers (backends/devices/offer.h).
+/// device: it asks the drivers (backends/devices/drivers.h).
 void tell_of_opencl();
 
 /// While it lives, a first ending signal (platform/process.h) is remembered, and told on stderr, so

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <system_error>
 
-#include "backends/devices/offer.h"
+#include "backends/devices/drivers.h"
 #include "mesh/tetgen.h"
 #include "output/folders/provenance_file.h"
 #include "platform/files.h"

@@ -4,9 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "backends/devices/driver_trial.h"
-#include "backends/devices/offer.h"
-#include "backends/devices/sub_device.h"
+#include "backends/devices/drivers.h"
+#include "backends/devices/device.h"
 #include "backends/hybrid/hybrid.h"
 #include "backends/implicit/implicit.h"
 #include "backends/interface/ahead.h"

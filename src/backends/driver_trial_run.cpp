@@ -6,8 +6,7 @@
 #include <exception>
 
 #include "backends/backends.h"
-#include "backends/devices/driver_trial.h"
-#include "backends/devices/offer.h"
+#include "backends/devices/drivers.h"
 #include "integrators/all_integrators.h"
 
 namespace mssim {

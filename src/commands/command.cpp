@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "application/outputs.h"
-#include "backends/devices/driver_trial.h"
+#include "backends/devices/drivers.h"
 #include "backends/driver_trial_run.h"
 #include "bench/machine/build_info.h"
 #include "commands/arguments/program_parser.h"

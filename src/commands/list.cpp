@@ -13,7 +13,7 @@
 #include "application/console.h"
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
-#include "backends/devices/offer.h"
+#include "backends/devices/drivers.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "integrators/all_integrators.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "backends/devices/device.h"
-#include "backends/devices/offer.h"
+#include "backends/devices/drivers.h"
 #include "backends/hybrid/hybrid.h"
 #include "backends/opencl/opencl.h"
 

@@ -1,19 +1,171 @@
 #pragma once
 
+#include <sys/mman.h>
+
 #include <CL/opencl.hpp>
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <new>
 #include <span>
 #include <string>
+#include <utility>
 
-#include "backends/devices/buffer.h"
 #include "backends/devices/device.h"
-#include "backends/devices/program.h"
-#include "backends/devices/sub_device.h"
-#include "backends/devices/work_items.h"
-#include "backends/interface/backend.h"
 
 namespace mssim {
+
+/// Does `work`; an OpenCL call in it that fails throws Failure with one sentence.
+template <class Failure, class Work>
+auto opencl_call(Work&& work) {
+  try {
+    return std::forward<Work>(work)();
+  } catch (const cl::Error& error) {
+    throw Failure(opencl_failure(error.what(), error.err()));
+  }
+}
+
+/// Text of the files in kernels/, in this order, for `lanes` nodes or springs side by side in one number (1,
+/// 4, 8 or 16). What else a program has must depend on the integrator alone, so that a driver's cache of
+/// built programs serves every scene. Throws std::runtime_error when a file is missing.
+std::string program_text(int lanes, std::initializer_list<const char*> files);
+/// The program text where nodes lie in slices of so many.
+std::string slices_program_text(std::size_t slice_nodes, int lanes, std::initializer_list<const char*> files);
+
+/// The built program. Square roots and divisions are correctly rounded where the device can do that.
+/// Throws Unavailable with the compiler's first complaint.
+cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text);
+
+/// An array of T that a device's kernels and the host take turns with.
+///
+/// In shared memory, on a device that shares the host's, the array lies in aligned host memory and is never
+/// copied; where the device can, it is fine-grained shared virtual memory, and taking turns costs no command
+/// in the queue: a step of hybrid on bodies38233 takes 0.8 of the time. On a device with memory of its own it
+/// lies there, and the driver copies it whenever the host maps or unmaps it. In copied memory there are two
+/// arrays, one on the device and one on the host; mapping and unmapping are the explicit transfers between
+/// them.
+template <class T>
+class OpenclBuffer {
+ public:
+  OpenclBuffer(const cl::Context& context, const OpenclDevice& device, DeviceMemory memory, std::size_t size)
+      : size_(size),
+        exchange_(memory == DeviceMemory::copy                     ? Exchange::copies
+                  : device.host_memory == HostMemory::fine_grained ? Exchange::nothing
+                                                                   : Exchange::maps) {
+    // Whole pages, because drivers copy what begins or ends within a cache line.
+    constexpr std::size_t page = 4096, huge_page = std::size_t{2} << 20;
+    const std::size_t alignment = size * sizeof(T) >= huge_page ? huge_page : page;
+    const std::size_t bytes = (size * sizeof(T) + alignment - 1) / alignment * alignment;
+    if (exchange_ == Exchange::copies || device.host_memory != HostMemory::none) {
+      memory_ = exchange_ == Exchange::nothing ? shared_virtual_memory(context, bytes)
+                                               : host_memory(alignment, bytes);
+      if (!memory_) throw std::bad_alloc();
+      aligned(memory_.get());
+      if (alignment == huge_page) wish_for_huge_pages(memory_.get(), bytes);
+    }
+    // A buffer made of shared virtual memory is that memory (The OpenCL Specification, 3.0, clCreateBuffer).
+    if (memory_ && exchange_ != Exchange::copies) {
+      buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory_.get());
+    } else {
+      buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes);
+    }
+  }
+
+  const cl::Buffer& buffer() const { return buffer_; }
+  std::size_t size() const { return size_; }
+
+  /// Hands the array to the host. Waits for the queue's work when `block`; else it is the host's once a later
+  /// blocking call on the same in-order queue has returned. `use`: CL_MAP_READ and/or CL_MAP_WRITE. With
+  /// CL_MAP_READ the host sees what kernels wrote; without it, it may not read what they wrote, and finds
+  /// everything else as it left it.
+  std::span<T> map(const cl::CommandQueue& queue, cl_map_flags use, bool block = true) const {
+    const cl_bool blocking = block ? CL_TRUE : CL_FALSE;
+    if (exchange_ == Exchange::maps)
+      return {aligned(queue.enqueueMapBuffer(buffer_, blocking, use, 0, size_ * sizeof(T))), size_};
+    if (exchange_ == Exchange::copies && (use & CL_MAP_READ) != 0) {
+      queue.enqueueReadBuffer(buffer_, blocking, 0, size_ * sizeof(T), memory_.get());
+    } else if (block) {
+      queue.finish();  // kernels, or an earlier transfer to the device, may still be reading
+    }
+    return {memory_.get(), size_};
+  }
+  /// Hands what `map` gave back, for the same `use`, to the device, for the work that is queued from now on.
+  void unmap(const cl::CommandQueue& queue, std::span<T> mapped, cl_map_flags use) const {
+    if (exchange_ == Exchange::maps) queue.enqueueUnmapMemObject(buffer_, mapped.data());
+    if (exchange_ == Exchange::copies && (use & CL_MAP_WRITE) != 0)
+      queue.enqueueWriteBuffer(buffer_, CL_FALSE, 0, size_ * sizeof(T), memory_.get());
+  }
+  /// Lets `fill` write the array, a std::span<T>, while the device has nothing to do with it.
+  template <class Fill>
+  void write(const cl::CommandQueue& queue, Fill&& fill) const {
+    const std::span<T> array = map(queue, CL_MAP_WRITE);
+    fill(array);
+    unmap(queue, array, CL_MAP_WRITE);
+    queue.finish();
+  }
+
+ private:
+  /// What taking turns takes.
+  enum class Exchange : std::uint8_t { copies, maps, nothing };
+  using Memory = std::unique_ptr<T, std::function<void(T*)>>;
+
+  static Memory host_memory(std::size_t alignment, std::size_t bytes) {
+    return {static_cast<T*>(std::aligned_alloc(alignment, bytes)), [](T* memory) { std::free(memory); }};
+  }
+  static Memory shared_virtual_memory(const cl::Context& context, std::size_t bytes) {
+    constexpr cl_svm_mem_flags flags = CL_MEM_READ_WRITE | CL_MEM_SVM_FINE_GRAIN_BUFFER;
+    return {static_cast<T*>(clSVMAlloc(context(), flags, bytes, 0)),
+            [context](T* memory) { clSVMFree(context(), memory); }};
+  }
+  /// What the driver gave, if vectors can be loaded from it. OpenCL promises more, but not every driver keeps
+  /// it.
+  static T* aligned(void* memory) {
+    constexpr std::uintptr_t vector_bytes = 64;
+    if (reinterpret_cast<std::uintptr_t>(memory) % vector_bytes != 0)
+      throw Unavailable(
+          "the OpenCL driver gives the host memory that is not aligned to 64 bytes; use --memory copy");
+    return static_cast<T*>(memory);
+  }
+  /// Without them the array is only slower. For the whole pages of it.
+  static void wish_for_huge_pages(T* memory, std::size_t bytes) {
+    constexpr std::uintptr_t page = 4096;
+    const auto address = reinterpret_cast<std::uintptr_t>(memory);
+    const std::uintptr_t begin = (address + page - 1) / page * page, end = (address + bytes) / page * page;
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  }
+
+  std::size_t size_;
+  Exchange exchange_;
+  Memory memory_;  // outlives buffer_, which may refer to it
+  cl::Buffer buffer_;
+};
+
+/// Work-items of a launch, a multiple of those of a group.
+struct WorkItems {
+  cl::NDRange global, local;
+};
+
+/// How the work-items of a launch share work that comes in chunks of `lanes` nodes or springs each. On a CPU,
+/// where a work-item has several lanes, few work-items take many chunks in turn, and yet enough that one that
+/// was held up leaves some of its share to the others. Where it has one lane, each takes one.
+struct OpenclChunks {
+  WorkItems items;
+  std::size_t per_item = 0;  ///< chunks of a work-item
+
+  OpenclChunks(std::size_t chunks, const OpenclDevice& device, int lanes) {
+    constexpr std::size_t good_items_per_unit = 16, good_group = 64;
+    const bool wide = lanes > 1;
+    const std::size_t local = wide ? 1 : good_group;
+    per_item = wide ? std::max<std::size_t>(1, chunks / (good_items_per_unit * device.compute_units)) : 1;
+    items = {cl::NDRange(((chunks + per_item - 1) / per_item + local - 1) / local * local),
+             cl::NDRange(local)};
+  }
+};
+
 
 /// A kernel whose arguments are set.
 struct Launch {

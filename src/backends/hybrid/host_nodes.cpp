@@ -1,6 +1,6 @@
 #include "backends/hybrid/host_nodes.h"
 
-#include "backends/devices/program.h"
+#include "backends/devices/device_queue.h"
 
 namespace mssim {
 

@@ -10,10 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "backends/devices/call.h"
-#include "backends/devices/driver_trial.h"
-#include "backends/devices/offer.h"
-#include "backends/devices/sub_device.h"
+#include "backends/devices/device_queue.h"
+#include "backends/devices/drivers.h"
+#include "backends/devices/device.h"
 #include "backends/hybrid/integrate_alike_nodes.h"
 #include "backends/hybrid/integrate_nodes.h"
 #include "backends/hybrid/spring_device.h"

@@ -7,10 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "backends/devices/buffer.h"
-#include "backends/devices/device.h"
 #include "backends/devices/device_queue.h"
-#include "backends/devices/work_items.h"
+#include "backends/devices/device.h"
 #include "backends/hybrid/spring_kernel.h"
 #include "integrators/integrator.h"
 

@@ -1,60 +1,107 @@
 #include "backends/opencl/stages.h"
 
+#include <cstring>
 #include <stdexcept>
-#include <utility>
 
-#include "backends/devices/call.h"
-#include "backends/devices/program.h"
-#include "backends/opencl/step_parameters.h"
+#include "backends/opencl/programs.h"
+#include "integrators/coefficients.h"
+#include "kernels/step_parameters.h"
 
 namespace mssim {
 namespace {
 
-/// `state` and `next` change roles after every step.
-Pair role(Pair pair, bool swapped) {
-  if (swapped && pair == Pair::state) return Pair::next;
-  if (swapped && pair == Pair::next) return Pair::state;
-  return pair;
+constexpr Storage storage = Storage::separate;
+
+/// The sizes of the integrator's pairs and of `others`.
+std::vector<std::uint64_t> with_pairs(const Integrator& integrator, std::size_t pair_floats,
+                                      std::vector<std::uint64_t> others) {
+  others.insert(others.end(), stored_pairs(integrator, storage).size(), pair_floats * sizeof(float));
+  return others;
 }
 
 }  // namespace
 
+OpenclBackend::OpenclBackend(const System& system, const Integrator& integrator, double dt_s,
+                             const OpenclDevice& device, DeviceMemory memory, PairLayout layout,
+                             std::span<const std::uint64_t> buffers)
+    : layout_(std::move(layout)), queue_(device, memory) {
+  require_memory(device, buffers);
+  StepParameters step{};
+  step.surroundings = surroundings_of(system);
+  const Coefficients<float> coefficients = coefficients_of<float>(integrator, dt_s);
+  static_assert(sizeof(coefficients) == sizeof(step.coefficients));
+  std::memcpy(step.coefficients, coefficients.data(), sizeof(step.coefficients));
+  add_argument(std::span<const StepParameters>(&step, 1));
+}
+
+void OpenclBackend::add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items) {
+  for (const auto& buffer : arguments_) kernel.setArg(argument++, buffer.buffer());
+  launches_[swapped ? 1 : 0].push_back({std::move(kernel), items});
+}
+
+void OpenclBackend::write_state(const OpenclBuffer<float>& buffer, const PairLayout& layout,
+                                const State& state, std::size_t first) const {
+  opencl_call<std::runtime_error>([&] {
+    buffer.write(queue_.commands(), [&](std::span<float> memory) {
+      const auto put = [&](std::size_t offset, std::size_t node) {
+        const Vec3d &x = state.position[node], &v = state.velocity[node];
+        const std::array values{x.x, x.y, x.z, v.x, v.y, v.z};
+        for (std::size_t i = 0; i < values.size(); ++i)
+          memory[first + offset + layout.component[i]] = static_cast<float>(values[i]);
+      };
+      for (std::size_t node = 0; node < layout.node.size(); ++node) put(layout.node[node], node);
+      for (const auto& [offset, node] : layout.copies) put(offset, node);
+    });
+  });
+}
+
+State OpenclBackend::read_state(const OpenclBuffer<float>& buffer) const {
+  return opencl_call<std::runtime_error>([&] {
+    const auto memory = buffer.map(queue_.commands(), CL_MAP_READ);
+    State state;
+    for (const std::size_t node : layout_.node) {
+      const auto number = [&](std::size_t i) { return double{memory[node + layout_.component[i]]}; };
+      state.position.push_back({number(0), number(1), number(2)});
+      state.velocity.push_back({number(3), number(4), number(5)});
+    }
+    buffer.unmap(queue_.commands(), memory, CL_MAP_READ);
+    queue_.commands().finish();
+    return state;
+  });
+}
+
 OpenclStages::OpenclStages(const System& system, const Integrator& integrator, double dt_s,
                            const OpenclDevice& device, DeviceMemory memory, PairLayout layout,
                            std::vector<std::uint64_t> others)
-    : integrator_(integrator), layout_(std::move(layout)), queue_(device, memory) {
-  const std::vector<Pair> stored = stored_pairs(integrator, storage);
-  others.insert(others.end(), stored.size(), layout_.floats * sizeof(float));
-  require_memory(device, others);
-
+    : OpenclBackend(system, integrator, dt_s, device, memory, layout,
+                    with_pairs(integrator, layout.floats, std::move(others))),
+      integrator_(integrator) {
   // Zeros in the padding too, so that no arithmetic there meets a denormal number, which can be slow.
-  for (const Pair pair : stored) pairs_[index(pair)] = queue_.zeros<float>(layout_.floats);
-  const StepParameters step = step_parameters_of(system, integrator, dt_s);
-  add_argument(std::span(&step, 1));
+  for (const Pair pair : stored_pairs(integrator, storage))
+    pairs_[index(pair)] = queue_.zeros<float>(layout_.floats);
 }
 
 void OpenclStages::prepare(const std::string& program_text, const WorkItems& items, const State& start) {
   const cl::Program program = queue_.build(program_text);
-  // One kernel object per stage and role of the pairs, its arguments set once and for all.
   for (const bool swapped : {false, true})
     for (std::size_t stage = 0; stage < integrator_.stage_count; ++stage) {
       cl::Kernel kernel(program, stage_kernel_name(stage).c_str());
       cl_uint argument = 0;
       for (const Pair pair : stage_arguments({integrator_, stage, storage}))
         kernel.setArg(argument++, arrays(pair, swapped).buffer());
-      for (const auto& buffer : arguments_) kernel.setArg(argument++, buffer.buffer());
-      launches_[swapped ? 1 : 0].push_back({kernel, items});
+      add_launch(swapped, kernel, argument, items);
     }
   warm_up(*this, start, 2);  // in both roles of the pairs
 }
 
 const OpenclBuffer<float>& OpenclStages::arrays(Pair pair, bool swapped) const {
-  return *pairs_[index(role(pair, swapped))];
+  if (swapped && pair == Pair::state) return *pairs_[index(Pair::next)];
+  if (swapped && pair == Pair::next) return *pairs_[index(Pair::state)];
+  return *pairs_[index(pair)];
 }
 
 void OpenclStages::set_state(const State& state) {
-  opencl_call<std::runtime_error>(
-      [&] { write_state(queue_, arrays(Pair::state, swapped_), layout_, state); });
+  write_state(arrays(Pair::state, swapped_), layout_, state);
 }
 
 void OpenclStages::step(int count) {
@@ -66,9 +113,6 @@ void OpenclStages::step(int count) {
   });
 }
 
-State OpenclStages::state() const {
-  return opencl_call<std::runtime_error>(
-      [&] { return read_state(queue_, arrays(Pair::state, swapped_), layout_); });
-}
+State OpenclStages::state() const { return read_state(arrays(Pair::state, swapped_)); }
 
 }  // namespace mssim

@@ -7,57 +7,81 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "backends/devices/buffer.h"
 #include "backends/devices/device.h"
 #include "backends/devices/device_queue.h"
 #include "backends/interface/backend.h"
-#include "backends/opencl/pair_layout.h"
 
 namespace mssim {
 
+/// How a topology's nodes lie in the buffer of a pair.
+struct PairLayout {
+  std::size_t floats = 0;         ///< in the buffer
+  std::vector<std::size_t> node;  ///< [nodes] where the node's numbers begin
+  /// Where a node's numbers stand besides: where they begin, and the node. Kernels keep them up to date.
+  std::vector<std::pair<std::size_t, std::size_t>> copies;
+  std::array<std::size_t, 6> component{};  ///< from there on x, y, z, u, v, w
+};
+
+/// What all OpenCL backends have: a device, the arguments of their kernels, and two sets of launches. Their
+/// buffers change roles from one launch to the next, so that every other one is `swapped`.
+class OpenclBackend : public Backend {
+ public:
+  std::string device() const override { return queue_.label(); }
+  int threads() const override { return queue_.threads(); }
+  bool runs_on_host() const override { return queue_.runs_on_host(); }
+
+ protected:
+  /// Throws Unsupported unless the device can hold `buffers`, all bytes. The step parameters are the first
+  /// argument.
+  OpenclBackend(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
+                DeviceMemory memory, PairLayout layout, std::span<const std::uint64_t> buffers);
+
+  /// The next argument of every kernel: a buffer with a copy of `values`.
+  template <class T>
+  void add_argument(std::span<const T> values) {
+    arguments_.push_back(queue_.copy_of(std::as_bytes(values)));
+  }
+  /// A launch whose kernel object has its arguments set once and for all: the common ones from `argument` on.
+  void add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items);
+
+  /// Writes the state into a buffer of this layout that begins `first` floats into `buffer`.
+  void write_state(const OpenclBuffer<float>& buffer, const PairLayout& layout, const State& state,
+                   std::size_t first = 0) const;
+  State read_state(const OpenclBuffer<float>& buffer) const;
+
+  PairLayout layout_;  ///< of the state
+  DeviceQueue queue_;
+  std::vector<OpenclBuffer<std::byte>> arguments_;
+  std::array<std::vector<Launch>, 2> launches_;  ///< [swapped]
+  bool swapped_ = false;                         ///< the next launch is
+};
+
 /// Steps a system by one kernel per stage of the integrator, all steps queued one behind the other: what the
-/// `opencl` backend does unless it walks over a cloth (bands.h). A derived class says how nodes lie in
+/// `opencl` backend does unless it walks over a cloth (cloth.h). A derived class says how nodes lie in
 /// memory, gives the program and the arguments that its kernels take, and then calls `prepare`.
-class OpenclStages : public Backend {
+class OpenclStages : public OpenclBackend {
  public:
   void set_state(const State& state) override;
   void step(int count) override;
   State state() const override;
-  std::string device() const override { return queue_.label(); }
-  int threads() const override { return queue_.threads(); }
-  bool runs_on_host() const override { return queue_.runs_on_host(); }
 
  protected:
   /// Throws Unsupported unless the device can hold the integrator's pairs and `others`, all bytes.
   OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
                DeviceMemory memory, PairLayout layout, std::vector<std::uint64_t> others);
 
-  /// The next argument of every kernel: a buffer with a copy of `values`, or of this size. The step
-  /// parameters are there from the beginning.
-  template <class T>
-  void add_argument(std::span<const T> values) {
-    arguments_.push_back(queue_.copy_of(std::as_bytes(values)));
-  }
-  void add_buffer(std::size_t bytes) { arguments_.push_back(queue_.array<std::byte>(bytes)); }
-
   /// Builds the program and warms up; then stands at `start`.
   void prepare(const std::string& program_text, const WorkItems& items, const State& start);
 
  private:
-  /// The arrays that hold `pair`.
+  /// The arrays that hold `pair`; `state` and `next` change roles after every step.
   const OpenclBuffer<float>& arrays(Pair pair, bool swapped) const;
 
-  static constexpr Storage storage = Storage::separate;
-
   const Integrator& integrator_;
-  PairLayout layout_;
-  DeviceQueue queue_;
   std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are needed
-  std::vector<OpenclBuffer<std::byte>> arguments_;
-  std::array<std::vector<Launch>, 2> launches_;  // [swapped][stage]
-  bool swapped_ = false;                         // the state lies in the pair `next`
 };
 
 }  // namespace mssim

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "backends/devices/buffer.h"
-#include "backends/devices/call.h"
 #include "backends/devices/device_queue.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/opencl_panels.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 
-#include "backends/devices/program.h"
+#include "backends/devices/device_queue.h"
 #include "backends/interface/backend.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/garment_grid.h"

@@ -1,4 +1,5 @@
-// Launches that take several steps through all stages, against launches of one step and of one stage.
+// Launches that take several steps through all stages, against launches of one step and of one stage; and
+// how many steps a launch is made to take.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,10 +8,11 @@
 #include <memory>
 #include <utility>
 
-#include "backends/devices/offer.h"
-#include "backends/opencl/bands.h"
+#include "backends/devices/drivers.h"
+#include "backends/opencl/cloth.h"
 #include "backends/opencl/opencl.h"
 #include "integrators/all_integrators.h"
+#include "model/topology.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/largest_distance.h"
@@ -41,7 +43,7 @@ std::unique_ptr<Backend> bands_of(const System& system, const Integrator& integr
                                   std::size_t steps_in_a_launch, DeviceMemory memory = DeviceMemory::shared) {
   OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
   device.compute_units = units;
-  return make_opencl_bands(system, std::get<GridPatch>(system.topology), integrator, backend_dt_s, device,
+  return make_opencl_grid(system, std::get<GridPatch>(system.topology), integrator, backend_dt_s, device,
                            memory, most_opencl_lanes, steps_in_a_launch);
 }
 
@@ -104,6 +106,54 @@ TEST(OpenclBands, StartAgainFromTheStateTheyAreGivenAfterAnyNumberOfLaunches) {
       EXPECT_EQ(backend->state().position, fresh->state().position) << before;
       EXPECT_EQ(backend->state().velocity, fresh->state().velocity) << before;
     }
+}
+
+constexpr std::size_t group_lanes = 16;
+constexpr std::uint64_t cache_bytes = 32U << 20;
+
+BandShape shape_of(const GridPatch& grid, const char* integrator, std::size_t units = 2) {
+  return {grid, *find_integrator(integrator), group_lanes, units, cache_bytes};
+}
+
+TEST(BandShape, TakesMoreStepsALaunchTheLessAStepDoes) {
+  EXPECT_EQ(shape_of({50, 50, 0.01}, "semi-euler").steps, 11U);
+  EXPECT_EQ(shape_of({200, 200, 0.01}, "semi-euler").steps, 5U);
+  EXPECT_EQ(shape_of({500, 700, 0.01}, "semi-euler").steps, 2U);
+  EXPECT_GE(shape_of({50, 50, 0.01}, "semi-euler").steps, shape_of({50, 50, 0.01}, "rk4").steps);
+}
+
+TEST(BandShape, PassesOverAStateInMemoryWithFourStagesAtLeast) {
+  const GridPatch grid{1000, 1000, 0.01};
+  EXPECT_GE(shape_of(grid, "semi-euler").steps, 4U);
+  EXPECT_GE(shape_of(grid, "midpoint").steps, 2U);
+  EXPECT_GE(shape_of(grid, "rk4").steps, 1U);
+  EXPECT_EQ(BandShape(grid, *find_integrator("semi-euler"), group_lanes, 2, std::uint64_t{1} << 30).steps,
+            1U);
+}
+
+TEST(BandShape, GivesEveryComputeUnitOfAWideClothSomePartitions) {
+  for (const std::size_t units : {1U, 2U, 5U}) {
+    const BandShape shape = shape_of({500, 700, 0.01}, "rk4", units);
+    EXPECT_GE(shape.partitions, units);
+    EXPECT_EQ(shape.partitions % units, 0U);
+  }
+  EXPECT_GT(shape_of({500, 700, 0.01}, "semi-euler").partitions, 2U);
+}
+
+TEST(BandShape, GivesEveryPartitionTheColumnsThatRepeatItInItsNeighbours) {
+  for (const Integrator& integrator : integrators)
+    for (const std::uint32_t columns : {1U, 2U, 3U, 7U, 16U, 61U, 300U})
+      for (const std::size_t units : {1U, 2U, 64U})
+        for (const std::size_t steps : {1U, 2U, 4U}) {
+          const BandShape shape({9, columns, 0.01}, integrator, group_lanes, units, cache_bytes, steps);
+          EXPECT_EQ(shape.steps, steps);
+          EXPECT_EQ(shape.ghosts, 2 * steps * integrator.stage_count);
+          EXPECT_GT(shape.ring(), shape.ghosts - 1);
+          ASSERT_GE(shape.partitions, 1U);
+          for (std::size_t p = 0; shape.partitions > 1 && p < shape.partitions; ++p)
+            EXPECT_GE(shape.first(p + 1) - shape.first(p), shape.ghosts)
+                << integrator.name << ", " << columns << " columns, " << units << " units";
+        }
 }
 
 }  // namespace

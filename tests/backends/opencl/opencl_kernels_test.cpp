@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "backends/opencl/bands.h"
+#include "backends/opencl/cloth.h"
 #include "backends/reference.h"
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/opencl_dressing.h"
@@ -85,7 +85,7 @@ TEST_P(BandsOpenclKernels, TakeAFewStepsLikeTheReferenceOnSeveralWorkItems) {
     const auto reference = make_reference(system, integrator, backend_dt_s);
     reference->step(few_steps);
     // Two work-items of rk4, in a launch of two steps and one of one.
-    const auto backend = make_opencl_bands(system, grid, integrator, backend_dt_s, copied.device,
+    const auto backend = make_opencl_grid(system, grid, integrator, backend_dt_s, copied.device,
                                            copied.memory, GetParam(), 2);
     backend->step(few_steps);
     EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6) << name;

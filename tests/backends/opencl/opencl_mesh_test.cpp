@@ -11,10 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "backends/layouts/alike_bodies.h"
 #include "backends/layouts/packed_springs.h"
-#include "backends/opencl/mesh.h"
-#include "backends/opencl/mesh_program.h"
 #include "backends/reference.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
@@ -192,9 +189,8 @@ TEST(OpenclMeshes, GiveABodyTheSameBitsAloneAndBesideOthersThatAreAlike) {
   for (const Integrator& integrator : integrators)
     for (const int lanes : opencl_lanes) {
       const double dt_s = backend_dt_of(integrator);
-      ASSERT_TRUE(alike_bodies_for(system, alike_slice_lanes(lanes), 1.8));
       const auto beside = make_opencl(system, integrator, dt_s, device, lanes);
-      const auto alone = make_opencl_mesh(block, integrator, dt_s, device, DeviceMemory::shared, lanes);
+      const auto alone = make_opencl(block, integrator, dt_s, device, lanes);  // from its sliced graph
       beside->step(50);
       alone->step(50);
       State first = beside->state();

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "backends/devices/program.h"
+#include "backends/devices/device_queue.h"
 #include "laws/host_laws.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/opencl_variants.h"

@@ -1,14 +1,35 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "backends/devices/device.h"
-#include "backends/interface/backend.h"
 
 namespace mssim {
+
+/// What the OpenCL drivers of this machine offer.
+struct OpenclOffer {
+  std::vector<OpenclDevice> devices;  ///< of all platforms, in the order of the drivers
+  std::vector<std::string>
+      troubles;      ///< a sentence for each driver that offers none, or ends whoever asks it
+  std::string note;  ///< what a user of a device should know beside that, a sentence; or empty
+};
+
+/// Asks the drivers, once in a process: first in another process (src/ask_opencl.cpp), since some end the one
+/// that asks them. Those are left out. Throws Interrupted (platform/process.h).
+const OpenclOffer& opencl_offer();
+
+/// From now on nothing is tried in another process first: this one is itself a process that drivers may end.
+void rely_on_opencl_drivers();
+bool opencl_drivers_relied_on();
+
+/// The device of this machine that `wanted` names (choose_opencl_device). Throws Unavailable where there is
+/// none.
+OpenclDevice find_opencl_device(std::string_view wanted);
 
 // Some OpenCL drivers end the process in which they compile, or launch, what they cannot. So a process of its
 // own, mssim too, makes each kind of backend for a small system before this one makes it. Programs depend on

@@ -1,10 +1,12 @@
-#include "backends/devices/pocl_settings.h"
+#include "backends/devices/driver_environment.h"
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -15,6 +17,29 @@ namespace mssim {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* usual_folder = "/etc/OpenCL/vendors";
+
+std::optional<fs::path> path_from(const char* variable) {
+  const char* value = std::getenv(variable);
+  if (value == nullptr || *value == '\0') return std::nullopt;
+  return value;
+}
+
+RegisteredDriver registered_by(const fs::path& icd_file) {
+  std::string library;
+  std::ifstream(icd_file) >> library;
+  return {icd_file, library};
+}
+
+std::vector<RegisteredDriver> registered_in(const fs::path& folder) {
+  std::vector<RegisteredDriver> drivers;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".icd") drivers.push_back(registered_by(entry->path()));
+  std::ranges::sort(drivers, {}, &RegisteredDriver::file);
+  return drivers;
+}
 
 constexpr const char* cache_variable = "POCL_CACHE_DIR";
 
@@ -54,6 +79,19 @@ fs::path own_cache() {
 }
 
 }  // namespace
+
+std::vector<RegisteredDriver> registered_drivers() {
+  std::error_code error;
+  const auto chosen = path_from("OCL_ICD_VENDORS");
+  if (!chosen) return registered_in(path_from("OPENCL_VENDOR_PATH").value_or(usual_folder));
+  if (fs::is_directory(*chosen, error)) return registered_in(*chosen);
+  if (chosen->extension() != ".icd") return {{*chosen, chosen->string()}};
+  return {registered_by(chosen->has_parent_path() ? *chosen : usual_folder / *chosen)};
+}
+
+bool is_pocl(const RegisteredDriver& driver) {
+  return driver.shared_library.find("pocl") != std::string::npos;
+}
 
 void bind_pocl_threads() {
   if (std::ssize(process_cpus()) == sysconf(_SC_NPROCESSORS_CONF)) setenv("POCL_AFFINITY", "1", 0);

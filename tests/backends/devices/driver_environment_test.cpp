@@ -1,7 +1,10 @@
-#include "backends/devices/registered_drivers.h"
+#include "backends/devices/driver_environment.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -74,6 +77,32 @@ TEST_F(RegisteredDrivers, AreNoneWhereThereIsNoFolder) {
   setenv("OCL_ICD_VENDORS", "", 1);
   setenv("OPENCL_VENDOR_PATH", (folder() / "none").c_str(), 1);
   EXPECT_EQ(libraries(), Names{});
+}
+
+TEST(Pocl, HasItsThreadsBoundUnlessTheUserSaysOtherwise) {
+  const char* const before = std::getenv("POCL_AFFINITY");
+  const std::string kept = before != nullptr ? before : "";
+  const auto after_binding = [](const char* chosen) {
+    chosen != nullptr ? setenv("POCL_AFFINITY", chosen, 1) : unsetenv("POCL_AFFINITY");
+    bind_pocl_threads();
+    const char* const found = std::getenv("POCL_AFFINITY");
+    return std::string(found != nullptr ? found : "");
+  };
+  cpu_set_t all, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+  const bool may_use_all = CPU_COUNT(&all) == sysconf(_SC_NPROCESSORS_CONF);
+  EXPECT_EQ(after_binding(nullptr), may_use_all ? "1" : "");
+  EXPECT_EQ(after_binding("0"), "0");
+  if (CPU_COUNT(&all) > 1) {  // a process kept to one core
+    std::size_t core = 0;
+    while (!CPU_ISSET(core, &all)) ++core;
+    CPU_ZERO(&one);
+    CPU_SET(core, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    EXPECT_EQ(after_binding(nullptr), "");
+    ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
+  }
+  before != nullptr ? setenv("POCL_AFFINITY", kept.c_str(), 1) : unsetenv("POCL_AFFINITY");
 }
 
 }  // namespace

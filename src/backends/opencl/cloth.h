@@ -2,14 +2,24 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "backends/layouts/band_grid.h"
-#include "backends/opencl/pair_layout.h"
+#include "backends/opencl/stages.h"
 
 namespace mssim {
+
+/// Steps a cloth on an OpenCL device, `lanes` nodes side by side (1, 4, 8 or 16): with one lane a work-item
+/// owns a node; with several, work-items walk over columns of as many bands of rows, several steps a launch.
+/// `steps_in_a_launch`: chosen by the size of the cloth unless given. Lets cl::Error through; throws
+/// Unsupported where the cloth does not fit into the device's memory.
+std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch& grid,
+                                          const Integrator& integrator, double dt_s,
+                                          const OpenclDevice& device, DeviceMemory memory, int lanes,
+                                          std::optional<std::size_t> steps_in_a_launch = {});
 
 /// How the columns of a cloth are shared among the work-items of a launch that walks over them
 /// (kernels/grid_bands.cl), and how many steps the launch takes.

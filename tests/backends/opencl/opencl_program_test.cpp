@@ -4,9 +4,8 @@
 #include <cstddef>
 #include <string>
 
-#include "backends/devices/program.h"
-#include "backends/opencl/grid_program.h"
-#include "backends/opencl/mesh_program.h"
+#include "backends/devices/device_queue.h"
+#include "backends/opencl/programs.h"
 #include "integrators/integrators.h"
 
 namespace mssim {

@@ -1,0 +1,47 @@
+#include "backends/devices/device_queue.h"
+
+#include <stdexcept>
+
+#include "platform/files.h"
+
+namespace mssim {
+namespace {
+
+std::string kernel_file(const char* file) {
+  const auto path = data_folder() / "kernels" / file;
+  try {
+    return read_file(path);
+  } catch (const ReadError& error) {
+    throw std::runtime_error(error.sentence(path, "the OpenCL backends are made from it"));
+  }
+}
+
+}  // namespace
+
+std::string program_text(int lanes, std::initializer_list<const char*> files) {
+  std::string text = "#define MSSIM_LANES " + std::to_string(lanes) + "\n";
+  for (const char* file : files) text += kernel_file(file);
+  return text;
+}
+
+std::string slices_program_text(std::size_t slice_nodes, int lanes,
+                                std::initializer_list<const char*> files) {
+  return "#define MSSIM_SLICE " + std::to_string(slice_nodes) + "\n" + program_text(lanes, files);
+}
+
+cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text) {
+  const bool exact =
+      (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+  cl::Program program(context, text);
+  try {
+    program.build(device, exact ? "-cl-fp32-correctly-rounded-divide-sqrt" : "");
+  } catch (const cl::BuildError& error) {
+    std::string log = error.getBuildLog().empty() ? "" : error.getBuildLog().front().second;
+    log = log.substr(0, log.find('\n', log.find("error")));
+    throw Unavailable(opencl_failure(error.what(), error.err()) + " on " + device.getInfo<CL_DEVICE_NAME>() +
+                      ": " + log);
+  }
+  return program;
+}
+
+}  // namespace mssim

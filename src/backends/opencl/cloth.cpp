@@ -1,0 +1,322 @@
+#include "backends/opencl/cloth.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <stdexcept>
+
+#include "backends/layouts/spring_constants.h"
+#include "backends/opencl/programs.h"
+#include "kernels/grid_parameters.h"
+
+namespace mssim {
+namespace {
+
+constexpr std::size_t halo = BandLayout::halo;
+
+/// What the kernels of both shapes are told about a cloth.
+GridParameters grid_parameters_of(const System& system, const GridPatch& patch) {
+  GridParameters grid{};
+  grid.rows = static_cast<int>(patch.rows);
+  grid.columns = static_cast<int>(patch.columns);
+  const std::vector<SpringConstants> springs = spring_constants_of(system, patch);
+  for (const GridSpringKind kind : {structural, shear, bending}) {
+    const SpringConstants& spring = springs[kind];
+    grid.stiffness[kind] = spring.stiffness;
+    grid.stiffness_rest[kind] = spring.stiffness_rest;
+    grid.damping[kind] = spring.damping;
+  }
+  return grid;
+}
+
+/// Masks of numbers, one for every row or column that differs from the others.
+struct Masks {
+  std::vector<cl_int> mask_of;  ///< [rows or columns] a mask, or a negative number
+  std::vector<cl_int> numbers;  ///< [masks][length]
+  std::size_t length;
+
+  Masks(std::size_t count, std::size_t mask_length) : mask_of(count, -1), length(mask_length) {}
+
+  /// The mask of a row or column; made from `model` where there is none.
+  std::span<cl_int> mask(std::size_t number, const std::vector<cl_int>& model) {
+    if (mask_of[number] < 0) {
+      mask_of[number] = static_cast<cl_int>(numbers.size() / length);
+      numbers.insert(numbers.end(), model.begin(), model.end());
+    }
+    return std::span(numbers).subspan(static_cast<std::size_t>(mask_of[number]) * length, length);
+  }
+};
+
+constexpr std::size_t round_up(std::size_t value, std::size_t multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
+/// One work-item a node (kernels/grid_nodes.cl).
+struct NodeShape {
+  GridPatch grid;
+  std::array<std::size_t, 2> local;   // along a row, rows
+  std::array<std::size_t, 2> global;  // multiples of `local`
+  std::size_t stride, plane;          // floats
+
+  static constexpr std::size_t halo_rows = 2;   // above and below, as far as the stencil reaches
+  static constexpr std::size_t left_halo = 16;  // floats; keeps every row aligned to what hardware reads
+
+  // A tile, so that most neighbours of a group's nodes are its own; 64 wide, as wide as any hardware's groups
+  // of lanes.
+  NodeShape(const GridPatch& patch, const OpenclDevice& device) : grid(patch) {
+    const std::size_t largest = cl::Device(device.id, true).getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    local = {std::min<std::size_t>(64, largest), std::clamp<std::size_t>(largest / 64, 1, 4)};
+    global = {round_up(grid.columns, local[0]), round_up(grid.rows, local[1])};
+    stride = left_halo + round_up(global[0], left_halo);
+    plane = (global[1] + 2 * halo_rows) * stride + left_halo;
+    if (6 * plane > std::numeric_limits<cl_int>::max())
+      throw Unsupported(
+          "the cloth needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit offsets reach");
+  }
+
+  PairLayout pair_layout() const {
+    PairLayout pair;
+    pair.floats = 6 * plane;
+    for (std::size_t node = 0; node < grid.nodes(); ++node)
+      pair.node.push_back((node / grid.columns + halo_rows) * stride + left_halo + node % grid.columns);
+    for (std::size_t i = 0; i < pair.component.size(); ++i) pair.component[i] = i * plane;
+    return pair;
+  }
+};
+
+class OpenclGridNodes final : public OpenclStages {
+ public:
+  OpenclGridNodes(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
+                  DeviceMemory memory, const NodeShape& shape)
+      : OpenclStages(system, integrator, dt_s, device, memory, shape.pair_layout(), {}) {
+    GridParameters parameters = grid_parameters_of(system, shape.grid);
+    parameters.stride = static_cast<int>(shape.stride);
+    parameters.plane = static_cast<int>(shape.plane);
+    Masks pinned(shape.grid.rows, shape.stride);
+    const std::vector<cl_int> none(shape.stride, 0);
+    for (const std::uint32_t pin : system.pins)
+      pinned.mask(pin / shape.grid.columns, none)[pin % shape.grid.columns] = -1;
+    add_argument(std::span<const GridParameters>(&parameters, 1));
+    add_argument(std::span<const cl_int>(pinned.mask_of));
+    add_argument(std::span<const cl_int>(pinned.numbers));
+    prepare(grid_program_text(integrator, 1),
+            {cl::NDRange(shape.global[0], shape.global[1]), cl::NDRange(shape.local[0], shape.local[1])},
+            system.start);
+  }
+};
+
+/// A cloth in bands, a launch a few steps.
+class OpenclBands final : public OpenclBackend {
+ public:
+  OpenclBands(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
+              const OpenclDevice& device, DeviceMemory memory, const BandShape& shape)
+      : OpenclBands(system, grid, integrator, dt_s, device, memory, shape, shape.state_layout(),
+                    shape.ghost_layout()) {}
+
+  void set_state(const State& state) override {
+    write_state(state_, layout_, state);
+    write_state(ghosts_, ghost_layout_, state, swapped_ ? ghost_layout_.floats : 0);
+  }
+  void step(int count) override {
+    opencl_call<std::runtime_error>([&] {
+      const int launches = (count + steps_per_launch_ - 1) / steps_per_launch_;
+      queue_.take_steps(launches, [&](int launch) {
+        const int steps = std::min(steps_per_launch_, count - launch * steps_per_launch_);
+        const bool swapped = swapped_ != (launch % 2 != 0);
+        return std::span(&launches_[swapped ? 1 : 0][static_cast<std::size_t>(steps) - 1], 1);
+      });
+      if (launches % 2 != 0) swapped_ = !swapped_;
+    });
+  }
+  State state() const override { return read_state(state_); }
+  int steps_per_pass() const override { return steps_per_launch_; }
+
+ private:
+  OpenclBands(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
+              const OpenclDevice& device, DeviceMemory memory, const BandShape& shape,
+              const PairLayout& layout, PairLayout ghost_layout)
+      : OpenclBackend(system, integrator, dt_s, device, memory, layout,
+                      std::array<std::uint64_t, 4>{layout.floats * sizeof(float),
+                                                   2 * ghost_layout.floats * sizeof(float),
+                                                   ring_bytes(shape, integrator), sum_bytes(shape)}),
+        ghost_layout_(std::move(ghost_layout)),
+        steps_per_launch_(static_cast<int>(shape.steps)),
+        state_(queue_.zeros<float>(layout_.floats)),
+        ghosts_(queue_.zeros<float>(2 * ghost_layout_.floats)) {
+    const BandLayout& bands = shape.bands;
+    GridParameters parameters = grid_parameters_of(system, grid);
+    parameters.height = static_cast<int>(bands.height);
+    parameters.ghosts = static_cast<int>(shape.ghosts);
+    parameters.ring = static_cast<int>(shape.ring());
+    const auto offset = [&](std::size_t row) {
+      return row % bands.height * bands.lanes + row / bands.height;
+    };
+    std::vector<cl_int> unpinned(bands.height * bands.lanes, 0);
+    for (std::size_t row = 0; row < bands.rows; ++row) unpinned[offset(row)] = -1;
+    Masks free(bands.columns, unpinned.size());
+    for (const std::uint32_t pin : system.pins)
+      free.mask(pin % bands.columns, unpinned)[offset(pin / bands.columns)] = 0;
+    // All columns without a pin share the last mask.
+    const auto last = static_cast<cl_int>(free.numbers.size() / unpinned.size());
+    free.numbers.insert(free.numbers.end(), unpinned.begin(), unpinned.end());
+    std::replace(free.mask_of.begin(), free.mask_of.end(), -1, last);
+
+    add_argument(std::span<const GridParameters>(&parameters, 1));
+    add_argument(std::span<const cl_int>(free.mask_of));
+    add_argument(std::span<const cl_int>(free.numbers));
+    // Zeros in the padding, so that no arithmetic there meets a denormal number, which can be slow.
+    arguments_.push_back(queue_.zeros<std::byte>(ring_bytes(shape, integrator)));
+    arguments_.push_back(queue_.array<std::byte>(sum_bytes(shape)));
+    const cl::Program program =
+        queue_.build(grid_program_text(integrator, static_cast<int>(bands.lanes)));
+    for (const bool swapped : {false, true})
+      for (int steps = 1; steps <= steps_per_launch_; ++steps) {
+        cl::Kernel kernel(program, steps_kernel_name().c_str());
+        kernel.setArg(0, state_.buffer());
+        kernel.setArg(1, ghosts_.buffer());
+        kernel.setArg(2, cl_int{swapped ? 1 : 0});
+        kernel.setArg(3, cl_int{steps});
+        add_launch(swapped, kernel, 4, {cl::NDRange(shape.partitions), cl::NDRange(1)});
+      }
+    warm_up(*this, system.start, 2 * steps_per_launch_);
+  }
+
+  static std::uint64_t ring_bytes(const BandShape& shape, const Integrator& integrator) {
+    const std::size_t pairs = stored_pairs(integrator, Storage::in_place).size() - 1;
+    return shape.partitions * pairs * shape.ring() * shape.bands.column_floats() * sizeof(float);
+  }
+  static std::uint64_t sum_bytes(const BandShape& shape) {
+    return shape.partitions * shape.ghosts / BandLayout::halo * 3 * 3 * shape.bands.height *
+           shape.bands.lanes * sizeof(float);
+  }
+
+  PairLayout ghost_layout_;
+  int steps_per_launch_;
+  OpenclBuffer<float> state_, ghosts_;  // ghosts: those to read and to leave, which change roles
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch& grid,
+                                          const Integrator& integrator, double dt_s,
+                                          const OpenclDevice& device, DeviceMemory memory, int lanes,
+                                          std::optional<std::size_t> steps_in_a_launch) {
+  if (!grid_program_walks(lanes))
+    return std::make_unique<OpenclGridNodes>(system, integrator, dt_s, device, memory,
+                                             NodeShape(grid, device));
+  const auto cache_bytes = cl::Device(device.id, true).getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
+  return std::make_unique<OpenclBands>(system, grid, integrator, dt_s, device, memory,
+                                       BandShape(grid, integrator, static_cast<std::size_t>(lanes),
+                                                 device.compute_units, cache_bytes, steps_in_a_launch));
+}
+
+BandShape::BandShape(const GridPatch& grid, const Integrator& integrator, std::size_t lanes,
+                     std::size_t units, std::uint64_t cache_bytes,
+                     std::optional<std::size_t> steps_in_a_launch)
+    : bands(grid, lanes) {
+  constexpr std::size_t most_stages = 16;  // whose columns still fit a second-level cache
+  constexpr std::size_t most_partitions_per_unit = 4;
+  // A state that half of the cache does not hold comes from memory: more steps a launch also make fewer
+  // passes over it, as in the host's walk.
+  const bool fits = bands.columns * bands.column_floats() * sizeof(float) <= cache_bytes / 2;
+  const std::size_t fewest = fits ? 1 : stages_under_way / integrator.stage_count;
+  const std::size_t first = steps_in_a_launch.value_or(fewest);
+  const std::size_t last = steps_in_a_launch.value_or(most_stages / integrator.stage_count);
+  BandShape best = with(first, units, integrator);
+  for (std::size_t count = first; count <= last; ++count)
+    for (std::size_t per_unit = 1; per_unit <= most_partitions_per_unit; ++per_unit) {
+      const BandShape shape = with(count, per_unit * units, integrator);
+      if (shape.step_cost(integrator, units) < best.step_cost(integrator, units)) best = shape;
+    }
+  *this = best;
+}
+
+BandShape BandShape::with(std::size_t steps_in_a_launch, std::size_t most_partitions,
+                          const Integrator& integrator) const {
+  BandShape shape = *this;
+  shape.steps = steps_in_a_launch;
+  shape.ghosts = halo * integrator.stage_count * shape.steps;
+  // A partition's ghosts belong to the partitions beside it.
+  shape.partitions = std::clamp<std::size_t>(bands.columns / shape.ghosts, 1, most_partitions);
+  return shape;
+}
+
+double BandShape::step_cost(const Integrator& integrator, std::size_t units) const {
+  // In units of 4 ns, which a node and stage takes with PoCL on two cores of Zen 4 or of an Intel Xeon. A
+  // launch that wakes both threads of a virtual machine takes 36 to 41 microseconds on the Xeon; on Zen 4 one
+  // of next to nothing, which wakes one, took 4. With a number between them the steps chosen were at most 2 %
+  // from the best on the Xeon, and are so where a launch takes 6 microseconds, if these costs hold. More
+  // steps make fewer launches and more ghosts, which are computed twice; more partitions leave some of the
+  // share of a compute unit that was held up to the others.
+  constexpr double launch = 6000;
+  constexpr double unevenness = 0.05;  // of a partition's time, by which the last one is later
+  const auto number = [](std::size_t count) { return static_cast<double>(count); };
+  // The first stage walks over all ghosts of a side, the last one over none.
+  const double sides = std::min(number(partitions) - 1, 2.0);
+  const double columns = number(bands.columns) / number(partitions) + sides / 2 * number(ghosts);
+  const double in_turn = std::max(1.0, number(partitions) / number(units));
+  return launch / number(steps) +
+         number(integrator.stage_count * bands.rows) * columns * (in_turn + unevenness);
+}
+
+std::size_t BandShape::ring() const { return std::bit_ceil(ghosts); }
+
+PairLayout BandShape::state_layout() const {
+  PairLayout pair = column_layout();
+  pair.floats = bands.columns * bands.column_floats();
+  for (const auto& [offset, row] : rows_in_bands())
+    for (std::size_t column = 0; column < bands.columns; ++column)
+      pair.node.push_back(column * bands.column_floats() + offset);
+  const Places halos = rows_in_halos();
+  for (std::size_t column = 0; column < bands.columns; ++column)
+    add_column(pair, column * bands.column_floats(), column, halos);
+  return pair;
+}
+
+PairLayout BandShape::ghost_layout() const {
+  PairLayout pair = column_layout();
+  pair.floats = partitions * 2 * ghosts * bands.column_floats();
+  const Places in_bands = rows_in_bands(), in_halos = rows_in_halos();
+  for (std::size_t partition = 0; partition < partitions; ++partition)
+    for (std::size_t ghost = 0; ghost < 2 * ghosts; ++ghost) {
+      const std::size_t column = first(ghost < ghosts ? partition : partition + 1) + ghost - ghosts;
+      if (column >= bands.columns) continue;  // left of the cloth it wraps to a huge number
+      for (const Places* rows : {&in_bands, &in_halos})
+        add_column(pair, (partition * 2 * ghosts + ghost) * bands.column_floats(), column, *rows);
+    }
+  return pair;
+}
+
+PairLayout BandShape::column_layout() const {
+  PairLayout pair;
+  for (std::size_t i = 0; i < pair.component.size(); ++i) pair.component[i] = i * bands.lanes;
+  return pair;
+}
+
+BandShape::Places BandShape::rows_in_bands() const {
+  Places places;
+  for (std::size_t row = 0; row < bands.rows; ++row) places.emplace_back(bands.offset(row), row);
+  return places;
+}
+
+BandShape::Places BandShape::rows_in_halos() const {
+  Places places;
+  for (std::size_t row = 0; row < bands.rows; ++row) {
+    const std::size_t lane = row / bands.height, in_band = row % bands.height + halo;
+    const auto offset = [&](std::size_t layout_row, std::size_t in_lane) {
+      return layout_row * bands.row_floats() + in_lane;
+    };
+    if (in_band < 2 * halo && lane > 0) places.emplace_back(offset(in_band + bands.height, lane - 1), row);
+    if (in_band >= bands.height && lane + 1 < bands.lanes)
+      places.emplace_back(offset(in_band - bands.height, lane + 1), row);
+  }
+  return places;
+}
+
+void BandShape::add_column(PairLayout& pair, std::size_t start, std::size_t column,
+                           const Places& rows) const {
+  for (const auto& [offset, row] : rows)
+    pair.copies.emplace_back(start + offset, row * bands.columns + column);
+}
+
+}  // namespace mssim
