@@ -1,7 +1,7 @@
 // Asks all OpenCL drivers for their devices. A driver that ends the process that asks it ends this one, and
-// not mssim, which runs it before it asks itself (backends/devices/drivers.h). The arguments are the libraries
-// of the registered drivers. Of each that offers no platform stdout says why: a line of obstacle_mark, its
-// number and what it does not do.
+// not mssim, which runs it before it asks itself (backends/devices/drivers.h). The arguments are the
+// libraries of the registered drivers. Of each that offers no platform stdout says why: a line of
+// obstacle_mark, its number and what it does not do.
 
 #include <CL/cl_icd.h>
 #include <dlfcn.h>

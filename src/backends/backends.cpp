@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "backends/devices/drivers.h"
 #include "backends/devices/device.h"
+#include "backends/devices/drivers.h"
 #include "backends/hybrid/hybrid.h"
 #include "backends/implicit/implicit.h"
 #include "backends/interface/ahead.h"

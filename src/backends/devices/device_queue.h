@@ -166,7 +166,6 @@ struct OpenclChunks {
   }
 };
 
-
 /// A kernel whose arguments are set.
 struct Launch {
   cl::Kernel kernel;

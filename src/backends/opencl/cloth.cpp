@@ -167,8 +167,7 @@ class OpenclBands final : public OpenclBackend {
     // Zeros in the padding, so that no arithmetic there meets a denormal number, which can be slow.
     arguments_.push_back(queue_.zeros<std::byte>(ring_bytes(shape, integrator)));
     arguments_.push_back(queue_.array<std::byte>(sum_bytes(shape)));
-    const cl::Program program =
-        queue_.build(grid_program_text(integrator, static_cast<int>(bands.lanes)));
+    const cl::Program program = queue_.build(grid_program_text(integrator, static_cast<int>(bands.lanes)));
     for (const bool swapped : {false, true})
       for (int steps = 1; steps <= steps_per_launch_; ++steps) {
         cl::Kernel kernel(program, steps_kernel_name().c_str());

@@ -44,7 +44,7 @@ std::unique_ptr<Backend> bands_of(const System& system, const Integrator& integr
   OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
   device.compute_units = units;
   return make_opencl_grid(system, std::get<GridPatch>(system.topology), integrator, backend_dt_s, device,
-                           memory, most_opencl_lanes, steps_in_a_launch);
+                          memory, most_opencl_lanes, steps_in_a_launch);
 }
 
 TEST(OpenclBands, GiveTheSameBitsForAnyNumberOfStepsALaunchAndOfWorkItems) {

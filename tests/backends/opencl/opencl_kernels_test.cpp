@@ -85,8 +85,8 @@ TEST_P(BandsOpenclKernels, TakeAFewStepsLikeTheReferenceOnSeveralWorkItems) {
     const auto reference = make_reference(system, integrator, backend_dt_s);
     reference->step(few_steps);
     // Two work-items of rk4, in a launch of two steps and one of one.
-    const auto backend = make_opencl_grid(system, grid, integrator, backend_dt_s, copied.device,
-                                           copied.memory, GetParam(), 2);
+    const auto backend =
+        make_opencl_grid(system, grid, integrator, backend_dt_s, copied.device, copied.memory, GetParam(), 2);
     backend->step(few_steps);
     EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-6) << name;
   }
