@@ -1,11 +1,11 @@
-/* How a body that maps describe (body_frame.h) meets a point of cloth, in the common subset of C++ and OpenCL
+/* How a body that maps describe (parameters.h) meets a point of cloth, in the common subset of C++ and OpenCL
  * C: the test of one point against the tangent planes of its pixel, and the response.
  *
  * The body within a pixel is what lies behind both planes. A plane that is tangent to the front or the back
  * face bounds it far better than the face's depth, which is a flight of stairs: the signed distance from it
  * is continuous within a pixel and nearly so across its edge.
  *
- * Text for many number types like floor_law.h, after which it stands (for floor_grip, Coulomb's law). Beyond
+ * Text for many number types like node_laws.h, after which it stands (for floor_grip, Coulomb's law). Beyond
  * the names of that file it needs in C++
  *   MSSIM_STRUCT(Name)   what stands before the braces of a struct of Reals,
  *   MSSIM_OF(Name)       the type,

@@ -148,7 +148,7 @@ MSSIM_INLINE void update_tile(Tile tile, Block block, __global const float* pixe
   store_vector(x, grid->moved + tile.at, plane);
 }
 
-/* Loop 5, as src/garment/stepping/panel_correction-inl.h has it in C++, which also says what holds the two
+/* Loop 5, as src/garment/stepping/step_panels.cpp has it in C++, which also says what holds the two
  * together.
  *
  * Springs of a direction, from a tile to rows below, which have no node in common. */

@@ -1,4 +1,4 @@
-/* The joints of a garment (joint_law.h), which one work-group takes level by level, one joint a work-item:
+/* The joints of a garment (garment_laws.h), which one work-group takes level by level, one joint a work-item:
  * those of a level have no node in common, and those that have stand in the levels in the garment's order.
  * Needs dressing.cl for one lane.
  */

@@ -1,4 +1,4 @@
-/* A spring of a cloth, whatever the shape of its kernels. Needs lanes.h, spring_law.h and grid_parameters.h.
+/* A spring of a cloth, whatever the shape of its kernels. Needs lanes.h, spring_law.h and parameters.h.
  */
 #if MSSIM_LANES == 1
 typedef __constant struct GridParameters* Shape;

@@ -1,7 +1,8 @@
 /* The number type of the OpenCL programs: one Real holds MSSIM_LANES neighbouring nodes (1, 4, 8 or 16).
  * CPU drivers do not turn work-items into vector lanes by themselves, so they get wide Reals and few
  * work-items; a GPU does, and gets one node per work-item. The text over Real is the same.
- * Needs MSSIM_LANES; gives the names that the laws (*_law.h, body_contact.h) ask for.
+ * Needs MSSIM_LANES; gives the names that the laws (spring_law.h, node_laws.h, garment_laws.h,
+ * body_contact.h) ask for.
  */
 #define MSSIM_PASTE_(a, b) a##b
 #define MSSIM_PASTE(a, b) MSSIM_PASTE_(a, b)

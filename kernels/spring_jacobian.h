@@ -11,8 +11,48 @@
  * which is positive definite where along and across are positive. An implicit step's matrix has
  * along = dt c + dt^2 k and across = dt^2 spring_across_definite(...).
  *
- * Text for many number types like symmetric_block.h, after which it stands.
+ * Text for many number types like body_contact.h, after which it stands.
  */
+
+/* A symmetric matrix of 3 x 3: what stands on the diagonal of a stiffness matrix for a node, and its inverse.
+ */
+MSSIM_STRUCT(SymmetricBlock) { Real xx, xy, xz, yy, yz, zz; };
+
+MSSIM_GIVES(SymmetricBlock) block_sum(MSSIM_OF(SymmetricBlock) a, MSSIM_OF(SymmetricBlock) b) {
+  MSSIM_OF(SymmetricBlock) sum;
+  sum.xx = a.xx + b.xx;
+  sum.xy = a.xy + b.xy;
+  sum.xz = a.xz + b.xz;
+  sum.yy = a.yy + b.yy;
+  sum.yz = a.yz + b.yz;
+  sum.zz = a.zz + b.zz;
+  return sum;
+}
+
+MSSIM_VECTOR_LAW block_times(MSSIM_OF(SymmetricBlock) block, Vector p) {
+  Vector product = {mul_add(block.xx, p.x, mul_add(block.xy, p.y, block.xz * p.z)),
+                    mul_add(block.xy, p.x, mul_add(block.yy, p.y, block.yz * p.z)),
+                    mul_add(block.xz, p.x, mul_add(block.yz, p.y, block.zz * p.z))};
+  return product;
+}
+
+/* By cofactors. The block must be positive definite; in single precision its eigenvalues may differ by a
+ * factor of 1e5. */
+MSSIM_GIVES(SymmetricBlock) block_inverse(MSSIM_OF(SymmetricBlock) block) {
+  MSSIM_OF(SymmetricBlock) inverse;
+  Real one = block.xx - block.xx + 1.0f;
+  Real xx = block.yy * block.zz - block.yz * block.yz;
+  Real xy = block.xz * block.yz - block.xy * block.zz;
+  Real xz = block.xy * block.yz - block.xz * block.yy;
+  Real scale = one / mul_add(block.xx, xx, mul_add(block.xy, xy, block.xz * xz));
+  inverse.xx = scale * xx;
+  inverse.xy = scale * xy;
+  inverse.xz = scale * xz;
+  inverse.yy = scale * (block.xx * block.zz - block.xz * block.xz);
+  inverse.yz = scale * (block.xy * block.xz - block.xx * block.yz);
+  inverse.zz = scale * (block.xx * block.yy - block.xy * block.xy);
+  return inverse;
+}
 
 /* k (1 - L/|d|), N/m: what a spring does against a force across it. Below zero where it is compressed.
  * inverse_length = 1/|d| (1/m), stiffness = k (N/m), stiffness_rest = k L (N). */

@@ -23,7 +23,7 @@
 #include "bench/verification/energy_ledger.h"
 #include "bench/verification/verification.h"
 #include "garment/fitting/fitting.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "output/tables/table.h"
 #include "output/traces/energy_curve.h"
 #include "platform/files.h"

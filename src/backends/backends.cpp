@@ -14,9 +14,7 @@
 #include "backends/process/process_backend.h"
 #include "backends/spring_list/serial.h"
 #include "backends/spring_list/threads_mutex.h"
-#include "garment/stepping/opencl_dressing.h"
-#include "garment/stepping/openmp_dressing.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -20,7 +20,7 @@ namespace mssim {
 #undef MSSIM_INLINE_LAMBDA
 
 /// Puts a node that has fallen below y = height (m) back onto the floor and changes its velocity as
-/// kernels/floor_law.h says; a node above it stays as it is. `x` in m, `v` in m/s.
+/// kernels/node_laws.h says; a node above it stays as it is. `x` in m, `v` in m/s.
 template <class Real>
 inline void touch_floor(Vec3<Real>& x, Vec3<Real>& v, Real height, Real restitution, Real friction) {
   if (!(x.y < height)) return;

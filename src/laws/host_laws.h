@@ -37,7 +37,7 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
 #define MSSIM_LAW_INLINE inline
 #include "laws/laws-inl.h"
 
-/// The way from a joint's node to the point that it is sewn to: kernels/joint_law.h for vectors.
+/// The way from a joint's node to the point that it is sewn to: kernels/garment_laws.h for vectors.
 template <class Real>
 inline Vec3<Real> joint_gap(const Vec3<Real>& node, const Vec3<Real>& first, const Vec3<Real>& second,
                             Real fraction) {

@@ -17,15 +17,11 @@
   MSSIM_LAW_INLINE Vector
 #define dot_product dot
 
-#include "kernels/acceleration_law.h"
-#include "kernels/floor_law.h"
+#include "kernels/node_laws.h"
 #include "kernels/spring_law.h"
 // After what they need.
 #include "kernels/body_contact.h"
-#include "kernels/elongation_law.h"
-#include "kernels/joint_law.h"
-#include "kernels/symmetric_block.h"
-// After that.
+#include "kernels/garment_laws.h"
 #include "kernels/spring_jacobian.h"
 
 #undef MSSIM_LAW

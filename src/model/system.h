@@ -32,7 +32,7 @@ struct State {
   bool draped = false;          ///< of a garment: all its seams are closed, and gravity and friction act
 };
 
-/// The plane y = height that nothing may fall through (kernels/floor_law.h).
+/// The plane y = height that nothing may fall through (kernels/node_laws.h).
 struct Floor {
   double height = 0;       ///< m
   double restitution = 0;  ///< share of the falling speed that comes back, 0 to 1

@@ -13,8 +13,7 @@
 
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/serial.h"
-#include "garment/stepping/openmp_dressing.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "scene/scene_file.h"

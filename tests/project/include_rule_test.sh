@@ -105,6 +105,7 @@ garment/spec          garment_spec
 garment/scene         garment_scene garment_body
 garment/bench         garment_verification dressing_record
 garment/fitting       fitting
+garment/stepping      dressing_backend
 platform              files process supervised_process machine
 mesh                  meshing shapes surface_file tet_mesh tetgen
 model                 system topology energy spectrum node_surface

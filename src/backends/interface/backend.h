@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "integrators/integrator.h"
-#include "kernels/surroundings.h"
+#include "kernels/parameters.h"
 #include "model/system.h"
 #include "model/topology.h"
 #include "text/error.h"

@@ -7,7 +7,7 @@
 
 #include "backends/layouts/spring_constants.h"
 #include "backends/opencl/programs.h"
-#include "kernels/grid_parameters.h"
+#include "kernels/parameters.h"
 
 namespace mssim {
 namespace {

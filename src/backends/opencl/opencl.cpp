@@ -16,7 +16,7 @@
 #include "backends/opencl/cloth.h"
 #include "backends/opencl/programs.h"
 #include "backends/opencl/stages.h"
-#include "kernels/mesh_parameters.h"
+#include "kernels/parameters.h"
 
 namespace mssim {
 namespace {

@@ -306,10 +306,8 @@ bool grid_program_walks(int lanes) { return lanes > 1; }
 
 std::string grid_program_text(const Integrator& integrator, int lanes) {
   const bool walks = grid_program_walks(lanes);
-  std::string text =
-      program_text(lanes, {"lanes.h", "spring_law.h", "acceleration_law.h", "floor_law.h", "surroundings.h",
-                           "touch_floor.h", "step_parameters.h", "stage.h", "grid_parameters.h",
-                           "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
+  std::string text = program_text(lanes, {"lanes.h", "spring_law.h", "node_laws.h", "parameters.h", "stage.h",
+                                          "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
   std::string kinds;
   for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
     kinds += "#define " + std::string(grid_spring_kinds[kind].name) + " " + std::to_string(kind) + "\n";
@@ -331,12 +329,10 @@ std::size_t mesh_slice_lanes(int lanes) {
 }
 
 std::string mesh_program_text(const Integrator& integrator, int lanes) {
-  return with_kernels(
-      slices_program_text(
-          mesh_slice_lanes(lanes), lanes,
-          {"lanes.h", "records.h", "spring_law.h", "acceleration_law.h", "floor_law.h", "surroundings.h",
-           "touch_floor.h", "step_parameters.h", "stage.h", "mesh_parameters.h", "mesh_stage.cl"}),
-      integrator, sliced);
+  return with_kernels(slices_program_text(mesh_slice_lanes(lanes), lanes,
+                                          {"lanes.h", "records.h", "spring_law.h", "node_laws.h",
+                                           "parameters.h", "stage.h", "mesh_stage.cl"}),
+                      integrator, sliced);
 }
 
 std::size_t alike_slice_lanes(int lanes) {
@@ -347,9 +343,8 @@ std::size_t alike_slice_lanes(int lanes) {
 
 std::string alike_program_text(const Integrator& integrator, int lanes) {
   return with_kernels(slices_program_text(alike_slice_lanes(lanes), lanes,
-                                          {"lanes.h", "spring_law.h", "acceleration_law.h", "floor_law.h",
-                                           "surroundings.h", "touch_floor.h", "step_parameters.h", "stage.h",
-                                           "mesh_parameters.h", "alike_slices.h", "alike_stage.cl"}),
+                                          {"lanes.h", "spring_law.h", "node_laws.h", "parameters.h",
+                                           "stage.h", "alike_slices.h", "alike_stage.cl"}),
                       integrator, alike);
 }
 

@@ -48,7 +48,7 @@ struct StoredStage {
 };
 
 /// The stored pairs whose buffers are the first arguments of the stage's kernel, in their order. The step
-/// parameters follow (kernels/step_parameters.h), then what the topology needs.
+/// parameters follow (kernels/parameters.h), then what the topology needs.
 std::vector<Pair> stage_arguments(const StoredStage& stage);
 
 }  // namespace mssim

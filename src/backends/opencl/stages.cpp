@@ -5,7 +5,7 @@
 
 #include "backends/opencl/programs.h"
 #include "integrators/coefficients.h"
-#include "kernels/step_parameters.h"
+#include "kernels/parameters.h"
 
 namespace mssim {
 namespace {

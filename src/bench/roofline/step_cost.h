@@ -26,7 +26,7 @@ struct StepCost {
 /// optimistic. Sign changes are free.
 inline constexpr std::size_t flops_per_spring = 6 + 10 + 7 + 3 + 6;
 
-/// Operations of the acceleration of one node (acceleration_law.h), when the springs' constants were divided
+/// Operations of the acceleration of one node (node_laws.h), when the springs' constants were divided
 /// by its mass beforehand: viscous damping (3 products, 3 sums) and gravity (1 sum).
 inline constexpr std::size_t flops_per_acceleration = 3 + 3 + 1;
 

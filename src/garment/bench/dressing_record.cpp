@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/verification/verification.h"
-#include "garment/stepping/openmp_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "text/text.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "bench/verification/verification.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "model/system.h"
 #include "statistics/statistics.h"
 

@@ -7,7 +7,7 @@
 #include "geometry/depth_raster.h"
 #include "geometry/surface.h"
 #include "geometry/vec3.h"
-#include "kernels/body_frame.h"
+#include "kernels/parameters.h"
 #include "laws/host_laws.h"
 
 namespace mssim {
@@ -69,7 +69,7 @@ class BodyMaps {
   explicit BodyMaps(const Surface& surface, const BodyMapSettings& settings = {});
 
   const BodyFrame& frame() const { return frame_; }
-  /// frame().rows x frame().columns, row-major (kernels/body_frame.h).
+  /// frame().rows x frame().columns, row-major (kernels/parameters.h).
   std::span<const BodyPixel> pixels() const { return pixels_; }
 
   /// How the point (m) stands to the body. Beside the maps the distance is 1e30 m, and for coordinates that

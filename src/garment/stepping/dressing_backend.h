@@ -2,10 +2,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
 
 #include "backends/interface/backend.h"
 
 namespace mssim {
+
+struct OpenclDevice;
 
 /// How far the dressing of a garment has come.
 struct DressingProgress {
@@ -24,7 +29,42 @@ class DressingBackend : public Backend {
 /// Whether garments can be dressed with it.
 bool dresses(const Integrator& integrator);
 
-/// Throws Unsupported for another integrator than semi-euler.
-void require_semi_euler(const Integrator& integrator);
+/// Algorithm 1 of Vassilev's paper as a straightforward program has it: one thread, an array of nodes, a list
+/// of springs, six loops. `system.topology` is a Garment. Throws Unsupported for another integrator than
+/// semi-euler.
+std::unique_ptr<DressingBackend> make_serial_dressing(const System& system, const Integrator& integrator,
+                                                      double dt_s);
+
+/// The serial dressing in double precision.
+std::unique_ptr<DressingBackend> make_reference_dressing(const System& system, const Integrator& integrator,
+                                                         double dt_s);
+
+/// The instruction sets that the vector code is compiled for and this processor has, the best first.
+std::vector<std::string_view> dressing_instruction_sets();
+
+/// Algorithm 1 in vectors along the rows of the panels and on `threads` threads, with the same result to the
+/// last bit for any number of them. An empty instruction set is the best. Throws Unsupported for another
+/// integrator than semi-euler and for springs of one row and direction that differ in stiffness.
+std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
+                                                      double dt_s, int threads,
+                                                      std::string_view instruction_set = "");
+
+/// How a device's work-items share a garment.
+struct DressingShape {
+  int lanes = 1;  ///< nodes of a work-item side by side: 1, 4, 8 or 16
+  std::size_t items =
+      1;  ///< work-items of a group, which takes a block of rows; with several lanes it has one
+
+  /// That suits a device: one work-item with so many lanes, or where that is one, many.
+  static DressingShape of(const OpenclDevice& device, int lanes);
+};
+
+/// Algorithm 1 on an OpenCL device (kernels/dressing_step.cl), all steps queued one behind the other: the
+/// host hears of seams that have closed at the end of step(). Throws Unsupported for another integrator than
+/// semi-euler, for layers that touch each other and for what does not fit into the device's memory;
+/// Unavailable where its driver fails.
+std::unique_ptr<DressingBackend> make_opencl_dressing(const System& system, const Integrator& integrator,
+                                                      double dt_s, const OpenclDevice& device,
+                                                      DeviceMemory memory, const DressingShape& shape);
 
 }  // namespace mssim

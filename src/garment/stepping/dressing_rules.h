@@ -1,13 +1,23 @@
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
+#include "garment/layers/cloth_cloth.h"
 #include "garment/stepping/dressing_backend.h"
+#include "laws/host_laws.h"
 #include "model/system.h"
 
 namespace mssim {
 
-/// The rules of a dressing as its backends compute with them: Real is float or double.
+// The rules of a dressing as its backends compute with them: Real is float or double.
+
+/// Throws Unsupported for another integrator than semi-euler.
+void require_semi_euler(const Integrator& integrator);
 
 /// What acts on the nodes beside springs, joints and the body. It changes when the seams are closed.
 template <class Real>
@@ -26,7 +36,7 @@ PhaseRule<Real> phase_rule(const System& system, const DressingSettings& rules, 
           0};
 }
 
-/// Which springs are corrected, and how (kernels/elongation_law.h).
+/// Which springs are corrected, and how (kernels/garment_laws.h).
 template <class Real>
 struct CorrectionRule {
   Real limit;       ///< length over rest length
@@ -45,7 +55,7 @@ inline std::uint32_t correction_sweeps(const DressingSettings& rules) {
   return rules.correction == VelocityCorrection::none ? 0 : rules.correction_sweeps;
 }
 
-/// How a sewn joint closes its gap: the arguments of closing_rate (kernels/joint_law.h).
+/// How a sewn joint closes its gap: the arguments of closing_rate (kernels/garment_laws.h).
 template <class Real>
 struct ClosingRule {
   Real most;   ///< 1/s
@@ -68,5 +78,105 @@ inline bool ends_seaming(const DressingSettings& rules, const DressingProgress& 
   return !progress.draping &&
          (progress.open_joints == 0 || static_cast<double>(steps) * dt_s >= rules.longest_seaming_s);
 }
+
+// kernels/garment_laws.h for a joint at a time.
+
+/// Something that each of the three nodes of a joint has, T a number or a vector.
+template <class T>
+struct AtJoint {
+  T node, first, second;
+};
+
+template <class Real>
+Vec3<Real> joint_gap(const AtJoint<Vec3<Real>>& at, Real fraction) {
+  return joint_gap(at.node, at.first, at.second, fraction);
+}
+
+/// What an impulse on the node, and its opposite on the point, gives the three.
+template <class Real>
+AtJoint<Vec3<Real>> spread(const JointEnds<Real>& ends, const Vec3<Real>& impulse) {
+  return {ends.node * impulse, ends.first * impulse, ends.second * impulse};
+}
+
+/// Accelerations of the three (m/s^2) by which loop 3 draws a joint together, from their positions (m) and
+/// inverse masses (1/kg); none where it is near enough to be sewn. time_s: since the first step.
+template <class Real>
+std::optional<AtJoint<Vec3<Real>>> pull_of_joint(const DressingSettings& rules, const Joint& joint,
+                                                 double time_s, const AtJoint<Vec3<Real>>& x,
+                                                 const AtJoint<Real>& inverse_mass) {
+  const auto fraction = static_cast<Real>(joint.edge_share);
+  const Vec3<Real> gap = joint_gap(x, fraction);
+  const Real distance = std::sqrt(dot(gap, gap));
+  if (distance < static_cast<Real>(rules.sewn_gap)) return std::nullopt;
+  const double force =
+      seam_force(rules.seam_force, time_s / rules.seam_force_doubling_s, joint.length, joint.strength);
+  return spread(joint_ends(fraction, inverse_mass.node, inverse_mass.first, inverse_mass.second),
+                static_cast<Real>(force) / distance * gap);
+}
+
+/// Changes of the velocities of the three (m/s) after which a sewn joint's gap closes and does nothing else.
+template <class Real>
+AtJoint<Vec3<Real>> closing_of_joint(const ClosingRule<Real>& rule, Real fraction,
+                                     const AtJoint<Vec3<Real>>& x, const AtJoint<Vec3<Real>>& v,
+                                     const AtJoint<Real>& inverse_mass) {
+  const JointEnds<Real> ends =
+      joint_ends(fraction, inverse_mass.node, inverse_mass.first, inverse_mass.second);
+  const Real mobility = joint_mobility(ends, fraction);
+  if (mobility == 0) return {};
+  const Vec3<Real> gap = joint_gap(x, fraction), gap_rate = joint_gap(v, fraction);
+  const Real rate = closing_rate(std::sqrt(dot(gap, gap)), rule.most, rule.speed);
+  return spread(ends, {closing_impulse(gap.x, gap_rate.x, rate, mobility),
+                       closing_impulse(gap.y, gap_rate.y, rate, mobility),
+                       closing_impulse(gap.z, gap_rate.z, rate, mobility)});
+}
+
+/// A node within a step.
+struct NodeState {
+  Vec3<float> position;  ///< m
+  Vec3<float> velocity;  ///< m/s
+};
+
+/// What the layers of a garment do to each other in a step, after loop 4 has updated velocities and before
+/// the body is met, which has the last word about the innermost layer. Works on a copy of the nodes: a
+/// backend gives its own and takes back those that have met others.
+class LayerCollision {
+ public:
+  /// Fewer nodes are searched by one thread: that takes less than OpenMP's threads may take to meet where
+  /// other programs run, too (backends/threads/spin_wait.h).
+  static constexpr std::size_t least_shared_nodes = 16'384;
+
+  /// `garment.touching` is there. Throws std::invalid_argument where ClothClothCollision does.
+  LayerCollision(const System& system, const Garment& garment, int threads);
+
+  /// That work on a collision, 1 or as many as it was given; they form a team of their own.
+  int threads() const { return threads_; }
+
+  /// For a step of dt_s: NodeState read(node) of every node, in any order and by several threads;
+  /// write(node, NodeState) of those that have changed, by one.
+  template <class Read, class Write>
+  void collide(double dt_s, const Read& read, const Write& write) {
+    const auto nodes = static_cast<std::int64_t>(position_[0].size());
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::int64_t i = 0; i < nodes; ++i)
+      put(static_cast<std::size_t>(i), read(static_cast<std::size_t>(i)));
+    respond(dt_s);
+    for (const ClothContact& contact : collision_.contacts()) {
+      write(contact.node, at(contact.node));
+      for (const std::uint32_t node : contact.triangle) write(node, at(node));
+    }
+  }
+
+ private:
+  void put(std::size_t node, const NodeState& state);
+  NodeState at(std::size_t node) const;
+  void respond(double dt_s);
+
+  int threads_;
+  std::array<std::vector<float>, 3> position_, velocity_;  // [nodes]
+  ClothClothCollision collision_;
+};
+
+/// None for a garment whose layers do not touch.
+std::optional<LayerCollision> layer_collision(const System& system, const Garment& garment, int threads);
 
 }  // namespace mssim

@@ -1,5 +1,3 @@
-#include "garment/stepping/serial_dressing.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,10 +6,8 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "garment/stepping/at_joint.h"
-#include "garment/stepping/correction_order.h"
 #include "garment/stepping/dressing_rules.h"
-#include "garment/stepping/layer_collision.h"
+#include "garment/stepping/garment_grid.h"
 #include "integrators/host_stages.h"
 
 namespace mssim {

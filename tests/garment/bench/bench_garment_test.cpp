@@ -10,7 +10,7 @@
 
 #include "backends/backends.h"
 #include "bench/bench_scene.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/garment_system.h"
 

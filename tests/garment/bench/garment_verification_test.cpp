@@ -12,8 +12,7 @@
 
 #include "garment/contact/body_maps.h"
 #include "garment/fitting/fitting.h"
-#include "garment/stepping/openmp_dressing.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/dressing_step.h"

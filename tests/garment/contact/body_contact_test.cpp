@@ -191,7 +191,7 @@ TEST_P(OpenclBodyContact, DoesTheSame) {
   const cl::CommandQueue queue(context, device);
   const cl::Program program = build_program(
       context, device,
-      program_text(GetParam(), {"lanes.h", "floor_law.h", "body_frame.h", "body_contact.h"}) + kernel);
+      program_text(GetParam(), {"lanes.h", "node_laws.h", "parameters.h", "body_contact.h"}) + kernel);
   const cl::Buffer given(context, CL_MEM_COPY_HOST_PTR, in.size() * sizeof(float), in.data());
   const cl::Buffer result(context, CL_MEM_WRITE_ONLY, out.size() * sizeof(float));
   cl::Kernel meet(program, "meet");

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "garment/fitting/fitting.h"
-#include "garment/stepping/openmp_dressing.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "tests/support/dressing_step.h"
 #include "tests/support/garment_system.h"
 

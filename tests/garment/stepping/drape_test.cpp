@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "garment/contact/solid.h"
-#include "garment/stepping/openmp_dressing.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "mesh/shapes.h"
 #include "model/energy.h"
 #include "tests/support/dressed_jeans.h"

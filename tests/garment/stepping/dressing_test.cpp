@@ -9,9 +9,8 @@
 
 #include "backends/backends.h"
 #include "garment/fitting/fitting.h"
-#include "garment/stepping/correction_order.h"
-#include "garment/stepping/openmp_dressing.h"
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
+#include "garment/stepping/garment_grid.h"
 #include "tests/support/dressing_step.h"
 #include "tests/support/dressing_systems.h"
 #include "tests/support/largest_distance.h"

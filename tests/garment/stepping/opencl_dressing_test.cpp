@@ -1,6 +1,4 @@
 // Algorithm 1 on an OpenCL device: the reference but for rounding, whatever shares the work.
-#include "garment/stepping/opencl_dressing.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "garment/stepping/serial_dressing.h"
+#include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "tests/support/dressing_step.h"

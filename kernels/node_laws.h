@@ -1,11 +1,35 @@
-/* What the floor does to a node that a step has carried below it, in the common subset of C++ and OpenCL C.
- * The node is put back onto the floor; its falling speed comes back times the restitution; the sliding speed
- * loses at most friction times the change of the normal speed (Coulomb's law for an impulse).
+/* What moves a node besides its springs, written once in the common subset of C++ and OpenCL C: its
+ * acceleration, and the floor.
  *
  * Text for many number types like spring_law.h; beyond that file's names it needs
  *   where_less(a, b, yes, no)   yes where a < b, else no,
  *   MSSIM_VECTOR_LAW            what stands before a function that returns a Vector, three Reals x, y and z,
  *   dot_product(a, b)           of two Vectors.
+ */
+
+/* The acceleration of a node,
+ *
+ *     a = F/m - c v - g,
+ *
+ * F: the sum of its springs' forces (N), m: its mass (kg), c: viscous damping (1/s), g: gravity, along y.
+ * pull: F/m (m/s^2); velocity in m/s; damping in 1/s; gravity: in m/s^2, downwards. */
+MSSIM_VECTOR_LAW node_acceleration(Vector pull, Vector velocity, Real damping, Real gravity) {
+  Vector a = {mul_add(-damping, velocity.x, pull.x), mul_add(-damping, velocity.y, pull.y) - gravity,
+              mul_add(-damping, velocity.z, pull.z)};
+  return a;
+}
+
+/* The same, the product rounded before it is subtracted also where mul_add is one operation: dressings take
+ * this one. They decide by thresholds, which the last bit may turn into another run. */
+MSSIM_VECTOR_LAW node_acceleration_unfused(Vector pull, Vector velocity, Real damping, Real gravity) {
+  Vector drag = {damping * velocity.x, damping * velocity.y, damping * velocity.z};
+  Vector a = {pull.x - drag.x, pull.y - drag.y - gravity, pull.z - drag.z};
+  return a;
+}
+
+/* The floor puts a node that a step has carried below it back onto itself; the falling speed comes back times
+ * the restitution; the sliding speed loses at most friction times the change of the normal speed (Coulomb's
+ * law for an impulse).
  */
 
 /* Vertical speed after the contact (m/s). */

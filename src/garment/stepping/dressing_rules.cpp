@@ -1,4 +1,4 @@
-#include "garment/stepping/layer_collision.h"
+#include "garment/stepping/dressing_rules.h"
 
 #include <limits>
 
@@ -13,6 +13,12 @@ std::vector<float> masses_of(const System& system) {
 }
 
 }  // namespace
+
+bool dresses(const Integrator& integrator) { return integrator.name == "semi-euler"; }
+
+void require_semi_euler(const Integrator& integrator) {
+  if (!dresses(integrator)) throw Unsupported("a garment is dressed with semi-euler only, as published");
+}
 
 LayerCollision::LayerCollision(const System& system, const Garment& garment, int threads)
     : threads_(system.nodes() < least_shared_nodes ? 1 : threads),
