@@ -18,7 +18,6 @@
 #include "application/outputs.h"
 #include "application/prepared_scene.h"
 #include "backends/backends.h"
-#include "backends/reference.h"
 #include "bench/estimates.h"
 #include "bench/verification/energy_ledger.h"
 #include "bench/verification/verification.h"

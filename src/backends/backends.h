@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -100,5 +101,20 @@ inline bool dresses(const BackendInfo& backend) { return backend.make_dressing !
 /// What a reader of its times must know of a backend that takes more processors than those that it was made
 /// for; empty for all others.
 std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options);
+
+/// The integrator in double precision on one thread, at the system's start: the reference that every timed
+/// row is verified against. Solvers of implicit integrators go on until they gain nothing more; where a step
+/// of them may take long, it ends when `stop` says so, and the state is then of no use. `system` must outlive
+/// it. Throws Unsupported for a garment.
+std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s,
+                                        const std::function<bool()>& stop = {});
+
+/// What the reference takes for a cloth (`grid`) or bodies.
+MemoryUse reference_memory(const Integrator& integrator, bool grid);
+
+/// What mssim does as another process for try_driver (devices/drivers.h), whose arguments these are:
+/// makes the backend for a small system, and ends with exit code 0, whatever it throws: the process that
+/// asked for it then throws the same.
+[[noreturn]] void run_driver_trial(std::span<char*> arguments);
 
 }  // namespace mssim

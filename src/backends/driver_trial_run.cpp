@@ -1,5 +1,3 @@
-#include "backends/driver_trial_run.h"
-
 #include <unistd.h>
 
 #include <cstdint>

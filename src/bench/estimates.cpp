@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "bench/job/scene_job.h"
 #include "bench/verification/verification.h"
 #include "garment/bench/garment_verification.h"

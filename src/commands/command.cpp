@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "application/outputs.h"
+#include "backends/backends.h"
 #include "backends/devices/drivers.h"
-#include "backends/driver_trial_run.h"
 #include "bench/machine/build_info.h"
 #include "commands/arguments/program_parser.h"
 #include "platform/files.h"

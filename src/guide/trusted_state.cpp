@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "laws/host_laws.h"

@@ -52,7 +52,7 @@ struct TrustedState {
   double error() const { return confirmed && *confirmed > own_error ? *confirmed : own_error; }
 };
 
-/// Classical Runge-Kutta in double precision (backends/reference.h), twice or more often, each time with half
+/// Classical Runge-Kutta in double precision (backends/backends.h), twice or more often, each time with half
 /// the step: two results of order 4 differ by 15 times the error of the better one (Hairer, Norsett and
 /// Wanner, Solving Ordinary Differential Equations I, section II.4, Richardson). Then another solver
 /// (independent_state) must come to the same. The horizon ends before a node meets the floor, since after

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "guide/limits.h"
 #include "integrators/all_integrators.h"

@@ -13,7 +13,6 @@
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/openmp.h"
 #include "backends/openmp/step_bands.h"
-#include "backends/reference.h"
 #include "backends/spring_list/serial.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/reference.h"
 #include "integrators/all_integrators.h"
 #include "model/energy.h"
 #include "tests/support/solid_system.h"

@@ -9,7 +9,6 @@
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
-#include "backends/reference.h"
 #include "bench/estimates.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "backends/backends.h"
-#include "backends/reference.h"
 #include "guide/limits.h"
 #include "integrators/all_integrators.h"
 #include "model/spectrum.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
 #include "model/energy.h"

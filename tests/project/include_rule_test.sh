@@ -112,6 +112,7 @@ model                 system topology energy spectrum node_surface
 scene/fields          fields
 scene/spec            scene_spec
 scene                 scene_file scene_kinds cloth
+backends              backends
 backends/interface    backend ahead
 backends/vectors      instruction_sets lanes-inl
 backends/accumulation accumulation_methods

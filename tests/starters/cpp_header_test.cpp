@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "integrators/host_stages.h"
 #include "integrators/integrators.h"
 #include "src/starters/cpp/mssim_backend.h"

@@ -16,7 +16,7 @@ std::unique_ptr<Backend> make_serial_implicit(const System& system, const Integr
                                               const ExecutionOptions& options);
 
 /// The plain code in double precision, whose solvers go on until they gain nothing more, or `stop` says that
-/// nobody waits for them any longer (make_reference in backends/reference.h).
+/// nobody waits for them any longer (make_reference in backends/backends.h).
 std::unique_ptr<Backend> make_implicit_reference(const System& system, const Integrator& integrator,
                                                  double dt_s, const std::function<bool()>& stop);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "integrators/host_stages.h"
 
 namespace mssim {

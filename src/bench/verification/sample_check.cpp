@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "model/energy.h"
 #include "text/text.h"

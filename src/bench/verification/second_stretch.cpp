@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "model/spectrum.h"
 #include "text/text.h"

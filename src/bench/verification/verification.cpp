@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "integrators/stability.h"
 #include "model/spectrum.h"
 #include "model/system.h"

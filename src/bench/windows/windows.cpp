@@ -8,9 +8,9 @@
 #include <sstream>
 #include <utility>
 
+#include "backends/backends.h"
 #include "backends/layouts/band_grid.h"
 #include "backends/layouts/column_range.h"
-#include "backends/reference.h"
 #include "bench/verification/verification.h"
 #include "model/energy.h"
 #include "platform/machine.h"

@@ -192,7 +192,7 @@ HWY_INLINE void update_velocities(GarmentGrid& grid, const GarmentGrid::Block& b
 }
 
 // Loop 5. kernels/dressing.cl has the same loop over OpenCL C's vectors and, for a GPU, over lines of
-// springs. The impulse is one text (kernels/elongation_law.h); Dressing.CorrectsInVectorsAsTheReferenceDoes
+// springs. The impulse is one text (kernels/garment_laws.h); Dressing.CorrectsInVectorsAsTheReferenceDoes
 // and OpenclDressing.CorrectsInEverySweepAsSerialDoes hold both to correction_order.
 
 /// Lanes with a spring longer than its limit.

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "backends/spring_list/serial.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"

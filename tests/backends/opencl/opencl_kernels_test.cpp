@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/opencl/cloth.h"
-#include "backends/reference.h"
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"

@@ -11,8 +11,8 @@
 #include <tuple>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/layouts/packed_springs.h"
-#include "backends/reference.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"

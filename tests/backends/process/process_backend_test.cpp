@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "platform/files.h"
 #include "tests/support/backend_step.h"

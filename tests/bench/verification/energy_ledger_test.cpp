@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/reference.h"
+#include "backends/backends.h"
 #include "backends/spring_list/serial.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"

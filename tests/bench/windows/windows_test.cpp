@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/layouts/column_range.h"
-#include "backends/reference.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "scene/cloth.h"

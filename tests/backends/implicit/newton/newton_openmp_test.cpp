@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "backends/backends.h"
 #include "backends/implicit/newton/newton.h"
 #include "backends/implicit/newton/step_newton.h"
 #include "backends/openmp/openmp.h"
-#include "backends/reference.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
