@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "backends/openmp/sliced_bodies.h"
-#include "backends/openmp/step_slices.h"
+#include "backends/openmp/bodies.h"
+#include "backends/openmp/openmp.h"
 #include "ranks/messages.h"
 #include "ranks/piece.h"
 #include "ranks/shares.h"
@@ -35,7 +35,7 @@ class BodiesPiece final : public Piece {
   std::string note() const override;
 
  private:
-  SliceKernel kernel_;
+  StepKernel<SlicedBodies> kernel_;
   std::vector<std::vector<BodyShare>> shares_;  ///< [bodies of the scene]
   std::vector<std::vector<NodeRun>> runs_;      ///< [ranks] on rank 0; elsewhere only its own
   std::size_t scene_nodes_ = 0;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "backends/layouts/band_grid.h"
-#include "backends/openmp/step_bands.h"
+#include "backends/openmp/openmp.h"
 #include "ranks/messages.h"
 #include "ranks/piece.h"
 
@@ -31,7 +31,7 @@ class ClothPiece final : public Piece {
   State state(const GridWindow& window) const override;
   void step(int count) override { kernel_.step(*bands_, count); }
   RankCosts costs() const override { return messages_->costs(); }
-  int threads() const override { return static_cast<int>(bands_->inner_count); }
+  int threads() const override { return static_cast<int>(bands_->threads); }
   std::string note() const override;
 
  private:
@@ -61,7 +61,7 @@ class ClothPiece final : public Piece {
   std::size_t columns_;  ///< of the scene
   std::size_t ghosts_ = 0;
   const Integrator* integrator_;
-  BandKernel kernel_;
+  StepKernel<BandGrid> kernel_;
   std::optional<BandGrid> bands_;
   std::optional<NeighbourMessages> messages_;
 };

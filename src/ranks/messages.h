@@ -11,8 +11,7 @@
 
 #include "backends/layouts/band_grid.h"
 #include "backends/layouts/column_messages.h"
-#include "backends/layouts/node_messages.h"
-#include "backends/openmp/sliced_bodies.h"
+#include "backends/openmp/bodies.h"
 #include "ranks/shares.h"
 
 namespace mssim {

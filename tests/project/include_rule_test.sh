@@ -115,6 +115,7 @@ scene                 scene_file scene_kinds cloth
 backends              backends
 backends/interface    backend ahead
 backends/vectors      instruction_sets lanes-inl
+backends/openmp       openmp bodies
 backends/accumulation accumulation_methods
 backends/implicit     implicit
 backends/implicit/newton       newton

@@ -1,14 +1,236 @@
 #include "backends/accumulation/accumulation_methods.h"
 
 #include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "backends/accumulation/gather_vectors.h"
-#include "backends/accumulation/methods.h"
-#include "backends/backends.h"
+#include "backends/layouts/spring_colouring.h"
+#include "backends/spring_list/spring_list.h"
 #include "backends/spring_list/threads_mutex.h"
+#include "backends/threads/spin_barrier.h"
 
 namespace mssim {
 namespace {
+
+/// The plain spring list stepped by several threads. The methods on it to avoid the data race of Hong et
+/// al.'s Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that
+/// they differ in the accumulation alone. An Accumulation is made of (const System&, SpringList<float>&,
+/// std::size_t threads), and in every stage each thread calls, with its Team:
+/// - prepare(team), while others may still be in the last stage's `finish` and update: it writes only what no
+///   other thread touches there, and reads no node;
+/// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
+/// - finish(team), after all have added: completes the forces of this thread's slice of the nodes.
+template <class Accumulation>
+class ListMethod final : public Backend {
+ public:
+  ListMethod(const System& system, const Integrator& integrator, double dt_s, int threads)
+      : list_(system, integrator, dt_s),
+        integrator_(integrator),
+        threads_(threads),
+        accumulation_(system, list_, static_cast<std::size_t>(threads)) {}
+
+  void set_state(const State& state) override { list_.set_state(state); }
+  State state() const override { return list_.state(); }
+  std::string device() const override { return "cpu"; }
+  int threads() const override { return threads_; }
+
+  void step(int count) override {
+    with_integrator(integrator_, [&](auto method) {
+      with_team(static_cast<std::size_t>(threads_), [&](const Team& team) {
+        for (int step = 0; step < count; ++step) take_step<method>(team);
+      });
+    });
+  }
+
+ private:
+  template <std::size_t method>
+  void take_step(const Team& team) {
+    for_each_stage<method>([&](auto stage) {
+      accumulation_.prepare(team);
+      team.barrier.wait();
+      accumulation_.add(team, integrators[method].stages[stage].gather);
+      team.barrier.wait();
+      accumulation_.finish(team);
+      list_.template update_nodes<method, stage>(team.begin(list_.nodes()), team.end(list_.nodes()));
+    });
+    team.barrier.wait();
+    if (team.thread == 0) list_.end_step();  // seen by all after the next stage's first barrier
+  }
+
+  SpringList<float> list_;
+  const Integrator& integrator_;
+  const int threads_;
+  Accumulation accumulation_;
+};
+
+/// What the table of methods holds for an accumulation.
+template <class Accumulation>
+std::unique_ptr<Backend> make_list_method(const System& system, const Integrator& integrator, double dt_s,
+                                          const ExecutionOptions& options) {
+  return std::make_unique<ListMethod<Accumulation>>(system, integrator, dt_s, options.threads);
+}
+
+/// A lock of one byte that spins: what it guards, three additions, is over before a thread could be put to
+/// sleep, and a std::mutex would take 40 bytes where a node has 24. Two threads rarely meet at a node, but
+/// one may hold a lock while another process has its core, hence the yield.
+class ByteLock {
+ public:
+  void lock() {
+    while (taken_.test_and_set(std::memory_order_acquire))
+      while (taken_.test(std::memory_order_relaxed)) std::this_thread::yield();
+  }
+  void unlock() { taken_.clear(std::memory_order_release); }
+
+ private:
+  std::atomic_flag taken_;
+};
+
+/// What methods have in common that add to the forces of the list.
+class AddingAccumulation {
+ public:
+  explicit AddingAccumulation(SpringList<float>& list) : list_(list) {}
+  void prepare(const Team& team) { list_.clear_forces(team.begin(list_.nodes()), team.end(list_.nodes())); }
+  void finish(const Team& /*team*/) {}
+
+ protected:
+  SpringList<float>& list_;
+};
+
+class LockPerNode : public AddingAccumulation {
+ public:
+  LockPerNode(const System& system, SpringList<float>& list, std::size_t /*threads*/)
+      : AddingAccumulation(list), locks_(system.nodes()) {}
+
+  void add(const Team& team, Pair gather) {
+    for (const Spring& spring : team.slice_of(list_.springs())) {
+      const Vec3<float> force = list_.force_of(spring, gather);
+      {
+        const std::lock_guard lock(locks_[spring.first]);
+        list_.force(spring.first) += force;
+      }
+      const std::lock_guard lock(locks_[spring.second]);
+      list_.force(spring.second) -= force;
+    }
+  }
+
+ private:
+  std::vector<ByteLock> locks_;  // [nodes]
+};
+
+/// Processors add integers atomically, not floats: this is a loop of compare and exchange.
+void add_atomically(Vec3<float>& sum, const Vec3<float>& force) {
+  std::atomic_ref(sum.x).fetch_add(force.x, std::memory_order_relaxed);
+  std::atomic_ref(sum.y).fetch_add(force.y, std::memory_order_relaxed);
+  std::atomic_ref(sum.z).fetch_add(force.z, std::memory_order_relaxed);
+}
+
+class Atomic : public AddingAccumulation {
+ public:
+  Atomic(const System& /*system*/, SpringList<float>& list, std::size_t /*threads*/)
+      : AddingAccumulation(list) {}
+
+  void add(const Team& team, Pair gather) {
+    for (const Spring& spring : team.slice_of(list_.springs())) {
+      const Vec3<float> force = list_.force_of(spring, gather);
+      add_atomically(list_.force(spring.first), force);
+      add_atomically(list_.force(spring.second), -1.0F * force);
+    }
+  }
+};
+
+class ThreadPrivate {
+ public:
+  ThreadPrivate(const System& system, SpringList<float>& list, std::size_t threads)
+      : list_(list), forces_(threads, std::vector<Vec3<float>>(system.nodes())) {}
+
+  void prepare(const Team& /*team*/) {}
+
+  void add(const Team& team, Pair gather) {
+    std::vector<Vec3<float>>& forces = forces_[team.thread];
+    for (const Spring& spring : team.slice_of(list_.springs())) {
+      const Vec3<float> force = list_.force_of(spring, gather);
+      forces[spring.first] += force;
+      forces[spring.second] -= force;
+    }
+  }
+
+  void finish(const Team& team) {
+    for (std::size_t node = team.begin(list_.nodes()); node < team.end(list_.nodes()); ++node) {
+      Vec3<float> sum;
+      for (std::size_t thread = 0; thread < team.threads; ++thread) {
+        sum += forces_[thread][node];
+        forces_[thread][node] = {};  // for the next stage: its owner may not, while others still sum
+      }
+      list_.force(node) = sum;
+    }
+  }
+
+ private:
+  SpringList<float>& list_;
+  std::vector<std::vector<Vec3<float>>> forces_;  // [threads][nodes] N, zero between stages
+};
+
+class Colouring : public AddingAccumulation {
+ public:
+  Colouring(const System& system, SpringList<float>& list, std::size_t /*threads*/)
+      : AddingAccumulation(list), colouring_(colour_springs(system.springs, system.nodes())) {}
+
+  void add(const Team& team, Pair gather) {
+    for (std::size_t colour = 0; colour < colouring_.colours(); ++colour) {
+      if (colour > 0) team.barrier.wait();
+      for (const Spring& spring : team.slice_of(colouring_.of_colour(colour)))
+        list_.add_force(spring, list_.force_of(spring, gather));
+    }
+  }
+
+ private:
+  SpringColouring colouring_;
+};
+
+class Gather {
+ public:
+  Gather(const System& system, SpringList<float>& list, std::size_t /*threads*/)
+      : list_(list), begin_(system.nodes() + 1, 0), springs_(2 * system.springs.size()) {
+    for (const Spring& spring : system.springs) {
+      ++begin_[spring.first + 1];
+      ++begin_[spring.second + 1];
+    }
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    std::vector<std::size_t> next(begin_);
+    for (Spring spring : system.springs) {
+      springs_[next[spring.first]++] = spring;
+      std::swap(spring.first, spring.second);
+      springs_[next[spring.first]++] = spring;
+    }
+  }
+
+  void prepare(const Team& /*team*/) {}
+
+  void add(const Team& team, Pair gather) {
+    for (std::size_t node = team.begin(list_.nodes()); node < team.end(list_.nodes()); ++node) {
+      Vec3<float> sum;
+      for (std::size_t spring = begin_[node]; spring < begin_[node + 1]; ++spring)
+        sum += list_.force_of(springs_[spring], gather);
+      list_.force(node) = sum;
+    }
+  }
+
+  void finish(const Team& /*team*/) {}
+
+ private:
+  SpringList<float>& list_;
+  std::vector<std::size_t> begin_;  // [nodes + 1] where a node's springs begin
+  std::vector<Spring> springs_;     // node by node, each spring twice, the node itself the first end
+};
 
 constexpr MemoryUse with_private_arrays{.node = 17, .pair_node = 24, .thread_node = 12};
 constexpr MemoryUse with_coloured_copy{.node = 25, .pair_node = 24, .spring = 20};
@@ -34,14 +256,16 @@ const std::array<AccumulationMethod, 9>& table() {
               make_threads_mutex, spring_list_memory, "6 KiB a thread", "once", Repeatable::never,
               ThreadStack::usual),
       of_list("lock-per-node", "a spinning lock of one byte a node, taken for each end of a spring",
-              make_lock_per_node, spring_list_memory, "1 byte a node", "once", Repeatable::never),
-      of_list("atomic", "atomic additions, three for each end of a spring", make_atomic, spring_list_memory,
-              "none", "once", Repeatable::never),
-      of_list("thread-private", "an array of forces for each thread, summed afterwards", make_thread_private,
-              with_private_arrays, "12 bytes a node and thread", "once", Repeatable::at_same_threads),
+              make_list_method<LockPerNode>, spring_list_memory, "1 byte a node", "once", Repeatable::never),
+      of_list("atomic", "atomic additions, three for each end of a spring", make_list_method<Atomic>,
+              spring_list_memory, "none", "once", Repeatable::never),
+      of_list("thread-private", "an array of forces for each thread, summed afterwards",
+              make_list_method<ThreadPrivate>, with_private_arrays, "12 bytes a node and thread", "once",
+              Repeatable::at_same_threads),
       of_list("colouring", "springs of one colour share no node; the threads meet after each colour",
-              make_colouring, with_coloured_copy, "16 bytes a spring", "once", Repeatable::always),
-      of_list("gather", "each node sums its own springs", make_gather, with_both_ends,
+              make_list_method<Colouring>, with_coloured_copy, "16 bytes a spring", "once",
+              Repeatable::always),
+      of_list("gather", "each node sums its own springs", make_list_method<Gather>, with_both_ends,
               "32 bytes a spring, 8 a node", "twice", Repeatable::always),
       {{"gather-vectors",
         "",

@@ -1,21 +1,65 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
+#include <vector>
 
-#include "backends/accumulation/step_rows.h"
 #include "backends/interface/backend.h"
+#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/row_layout.h"
+#include "backends/layouts/spring_constants.h"
+#include "backends/vectors/instruction_sets.h"
+#include "integrators/coefficients.h"
+#include "model/system.h"
 
 namespace mssim {
 
-/// Every node of a cloth sums the forces of its own springs like `gather`, a vector of nodes at a time
-/// (padded_rows.h). Beside `openmp`, which has vectors too, it shows what computing each spring once is
-/// worth. The instruction set is the best one that has options.roots. Throws Unsupported for anything but a
-/// cloth.
+/// Every node of a cloth sums the forces of its own springs like `gather`, a vector of nodes at a time.
+/// Beside `openmp`, which has vectors too, it shows what computing each spring once is worth. The instruction
+/// set is the best one that has options.roots. Throws Unsupported for anything but a cloth.
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options);
 
+/// A cloth with the components x y z u v w (u v w: velocity).
+using PairRows = RowLayout<6>;
+
+/// What the vector code needs to take steps: one cloth, one integrator, one dt.
+struct PaddedRows {
+  /// A node that is put back after every update.
+  struct Pin {
+    std::size_t offset;  ///< PairRows::offset
+    std::array<float, 3> position;
+  };
+
+  PairRows layout;
+  const Integrator* integrator = nullptr;
+  Coefficients<float> coefficients{};
+  std::vector<SpringConstants> springs;  ///< [kinds]
+  Surroundings surroundings{};
+  std::size_t threads = 1;
+  std::vector<Pin> pins;                       ///< row by row
+  std::vector<std::size_t> first_pin;          ///< [rows + 1] where a row's pins begin
+  std::array<AlignedArray, pair_kinds> pairs;  ///< [PairRows::floats]; empty where not stored
+  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
+
+  /// Throws Unsupported where the nodes differ in mass. Set a state before the first step.
+  PaddedRows(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
+             std::size_t lanes, std::size_t thread_count);
+  void set_state(const State& state);
+  State state() const;
+};
+
+/// The vector code of this integrator's steps for the instruction sets of this processor, at least one, the
+/// best first.
+std::vector<StepKernel<PaddedRows>> row_kernels(const Integrator& integrator);
+
 /// Takes the vector code for another instruction set than the best.
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
-                                             const ExecutionOptions& options, const RowKernel& kernel);
+                                             const ExecutionOptions& options,
+                                             const StepKernel<PaddedRows>& kernel);
+
+/// Those of the integrators that are compiled together (step_rows.cpp).
+std::vector<StepKernel<PaddedRows>> row_kernels(Stages<1>), row_kernels(Stages<2>), row_kernels(Stages<3>);
 
 }  // namespace mssim

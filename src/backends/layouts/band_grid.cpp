@@ -4,7 +4,7 @@
 
 namespace mssim {
 BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-                   std::size_t lanes, std::size_t threads, const BandCut& given)
+                   std::size_t lanes, std::size_t most_threads, const BandCut& given)
     : layout(grid, lanes),
       integrator(&method),
       coefficients(coefficients_of<float>(method, dt_s)),
@@ -14,14 +14,14 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
       spacing_(grid.spacing),
       first_column_(grid.first_column) {
   steps_per_pass = given.steps_per_pass.value_or(
-      steps_per_pass_for(layout, method, partitions_for(own.count, threads, method, 1)));
-  if (!given.piece && given.halves.value_or(halves_for(layout, method, steps_per_pass, threads)) > 1) {
+      steps_per_pass_for(layout, method, partitions_for(own.count, most_threads, method, 1)));
+  if (!given.piece && given.halves.value_or(halves_for(layout, method, steps_per_pass, most_threads)) > 1) {
     layout = BandLayout(grid, lanes, 2);
     const std::size_t ghosts = ghost_columns(method, steps_per_pass);
     own = {ghosts, (columns + 1) / 2};
     columns = own.end() + ghosts;
   }
-  cut(threads);
+  cut(most_threads);
   const std::vector<SpringConstants> springs = spring_constants_of(system, grid);
   for (BandPartition& partition : partitions) {
     make_arrays(partition);
@@ -34,7 +34,7 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
         set = AlignedArray(partitions[p].ghosts * EdgeColumns::column_floats(layout));
 }
 
-void BandGrid::cut(std::size_t threads) {
+void BandGrid::cut(std::size_t most_threads) {
   const std::size_t ghosts = ghost_columns(*integrator, steps_per_pass);
   const bool is_piece = layout.halves == 1;  // or all: then there is nothing beside it
   const bool left = is_piece && own.first > 0, right = is_piece && own.end() < columns;
@@ -48,9 +48,10 @@ void BandGrid::cut(std::size_t threads) {
   if (has_edges && right) inner.count -= ghosts;
   first_inner = partitions.size();
   // Without edges one partition has them all: messages bring the ghosts of the first and the last alone.
-  inner_count =
-      (left || right) && !has_edges ? 1 : partitions_for(inner.count, threads, *integrator, steps_per_pass);
-  for (std::size_t p = 0; p < inner_count; ++p) add_partition(part_of(inner, p, inner_count));
+  threads = (left || right) && !has_edges
+                ? 1
+                : partitions_for(inner.count, most_threads, *integrator, steps_per_pass);
+  for (std::size_t p = 0; p < threads; ++p) add_partition(part_of(inner, p, threads));
   if (has_edges && right) add_partition({inner.end(), ghosts});
 }
 

@@ -107,15 +107,15 @@ struct BandGrid {
   ColumnRange own;  ///< of them, what the partitions cover: those of the piece, or of a half
   std::deque<BandPartition> partitions;  ///< in the order of their columns
   std::size_t first_inner = 0;           ///< partitions before this one are an edge
-  std::size_t inner_count = 0;           ///< partitions from there on that have a thread each; then an edge
+  std::size_t threads = 0;               ///< partitions from there on that have a thread each; then an edge
   std::uint64_t passes = 0;              ///< taken so far
   ColumnMessages* messages = nullptr;    ///< of a piece; outlives the steps
   TeamGain team_gain;                    ///< of a thread for each inner partition
 
-  /// Cuts the cloth for `lanes` lanes and at most `threads` partitions. Arrays stay untouched until
-  /// set_state.
+  /// Cuts the cloth for `lanes` lanes and at most `most_threads` inner partitions. Arrays stay untouched
+  /// until set_state.
   BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
-           std::size_t lanes, std::size_t threads, const BandCut& given = {});
+           std::size_t lanes, std::size_t most_threads, const BandCut& given = {});
   /// Spreads the state over the partitions, each by a thread of its own, ghosts and dummies included.
   void set_state(const State& state);
   State state() const;
@@ -125,7 +125,7 @@ struct BandGrid {
  private:
   double spacing_ = 0;  ///< m, places the dummies, with the next
   std::size_t first_column_ = 0;
-  void cut(std::size_t threads);
+  void cut(std::size_t most_threads);
   void add_partition(ColumnRange its);
   void make_arrays(BandPartition& partition) const;
   void choose_rows(BandPartition& partition, const std::vector<SpringConstants>& springs);

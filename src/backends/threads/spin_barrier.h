@@ -1,7 +1,11 @@
 #pragma once
 
+#include <omp.h>
+
 #include <atomic>
 #include <cstddef>
+#include <optional>
+#include <span>
 
 #include "backends/threads/spin_wait.h"
 #include "backends/threads/team_gain.h"
@@ -111,5 +115,33 @@ class SpinBarrier {
   std::atomic<unsigned> phase_{0};  // two more after every meeting; one more while a thread is alone
   std::size_t rounds_alone_ = 0;
 };
+
+/// The threads that take a step together, as one of them sees them.
+struct Team {
+  std::size_t thread;
+  std::size_t threads;
+  SpinBarrier& barrier;
+
+  /// Where this thread's slice of `count` things begins; the next thread's begins where it ends.
+  std::size_t begin(std::size_t count) const { return count * thread / threads; }
+  std::size_t end(std::size_t count) const { return count * (thread + 1) / threads; }
+  template <class T>
+  std::span<const T> slice_of(std::span<const T> all) const {
+    return all.subspan(begin(all.size()), end(all.size()) - begin(all.size()));
+  }
+};
+
+/// Calls act(team) on so many threads of OpenMP's, or on fewer where it gives no more.
+template <class Act>
+void with_team(std::size_t threads, const Act& act) {
+  std::optional<SpinBarrier> barrier;
+#pragma omp parallel num_threads(static_cast <int>(threads))
+  {
+    const auto given = static_cast<std::size_t>(omp_get_num_threads());
+#pragma omp single
+    barrier.emplace(given);
+    act(Team{static_cast<std::size_t>(omp_get_thread_num()), given, *barrier});
+  }
+}
 
 }  // namespace mssim

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "backends/vectors/instruction_sets.h"
 #include "integrators/coefficients.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -60,6 +61,12 @@ constexpr bool exact_roots = false;
 #else
 constexpr bool exact_roots = true;
 #endif
+
+/// The kernel of this instruction set.
+template <class Data>
+StepKernel<Data> kernel_here(void (*step)(Data&, int)) {
+  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, fuses, step};
+}
 
 /// a / 2, where that is neither zero nor denormal: one less in the exponent. An integer's subtraction,
 /// because multiplications limit the loops over springs: 0.97 to 0.99 of the time of a step on Zen 4.

@@ -36,7 +36,7 @@ System bouncing_cloth(std::uint32_t rows, std::uint32_t columns) {
 
 class EachRowKernelAndIntegrator : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
  protected:
-  RowKernel kernel() const { return row_kernels(integrator())[std::get<0>(GetParam())]; }
+  StepKernel<PaddedRows> kernel() const { return row_kernels(integrator())[std::get<0>(GetParam())]; }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
     return make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {threads, ""}, kernel());
@@ -66,11 +66,12 @@ TEST_P(EachRowKernelAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
 }
 
 TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsTheBestThatRoundsAlike) {
-  const std::vector<RowKernel> kernels = row_kernels(integrator());
-  const RowKernel best = *std::ranges::find_if(kernels, [&](const RowKernel& other) {
-    return fuses(other.instruction_set) == fuses(kernel().instruction_set) &&
-           other.exact_roots == kernel().exact_roots;
-  });
+  const std::vector<StepKernel<PaddedRows>> kernels = row_kernels(integrator());
+  const StepKernel<PaddedRows> best =
+      *std::ranges::find_if(kernels, [&](const StepKernel<PaddedRows>& other) {
+        return fuses(other.instruction_set) == fuses(kernel().instruction_set) &&
+               other.exact_roots == kernel().exact_roots;
+      });
   constexpr int steps = 101;  // an odd number leaves the state where `next` was
   for (const auto& [rows, columns] : sizes) {
     const System system = bouncing_cloth(rows, columns);
@@ -160,18 +161,19 @@ TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {
 
 TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
   const System system = cloth_system(9, 11);
-  const std::vector<RowKernel> kernels = row_kernels(integrators[0]);
+  const std::vector<StepKernel<PaddedRows>> kernels = row_kernels(integrators[0]);
   const auto device = [&](Roots roots) {
     return make_gather_vectors(system, integrators[0], backend_dt_s, {.threads = 1, .roots = roots})
         ->device();
   };
   EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
   EXPECT_EQ(device(Roots::exact),
-            std::string("cpu ") + std::ranges::find_if(kernels, &RowKernel::exact_roots)->instruction_set);
+            std::string("cpu ") +
+                std::ranges::find_if(kernels, &StepKernel<PaddedRows>::exact_roots)->instruction_set);
 }
 
 TEST(GatherVectors, BeginsEachComponentOfARowWithAVector) {
-  for (const RowKernel& kernel : row_kernels(integrators[0]))
+  for (const StepKernel<PaddedRows>& kernel : row_kernels(integrators[0]))
     for (const auto& [rows, columns] : sizes) {
       const PairRows layout(GridPatch{rows, columns, 0.01}, kernel.lanes);
       EXPECT_EQ(layout.offset(0, 0) % kernel.lanes, 0U);

@@ -11,7 +11,7 @@
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/cuthill_mckee.h"
-#include "backends/openmp/sliced_bodies.h"
+#include "backends/openmp/bodies.h"
 #include "integrators/integrators.h"
 #include "tests/support/solid_system.h"
 

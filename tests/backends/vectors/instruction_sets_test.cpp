@@ -12,10 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "backends/accumulation/step_rows.h"
+#include "backends/accumulation/gather_vectors.h"
 #include "backends/openmp/openmp.h"
-#include "backends/openmp/step_bands.h"
-#include "backends/openmp/step_slices.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
 #include "tests/support/backend_step.h"

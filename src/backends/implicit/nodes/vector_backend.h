@@ -23,31 +23,6 @@ struct SolverKernel {
   void (*step_bodies)(Bodies& bodies, int count);
 };
 
-template <class Layout>
-class VectorBackend final : public Backend {
- public:
-  using Step = void (*)(Layout& layout, int count);
-
-  template <class... Arguments>
-  VectorBackend(std::string device, Step take_steps, const Arguments&... arguments)
-      : device_(std::move(device)), step_(take_steps), layout_(arguments...) {}
-
-  void set_state(const State& state) override { layout_.set_state(state); }
-  State state() const override { return layout_.state(); }
-  void step(int count) override { step_(layout_, count); }
-  std::string device() const override { return device_; }
-  int threads() const override { return static_cast<int>(layout_.threads); }
-  std::string note() const override {
-    if constexpr (requires { layout_.note(); }) return layout_.note();
-    return {};
-  }
-
- private:
-  const std::string device_;
-  const Step step_;
-  Layout layout_;
-};
-
 /// Steps a cloth or bodies; `more` is what else the solver asks for.
 template <class Cloth, class Bodies, class... More>
 std::unique_ptr<Backend> make_vector_backend(const SolverKernel<Cloth, Bodies>& kernel, std::string device,

@@ -1,18 +1,19 @@
-#include "backends/openmp/body_lanes.h"
+#include "backends/openmp/openmp.h"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "backends/openmp/sliced_bodies.h"
-#include "backends/openmp/step_body_lanes.h"
-#include "backends/openmp/step_slices.h"
+#include "backends/openmp/bodies.h"
+#include "backends/spring_list/serial.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"
+#include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"
 
 namespace mssim {
@@ -53,9 +54,9 @@ TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstruction
   const auto alike = find_alike_bodies(system);
   ASSERT_TRUE(alike);
   const double dt_s = backend_dt_of(method);
-  for (const BodyLanesKernel& kernel : body_lanes_kernels()) {
+  for (const StepKernel<BodyLanes>& kernel : body_lanes_kernels(method)) {
     std::size_t found = 0;
-    for (const SliceKernel& other : slice_kernels(method)) {
+    for (const StepKernel<SlicedBodies>& other : slice_kernels(method)) {
       if (std::string_view(other.instruction_set) != kernel.instruction_set) continue;
       ++found;
       SlicedBodies slices(system, method, dt_s, other.lanes, 2);
@@ -120,6 +121,34 @@ TEST(BodyLanes, AreCutIntoFairShares) {
                                           piece.cut.size()));
   for (const double share : springs) EXPECT_NEAR(share / springs.front(), 1, 0.1);
   EXPECT_TRUE(bodies.pieces.front().cut.empty());
+}
+
+// Vectors also hold places that no node of a cloth has, and springs that do not exist reach them.
+void expect_openmp_near_serial(const System& system) {
+  const Integrator& euler = *find_integrator("semi-euler");
+  const auto serial = make_serial(system, euler, backend_dt_s, {1, ""});
+  serial->step(50);
+  const State expected = serial->state();
+  for (const std::string_view set : openmp_instruction_sets()) {
+    const auto openmp = make_openmp(system, euler, backend_dt_s, {2, ""}, set);
+    openmp->step(50);
+    const State state = openmp->state();
+    for (std::size_t i = 0; i < state.position.size(); ++i)
+      ASSERT_LT(length(state.position[i] - expected.position[i]), 1e-6) << set << ", node " << i;
+  }
+}
+
+TEST(OpenMpOnASheetThroughTheOrigin, KeepsWhatIsNotThereFromTheNodes) {
+  // Nodes whose coordinates are zero or like each other's, beside places that no node has.
+  SceneSpec spec = sheet_spec(37, 23, 0);
+  spec.floor.height = -1;
+  expect_openmp_near_serial(build_system(spec));
+}
+
+TEST(OpenMpOnAClothWithoutAFloor, KeepsWhatIsNotThereFromTheNodes) {
+  System system = without_floor(cloth_system(37, 23));
+  round_start_to_single(system);
+  expect_openmp_near_serial(system);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "backends/openmp/body_lanes.h"
+#include "backends/openmp/bodies.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,18 +6,45 @@
 #include <string>
 #include <utility>
 
-#include "backends/interface/backend.h"
+#include "backends/layouts/slice_entries.h"
 #include "backends/threads/chunk_tickets.h"
 
 namespace mssim {
 namespace {
 
+/// What a chunk costs, in entries of slices or in springs of all lanes, unless these were too many chunks:
+/// some microseconds.
+constexpr std::size_t chunk_cost = 1024;
+
+/// Chunks for each thread where chunks of that cost would be fewer: who is awake can then take work of who is
+/// not in small parts. More chunks cost time in a scene whose stage takes microseconds.
+constexpr std::size_t least_chunks = 4;
+
+/// BodySteps::spins, of slices: some microseconds.
+constexpr int slice_spins = 300;
+
+/// Cuts these slices into `count` ranges of about the same number of entries.
+std::vector<BodySteps::Chunk> balanced_chunks(const std::vector<std::uint32_t>& first_entry,
+                                              BodySteps::Chunk slices, std::size_t count) {
+  const std::size_t before = cost_of_slices_before(first_entry, slices.begin);
+  const std::size_t cost = cost_of_slices_before(first_entry, slices.end) - before;
+  std::vector<BodySteps::Chunk> chunks;
+  std::size_t slice = slices.begin;
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::size_t begin = slice, target = before + cost * (p + 1) / count;
+    while (slice < slices.end && cost_of_slices_before(first_entry, slice + 1) <= target) ++slice;
+    chunks.push_back({begin, slice});
+  }
+  return chunks;
+}
+
+SlicedGraph graph_of_whole(const System& system, std::size_t lanes) {
+  require_nameable_records(system, record_floats);
+  return {system, lanes};
+}
+
 /// What a node costs beside its springs, in springs.
 constexpr std::size_t node_cost = 2;
-
-/// A chunk takes pieces until they cost so many springs, unless these were too many chunks: some
-/// microseconds.
-constexpr std::size_t chunk_cost = 1024;
 
 /// Springs for each time that a waiting thread looks whether others are ready: it takes 35 ns on an Intel
 /// Xeon, where a vector of springs takes 5. A thread that slept while another one did its share must wake up
@@ -129,12 +156,49 @@ BodyLanes::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut, const
 
 }  // namespace
 
+BodySteps::BodySteps(const System& system, const Integrator& method, double dt_s)
+    : integrator(&method),
+      coefficients(coefficients_of<float>(method, dt_s)),
+      surroundings(surroundings_of(system)) {}
+
+void BodySteps::make_pairs(std::size_t floats) {
+  for (const Pair pair : stored_pairs(*integrator, Storage::separate)) {
+    pairs[index(pair)] = AlignedArray(floats);
+    base[index(pair)] = pairs[index(pair)].data();
+  }
+}
+
+SlicedBodies::SlicedBodies(const System& system, const Integrator& method, double dt_s,
+                           std::size_t slice_lanes, std::size_t thread_count)
+    : SlicedBodies(system, graph_of_whole(system, slice_lanes), method, dt_s, thread_count) {}
+
+SlicedBodies::SlicedBodies(const System& system, SlicedGraph graph, const Integrator& method, double dt_s,
+                           std::size_t thread_count)
+    : BodySteps(system, method, dt_s), lanes(graph.lanes) {
+  require_nameable_records(system, record_floats);
+  entries = slice_entries(graph, record_floats, [](std::uint32_t node_slot) { return node_slot; });
+  constants = AlignedArray(graph.slots() * 3);
+  for (std::size_t i = 0; i < graph.slots(); ++i) {
+    float* slice = constants.data() + i / lanes * 3 * lanes + i % lanes;
+    slice[0] = graph.stiffness[i];
+    slice[lanes] = graph.damping[i];
+    slice[2 * lanes] = static_cast<float>(graph.held[i]);
+  }
+  make_pairs((graph.slots() + graph.ghosts) * record_floats);
+  slot.assign(graph.slot.begin(), graph.slot.end() - static_cast<std::ptrdiff_t>(graph.ghosts));
+  first_entry = std::move(graph.first_entry);
+  threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, slices()));
+  spins = slice_spins;
+  const std::size_t by_cost = cost_of_slices_before(first_entry, slices()) / chunk_cost;
+  const std::size_t count =
+      std::min({std::max(least_chunks * threads, by_cost), slices(), std::size_t{ChunkTickets::most_chunks}});
+  chunks = balanced_chunks(first_entry, {0, graph.first_edge_slice}, count);
+  if (graph.ghosts > 0) edge_chunks = balanced_chunks(first_entry, {graph.first_edge_slice, slices()}, count);
+}
+
 BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
                      double dt_s, std::size_t lane_count, std::size_t thread_count)
-    : slices(bodies, lane_count),
-      integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
-      surroundings(surroundings_of(system)) {
+    : BodySteps(system, method, dt_s), slices(bodies, lane_count) {
   const std::size_t node_floats = components * lane_count;
   const std::size_t allowed_nodes = std::numeric_limits<std::uint32_t>::max() / node_floats;
   std::vector<PieceCosts> costs;
@@ -168,16 +232,8 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
   spins = static_cast<int>(std::min<std::size_t>(most_spins, largest / springs_a_spin));
   threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, chunks.size()));
   for (std::size_t thread = 0; thread < threads; ++thread) forces.emplace_back(most_nodes * node_floats);
-  for (std::size_t pair = 0; pair < pair_kinds; ++pair) {
-    if (!stores(method, static_cast<Pair>(pair), Storage::separate)) continue;
-    pairs[pair] = AlignedArray(slices.floats());
-    base[pair] = pairs[pair].data();
-  }
+  make_pairs(slices.floats());
 }
-
-void BodyLanes::set_state(const State& state) { slices.write(state, base[index(Pair::state)]); }
-
-State BodyLanes::state() const { return slices.read(base[index(Pair::state)]); }
 
 std::uint64_t BodyLanes::stored_springs() const {
   std::uint64_t stored = 0;
