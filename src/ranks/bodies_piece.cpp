@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "backends/layouts/cuthill_mckee.h"
+#include "backends/layouts/spring_graph.h"
 #include "backends/openmp/openmp.h"
 #include "ranks/common_kernel.h"
 #include "ranks/graph_partition.h"

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <string>
 
-#include "backends/layouts/cuthill_mckee.h"
-#include "backends/layouts/slice_entries.h"
+#include "backends/layouts/sliced_graph.h"
+#include "backends/layouts/spring_graph.h"
 #include "ranks/shares.h"
 
 namespace mssim {

@@ -236,7 +236,7 @@ namespace {
 
 /// Numbers of a node in a message.
 constexpr std::size_t node_floats = 6;
-/// Where a record has the velocity (backends/layouts/node_records.h).
+/// Where a record has the velocity (backends/layouts/node_arrays.h).
 constexpr std::size_t velocity = 4;
 
 }  // namespace

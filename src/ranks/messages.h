@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "backends/layouts/band_grid.h"
-#include "backends/layouts/column_messages.h"
 #include "backends/openmp/bodies.h"
 #include "ranks/shares.h"
 

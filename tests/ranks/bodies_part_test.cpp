@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/layouts/cuthill_mckee.h"
+#include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
 #include "integrators/all_integrators.h"

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "backends/layouts/spring_colouring.h"
+#include "backends/layouts/spring_graph.h"
 
 namespace mssim {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "backends/accumulation/gather_vectors.h"
-#include "backends/layouts/spring_colouring.h"
+#include "backends/layouts/spring_graph.h"
 #include "backends/spring_list/spring_list.h"
 #include "backends/spring_list/threads_mutex.h"
 #include "backends/threads/spin_barrier.h"

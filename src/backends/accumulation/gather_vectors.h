@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "backends/layouts/aligned_array.h"
-#include "backends/layouts/row_layout.h"
-#include "backends/layouts/spring_constants.h"
+#include "backends/layouts/node_arrays.h"
 #include "backends/vectors/instruction_sets.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"

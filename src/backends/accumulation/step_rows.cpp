@@ -11,9 +11,7 @@
 
 #include <utility>
 
-#include "backends/layouts/row_lanes-inl.h"
-#include "backends/layouts/spring_lanes-inl.h"
-#include "backends/layouts/update_lanes-inl.h"
+#include "backends/layouts/node_lanes-inl.h"
 #include "backends/threads/spin_barrier.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -10,7 +10,7 @@
 #include <array>
 #include <type_traits>
 
-#include "backends/layouts/update_nodes-inl.h"
+#include "backends/layouts/records-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "backends/layouts/aligned_array.h"
-#include "backends/layouts/alike_springs.h"
-#include "backends/layouts/node_records.h"
+#include "backends/layouts/node_arrays.h"
 #include "backends/layouts/packed_springs.h"
 #include "backends/vectors/instruction_sets.h"
 #include "integrators/coefficients.h"

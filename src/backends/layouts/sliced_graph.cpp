@@ -1,12 +1,13 @@
 #include "backends/layouts/sliced_graph.h"
 
 #include <algorithm>
+#include <limits>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "backends/interface/backend.h"
-#include "backends/layouts/cuthill_mckee.h"
-#include "backends/layouts/spring_constants.h"
+#include "backends/layouts/spring_graph.h"
 
 namespace mssim {
 namespace {
@@ -28,15 +29,6 @@ struct Neighbour {
   std::uint32_t node;
   float rest_length;
 };
-
-std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs) {
-  std::vector<std::uint32_t> degree(nodes, 0);
-  for (const Spring& spring : springs) {
-    ++degree[spring.first];
-    ++degree[spring.second];
-  }
-  return degree;
-}
 
 /// Sorts nodes by degree, the largest first, within windows.
 void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint32_t>& degree) {
@@ -132,6 +124,15 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const Gr
   }
   for (const std::uint32_t pin : system.pins)
     if (pin < part.own) held[slot[pin]] = 1;
+}
+
+void require_nameable_records(const System& system, std::size_t floats_of_record) {
+  const std::size_t most_nodes =
+      std::numeric_limits<std::uint32_t>::max() / (floats_of_record / slice_offset_floats) -
+      SlicedGraph::window;
+  if (system.nodes() > most_nodes)
+    throw Unsupported("the scene has " + std::to_string(system.nodes()) +
+                      " nodes; openmp supports bodies of at most " + std::to_string(most_nodes));
 }
 
 }  // namespace mssim

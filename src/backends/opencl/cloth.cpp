@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "backends/layouts/spring_constants.h"
+#include "backends/layouts/node_arrays.h"
 #include "backends/opencl/programs.h"
 #include "kernels/parameters.h"
 

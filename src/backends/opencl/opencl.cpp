@@ -10,8 +10,7 @@
 
 #include "backends/devices/drivers.h"
 #include "backends/layouts/alike_bodies.h"
-#include "backends/layouts/alike_slices.h"
-#include "backends/layouts/node_records.h"
+#include "backends/layouts/node_arrays.h"
 #include "backends/layouts/sliced_graph.h"
 #include "backends/opencl/cloth.h"
 #include "backends/opencl/programs.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "backends/layouts/slice_entries.h"
+#include "backends/layouts/sliced_graph.h"
 #include "backends/threads/chunk_tickets.h"
 
 namespace mssim {

@@ -6,10 +6,8 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "backends/layouts/aligned_array.h"
 #include "backends/layouts/alike_bodies.h"
-#include "backends/layouts/alike_slices.h"
-#include "backends/layouts/node_records.h"
+#include "backends/layouts/node_arrays.h"
 #include "backends/layouts/sliced_graph.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"

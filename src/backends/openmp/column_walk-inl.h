@@ -17,8 +17,7 @@
 #include <bit>
 
 #include "backends/layouts/band_grid.h"
-#include "backends/layouts/spring_lanes-inl.h"
-#include "backends/layouts/update_lanes-inl.h"
+#include "backends/layouts/node_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

@@ -15,9 +15,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "backends/layouts/slice_entries.h"
-#include "backends/layouts/spring_lanes-inl.h"
-#include "backends/layouts/update_nodes-inl.h"
+#include "backends/layouts/node_lanes-inl.h"
+#include "backends/layouts/records-inl.h"
+#include "backends/layouts/sliced_graph.h"
 #include "backends/threads/chunk_tickets.h"
 
 HWY_BEFORE_NAMESPACE();

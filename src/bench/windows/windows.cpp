@@ -10,7 +10,6 @@
 
 #include "backends/backends.h"
 #include "backends/layouts/band_grid.h"
-#include "backends/layouts/column_range.h"
 #include "bench/verification/verification.h"
 #include "model/energy.h"
 #include "platform/machine.h"

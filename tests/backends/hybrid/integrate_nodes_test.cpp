@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/node_arrays.h"
 #include "integrators/integrators.h"
 #include "model/system.h"
 #include "tests/support/cloth_system.h"

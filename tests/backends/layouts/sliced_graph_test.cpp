@@ -4,14 +4,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <numeric>
 #include <string>
+#include <string_view>
 
 #include "backends/interface/backend.h"
-#include "backends/layouts/cuthill_mckee.h"
+#include "backends/layouts/node_arrays.h"
+#include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
+#include "backends/openmp/openmp.h"
+#include "integrators/all_integrators.h"
 #include "integrators/integrators.h"
 #include "tests/support/solid_system.h"
 
@@ -19,77 +26,6 @@ namespace mssim {
 namespace {
 
 using testing::HasSubstr;
-
-/// The same springs between nodes numbered at random, as a mesher might number them.
-std::vector<Spring> shuffled(std::vector<Spring> springs, std::size_t nodes) {
-  std::vector<std::uint32_t> number(nodes);
-  std::iota(number.begin(), number.end(), 0U);
-  std::shuffle(number.begin(), number.end(), std::mt19937(7));
-  for (Spring& spring : springs) {
-    spring.first = number[spring.first];
-    spring.second = number[spring.second];
-  }
-  return springs;
-}
-
-/// Largest distance between the two ends of a spring, by their slots in the order.
-std::uint32_t bandwidth(const std::vector<Spring>& springs, const std::vector<std::uint32_t>& order) {
-  std::vector<std::uint32_t> slot(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) slot[order[i]] = i;
-  std::uint32_t largest = 0;
-  for (const Spring& spring : springs)
-    largest = std::max(largest, std::max(slot[spring.first], slot[spring.second]) -
-                                    std::min(slot[spring.first], slot[spring.second]));
-  return largest;
-}
-
-bool is_permutation(std::vector<std::uint32_t> order, std::size_t nodes) {
-  std::sort(order.begin(), order.end());
-  for (std::uint32_t i = 0; i < order.size(); ++i)
-    if (order[i] != i) return false;
-  return order.size() == nodes;
-}
-
-TEST(ReverseCuthillMckee, ShrinksTheBandwidthOfABodyToAboutALayerOfNodes) {
-  const System system = solid_block(6, 6, 20);
-  const std::vector<Spring> springs = shuffled(system.springs, system.nodes());
-  std::vector<std::uint32_t> as_numbered(system.nodes());
-  std::iota(as_numbered.begin(), as_numbered.end(), 0U);
-  const auto order = reverse_cuthill_mckee(system.nodes(), springs);
-  ASSERT_TRUE(is_permutation(order, system.nodes()));
-  EXPECT_GT(bandwidth(springs, as_numbered), 600U);
-  EXPECT_LT(bandwidth(springs, order), 3U * 6 * 6);
-}
-
-TEST(ReverseCuthillMckee, PutsTheNodesOfAChainInARow) {
-  constexpr std::uint32_t nodes = 50;
-  std::vector<Spring> chain;
-  for (std::uint32_t i = 0; i + 1 < nodes; ++i) chain.push_back({i, i + 1, 1, 0});
-  chain = shuffled(chain, nodes);
-  const auto order = reverse_cuthill_mckee(nodes, chain);
-  ASSERT_TRUE(is_permutation(order, nodes));
-  EXPECT_EQ(bandwidth(chain, order), 1U);
-}
-
-TEST(ReverseCuthillMckee, KeepsBodiesOneAfterTheOtherAndLosesNoLoneNode) {
-  const System system = two_solid_blocks();
-  const std::size_t first = 4 * 5 * 3;
-  const auto order = reverse_cuthill_mckee(system.nodes() + 1, system.springs);
-  ASSERT_TRUE(is_permutation(order, system.nodes() + 1));
-  EXPECT_TRUE(
-      std::all_of(order.begin(), order.begin() + first, [](std::uint32_t node) { return node < 60; }));
-  EXPECT_EQ(order.back(), system.nodes());
-  EXPECT_TRUE(reverse_cuthill_mckee(0, {}).empty());
-}
-
-TEST(ReverseCuthillMckee, TellsWhereNoSpringGoesOn) {
-  // Nodes 0 to 3, of which a spring reaches over two others, 4 alone, and 5 and 6.
-  const std::vector<Spring> springs{{0, 3, 1, 0}, {1, 0, 1, 0}, {1, 2, 1, 0}, {6, 5, 1, 0}};
-  std::vector<std::uint32_t> place{0, 1, 2, 3, 4, 5, 6};
-  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(4, 5, 7));
-  std::ranges::reverse(place);
-  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(2, 3, 7));
-}
 
 /// Bodies of many shapes: among them less than a slice, one node short of a slice, several windows.
 std::vector<System> bodies() {
@@ -175,18 +111,18 @@ TEST_P(SlicedGraphOfLanes, FillsUpSlicesWithWhatFeelsNothingAndDoesNotMove) {
     }
     std::vector<std::uint32_t> held(graph.slots(), 0);
     for (const std::uint32_t pin : system.pins) held[graph.slot[pin]] = 1;
-    std::vector<std::uint32_t> nodes;
+    std::size_t nodes = 0;
     for (std::size_t slot = 0; slot < graph.slots(); ++slot) {
       if (graph.scene_node[slot] != SlicedGraph::no_node) {
-        nodes.push_back(graph.scene_node[slot]);
-        EXPECT_EQ(graph.slot[graph.scene_node[slot]], slot);
+        ++nodes;
+        EXPECT_EQ(graph.slot[graph.scene_node[slot]], slot);  // so no other slot has it
         continue;
       }
       EXPECT_GE(slot, graph.nodes());
       EXPECT_EQ(degree[slot], 0U);
       held[slot] = 1;
     }
-    EXPECT_TRUE(is_permutation(nodes, system.nodes()));
+    EXPECT_EQ(nodes, system.nodes());
     EXPECT_EQ(graph.held, held);
   }
 }
@@ -287,6 +223,24 @@ TEST(SlicedBodies, OfAPartGiveEverySliceToOneLotOfItsKind) {
       EXPECT_EQ(next, chunks == &bodies.chunks ? graph.first_edge_slice : bodies.slices());
     }
   }
+}
+
+TEST(SliceEntries, NameNeighboursAndRestLengthsAndBehindThemTheFirstRecord) {
+  constexpr std::size_t lanes = 4;
+  const SlicedGraph graph(solid_block(3, 4, 5), lanes);
+  const auto record_of = [](std::uint32_t slot) { return slot + 7; };
+  const AlignedArray entries = slice_entries(graph, record_floats, record_of);
+  const auto offset = [&](std::size_t entry, std::size_t lane) {
+    return std::bit_cast<std::uint32_t>(entries.data()[entry * 2 * lanes + lane]) * slice_offset_floats;
+  };
+  ASSERT_EQ(entries.size(), (graph.entries() + 1) * 2 * lanes);
+  for (std::size_t entry = 0; entry < graph.entries(); ++entry)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::size_t element = entry * lanes + lane;
+      EXPECT_EQ(offset(entry, lane), record_of(graph.neighbour[element]) * record_floats);
+      EXPECT_EQ(entries.data()[entry * 2 * lanes + lanes + lane], graph.stiffness_rest[element]);
+    }
+  for (std::size_t lane = 0; lane < lanes; ++lane) EXPECT_EQ(offset(graph.entries(), lane), 0U);
 }
 
 }  // namespace

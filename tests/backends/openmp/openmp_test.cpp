@@ -151,5 +151,26 @@ TEST(OpenMpOnAClothWithoutAFloor, KeepsWhatIsNotThereFromTheNodes) {
   expect_openmp_near_serial(system);
 }
 
+// Empty entries and places without a node have the length zero: no mask takes their force away.
+TEST(SliceEntries, OfANodeWithoutSpringsGiveItNoForce) {
+  System system = solid_block(3, 3, 3);
+  const std::size_t alone = system.nodes();
+  system.start.position.push_back({5, 5, 5});
+  system.start.velocity.push_back({1, 0, 0});
+  system.node_mass.push_back(1);
+  system.gravity = 0;
+  system.viscous_damping = 0;
+  constexpr double dt_s = 1e-4;
+  constexpr int steps = 10;
+  for (const std::string_view set : openmp_instruction_sets()) {
+    const auto backend = make_openmp(system, *find_integrator("semi-euler"), dt_s, {1, ""}, set);
+    backend->step(steps);
+    const State state = backend->state();
+    EXPECT_NEAR(state.position[alone].x, 5 + steps * dt_s, 1e-5) << set;
+    EXPECT_EQ(state.position[alone].y, 5) << set;
+    EXPECT_EQ(state.position[alone].z, 5) << set;
+  }
+}
+
 }  // namespace
 }  // namespace mssim

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/layouts/column_range.h"
+#include "backends/layouts/band_grid.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "scene/cloth.h"

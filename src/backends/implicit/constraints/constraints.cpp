@@ -12,7 +12,7 @@
 
 #include "backends/implicit/constraints/step_constraints.h"
 #include "backends/implicit/nodes/plain_nodes.h"
-#include "backends/layouts/cuthill_mckee.h"
+#include "backends/layouts/spring_graph.h"
 
 namespace mssim {
 namespace {

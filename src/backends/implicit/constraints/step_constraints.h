@@ -6,9 +6,8 @@
 
 #include "backends/implicit/nodes/vector_backend.h"
 #include "backends/interface/backend.h"
-#include "backends/layouts/aligned_array.h"
-#include "backends/layouts/node_records.h"
-#include "backends/layouts/spring_colouring.h"
+#include "backends/layouts/node_arrays.h"
+#include "backends/layouts/spring_graph.h"
 #include "backends/threads/team_gain.h"
 #include "model/system.h"
 
@@ -149,7 +148,7 @@ struct QuarteredRows : SmallSteps {
   bool has_pins(std::size_t row) const { return free_of_row[row] != free.data(); }
 };
 
-/// Bodies for vectors of `lanes` springs of a colour: the nodes as records (node_records.h), renumbered so
+/// Bodies for vectors of `lanes` springs of a colour: the nodes as records (node_arrays.h), renumbered so
 /// that neighbours stand near each other (reverse Cuthill-McKee), and the springs side by side. What no
 /// spring connects is stepped apart, in parts, each of which stays in a thread's cache for all small steps
 /// of a call.

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/node_arrays.h"
 #include "model/system.h"
 
 namespace mssim {

@@ -9,7 +9,7 @@
 #include "backends/implicit/newton/newton_method.h"
 #include "backends/implicit/nodes/node_vectors.h"
 #include "backends/implicit/nodes/vector_backend.h"
-#include "backends/layouts/aligned_array.h"
+#include "backends/layouts/node_arrays.h"
 
 namespace mssim {
 

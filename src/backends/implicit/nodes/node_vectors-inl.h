@@ -12,10 +12,9 @@
 #include <utility>
 
 #include "backends/implicit/nodes/node_vectors.h"
+#include "backends/layouts/node_lanes-inl.h"
 #include "backends/layouts/records-inl.h"
-#include "backends/layouts/row_lanes-inl.h"
-#include "backends/layouts/slice_entries.h"
-#include "backends/layouts/spring_lanes-inl.h"
+#include "backends/layouts/sliced_graph.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

@@ -1,6 +1,6 @@
 #include "backends/implicit/nodes/node_vectors.h"
 
-#include "backends/layouts/slice_entries.h"
+#include "backends/layouts/sliced_graph.h"
 
 namespace mssim {
 namespace {

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "backends/layouts/aligned_array.h"
-#include "backends/layouts/row_layout.h"
-#include "backends/layouts/spring_constants.h"
+#include "backends/layouts/node_arrays.h"
 #include "model/system.h"
 
 namespace mssim {

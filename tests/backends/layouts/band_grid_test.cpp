@@ -1,4 +1,4 @@
-#include "backends/layouts/band_rows.h"
+#include "backends/layouts/band_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "integrators/all_integrators.h"
 #include "model/topology.h"
 
 namespace mssim {
@@ -77,6 +78,42 @@ TEST(BandRows, ShareTheirValues) {
   const std::uint32_t* offsets = band_rows.offset_of_row();
   const std::set<std::uint32_t> different(offsets, offsets + layout.height);
   EXPECT_LE(different.size(), 4U) << "a few at the top, where a lane has no springs upwards, and at the end";
+}
+
+/// Of vectors of 16 lanes.
+std::size_t halves(std::uint32_t rows, std::uint32_t columns, const char* integrator, std::size_t threads) {
+  return halves_for(BandLayout(GridPatch{rows, columns, 0.01}, 16), *find_integrator(integrator), 1, threads);
+}
+
+TEST(BandCut, FoldsAClothWhoseBandsAreLow) {
+  for (const std::size_t threads : {1U, 2U}) {
+    EXPECT_EQ(halves(50, 50, "semi-euler", threads), 2U);
+    EXPECT_EQ(halves(100, 100, "semi-euler", threads), 2U);
+  }
+}
+
+TEST(BandCut, DoesNotFoldWhatWouldBeWalkedOverTwice) {
+  EXPECT_EQ(halves(50, 50, "rk4", 2), 1U) << "the halves would recompute twelve columns each";
+  EXPECT_EQ(halves(50, 50, "semi-euler", 12), 1U) << "two columns a thread and half";
+  EXPECT_EQ(halves(50, 2, "semi-euler", 1), 1U);
+}
+
+TEST(BandCut, DoesNotFoldColumnsThatTheCacheDoesNotHold) {
+  EXPECT_EQ(halves(10000, 700, "semi-euler", 1), 1U);
+}
+
+TEST(BandCut, LeavesNoPartitionNarrowerThanWhatOthersReadOfIt) {
+  for (const Integrator& integrator : integrators)
+    for (const std::size_t steps : {1U, 2U, 4U})
+      for (const std::size_t columns : {1U, 9U, 50U, 700U})
+        for (const std::size_t threads : {1U, 2U, 64U}) {
+          const std::size_t partitions = partitions_for(columns, threads, integrator, steps);
+          ASSERT_GE(partitions, 1U);
+          EXPECT_LE(partitions, threads);
+          if (partitions > 1) {
+            EXPECT_GE(columns / partitions, ghost_columns(integrator, steps));
+          }
+        }
 }
 
 }  // namespace

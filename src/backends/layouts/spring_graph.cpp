@@ -1,6 +1,7 @@
-#include "backends/layouts/cuthill_mckee.h"
+#include "backends/layouts/spring_graph.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace mssim {
@@ -34,13 +35,19 @@ std::uint32_t rim_node(const Adjacency& graph, std::uint32_t node, std::vector<s
 
 }  // namespace
 
+std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs) {
+  std::vector<std::uint32_t> degree(nodes, 0);
+  for (const Spring& spring : springs) {
+    ++degree[spring.first];
+    ++degree[spring.second];
+  }
+  return degree;
+}
+
 Adjacency::Adjacency(std::size_t nodes, std::span<const Spring> springs)
     : first(nodes + 1, 0), neighbours(2 * springs.size()) {
-  for (const Spring& spring : springs) {
-    ++first[spring.first + 1];
-    ++first[spring.second + 1];
-  }
-  for (std::size_t node = 0; node < nodes; ++node) first[node + 1] += first[node];
+  const std::vector<std::uint32_t> degrees = degrees_of(nodes, springs);
+  std::partial_sum(degrees.begin(), degrees.end(), first.begin() + 1);
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
   for (const Spring& spring : springs) {
     neighbours[next[spring.first]++] = spring.second;
@@ -96,6 +103,46 @@ std::vector<std::size_t> component_ends(std::span<const Spring> springs,
     if (farthest == i) ends.push_back(i + 1);
   }
   return ends;
+}
+
+SpringsByFirstEnd::SpringsByFirstEnd(std::span<const Spring> springs, std::span<const std::uint32_t> slot,
+                                     std::span<const std::uint32_t> rank)
+    : slot_(slot), rank_(rank), begin_(slot.size() + 1, 0), order_(springs.size()) {
+  for (const Spring& spring : springs) ++begin_[first_slot(spring) + 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::uint32_t s = 0; s < springs.size(); ++s) order_[next[first_slot(springs[s])]++] = s;
+}
+
+SpringColouring colour_springs(std::span<const Spring> list, std::size_t nodes) {
+  constexpr std::size_t word_bits = 64;
+  const std::vector<std::uint32_t> degree = degrees_of(nodes, list);
+  const std::size_t largest = degree.empty() ? 0 : *std::ranges::max_element(degree);
+  const std::size_t words = (2 * largest + word_bits - 1) / word_bits;
+  std::vector<std::uint64_t> taken(nodes * words, 0);  // [nodes][words] a bit for each colour of a node
+  std::vector<std::uint32_t> colour_of;
+  colour_of.reserve(list.size());
+  SpringColouring colouring;
+  colouring.first.push_back(0);
+  for (const Spring& spring : list) {
+    std::uint64_t* const first = &taken[spring.first * words];
+    std::uint64_t* const second = &taken[spring.second * words];
+    std::size_t word = 0;
+    while (~(first[word] | second[word]) == 0) ++word;
+    const auto bit = static_cast<std::size_t>(std::countr_one(first[word] | second[word]));
+    first[word] |= std::uint64_t{1} << bit;
+    second[word] |= std::uint64_t{1} << bit;
+    const std::size_t colour = word * word_bits + bit;
+    colour_of.push_back(static_cast<std::uint32_t>(colour));
+    if (colour + 1 >= colouring.first.size()) colouring.first.resize(colour + 2, 0);
+    ++colouring.first[colour + 1];
+  }
+  for (std::size_t colour = 0; colour < colouring.colours(); ++colour)
+    colouring.first[colour + 1] += colouring.first[colour];
+  std::vector<std::size_t> next(colouring.first);
+  colouring.springs.resize(list.size());
+  for (std::size_t s = 0; s < list.size(); ++s) colouring.springs[next[colour_of[s]]++] = list[s];
+  return colouring;
 }
 
 }  // namespace mssim

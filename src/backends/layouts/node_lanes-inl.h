@@ -1,0 +1,85 @@
+// Springs and nodes of a vector, however they lie in memory, those of a row of a cloth (RowLayout), and what
+// a stage does with them. Compiled once per instruction set, so the guard toggles.
+#if defined(MSSIM_NODE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MSSIM_NODE_LANES_INL_H_
+#undef MSSIM_NODE_LANES_INL_H_
+#else
+#define MSSIM_NODE_LANES_INL_H_
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include "backends/interface/backend.h"
+#include "backends/layouts/node_arrays.h"
+#include "backends/vectors/lanes-inl.h"
+#include "model/system.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace mssim::HWY_NAMESPACE {
+
+/// Spring constants in registers.
+struct SpringLanes {
+  Lanes stiffness, stiffness_rest, damping;
+  HWY_INLINE SpringLanes(Lanes k, Lanes k_rest, Lanes c) : stiffness(k), stiffness_rest(k_rest), damping(c) {}
+  HWY_INLINE explicit SpringLanes(const SpringConstants& s)
+      : stiffness(s.stiffness), stiffness_rest(s.stiffness_rest), damping(s.damping) {}
+};
+
+/// The springs of a node, each from the node: those of the stencil and, mirrored, those that end in it.
+constexpr std::size_t node_springs = 2 * grid_stencil.size();
+constexpr GridSpring spring_of_node(std::size_t i) {
+  GridSpring spring = grid_stencil[i / 2];
+  if (i % 2 == 1) {
+    spring.rows = -spring.rows;
+    spring.columns = -spring.columns;
+  }
+  return spring;
+}
+
+/// A vector of nodes in a row, where all their springs exist.
+struct InnerVector {
+  HWY_INLINE EveryLane has(int /*rows*/, int /*columns*/) const { return {}; }
+};
+
+/// A vector of nodes in a row, some of whose springs would end outside of the cloth, or some of whose lanes
+/// lie there.
+struct EdgeVector {
+  std::uint32_t row;
+  Index column;                 ///< of each lane
+  std::uint32_t rows, columns;  ///< of the cloth
+  /// Lanes that have a node in the cloth so many rows and columns further.
+  HWY_INLINE Mask has(int down, int right) const {
+    const bool row_exists = row + static_cast<std::uint32_t>(down) < rows;  // above the first it wraps
+    return below(hn::Add(column, hn::Set(IndexTag(), static_cast<std::uint32_t>(right))),
+                 row_exists ? columns : 0);
+  }
+};
+
+/// Three components of a vector of nodes that need not begin where a vector does.
+HWY_INLINE Lanes3 load_components(const float* from, std::ptrdiff_t pitch) {
+  const FloatTag d;
+  return {hn::LoadU(d, from), hn::LoadU(d, from + pitch), hn::LoadU(d, from + 2 * pitch)};
+}
+
+/// One stage at the nodes of one vector. `pull`: the acceleration that the springs give them; `node`: what
+/// they are in the gathered pair; those not `free` (a Mask or EveryLane) stay as they are. `gravity`, m/s^2,
+/// in place of that of `surroundings`. `load` and `store` are update_stage's.
+template <std::size_t method, std::size_t stage, class Free, class Load, class Store>
+HWY_INLINE void update_lanes(const NodeLanes& node, const Lanes3& pull, Free free, Lanes gravity,
+                             const Coefficients<float>& coefficients, const Surroundings& surroundings,
+                             Load load, Store store) {
+  // What is held is at rest; without acceleration every assignment gives it back as it was.
+  const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping), gravity));
+  update_stage<method, stage>(
+      coefficients, node.x, node.v, a, load, store, [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
+        const Lanes height(surroundings.floor_height);
+        touch_floor(both(free, hn::Lt(x.y.v, height.v)), height, Lanes(surroundings.restitution),
+                    Lanes(surroundings.friction), x, v);
+      });
+}
+
+}  // namespace mssim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model/system.h"
+
+namespace mssim {
+
+/// [nodes] How many springs end in each node.
+std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring> springs);
+
+/// The neighbours of every node, ascending: node i's are neighbours[first[i]] to neighbours[first[i + 1] -
+/// 1].
+struct Adjacency {
+  std::vector<std::uint32_t> first;       ///< [nodes + 1]
+  std::vector<std::uint32_t> neighbours;  ///< [2 springs]
+
+  Adjacency(std::size_t nodes, std::span<const Spring> springs);
+  std::size_t nodes() const { return first.size() - 1; }
+  std::uint32_t degree(std::uint32_t node) const { return first[node + 1] - first[node]; }
+  std::span<const std::uint32_t> of(std::uint32_t node) const {
+    return std::span(neighbours).subspan(first[node], degree(node));
+  }
+};
+
+/// An order of the nodes in which neighbours stand near each other, so that what a node gathers lies in few
+/// cache lines: breadth first from a node at the rim of its connected component, the neighbours of each node
+/// by ascending degree, and each component backwards (E. Cuthill and J. McKee, 1969; A. George, 1971).
+/// Components follow each other in the order of their lowest node. Returns the node at each slot: [nodes], a
+/// permutation.
+std::vector<std::uint32_t> reverse_cuthill_mckee(std::size_t nodes, std::span<const Spring> springs);
+
+/// [nodes] Where each node stands in an order of them.
+std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> order);
+
+/// Behind which places the connected components end, ascending, where each component's nodes stand together.
+std::vector<std::size_t> component_ends(std::span<const Spring> springs,
+                                        std::span<const std::uint32_t> place);
+
+/// Springs by the end that comes first in an order of their nodes: found by counting, since sorting a copy of
+/// all springs takes four times as long on a large cloth.
+class SpringsByFirstEnd {
+ public:
+  /// `slot`: [nodes] where each node stands; `rank`: [nodes] how far ahead it is, by which first ends are
+  /// chosen. The springs, and both, must outlive this.
+  SpringsByFirstEnd(std::span<const Spring> springs, std::span<const std::uint32_t> slot,
+                    std::span<const std::uint32_t> rank);
+
+  /// Numbers of the springs that begin at a slot, ascending; none at a slot without a node.
+  std::span<const std::uint32_t> at(std::size_t slot) const {
+    if (slot + 1 >= begin_.size()) return {};
+    return std::span(order_).subspan(begin_[slot], begin_[slot + 1] - begin_[slot]);
+  }
+  /// The slot of a spring's second end.
+  std::uint32_t second_slot(const Spring& spring) const {
+    return slot_[begins_at_first(spring) ? spring.second : spring.first];
+  }
+
+ private:
+  bool begins_at_first(const Spring& spring) const { return rank_[spring.first] < rank_[spring.second]; }
+  std::uint32_t first_slot(const Spring& spring) const {
+    return slot_[begins_at_first(spring) ? spring.first : spring.second];
+  }
+
+  std::span<const std::uint32_t> slot_, rank_;
+  std::vector<std::uint32_t> begin_;  // [nodes + 1]
+  std::vector<std::uint32_t> order_;  // [springs]
+};
+
+/// A list of springs sorted into colours, no two springs of a colour sharing a node.
+struct SpringColouring {
+  std::vector<Spring> springs;     ///< [springs] colour by colour, in the order of the list within each
+  std::vector<std::size_t> first;  ///< [colours + 1] where a colour begins
+
+  std::size_t colours() const { return first.size() - 1; }
+  std::span<const Spring> of_colour(std::size_t colour) const {
+    return std::span(springs).subspan(first[colour], first[colour + 1] - first[colour]);
+  }
+};
+
+/// Gives each spring in turn the first colour that neither of its ends has: at most twice as many colours,
+/// less one, as the largest degree of a node. `nodes`: above all node numbers of the springs.
+SpringColouring colour_springs(std::span<const Spring> list, std::size_t nodes);
+
+}  // namespace mssim
