@@ -232,7 +232,7 @@ MSSIM_INLINE void correct_diagonals(Block block, int direction, int forwards, co
 #endif
 }
 
-/* A sweep of loop 5 over the springs within a block, in the order of correction_order.h. */
+/* A sweep of loop 5 over the springs within a block, in the order of garment_grid.h. */
 MSSIM_INLINE void correct_block(Block block, int forwards, const GarmentGrid* grid) {
   for (int i = 0; i < limited_directions; ++i) {
     const int direction = forwards ? i : limited_directions - 1 - i;

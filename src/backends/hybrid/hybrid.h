@@ -15,10 +15,10 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
 
 /// Hong et al.'s GPU + multi-thread CPU: the OpenCL device that options.device names computes the force of
 /// every spring (where it is a processor, on options.threads of its compute units), options.threads OpenMP
-/// threads sum them at the nodes and integrate. In every stage the nodes
-/// go to the device and the forces come back: in shared memory, as published, or by copying
-/// (options.memory). Works from System::springs, whatever the topology. Throws Unavailable where there is no
-/// such device or its driver fails, Unsupported where the scene does not fit into its memory.
+/// threads sum them at the nodes and integrate. In every stage the nodes go to the device and the forces come
+/// back: in shared memory, as published, or by copying (options.memory). Works from System::springs, whatever
+/// the topology. Throws Unavailable where there is no such device or its driver fails, Unsupported where the
+/// scene does not fit into its memory.
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 

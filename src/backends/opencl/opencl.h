@@ -17,7 +17,8 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
 
 /// Makes the backend on the device that options.device names, and where that is a processor on
 /// options.threads of its compute units. Throws Unavailable where there is no such device or its driver
-/// fails, Unsupported where the scene does not fit into its memory.
+/// fails, Unsupported where the scene does not fit into its memory, where it has too many nodes or springs,
+/// and where springs of unlike materials meet in a node.
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 

@@ -9,11 +9,11 @@
 
 namespace mssim {
 
-/// The harness's own multi-threaded CPU code for cloths and bodies: vectors over bands of a cloth
-/// (BandGrid) or over bodies (SlicedBodies, BodyLanes), fused stages, columns or
-/// slices split over OpenMP threads, the same bits for every number of threads. Throws Unsupported for a
-/// garment, and for bodies in whose nodes springs of different materials meet. The instruction set is the
-/// best one that has options.roots.
+/// The harness's own multi-threaded CPU code for cloths and bodies: vectors over bands of a cloth (BandGrid)
+/// or over bodies (SlicedBodies, BodyLanes), fused stages, columns or slices split over OpenMP threads, the
+/// same bits for every number of threads. The instruction set is the best one that has options.roots. Throws
+/// Unsupported for a garment, for bodies in whose nodes springs of different materials meet, and for more
+/// nodes than the layout numbers.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 

@@ -44,7 +44,8 @@ std::vector<std::string_view> dressing_instruction_sets();
 
 /// Algorithm 1 in vectors along the rows of the panels and on `threads` threads, with the same result to the
 /// last bit for any number of them. An empty instruction set is the best. Throws Unsupported for another
-/// integrator than semi-euler and for springs of one row and direction that differ in stiffness.
+/// integrator than semi-euler and for springs of one row and direction that differ in stiffness, and
+/// std::invalid_argument for an instruction set that is none of these.
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, int threads,
                                                       std::string_view instruction_set = "");

@@ -16,7 +16,7 @@ namespace mssim {
 /// (M + h^2 L) (change of x) = what is missing for x to be a step of backward Euler. Here the change of
 /// w = (x - x_n) / h is sought, so that single precision keeps its digits, and dampers are springs' equals:
 ///
-///     A (change of w) = M (v_n - w) + dt F(x_n + dt w, w),   A: step_matrix.h,
+///     A (change of w) = M (v_n - w) + dt F(x_n + dt w, w),   A: StepMatrix (factor.h),
 ///
 /// from w = v_n, System::solver.iterations times, in the reference, too: it is a method of its own until it
 /// has converged to backward Euler. Neither Chebyshev's nor Anderson's acceleration is applied.
