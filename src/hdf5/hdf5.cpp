@@ -224,7 +224,7 @@ void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t fir
 
 namespace {
 
-/// Throws unless a dataset's bytes lie in its file, stored in a way that hdf5_write.h uses. A virtual or
+/// Throws unless a dataset's bytes lie in its file, stored in a way that mssim writes. A virtual or
 /// external one would read other files, and a filter from elsewhere run its code.
 void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) {
   const std::string action = "looking up how " + path + " is stored";

@@ -132,7 +132,7 @@ struct Hdf5ContentError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Small pieces of an HDF5 file that anybody may have written, the counterpart of hdf5_write.h. Nothing is
+/// Small pieces of an HDF5 file that anybody may have written, the counterpart of what is above. Nothing is
 /// read before it is known to be what is asked for, and nothing is allocated that the file cannot hold. Paths
 /// lead through hard links alone: other links may name any file of the machine. All functions throw Hdf5Error
 /// and Hdf5ContentError.
@@ -143,7 +143,7 @@ Hdf5File open_for_reading(const std::filesystem::path& file);
 /// Whether there is an object at `path`, which begins with '/'.
 bool exists(hid_t file, const std::string& path);
 
-/// The dataset at `path`, which is stored in this file, by filters that hdf5_write.h uses.
+/// The dataset at `path`, which is stored in this file, by filters that mssim writes with.
 Hdf5Dataset open_dataset(hid_t file, const std::string& path);
 
 /// Whether numbers are floating-point ones of 32 or 64 bits, or integers of 8 to 64 bits, of either byte

@@ -88,7 +88,7 @@ mssim_mpi.cpp         platform ranks
 '
 
 # What a room shows to the others: headers that read as its documentation. All others of these rooms are private. Rooms that are
-# not here show too many, all that they have; a room is added when it shows one or two, and those that show more are to.
+# not here show all that they have; they are to be added when they show few.
 shown='
 text                  text error
 statistics            statistics
