@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "backends/implicit/nodes/node_vectors-inl.h"
 #include "backends/threads/spin_barrier.h"
@@ -181,33 +182,39 @@ HWY_NOINLINE void end_step(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
 
 template <class Nodes>
 void take_steps(LocalGlobalNodes<Nodes>& system, int count) {
-  SpinBarrier barrier(system.threads);
+  std::optional<SpinBarrier> barrier;
 #pragma omp parallel num_threads(static_cast <int>(system.threads))
   {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
+#pragma omp single
+    barrier.emplace(threads);
     AlignedArray scratch(3 * system.factor.most_rows);
     const auto for_chunks = [&](auto act) HWY_ATTR {
       const std::size_t chunks = system.nodes.chunks.size();
-      for (std::size_t i = chunks * thread / system.threads; i < chunks * (thread + 1) / system.threads; ++i)
+      for (std::size_t i = chunks * thread / threads; i < chunks * (thread + 1) / threads; ++i)
         act(system, system.nodes.chunks[i]);
-      barrier.wait();
+      barrier->wait();
     };
+    // The fronts are shared out among system.threads: fewer take several shares each.
     const auto& phases = system.schedule.phases;
     for (int step = 0; step < count; ++step) {
       for_chunks(begin_step<Nodes>);
       for (std::uint32_t iteration = 0; iteration < system.iterations; ++iteration) {
         for_chunks(find_missing<Nodes>);
         for (const auto& phase : phases) {
-          for (const FrontSchedule::Item& item : phase[thread])
-            for (std::size_t part = item.begin; part < item.end; ++part)
-              pass_upwards(system, part, scratch.data());
-          barrier.wait();
+          for (std::size_t share = thread; share < system.threads; share += threads)
+            for (const FrontSchedule::Item& item : phase[share])
+              for (std::size_t part = item.begin; part < item.end; ++part)
+                pass_upwards(system, part, scratch.data());
+          barrier->wait();
         }
         for (auto phase = phases.rbegin(); phase != phases.rend(); ++phase) {
-          for (auto item = (*phase)[thread].rbegin(); item != (*phase)[thread].rend(); ++item)
-            for (std::size_t part = item->end; part-- > item->begin;)
-              pass_downwards(system, part, scratch.data());
-          barrier.wait();
+          for (std::size_t share = thread; share < system.threads; share += threads)
+            for (auto item = (*phase)[share].rbegin(); item != (*phase)[share].rend(); ++item)
+              for (std::size_t part = item->end; part-- > item->begin;)
+                pass_downwards(system, part, scratch.data());
+          barrier->wait();
         }
       }
       for_chunks(end_step<Nodes>);

@@ -122,6 +122,19 @@ TEST(FastSprings, GivesTheSameBitsAtEveryNumberOfThreads) {
   }
 }
 
+TEST(FastSprings, TakeFewerThreadsWhereOpenMpGivesFewer) {
+  for (const System& system : {cloth_system(41, 67), solid_block(9, 9, 9)}) {
+    const auto alone = make_vectors(system, 5e-4, 1), asks_for_three = make_vectors(system, 5e-4, 3);
+    alone->step(10);
+    // A region within another one gets one thread.
+#pragma omp parallel num_threads(2)
+#pragma omp single
+    asks_for_three->step(10);
+    EXPECT_EQ(asks_for_three->state().position, alone->state().position);
+    EXPECT_EQ(asks_for_three->state().velocity, alone->state().velocity);
+  }
+}
+
 /// Odd sizes, fewer rows than lanes, single rows and columns, blocks: where layouts go wrong.
 std::vector<System> odd_systems() {
   std::vector<System> systems{pinned_block(), two_solid_blocks(), solid_block(1, 1, 2), solid_block(9, 8, 7)};
