@@ -319,11 +319,17 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
     for (std::size_t part = 0; part < parts.size(); ++part)
       if (!of_part[part].empty()) sorted[part].push_back(std::move(of_part[part]));
   }
-  std::vector<float> entries;
+  std::size_t vectors = 0;
+  for (const auto& colours_of_part : sorted)
+    for (const auto& colour : colours_of_part)
+      for (const auto& [constants, list] : colour) vectors += (list.size() + lanes - 1) / lanes;
+  springs = AlignedArray(vectors * 3 * lanes);
+  float* entry = springs.data();
+  const auto written = [&] { return static_cast<std::size_t>(entry - springs.data()) / (3 * lanes); };
   std::vector<PartCost> costs;
   for (std::size_t part = 0; part < parts.size(); ++part) {
     parts[part].first_colour = colours.size();
-    const std::size_t first_vector = entries.size() / (3 * lanes);
+    const std::size_t first_vector = written();
     for (auto& colour : sorted[part]) {
       const std::size_t first_batch = batches.size();
       for (auto& [constants, list] : colour) {
@@ -333,29 +339,31 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
           return Compliance<float>(system.materials[spring.kind], spring.rest_length, small_s,
                                    first_mobility + second_mobility);
         };
-        Batch batch{entries.size() / (3 * lanes),       0,
-                    compliance(list.front()).stiffness, compliance(list.front()).damping,
-                    static_cast<float>(first_mobility), static_cast<float>(second_mobility)};
+        Batch batch{written(),
+                    0,
+                    compliance(list.front()).stiffness,
+                    compliance(list.front()).damping,
+                    static_cast<float>(first_mobility),
+                    static_cast<float>(second_mobility)};
         batch.end = batch.begin + (list.size() + lanes - 1) / lanes;
         list.resize((batch.end - batch.begin) * lanes, list.back());
         for (std::size_t i = 0; i < list.size(); i += lanes) {
           for (std::size_t lane = 0; lane < lanes; ++lane)
-            entries.push_back(std::bit_cast<float>(slot[list[i + lane].first]));
+            *entry++ = std::bit_cast<float>(slot[list[i + lane].first]);
           for (std::size_t lane = 0; lane < lanes; ++lane)
-            entries.push_back(std::bit_cast<float>(slot[list[i + lane].second]));
+            *entry++ = std::bit_cast<float>(slot[list[i + lane].second]);
           for (std::size_t lane = 0; lane < lanes; ++lane)
-            entries.push_back(compliance(list[i + lane]).stiffness_rest);
+            *entry++ = compliance(list[i + lane]).stiffness_rest;
         }
         batches.push_back(batch);
       }
       colours.push_back({first_batch, batches.size()});
     }
     parts[part].end_colour = colours.size();
-    const std::size_t vectors = entries.size() / (3 * lanes) - first_vector;
-    costs.push_back({part, static_cast<double>(vectors), static_cast<double>(sorted[part].size() + 1)});
+    costs.push_back(
+        {part, static_cast<double>(written() - first_vector), static_cast<double>(sorted[part].size() + 1)});
+    sorted[part] = {};
   }
-  springs = AlignedArray(entries.size());
-  std::ranges::copy(entries, springs.data());
   distribute(*this, std::move(costs), threads);
   set_state(system.start);
 }
