@@ -162,7 +162,7 @@ void require_shares(const SceneSpec& scene, int ranks) {
 }
 
 BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
-    : kernel_(common_kernel(session, slice_kernels(*job.integrator), job.roots)) {
+    : kernel_(common_kernel(session, step_kernels<SlicedBodies>(*job.integrator), job.roots)) {
   const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
   require_same_meshes(session, counts);
   const std::vector<std::size_t> nodes = nodes_of(counts);

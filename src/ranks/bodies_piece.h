@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "backends/openmp/bodies.h"
-#include "backends/openmp/openmp.h"
+#include "backends/vectors/step_kernels.h"
 #include "ranks/messages.h"
 #include "ranks/piece.h"
 #include "ranks/shares.h"

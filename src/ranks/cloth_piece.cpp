@@ -37,7 +37,7 @@ ClothPiece::ClothPiece(const Session& session, const RankJob& job)
       rank_(session.rank()),
       columns_(std::get<ClothSpec>(job.scene.content).columns),
       integrator_(job.integrator),
-      kernel_(common_kernel(session, band_kernels(*job.integrator), job.roots)) {
+      kernel_(common_kernel(session, step_kernels<BandGrid>(*job.integrator), job.roots)) {
   require_columns(columns_, *job.integrator, ranks_);
   make(session, job, chosen_steps(session, job));
 }

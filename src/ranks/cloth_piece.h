@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "backends/layouts/band_grid.h"
-#include "backends/openmp/openmp.h"
+#include "backends/vectors/step_kernels.h"
 #include "ranks/messages.h"
 #include "ranks/piece.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "backends/vectors/instruction_sets.h"
+#include "backends/vectors/step_kernels.h"
 #include "ranks/messages.h"
 #include "ranks/requests.h"
 
@@ -13,11 +13,11 @@ namespace mssim {
 
 /// Keeps those of a processor's kernels that one with the instruction set of the variable
 /// MSSIM_INSTRUCTION_SET would have, by which different processors can be tried on one machine.
-template <class Kernel>
-std::vector<Kernel> kernels_of_rank(std::vector<Kernel> kernels) {
+template <class Data>
+std::vector<StepKernel<Data>> kernels_of_rank(std::vector<StepKernel<Data>> kernels) {
   const std::string name = variable("MSSIM_INSTRUCTION_SET");
   const auto first = std::ranges::find_if(
-      kernels, [&](const Kernel& kernel) { return kernel.instruction_set == std::string_view(name); });
+      kernels, [&](const auto& kernel) { return kernel.instruction_set == std::string_view(name); });
   if (first != kernels.end()) kernels.erase(kernels.begin(), first);
   return kernels;
 }
@@ -25,13 +25,14 @@ std::vector<Kernel> kernels_of_rank(std::vector<Kernel> kernels) {
 /// A kernel with which all ranks give the same bits: the best of each where that is the same one, and else
 /// the best that finds roots exactly. `kernels`: those of this processor. Throws Unsupported, on all ranks,
 /// where their bits would differ.
-template <class Kernel>
-Kernel common_kernel(const Session& session, const std::vector<Kernel>& kernels, Roots roots) {
-  const std::vector<Kernel> own = kernels_of_rank(kernels);
-  const Kernel best = best_kernel(own, roots);
+template <class Data>
+StepKernel<Data> common_kernel(const Session& session, const std::vector<StepKernel<Data>>& kernels,
+                               Roots roots) {
+  const std::vector<StepKernel<Data>> own = kernels_of_rank(kernels);
+  const StepKernel<Data> best = best_kernel(own, roots);
   const std::vector<std::string> sets = session.gather(best.instruction_set);
   if (std::ranges::count(sets, sets.front()) == std::ssize(sets)) return best;
-  const Kernel exact = best_kernel(own, Roots::exact);
+  const StepKernel<Data> exact = best_kernel(own, Roots::exact);
   const std::vector<std::string> roundings = session.gather(exact.fuses ? "once" : "twice");
   const auto other = std::ranges::find_if(
       roundings, [&](const std::string& rounding) { return rounding != roundings.front(); });

@@ -13,6 +13,7 @@
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/serial.h"
+#include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"
@@ -294,7 +295,7 @@ void call_alone(Call call) {
 }
 
 TEST_P(EachIntegratorOnOpenMp, GivesTheSameBitsHoweverItIsCut) {
-  const StepKernel<BandGrid> kernel = band_kernels(integrator()).front();
+  const StepKernel<BandGrid> kernel = step_kernels<BandGrid>(integrator()).front();
   for (const auto& [rows, columns] : {std::pair{37U, 23U}, {9U, 11U}, {61U, 80U}, {1U, 7U}, {7U, 1U}}) {
     const System system = low_cloth(rows, columns);
     const auto& grid = std::get<GridPatch>(system.topology);

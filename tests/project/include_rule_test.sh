@@ -114,7 +114,7 @@ scene/spec            scene_spec
 scene                 scene_file scene_kinds cloth
 backends              backends
 backends/interface    backend ahead
-backends/vectors      instruction_sets lanes-inl
+backends/vectors      step_kernels instruction_sets lanes-inl
 backends/openmp       openmp bodies
 backends/accumulation accumulation_methods
 backends/implicit     implicit

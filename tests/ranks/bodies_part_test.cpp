@@ -13,6 +13,7 @@
 #include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
+#include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
 #include "ranks/shares.h"
 #include "tests/support/backend_step.h"
@@ -102,7 +103,7 @@ BodiesPart part_of(const Divided& divided, int rank) {
 /// The state after some steps, each part by threads that know nothing of the others but what the mail brings.
 State state_of_parts(const Divided& divided, const Integrator& integrator, std::size_t threads, int steps) {
   const auto ranks = static_cast<std::size_t>(divided.ranks);
-  const StepKernel<SlicedBodies> kernel = slice_kernels(integrator).front();
+  const StepKernel<SlicedBodies> kernel = step_kernels<SlicedBodies>(integrator).front();
   std::vector<std::vector<Mail>> mail(ranks);
   for (std::vector<Mail>& from : mail) from = std::vector<Mail>(ranks);
   State all = divided.bodies.start;

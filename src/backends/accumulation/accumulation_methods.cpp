@@ -56,13 +56,13 @@ class ListMethod final : public Backend {
   void take_step(const Team& team) {
     for_each_stage<method>([&](auto stage) {
       accumulation_.prepare(team);
-      team.barrier.wait();
+      team.meet();
       accumulation_.add(team, integrators[method].stages[stage].gather);
-      team.barrier.wait();
+      team.meet();
       accumulation_.finish(team);
       list_.template update_nodes<method, stage>(team.begin(list_.nodes()), team.end(list_.nodes()));
     });
-    team.barrier.wait();
+    team.meet();
     if (team.thread == 0) list_.end_step();  // seen by all after the next stage's first barrier
   }
 
@@ -186,7 +186,7 @@ class Colouring : public AddingAccumulation {
 
   void add(const Team& team, Pair gather) {
     for (std::size_t colour = 0; colour < colouring_.colours(); ++colour) {
-      if (colour > 0) team.barrier.wait();
+      if (colour > 0) team.meet();
       for (const Spring& spring : team.slice_of(colouring_.of_colour(colour)))
         list_.add_force(spring, list_.force_of(spring, gather));
     }

@@ -50,10 +50,6 @@ State PaddedRows::state() const {
   return state;
 }
 
-std::vector<StepKernel<PaddedRows>> row_kernels(const Integrator& integrator) {
-  return kernels_of_stages(integrator, [](auto stages) { return row_kernels(stages); });
-}
-
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options,
                                              const StepKernel<PaddedRows>& kernel) {
@@ -67,7 +63,7 @@ std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integra
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options) {
   return make_gather_vectors(system, integrator, dt_s, options,
-                             best_kernel(row_kernels(integrator), options.roots));
+                             best_kernel(step_kernels<PaddedRows>(integrator), options.roots));
 }
 
 }  // namespace mssim

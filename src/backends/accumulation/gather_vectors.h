@@ -7,7 +7,7 @@
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
-#include "backends/vectors/instruction_sets.h"
+#include "backends/vectors/step_kernels.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 
@@ -48,16 +48,9 @@ struct PaddedRows {
   State state() const;
 };
 
-/// The vector code of this integrator's steps for the instruction sets of this processor, at least one, the
-/// best first.
-std::vector<StepKernel<PaddedRows>> row_kernels(const Integrator& integrator);
-
 /// Takes the vector code for another instruction set than the best.
 std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integrator& integrator, double dt_s,
                                              const ExecutionOptions& options,
                                              const StepKernel<PaddedRows>& kernel);
-
-/// Those of the integrators that are compiled together (step_rows.cpp).
-std::vector<StepKernel<PaddedRows>> row_kernels(Stages<1>), row_kernels(Stages<2>), row_kernels(Stages<3>);
 
 }  // namespace mssim

@@ -1,7 +1,7 @@
 // The walk over a cloth in padded rows: a gather over nodes.
 // Compiled once per instruction set (hwy/foreach_target.h includes this file again for each) and for the
 // integrators of MSSIM_STAGES.
-#include "backends/accumulation/gather_vectors.h"
+#include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/accumulation/step_rows.cpp"
@@ -11,33 +11,25 @@
 
 #include <utility>
 
+#include "backends/accumulation/gather_vectors.h"
 #include "backends/layouts/node_lanes-inl.h"
 #include "backends/threads/spin_barrier.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// What every vector needs of the cloth. A copy, because a vector's store may change anything that has an
-/// address elsewhere, as far as the compiler knows.
-struct ClothConstants {
-  SpringLanes spring[3];
+/// The same of one that takes explicit steps.
+struct ClothConstants : WalkedRows {
   Coefficients<float> coefficients;
   Surroundings surroundings;
-  std::ptrdiff_t pitch;
   std::uint32_t rows, columns;
   HWY_INLINE explicit ClothConstants(const PaddedRows& cloth)
-      : spring{SpringLanes(cloth.springs[structural]), SpringLanes(cloth.springs[shear]),
-               SpringLanes(cloth.springs[bending])},
+      : WalkedRows(cloth.springs, cloth.layout.pitch),
         coefficients(cloth.coefficients),
         surroundings(cloth.surroundings),
-        pitch(static_cast<std::ptrdiff_t>(cloth.layout.pitch)),
         rows(static_cast<std::uint32_t>(cloth.layout.rows)),
         columns(static_cast<std::uint32_t>(cloth.layout.columns)) {}
 };
-
-HWY_INLINE NodeLanes load_vector(const float* from, std::ptrdiff_t pitch) {
-  return {load_components(from, pitch), load_components(from + 3 * pitch, pitch)};
-}
 
 /// Acceleration that the springs of a vector of nodes give them. `here`: their x in the gathered pair.
 template <class Place>
@@ -48,7 +40,7 @@ HWY_INLINE Lanes3 spring_acceleration(const ClothConstants& constants, const Pla
   const auto add = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
     constexpr GridSpring to = spring_of_node(i);
     const SpringLanes& spring = constants.spring[to.kind];
-    const NodeLanes other = load_vector(
+    const NodeLanes other = load_node(
         here + to.rows * static_cast<std::ptrdiff_t>(PairRows::components) * pitch + to.columns, pitch);
     const Lanes3 to_other = other.x - node.x;
     const Lanes pull =
@@ -78,7 +70,7 @@ HWY_INLINE void step_vector(const ClothConstants& constants, const Place& place,
                             std::size_t offset) {
   const std::ptrdiff_t pitch = constants.pitch;
   const float* here = arrays[index(integrators[method].stages[stage].gather)] + offset;
-  const NodeLanes node = load_vector(here, pitch);
+  const NodeLanes node = load_node(here, pitch);
   const Lanes3 pull = [&]() MSSIM_INLINE_LAMBDA {
     if constexpr (std::is_same_v<Place, EdgeVector>)
       return edge_acceleration(constants, place, here, node);
@@ -93,12 +85,8 @@ HWY_INLINE void step_vector(const ClothConstants& constants, const Place& place,
       constants.surroundings,
       [&](auto slot)
           MSSIM_INLINE_LAMBDA { return load_components(address(index(decltype(slot)::value)), pitch); },
-      [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA {
-        float* to = address(index(decltype(slot)::value));
-        hn::Store(value.x.v, FloatTag(), to);
-        hn::Store(value.y.v, FloatTag(), to + pitch);
-        hn::Store(value.z.v, FloatTag(), to + 2 * pitch);
-      });
+      [&](auto slot, const Lanes3& value)
+          MSSIM_INLINE_LAMBDA { store3(address(index(decltype(slot)::value)), value, pitch); });
 }
 
 /// The vectors of columns [begin, end) of a row, some of whose springs or lanes are not there.
@@ -151,12 +139,7 @@ template <std::size_t method, std::size_t stage>
 HWY_INLINE void step_row(const PaddedRows& cloth, const ClothConstants& constants, const Arrays& arrays,
                          std::size_t row) {
   const PairRows& layout = cloth.layout;
-  constexpr std::size_t ring = PairRows::ring;
-  std::size_t begin = 0, end = 0;  // of the vectors inside
-  if (row >= ring && row + ring < layout.rows && layout.columns >= layout.margin + ring) {
-    begin = layout.margin;
-    end = begin + (layout.columns - ring - begin) / lane_count() * lane_count();
-  }
+  const auto [begin, end] = layout.inner_columns(row, lane_count());
   step_edge<method, stage>(constants, arrays, layout, row, 0, begin);
   step_inside<method, stage>(constants, arrays, layout.offset(row, begin), layout.offset(row, end));
   step_edge<method, stage>(constants, arrays, layout, row, end, layout.columns);
@@ -174,7 +157,7 @@ HWY_INLINE void take_steps(const PaddedRows& cloth, const Team& team, int count)
   for (int step = 0; step < count; ++step) {
     for_each_stage<method>([&](auto stage) HWY_ATTR {
       for (std::size_t row = begin; row < end; ++row) step_row<method, stage>(cloth, constants, arrays, row);
-      team.barrier.wait();  // a stage reads what another has written, and none writes what it reads
+      team.meet();  // a stage reads what another has written, and none writes what it reads
     });
     std::swap(arrays[index(Pair::state)], arrays[index(Pair::next)]);
   }
@@ -201,9 +184,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-HWY_EXPORT(row_kernel);
-std::vector<StepKernel<PaddedRows>> row_kernels(Stages<MSSIM_STAGES>) {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(row_kernel));
-}
+MSSIM_COMPILED_KERNELS(PaddedRows, row_kernel)
 }  // namespace mssim
 #endif

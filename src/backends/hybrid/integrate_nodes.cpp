@@ -1,8 +1,8 @@
 // Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+#include "backends/vectors/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/hybrid/integrate_nodes.cpp"
-#include "backends/hybrid/integrate_nodes.h"
-
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -10,6 +10,7 @@
 #include <array>
 #include <type_traits>
 
+#include "backends/hybrid/integrate_nodes.h"
 #include "backends/layouts/records-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -105,18 +106,6 @@ HWY_NOINLINE void integrate_slices(const HostNodes& nodes, const MappedNodes& ma
   }
 }
 
-/// Three components of a slice's nodes from one on.
-HWY_INLINE Lanes3 load_of_slice(const float* from) {
-  const FloatTag d;
-  return {hn::Load(d, from), hn::Load(d, from + slice_nodes), hn::Load(d, from + 2 * slice_nodes)};
-}
-HWY_INLINE void store_to_slice(float* to, const Lanes3& value) {
-  const FloatTag d;
-  hn::Store(value.x.v, d, to);
-  hn::Store(value.y.v, d, to + slice_nodes);
-  hn::Store(value.z.v, d, to + 2 * slice_nodes);
-}
-
 template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void integrate_slices(const AlikeNodes& nodes, const MappedNodes& mapped, std::size_t begin,
                                    std::size_t end) {
@@ -128,21 +117,21 @@ HWY_NOINLINE void integrate_slices(const AlikeNodes& nodes, const MappedNodes& m
       const float* const forces = mapped.forces + lane;
       Lanes3 sum = zero3();
       for (std::size_t s = springs.first_end[slice]; s < springs.first_end[slice + 1]; ++s)
-        sum = sum + load_of_slice(forces + s * force_floats);
+        sum = sum + load3(forces + s * force_floats, slice_nodes);
       for (std::size_t i = springs.first_subtracted[slice]; i < springs.first_subtracted[slice + 1]; ++i)
-        sum = sum - load_of_slice(forces + std::size_t{springs.subtracted[i]} * force_floats);
+        sum = sum - load3(forces + std::size_t{springs.subtracted[i]} * force_floats, slice_nodes);
       const auto at = [&](auto slot) MSSIM_INLINE_LAMBDA {
         constexpr std::size_t number = index(decltype(slot)::value);
         return pairs[number / 2] + (2 * slice + number % 2) * force_floats + lane;
       };
-      const auto load = [&](auto slot) MSSIM_INLINE_LAMBDA { return load_of_slice(at(slot)); };
+      const auto load = [&](auto slot) MSSIM_INLINE_LAMBDA { return load3(at(slot), slice_nodes); };
       constexpr Pair gathered = integrators[method].stages[stage].gather;
       const NodeLanes node{load(std::integral_constant<Slot, position_slot(gathered)>{}),
                            load(std::integral_constant<Slot, velocity_slot(gathered)>{})};
       const Mask free = hn::FirstN(FloatTag(), springs.pinned[slice] != 0 ? 0 : lane_count());
       update_lanes<method, stage>(
           node, sum, free, Lanes(nodes.surroundings.gravity), nodes.coefficients, nodes.surroundings, load,
-          [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { store_to_slice(at(slot), value); });
+          [&](auto slot, const Lanes3& value) MSSIM_INLINE_LAMBDA { store3(at(slot), value, slice_nodes); });
     }
 }
 

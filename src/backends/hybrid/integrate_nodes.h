@@ -10,7 +10,6 @@
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
 #include "backends/layouts/packed_springs.h"
-#include "backends/vectors/instruction_sets.h"
 #include "integrators/coefficients.h"
 #include "model/system.h"
 

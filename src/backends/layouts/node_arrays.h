@@ -81,6 +81,15 @@ struct RowLayout {
   /// Floats of an array, with a margin behind its last row.
   std::size_t floats() const { return (rows + 2 * ring) * row_floats() + margin; }
 
+  struct Columns {
+    std::size_t begin, end;
+  };
+  /// Columns of a row, in vectors of `vector_lanes`, whose nodes have all the springs of the stencil.
+  Columns inner_columns(std::size_t row, std::size_t vector_lanes) const {
+    if (row < ring || row + ring >= rows || columns < margin + ring) return {0, 0};
+    return {margin, margin + (columns - ring - margin) / vector_lanes * vector_lanes};
+  }
+
  private:
   static std::size_t vectors_of(std::size_t floats, std::size_t lanes) {
     return (floats + lanes - 1) / lanes;

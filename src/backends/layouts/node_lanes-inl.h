@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
@@ -22,8 +23,20 @@ namespace mssim::HWY_NAMESPACE {
 struct SpringLanes {
   Lanes stiffness, stiffness_rest, damping;
   HWY_INLINE SpringLanes(Lanes k, Lanes k_rest, Lanes c) : stiffness(k), stiffness_rest(k_rest), damping(c) {}
-  HWY_INLINE explicit SpringLanes(const SpringConstants& s)
+  /// Of a SpringConstants, or what else has its numbers.
+  template <class Constants>
+  HWY_INLINE explicit SpringLanes(const Constants& s)
       : stiffness(s.stiffness), stiffness_rest(s.stiffness_rest), damping(s.damping) {}
+};
+
+/// What every vector needs of a cloth in rows. A copy, because a vector's store may change anything that has
+/// an address elsewhere, as far as the compiler knows.
+struct WalkedRows {
+  SpringLanes spring[3];  ///< by GridSpringKind
+  std::ptrdiff_t pitch;   ///< RowLayout::pitch
+  HWY_INLINE WalkedRows(const std::vector<SpringConstants>& springs, std::size_t of_layout)
+      : spring{SpringLanes(springs[structural]), SpringLanes(springs[shear]), SpringLanes(springs[bending])},
+        pitch(static_cast<std::ptrdiff_t>(of_layout)) {}
 };
 
 /// The springs of a node, each from the node: those of the stencil and, mirrored, those that end in it.
@@ -57,9 +70,13 @@ struct EdgeVector {
 };
 
 /// Three components of a vector of nodes that need not begin where a vector does.
-HWY_INLINE Lanes3 load_components(const float* from, std::ptrdiff_t pitch) {
+HWY_INLINE Lanes3 load_components(const float* from, auto pitch) {
   const FloatTag d;
   return {hn::LoadU(d, from), hn::LoadU(d, from + pitch), hn::LoadU(d, from + 2 * pitch)};
+}
+/// The components x y z u v w of such a vector.
+HWY_INLINE NodeLanes load_node(const float* from, auto pitch) {
+  return {load_components(from, pitch), load_components(from + 3 * pitch, pitch)};
 }
 
 /// One stage at the nodes of one vector. `pull`: the acceleration that the springs give them; `node`: what

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "backends/vectors/instruction_sets.h"
 
 namespace mssim {
 
@@ -32,22 +31,5 @@ bool has_exact_roots(std::string_view instruction_set);
 /// one that is not among them.
 std::unique_ptr<Backend> make_openmp(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options, std::string_view instruction_set);
-
-struct BandGrid;
-struct SlicedBodies;
-struct BodyLanes;
-
-/// The vector code of this integrator's steps for the instruction sets of this processor, at least one, the
-/// best first: for who holds the nodes himself, as a part of a scene does (ranks/).
-std::vector<StepKernel<BandGrid>> band_kernels(const Integrator& integrator);
-std::vector<StepKernel<SlicedBodies>> slice_kernels(const Integrator& integrator);
-std::vector<StepKernel<BodyLanes>> body_lanes_kernels(const Integrator& integrator);
-
-/// Those of the integrators that are compiled together.
-std::vector<StepKernel<BandGrid>> band_kernels(Stages<1>), band_kernels(Stages<2>), band_kernels(Stages<3>);
-std::vector<StepKernel<SlicedBodies>> slice_kernels(Stages<1>), slice_kernels(Stages<2>),
-    slice_kernels(Stages<3>);
-std::vector<StepKernel<BodyLanes>> body_lanes_kernels(Stages<1>), body_lanes_kernels(Stages<2>),
-    body_lanes_kernels(Stages<3>);
 
 }  // namespace mssim

@@ -2,13 +2,12 @@
 // them.
 // Compiled once per instruction set (hwy/foreach_target.h includes this file again for each) and for the
 // integrators of MSSIM_STAGES.
-#include "backends/openmp/openmp.h"
+#include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/openmp/step_bands.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cstring>
@@ -321,7 +320,6 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
     return true;
   };
   const std::size_t begin = bands.team_gain.take_rounds(pass_alone);
-  std::optional<SpinBarrier> barrier;
   const std::size_t between_meetings = passes_between_meetings(bands);
   // Until all threads are there, and until all have ended, others wait: in a call of a few passes on a busy
   // machine that may be all of its time.
@@ -329,29 +327,25 @@ HWY_INLINE void step_method(BandGrid& bands, std::size_t count) {
   const Clock::time_point call = Clock::now();
   Clock::time_point first_has_ended = call;
   TeamGain::Duration first_waited{};
-  if (begin < passes)
-#pragma omp parallel num_threads(static_cast <int>(bands.threads))
-  {
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
-#pragma omp single
-    barrier.emplace(threads, bands.team_gain, call);
+  const auto take_passes = [&](const Team& team) HWY_ATTR {
     TeamGain::Duration waited{};
-    if (threads > 1 && thread == 0) waited = Clock::now() - call;
+    const bool is_first_of_several = team.threads > 1 && team.thread == 0;
+    if (is_first_of_several) waited = Clock::now() - call;
     std::size_t before_meeting = between_meetings;
     for (std::size_t pass = begin; pass < passes; ++pass) {
-      walk(thread, threads, pass, waited);
-      if (threads == 1 || --before_meeting > 0) continue;
-      pass += barrier->end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); },
-                                 waited);
+      walk(team.thread, team.threads, pass, waited);
+      if (team.threads == 1 || --before_meeting > 0) continue;
+      pass +=
+          team.end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); }, waited);
       waited = {};
       before_meeting = between_meetings;
     }
-    if (threads > 1 && thread == 0) {
+    if (is_first_of_several) {
       first_has_ended = Clock::now();
       first_waited = waited;
     }
-  }
+  };
+  if (begin < passes) with_team(bands.threads, take_passes, bands.team_gain, call);
   if (first_has_ended != call) {
     bands.team_gain.add_wait(first_waited + (Clock::now() - first_has_ended));
     bands.team_gain.begins_alone(static_cast<TeamGain::Duration::rep>(bands.threads), &Clock::now);
@@ -377,9 +371,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-HWY_EXPORT(band_kernel);
-std::vector<StepKernel<BandGrid>> band_kernels(Stages<MSSIM_STAGES>) {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(band_kernel));
-}
+MSSIM_COMPILED_KERNELS(BandGrid, band_kernel)
 }  // namespace mssim
 #endif

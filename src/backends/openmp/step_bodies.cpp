@@ -2,8 +2,7 @@
 // and each spring once.
 // Compiled once per instruction set (hwy/foreach_target.h includes this file again for each) and for the
 // integrators of MSSIM_STAGES.
-#include "backends/openmp/bodies.h"
-#include "backends/openmp/openmp.h"
+#include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/openmp/step_bodies.cpp"
@@ -18,6 +17,7 @@
 #include "backends/layouts/node_lanes-inl.h"
 #include "backends/layouts/records-inl.h"
 #include "backends/layouts/sliced_graph.h"
+#include "backends/openmp/bodies.h"
 #include "backends/threads/chunk_tickets.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -225,10 +225,21 @@ HWY_INLINE void work_on(Bodies& bodies, std::uint32_t number, BodySteps::Chunk c
   });
 }
 
-/// Stages of a part. Each is two phases: nodes without ghosts for neighbours are stepped while messages bring
+/// Takes so many stages.
+template <std::size_t method, class Bodies>
+HWY_INLINE void take_stages(Bodies& bodies, std::uint32_t count) {
+  work_in_phases(
+      bodies, count,
+      [&](std::uint32_t thread, const ChunkTickets::Ticket& ticket)
+          HWY_ATTR { work_on<method>(bodies, ticket.phase, bodies.chunks[ticket.chunk], thread); },
+      [](std::uint32_t) {});
+}
+
+/// Each stage of a part is two phases: nodes without ghosts for neighbours are stepped while messages bring
 /// the ghosts; then the edge nodes, which are sent as soon as they are complete.
 template <std::size_t method>
-HWY_INLINE void take_stages_of_part(SlicedBodies& bodies, std::uint32_t count) {
+HWY_INLINE void take_stages(SlicedBodies& bodies, std::uint32_t count) {
+  if (bodies.messages == nullptr) return take_stages<method, SlicedBodies>(bodies, count);
   NodeMessages& messages = *bodies.messages;
   const auto gathered_in = [&](std::uint32_t number) {
     const Stage& stage = integrators[method].stages[number % integrators[method].stage_count];
@@ -258,17 +269,7 @@ HWY_INLINE void take_steps(Bodies& bodies, int count) {
   const auto stages =
       static_cast<std::uint32_t>(count) * static_cast<std::uint32_t>(integrators[method].stage_count);
   if (stages == 0 || bodies.chunks.empty()) return;
-  bool is_part = false;
-  if constexpr (std::is_same_v<Bodies, SlicedBodies>) {
-    is_part = bodies.messages != nullptr;
-    if (is_part) take_stages_of_part<method>(bodies, stages);
-  }
-  if (!is_part)
-    work_in_phases(
-        bodies, stages,
-        [&](std::uint32_t thread, const ChunkTickets::Ticket& ticket)
-            HWY_ATTR { work_on<method>(bodies, ticket.phase, bodies.chunks[ticket.chunk], thread); },
-        [](std::uint32_t) {});
+  take_stages<method>(bodies, stages);
   if (count % 2 != 0) std::swap(bodies.base[index(Pair::state)], bodies.base[index(Pair::next)]);
 }
 
@@ -296,13 +297,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-HWY_EXPORT(slice_kernel);
-std::vector<StepKernel<SlicedBodies>> slice_kernels(Stages<MSSIM_STAGES>) {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(slice_kernel));
-}
-HWY_EXPORT(body_lanes_kernel);
-std::vector<StepKernel<BodyLanes>> body_lanes_kernels(Stages<MSSIM_STAGES>) {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(body_lanes_kernel));
-}
+MSSIM_COMPILED_KERNELS(SlicedBodies, slice_kernel)
+MSSIM_COMPILED_KERNELS(BodyLanes, body_lanes_kernel)
 }  // namespace mssim
 #endif

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "backends/threads/spin_wait.h"
 #include "backends/threads/team_gain.h"
@@ -122,6 +123,13 @@ struct Team {
   std::size_t threads;
   SpinBarrier& barrier;
 
+  void meet() const { barrier.wait(); }
+  /// SpinBarrier::end_round.
+  template <class TakeRound>
+  std::size_t end_round(TakeRound&& take_round, TeamGain::Duration waited = {}) const {
+    return barrier.end_round(std::forward<TakeRound>(take_round), waited);
+  }
+
   /// Where this thread's slice of `count` things begins; the next thread's begins where it ends.
   std::size_t begin(std::size_t count) const { return count * thread / threads; }
   std::size_t end(std::size_t count) const { return count * (thread + 1) / threads; }
@@ -131,15 +139,16 @@ struct Team {
   }
 };
 
-/// Calls act(team) on so many threads of OpenMP's, or on fewer where it gives no more.
-template <class Act>
-void with_team(std::size_t threads, const Act& act) {
+/// Calls act(team) on so many threads of OpenMP's, or on fewer where it gives no more. `gain`: what
+/// SpinBarrier takes beside their number.
+template <class Act, class... Gain>
+void with_team(std::size_t threads, const Act& act, Gain&&... gain) {
   std::optional<SpinBarrier> barrier;
 #pragma omp parallel num_threads(static_cast <int>(threads))
   {
     const auto given = static_cast<std::size_t>(omp_get_num_threads());
 #pragma omp single
-    barrier.emplace(given);
+    barrier.emplace(given, std::forward<Gain>(gain)...);
     act(Team{static_cast<std::size_t>(omp_get_thread_num()), given, *barrier});
   }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 // What Highway compiles vector code for, and what of it this processor can run. Highway reads the macro below
-// when it is included, so this header comes first.
+// when it is included, so this header comes first in every file of vector code (step_*.cpp).
 #ifdef HIGHWAY_HWY_DETECT_TARGETS_H_
 #error "backends/vectors/instruction_sets.h must be included before Highway"
 #endif
@@ -19,15 +19,11 @@
 #endif
 #include <hwy/targets.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "backends/interface/backend.h"
+#include "backends/vectors/step_kernels.h"
 
 // The Stages that a file of vector code is compiled for; CMakeLists.txt compiles some again for others.
 #ifndef MSSIM_STAGES
@@ -35,34 +31,6 @@
 #endif
 
 namespace mssim {
-
-/// Vector code for one instruction set, which steps a `Data` laid out for its lanes.
-template <class Data>
-struct StepKernel {
-  std::size_t lanes;                    ///< floats in a vector, for which the data must be laid out
-  const char* instruction_set;          ///< Highway's name for it
-  bool exact_roots;                     ///< as inverse_length (lanes-inl.h) says
-  bool fuses;                           ///< the same of multiplications and additions
-  void (*step)(Data& data, int count);  ///< takes `count` steps
-};
-
-/// Integrators of so many stages, or of more if it is most_stages_apart: those whose vector code is compiled
-/// together. All together would take long to compile.
-template <std::size_t count>
-struct Stages {
-  static constexpr std::size_t most_stages_apart = 3;
-  static constexpr bool have(const Integrator& integrator) {
-    return std::min(integrator.stage_count, most_stages_apart) == count;
-  }
-};
-
-/// What `kernels` returns for the Stages that have the integrator.
-template <class Kernels>
-auto kernels_of_stages(const Integrator& integrator, const Kernels& kernels) {
-  if (Stages<1>::have(integrator)) return kernels(Stages<1>());
-  if (Stages<2>::have(integrator)) return kernels(Stages<2>());
-  return kernels(Stages<3>());
-}
 
 /// The kernels in one of Highway's dispatch tables (functions that return a kernel) that this processor can
 /// run, the best first. Unlike HWY_DYNAMIC_DISPATCH, which knows only the best. Throws Unavailable where
@@ -81,53 +49,13 @@ std::vector<Kernel> kernels_of_this_processor(Kernel (*const (&table)[size])()) 
   return kernels;
 }
 
-/// The best of these kernels that has `roots`. Throws Unavailable where none has.
-template <class Kernel>
-Kernel best_kernel(const std::vector<Kernel>& kernels, Roots roots) {
-  for (const Kernel& kernel : kernels)
-    if (roots == Roots::fast || kernel.exact_roots) return kernel;
-  throw Unavailable("no vector code for this processor has exact roots");
-}
-
-/// A backend whose steps are vector code. `Data` holds the nodes: it has set_state(), state() and `threads`,
-/// how many it takes, and may have what else a backend tells.
-template <class Data>
-class VectorBackend final : public Backend {
- public:
-  using Step = void (*)(Data& data, int count);
-
-  /// Makes the data of the system and the other arguments, at the system's start.
-  template <class... Arguments>
-  VectorBackend(std::string device, Step take_steps, const System& system, const Arguments&... arguments)
-      : device_(std::move(device)), step_(take_steps), data_(system, arguments...) {
-    data_.set_state(system.start);
-  }
-  template <class... Arguments>
-  VectorBackend(const StepKernel<Data>& kernel, const System& system, const Arguments&... arguments)
-      : VectorBackend(std::string("cpu ") + kernel.instruction_set, kernel.step, system, arguments...) {}
-
-  void set_state(const State& state) override { data_.set_state(state); }
-  State state() const override { return data_.state(); }
-  void step(int count) override { step_(data_, count); }
-  std::string device() const override { return device_; }
-  int threads() const override { return static_cast<int>(data_.threads); }
-  int steps_per_pass() const override {
-    if constexpr (requires { data_.steps_per_pass; }) return static_cast<int>(data_.steps_per_pass);
-    return 0;
-  }
-  std::optional<std::uint64_t> stored_springs() const override {
-    if constexpr (requires { data_.stored_springs(); }) return data_.stored_springs();
-    return std::nullopt;
-  }
-  std::string note() const override {
-    if constexpr (requires { data_.note(); }) return data_.note();
-    return {};
-  }
-
- private:
-  const std::string device_;
-  const Step step_;
-  Data data_;
-};
-
 }  // namespace mssim
+
+/// Defines compiled_kernels<Data, MSSIM_STAGES>(), in mssim and once for all instruction sets, from functions
+/// `kernel` in HWY_NAMESPACE that return a StepKernel<Data>.
+#define MSSIM_COMPILED_KERNELS(Data, kernel)                             \
+  HWY_EXPORT(kernel);                                                    \
+  template <>                                                            \
+  std::vector<StepKernel<Data>> compiled_kernels<Data, MSSIM_STAGES>() { \
+    return kernels_of_this_processor(HWY_DISPATCH_TABLE(kernel));        \
+  }

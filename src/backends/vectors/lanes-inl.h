@@ -136,16 +136,19 @@ struct Lanes3 {
 struct NodeLanes {
   Lanes3 x, v;
 };
-HWY_INLINE Lanes3 load3(const float* from) {
-  const std::size_t n = lane_count();
-  return {hn::Load(FloatTag(), from), hn::Load(FloatTag(), from + n), hn::Load(FloatTag(), from + 2 * n)};
+/// Components that begin `pitch` floats after each other, each where a vector does.
+HWY_INLINE Lanes3 load3(const float* from, auto pitch) {
+  const FloatTag d;
+  return {hn::Load(d, from), hn::Load(d, from + pitch), hn::Load(d, from + 2 * pitch)};
 }
-HWY_INLINE void store3(float* to, const Lanes3& a) {
-  const std::size_t n = lane_count();
-  hn::Store(a.x.v, FloatTag(), to);
-  hn::Store(a.y.v, FloatTag(), to + n);
-  hn::Store(a.z.v, FloatTag(), to + 2 * n);
+HWY_INLINE Lanes3 load3(const float* from) { return load3(from, lane_count()); }
+HWY_INLINE void store3(float* to, const Lanes3& a, auto pitch) {
+  const FloatTag d;
+  hn::Store(a.x.v, d, to);
+  hn::Store(a.y.v, d, to + pitch);
+  hn::Store(a.z.v, d, to + 2 * pitch);
 }
+HWY_INLINE void store3(float* to, const Lanes3& a) { store3(to, a, lane_count()); }
 HWY_INLINE Lanes3 zero3() { return {Lanes(0.0F), Lanes(0.0F), Lanes(0.0F)}; }
 HWY_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 HWY_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cstdint>
-#include <stdexcept>
-#include <string>
+#include <vector>
 
+#include "backends/vectors/step_kernels.h"
 #include "garment/stepping/step_panels.h"
 
 namespace mssim {
@@ -26,7 +26,8 @@ AtJoint<float> inverse_masses(const GarmentGrid& grid, const GarmentGrid::Joint&
 
 class OpenMpDressing final : public DressingBackend {
  public:
-  OpenMpDressing(const System& system, double dt_s, std::size_t threads, const PanelKernel& kernel)
+  OpenMpDressing(const System& system, double dt_s, std::size_t threads,
+                 const StepKernel<PanelDressing>& kernel)
       : kernel_(kernel),
         dressing_{system,
                   std::get<Garment>(system.topology),
@@ -53,7 +54,7 @@ class OpenMpDressing final : public DressingBackend {
   DressingProgress progress() const override { return dressing_.progress; }
 
  private:
-  PanelKernel kernel_;
+  const StepKernel<PanelDressing> kernel_;
   PanelDressing dressing_;
 };
 
@@ -92,20 +93,17 @@ void close_sewn_joints(PanelDressing& dressing) {
 }
 
 std::vector<std::string_view> dressing_instruction_sets() {
-  std::vector<std::string_view> names;
-  for (const PanelKernel& kernel : panel_kernels()) names.emplace_back(kernel.instruction_set);
-  return names;
+  return instruction_sets_of(compiled_kernels<PanelDressing>());
 }
 
 std::unique_ptr<DressingBackend> make_openmp_dressing(const System& system, const Integrator& integrator,
                                                       double dt_s, int threads,
                                                       std::string_view instruction_set) {
   require_semi_euler(integrator);
-  for (const PanelKernel& kernel : panel_kernels())
-    if (instruction_set.empty() || instruction_set == kernel.instruction_set)
-      return std::make_unique<OpenMpDressing>(system, dt_s, static_cast<std::size_t>(threads), kernel);
-  throw std::invalid_argument("openmp has no vector code for " + std::string(instruction_set) +
-                              " that this processor can run");
+  const std::vector<StepKernel<PanelDressing>> kernels = compiled_kernels<PanelDressing>();
+  return std::make_unique<OpenMpDressing>(
+      system, dt_s, static_cast<std::size_t>(threads),
+      instruction_set.empty() ? kernels.front() : kernel_named(kernels, instruction_set));
 }
 
 }  // namespace mssim

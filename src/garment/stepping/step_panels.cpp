@@ -1,12 +1,11 @@
 // Algorithm 1 on rows of nodes side by side. Compiled once per instruction set: hwy/foreach_target.h includes
 // this file again for each.
+#include "backends/vectors/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "garment/stepping/step_panels.cpp"
-#include "garment/stepping/step_panels.h"
-
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -18,6 +17,7 @@
 #include "backends/threads/spin_barrier.h"
 #include "backends/vectors/lanes-inl.h"
 #include "garment/contact/body_maps.h"
+#include "garment/stepping/step_panels.h"
 #include "laws/host_laws.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -335,47 +335,15 @@ void end_step(PanelDressing& dressing) {
   dressing.progress = {0, true, dressing.steps};
 }
 
-/// A thread, its blocks, what it computes forces in, and where it meets the others.
-struct Worker {
-  Worker(const PanelDressing& dressing, std::size_t number, std::size_t threads, SpinBarrier& of_all)
-      : thread(number),
-        range{number * dressing.grid.blocks.size() / threads,
-              (number + 1) * dressing.grid.blocks.size() / threads},
-        scratch(dressing.grid),
-        barrier(of_all) {}
+/// A thread of a team, its blocks, and what it computes forces in.
+struct Worker : Team {
+  Worker(const Team& team, const PanelDressing& dressing, ForceScratch& its)
+      : Team(team),
+        range{team.begin(dressing.grid.blocks.size()), team.end(dressing.grid.blocks.size())},
+        scratch(its) {}
 
-  std::size_t thread;
   BlockRange range;
-  ForceScratch scratch;
-  SpinBarrier& barrier;
-};
-
-/// The threads that the runtime gives to a parallel region: OMP_THREAD_LIMIT may make them fewer than were
-/// asked for.
-class Team {
- public:
-  /// This thread's part. All threads of a region call it first; it makes parts for as many as there are.
-  Worker& join(PanelDressing& dressing) {
-#pragma omp single
-    if (const auto threads = static_cast<std::size_t>(omp_get_num_threads()); threads != workers_.size()) {
-      workers_.clear();
-      barrier_.emplace(threads, dressing.team_gain);
-      for (std::size_t thread = 0; thread < threads; ++thread)
-        workers_.emplace_back(dressing, thread, threads, *barrier_);
-    }
-    return workers_[static_cast<std::size_t>(omp_get_thread_num())];
-  }
-  /// All parts as one, of a thread that works alone.
-  Worker& whole(const PanelDressing& dressing) {
-    if (!whole_) whole_.emplace(dressing, 0, 1, no_barrier_);
-    return *whole_;
-  }
-
- private:
-  SpinBarrier no_barrier_{1};
-  std::optional<Worker> whole_;
-  std::optional<SpinBarrier> barrier_;
-  std::vector<Worker> workers_;
+  ForceScratch& scratch;
 };
 
 StepRule step_rule(const PanelDressing& dressing) {
@@ -386,11 +354,11 @@ StepRule step_rule(const PanelDressing& dressing) {
 }
 
 /// Loops 1 to 4, up to where layers meet each other.
-void accelerate(PanelDressing& dressing, Worker& worker) {
+void accelerate(PanelDressing& dressing, const Worker& worker) {
   const StepRule rule = step_rule(dressing);
   if (rule.has_joints) {
     if (worker.thread == 0) pull_joints(dressing);
-    worker.barrier.wait();
+    worker.meet();
   }
   for (std::size_t b = worker.range.begin; b < worker.range.end; ++b)
     update_velocities(dressing.grid, dressing.grid.blocks[b], rule, worker.scratch);
@@ -405,14 +373,14 @@ void move(PanelDressing& dressing, const Worker& worker) {
   if (rule.layers_touch)
     for (std::size_t b = range.begin; b < range.end; ++b) collide_with_body(grid, grid.blocks[b], rule);
   const std::uint32_t sweeps = correction_sweeps(rules);
-  if (sweeps == 0) worker.barrier.wait();
+  if (sweeps == 0) worker.meet();
   correct(grid, correction_rule<float>(rules, dressing.dt_s), sweeps, range, worker.barrier);
-  worker.barrier.wait();
+  worker.meet();
   if (worker.thread == 0) {
     close_sewn_joints(dressing);
     end_step(dressing);
   }
-  worker.barrier.wait();
+  worker.meet();
   for (std::size_t b = range.begin; b < range.end; ++b)
     move_block(grid, grid.blocks[b], Lanes(rule.dt), dressing.system.floor);
 }
@@ -433,56 +401,58 @@ void collide_layers(PanelDressing& dressing) {
 }
 
 /// A step, until the thread has moved its own nodes.
-void take_step(PanelDressing& dressing, Worker& worker) {
+void take_step(PanelDressing& dressing, const Worker& worker) {
   accelerate(dressing, worker);
   if (dressing.layers) {
-    worker.barrier.wait();
+    worker.meet();
     if (worker.thread == 0) collide_layers(dressing);
-    worker.barrier.wait();
+    worker.meet();
   }
   move(dressing, worker);
 }
 
 void step_panels(PanelDressing& dressing, int count) {
-  Team team;
+  // Of each thread, and of one that works alone.
+  std::vector<std::optional<ForceScratch>> scratch(dressing.threads + 1);
+  const auto worker_of = [&](const Team& team, std::size_t number) {
+    if (!scratch[number]) scratch[number].emplace(dressing.grid);
+    return Worker(team, dressing, *scratch[number]);
+  };
   if (!dressing.layers || dressing.layers->threads() == 1) {
+    SpinBarrier no_barrier(1);
     const auto step_alone = [&](std::size_t step) {
       if (step >= static_cast<std::size_t>(count)) return false;
-      take_step(dressing, team.whole(dressing));
+      take_step(dressing, worker_of({0, 1, no_barrier}, dressing.threads));
       return true;
     };
     const std::size_t begin = dressing.team_gain.take_rounds(step_alone);
     if (begin == static_cast<std::size_t>(count)) return;
-#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
-    {
-      Worker& worker = team.join(dressing);
+    const auto take_steps = [&](const Team& team) {
+      const Worker worker = worker_of(team, team.thread);
       for (std::size_t step = begin; step < static_cast<std::size_t>(count); ++step) {
         take_step(dressing, worker);
-        step += worker.barrier.end_round([&](std::size_t taken) { return step_alone(step + 1 + taken); });
+        step += team.end_round([&](std::size_t taken) { return step_alone(step + 1 + taken); });
       }
-    }
+    };
+    with_team(dressing.threads, take_steps, dressing.team_gain);
     return;
   }
   // The threads of the collision are a team of their own.
   for (int step = 0; step < count; ++step) {
-#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
-    accelerate(dressing, team.join(dressing));
+    with_team(dressing.threads,
+              [&](const Team& team) { accelerate(dressing, worker_of(team, team.thread)); });
     collide_layers(dressing);
-#pragma omp parallel num_threads(static_cast <int>(dressing.threads))
-    move(dressing, team.join(dressing));
+    with_team(dressing.threads, [&](const Team& team) { move(dressing, worker_of(team, team.thread)); });
   }
 }
 
-PanelKernel panel_kernel() { return {hwy::TargetName(HWY_TARGET), &step_panels}; }
+StepKernel<PanelDressing> panel_kernel() { return kernel_here(&step_panels); }
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-HWY_EXPORT(panel_kernel);
-std::vector<PanelKernel> panel_kernels() {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(panel_kernel));
-}
+MSSIM_COMPILED_KERNELS(PanelDressing, panel_kernel)
 }  // namespace mssim
 #endif

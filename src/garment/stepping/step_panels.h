@@ -3,10 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "backends/threads/team_gain.h"
-#include "backends/vectors/instruction_sets.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/garment_grid.h"
 
@@ -32,14 +30,5 @@ void pull_joints(PanelDressing& dressing);
 /// After loop 5, which would open them again: the ends of a sewn joint move as one but for what closes its
 /// gap.
 void close_sewn_joints(PanelDressing& dressing);
-
-/// The vector code for one instruction set.
-struct PanelKernel {
-  const char* instruction_set;                       ///< Highway's name for it
-  void (*step)(PanelDressing& dressing, int count);  ///< takes `count` steps
-};
-
-/// The kernels for the instruction sets of this processor, at least one, the best first.
-std::vector<PanelKernel> panel_kernels();
 
 }  // namespace mssim

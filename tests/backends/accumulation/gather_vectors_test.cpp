@@ -36,22 +36,24 @@ System bouncing_cloth(std::uint32_t rows, std::uint32_t columns) {
 
 class EachRowKernelAndIntegrator : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
  protected:
-  StepKernel<PaddedRows> kernel() const { return row_kernels(integrator())[std::get<0>(GetParam())]; }
+  StepKernel<PaddedRows> kernel() const {
+    return step_kernels<PaddedRows>(integrator())[std::get<0>(GetParam())];
+  }
   const Integrator& integrator() const { return integrators[std::get<1>(GetParam())]; }
   std::unique_ptr<Backend> make(const System& system, int threads) const {
     return make_gather_vectors(system, integrator(), backend_dt_of(integrator()), {threads, ""}, kernel());
   }
 };
-INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachRowKernelAndIntegrator,
-                         testing::Combine(testing::Range(std::size_t{0}, row_kernels(integrators[0]).size()),
-                                          testing::Range(std::size_t{0}, integrators.size())),
-                         [](const auto& test) {
-                           std::string name =
-                               row_kernels(integrators[0])[std::get<0>(test.param)].instruction_set;
-                           name += "__" + std::string(integrators[std::get<1>(test.param)].name);
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    OfThisProcessor, EachRowKernelAndIntegrator,
+    testing::Combine(testing::Range(std::size_t{0}, step_kernels<PaddedRows>(integrators[0]).size()),
+                     testing::Range(std::size_t{0}, integrators.size())),
+    [](const auto& test) {
+      std::string name = step_kernels<PaddedRows>(integrators[0])[std::get<0>(test.param)].instruction_set;
+      name += "__" + std::string(integrators[std::get<1>(test.param)].name);
+      std::ranges::replace(name, '-', '_');
+      return name;
+    });
 
 TEST_P(EachRowKernelAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
   for (const auto& [rows, columns] : sizes) {
@@ -66,7 +68,7 @@ TEST_P(EachRowKernelAndIntegrator, AgreesWithTheReferenceOnClothsOfAnyShape) {
 }
 
 TEST_P(EachRowKernelAndIntegrator, GivesTheSameBitsForAnyNumberOfThreadsAndAsTheBestThatRoundsAlike) {
-  const std::vector<StepKernel<PaddedRows>> kernels = row_kernels(integrator());
+  const std::vector<StepKernel<PaddedRows>> kernels = step_kernels<PaddedRows>(integrator());
   const StepKernel<PaddedRows> best =
       *std::ranges::find_if(kernels, [&](const StepKernel<PaddedRows>& other) {
         return fuses(other.instruction_set) == fuses(kernel().instruction_set) &&
@@ -161,7 +163,7 @@ TEST(GatherVectors, StaysAsNearToTheReferenceAsTheSpringList) {
 
 TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
   const System system = cloth_system(9, 11);
-  const std::vector<StepKernel<PaddedRows>> kernels = row_kernels(integrators[0]);
+  const std::vector<StepKernel<PaddedRows>> kernels = step_kernels<PaddedRows>(integrators[0]);
   const auto device = [&](Roots roots) {
     return make_gather_vectors(system, integrators[0], backend_dt_s, {.threads = 1, .roots = roots})
         ->device();
@@ -173,7 +175,7 @@ TEST(GatherVectors, TakesTheBestInstructionSetThatHasTheRoots) {
 }
 
 TEST(GatherVectors, BeginsEachComponentOfARowWithAVector) {
-  for (const StepKernel<PaddedRows>& kernel : row_kernels(integrators[0]))
+  for (const StepKernel<PaddedRows>& kernel : step_kernels<PaddedRows>(integrators[0]))
     for (const auto& [rows, columns] : sizes) {
       const PairRows layout(GridPatch{rows, columns, 0.01}, kernel.lanes);
       EXPECT_EQ(layout.offset(0, 0) % kernel.lanes, 0U);

@@ -11,6 +11,7 @@
 
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/openmp.h"
+#include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
 #include "scene/cloth.h"
 #include "scene/scene_kinds.h"
@@ -68,7 +69,7 @@ struct Cut {
 State state_of_pieces(const SceneSpec& spec, const Integrator& integrator, const Cut& cut, int steps) {
   const auto& cloth = std::get<ClothSpec>(spec.content);
   const std::size_t ghosts = ghost_columns(integrator, cut.steps_per_pass);
-  const StepKernel<BandGrid> kernel = band_kernels(integrator).front();
+  const StepKernel<BandGrid> kernel = step_kernels<BandGrid>(integrator).front();
   std::vector<Mail> to_right(cut.pieces), to_left(cut.pieces);
   State all;
   all.position.resize(std::size_t{cloth.rows} * cloth.columns);

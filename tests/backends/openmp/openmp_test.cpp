@@ -11,6 +11,7 @@
 
 #include "backends/openmp/bodies.h"
 #include "backends/spring_list/serial.h"
+#include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"
 #include "tests/support/cloth_system.h"
@@ -54,9 +55,9 @@ TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstruction
   const auto alike = find_alike_bodies(system);
   ASSERT_TRUE(alike);
   const double dt_s = backend_dt_of(method);
-  for (const StepKernel<BodyLanes>& kernel : body_lanes_kernels(method)) {
+  for (const StepKernel<BodyLanes>& kernel : step_kernels<BodyLanes>(method)) {
     std::size_t found = 0;
-    for (const StepKernel<SlicedBodies>& other : slice_kernels(method)) {
+    for (const StepKernel<SlicedBodies>& other : step_kernels<SlicedBodies>(method)) {
       if (std::string_view(other.instruction_set) != kernel.instruction_set) continue;
       ++found;
       SlicedBodies slices(system, method, dt_s, other.lanes, 2);

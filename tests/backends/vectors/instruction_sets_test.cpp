@@ -1,6 +1,4 @@
 // openmp's vector code for every instruction set that this processor has: from four lanes to sixteen.
-#include "backends/vectors/instruction_sets.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +11,10 @@
 #include <vector>
 
 #include "backends/accumulation/gather_vectors.h"
+#include "backends/layouts/band_grid.h"
+#include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
+#include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
 #include "tests/support/backend_step.h"
@@ -55,9 +56,10 @@ std::vector<std::pair<std::string, std::size_t>> names_and_lanes(const std::vect
 
 TEST(InstructionSets, AreAllThatThisProcessorHasTheBestFirst) {
   for (const Integrator& integrator : integrators) {
-    EXPECT_THAT(names_and_lanes(band_kernels(integrator)), ElementsAreArray(expected_kernels()));
-    EXPECT_THAT(names_and_lanes(slice_kernels(integrator)), ElementsAreArray(expected_kernels()));
-    EXPECT_THAT(names_and_lanes(row_kernels(integrator)), ElementsAreArray(expected_kernels()));
+    EXPECT_THAT(names_and_lanes(step_kernels<BandGrid>(integrator)), ElementsAreArray(expected_kernels()));
+    EXPECT_THAT(names_and_lanes(step_kernels<SlicedBodies>(integrator)),
+                ElementsAreArray(expected_kernels()));
+    EXPECT_THAT(names_and_lanes(step_kernels<PaddedRows>(integrator)), ElementsAreArray(expected_kernels()));
   }
 }
 

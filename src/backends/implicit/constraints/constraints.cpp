@@ -13,6 +13,7 @@
 #include "backends/implicit/constraints/step_constraints.h"
 #include "backends/implicit/nodes/plain_nodes.h"
 #include "backends/layouts/spring_graph.h"
+#include "backends/vectors/step_kernels.h"
 
 namespace mssim {
 namespace {
@@ -244,7 +245,6 @@ QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lane
   threads = std::clamp<std::size_t>(thread_count, 1, std::max<std::size_t>(1, blocks() / least_blocks(1)));
   if (nodes.bytes() > cached_bytes) depth = most_depth;
   while (threads > 1 && depth > 1 && blocks() / threads < least_blocks(depth)) --depth;
-  set_state(system.start);
 }
 
 void QuarteredRows::set_state(const State& state) {
@@ -365,7 +365,6 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
     sorted[part] = {};
   }
   distribute(*this, std::move(costs), threads);
-  set_state(system.start);
 }
 
 void SpringBatches::set_state(const State& state) {
@@ -399,9 +398,7 @@ std::unique_ptr<Backend> make_constraints_reference(const System& system, double
 
 std::unique_ptr<Backend> make_openmp_constraints(const System& system, double dt_s,
                                                  const ExecutionOptions& options) {
-  const ConstraintKernel kernel = best_kernel(constraint_kernels(), options.roots);
-  return make_vector_backend(kernel, std::string("cpu ") + kernel.instruction_set, system, dt_s,
-                             options.threads);
+  return make_vector_backend<QuarteredRows, SpringBatches>(system, dt_s, options);
 }
 
 }  // namespace mssim

@@ -1,18 +1,17 @@
 // Small steps of xpbd: what moves a vector of nodes, of a cloth pass by pass, of bodies colour by colour.
 // Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+#include "backends/vectors/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/implicit/constraints/step_constraints.cpp"
-#include "backends/implicit/constraints/step_constraints.h"
-
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <optional>
 
+#include "backends/implicit/constraints/step_constraints.h"
 #include "backends/layouts/records-inl.h"
 #include "backends/threads/spin_barrier.h"
 
@@ -35,22 +34,12 @@ HWY_INLINE void meet_floor(Mask moves, const Surroundings& surroundings, NodeLan
   rest.y = keep(hn::Gt(node.x.y.v, height), rest.y);
 }
 
-/// Constants of springs in registers.
-struct ComplianceLanes {
-  Lanes stiffness, stiffness_rest, damping;
-  HWY_INLINE explicit ComplianceLanes(const Compliance<float>& c)
-      : stiffness(c.stiffness), stiffness_rest(c.stiffness_rest), damping(c.damping) {}
-  HWY_INLINE ComplianceLanes(Mask first, const ComplianceLanes& a, const ComplianceLanes& b)
-      : stiffness(select(first, a.stiffness, b.stiffness)),
-        stiffness_rest(select(first, a.stiffness_rest, b.stiffness_rest)),
-        damping(select(first, a.damping, b.damping)) {}
-};
+HWY_INLINE SpringLanes select(Mask first, const SpringLanes& a, const SpringLanes& b) {
+  return {select(first, a.stiffness, b.stiffness), select(first, a.stiffness_rest, b.stiffness_rest),
+          select(first, a.damping, b.damping)};
+}
 
 /// Three components of a vector of nodes that need not begin where a vector does.
-HWY_INLINE Lanes3 load_part(const float* from, std::size_t pitch) {
-  const FloatTag d;
-  return {hn::LoadU(d, from), hn::LoadU(d, from + pitch), hn::LoadU(d, from + 2 * pitch)};
-}
 HWY_INLINE void store_part(EveryLane, const Lanes3& value, float* to, std::size_t pitch) {
   const FloatTag d;
   hn::StoreU(value.x.v, d, to);
@@ -64,16 +53,23 @@ HWY_INLINE void store_part(Mask lanes, const Lanes3& value, float* to, std::size
   hn::BlendedStore(value.z.v, lanes, d, to + 2 * pitch);
 }
 
+/// What springs pull with between nodes a and b in a small step of h (Compliance), in parts of `way`, which
+/// becomes that from a to b at its end.
+HWY_INLINE Lanes pull_between(const NodeLanes& a, const NodeLanes& b, Lanes h, const SpringLanes& c,
+                              Lanes3& way) {
+  const Lanes3 u = b.v - a.v;
+  way = mul_add(h, u, b.x - a.x);
+  return spring_pull_at(inverse_length(dot(way, way)), dot(u, way), c.stiffness, c.stiffness_rest, c.damping);
+}
+
 /// The springs of a vector of `first` and one of `second`: where the x of the nodes begin. The ends that move
 /// are those of the lanes given.
 template <class FirstLanes, class SecondLanes>
-HWY_INLINE void project(float* first, float* second, std::size_t pitch, Lanes h, const ComplianceLanes& c,
+HWY_INLINE void project(float* first, float* second, std::size_t pitch, Lanes h, const SpringLanes& c,
                         FirstLanes first_moves, SecondLanes second_moves) {
-  const NodeLanes a{load_part(first, pitch), load_part(first + 3 * pitch, pitch)};
-  const NodeLanes b{load_part(second, pitch), load_part(second + 3 * pitch, pitch)};
-  const Lanes3 u = b.v - a.v, way = mul_add(h, u, b.x - a.x);
-  const Lanes pull =
-      spring_pull_at(inverse_length(dot(way, way)), dot(u, way), c.stiffness, c.stiffness_rest, c.damping);
+  const NodeLanes a = load_node(first, pitch), b = load_node(second, pitch);
+  Lanes3 way;
+  const Lanes pull = pull_between(a, b, h, c, way);
   store_part(first_moves, mul_add(pull, way, a.v), first + 3 * pitch, pitch);
   store_part(second_moves, mul_add(-pull, way, b.v), second + 3 * pitch, pitch);
 }
@@ -96,7 +92,7 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
   const std::size_t target = springs.stream + springs.right;
   const std::size_t other = target % QuarterLayout::streams, further = target / QuarterLayout::streams;
   const Lanes h(cloth.h_s);
-  const ComplianceLanes c(cloth.of_free[springs.kind]);
+  const SpringLanes c(cloth.of_free[springs.kind]);
   for (std::size_t i = 0; i < springs.rows; ++i) {
     const std::size_t row = springs.first_row + i * springs.row_step;
     const std::size_t other_row = row + static_cast<std::size_t>(springs.down);
@@ -107,14 +103,14 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
     if (cloth.has_pins(row) || cloth.has_pins(other_row)) {
       const float* const first_free = cloth.free_of_row[row] + springs.stream * pitch;
       const float* const second_free = cloth.free_of_row[other_row] + other * pitch + further;
-      const ComplianceLanes of_pinned(cloth.of_pinned[springs.kind]);
+      const SpringLanes of_pinned(cloth.of_pinned[springs.kind]);
       const FloatTag d;
       for (std::size_t at = 0; at < count; at += lanes) {
         const Mask there = below(hn::Iota(IndexTag(), 0), static_cast<std::uint32_t>(count - at));
         const Mask first_moves = hn::And(there, hn::Ne(hn::LoadU(d, first_free + at), hn::Zero(d)));
         const Mask second_moves = hn::And(there, hn::Ne(hn::LoadU(d, second_free + at), hn::Zero(d)));
-        project(first + at, second + at, pitch, h,
-                ComplianceLanes(hn::And(first_moves, second_moves), c, of_pinned), first_moves, second_moves);
+        project(first + at, second + at, pitch, h, select(hn::And(first_moves, second_moves), c, of_pinned),
+                first_moves, second_moves);
       }
       continue;
     }
@@ -136,7 +132,7 @@ HWY_NOINLINE inline void let_fall(QuarteredRows& cloth, std::size_t first_row, s
       const float* const free = cloth.free_of_row[row] + stream * pitch;
       for (std::size_t at = 0; at < nodes; at += lane_count()) {
         const Mask moves = hn::Ne(hn::Load(d, free + at), hn::Zero(d));
-        store_part(EveryLane(), fallen(moves, load_part(v + at, pitch), gravity, kept), v + at, pitch);
+        store_part(EveryLane(), fallen(moves, load_components(v + at, pitch), gravity, kept), v + at, pitch);
       }
     }
 }
@@ -178,8 +174,8 @@ HWY_NOINLINE inline void advance(QuarteredRows& cloth, std::size_t first_row, st
           cloth.nodes.data() + row * cloth.layout.row_floats() + stream * QuarterLayout::components * pitch;
       float* const rest = cloth.rest.data() + row * cloth.layout.rest_row_floats() + stream * 3 * pitch;
       for (std::size_t at = 0; at < nodes; at += lane_count()) {
-        NodeLanes node{load_part(x + at, pitch), load_part(x + at + 3 * pitch, pitch)};
-        Lanes3 lacks = load_part(rest + at, pitch);
+        NodeLanes node = load_node(x + at, pitch);
+        Lanes3 lacks = load_components(rest + at, pitch);
         carry_sum(node.x, lacks, h, node.v);  // pins have no velocity
         if (meets_floor) {
           meet_floor(hn::Ne(hn::Load(d, cloth.free_of_row[row] + stream * pitch + at), hn::Zero(d)),
@@ -221,8 +217,8 @@ struct BlockRange {
 struct BlockShare {
   std::size_t begin, end, all;
 
-  BlockShare(std::size_t thread, std::size_t threads, std::size_t blocks)
-      : begin(blocks * thread / threads), end(blocks * (thread + 1) / threads), all(blocks) {}
+  BlockShare(const Team& team, std::size_t blocks)
+      : begin(team.begin(blocks)), end(team.end(blocks)), all(blocks) {}
 
   /// What it can do alone.
   BlockRange alone(std::size_t small_step, BlockLevel level) const {
@@ -304,27 +300,22 @@ void step_cloth(QuarteredRows& cloth, int count) {
   };
   const std::size_t begin = cloth.team_gain.take_rounds(pass_alone);
   if (begin == passes) return;
-  std::optional<SpinBarrier> barrier;
-#pragma omp parallel num_threads(static_cast <int>(cloth.threads))
-  {
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
-#pragma omp single
-    barrier.emplace(threads, cloth.team_gain);
-    const BlockShare own(thread, threads, blocks);
+  const auto take_passes = [&](const Team& team) HWY_ATTR {
+    const BlockShare own(team, blocks);
     for (std::size_t pass = begin; pass < passes; ++pass) {
       walk(pass, [&](std::size_t small, BlockLevel level) HWY_ATTR { return own.alone(small, level); });
-      if (threads == 1) continue;
-      barrier->wait();
-      if (thread + 1 < threads) {
-        const BlockShare next(thread + 1, threads, blocks);
+      if (team.threads == 1) continue;
+      team.meet();
+      if (team.thread + 1 < team.threads) {
+        const BlockShare next({team.thread + 1, team.threads, team.barrier}, blocks);
         walk(pass, [&](std::size_t small, BlockLevel level) HWY_ATTR {
           return BlockRange{own.alone(small, level).end, next.alone(small, level).begin};
         });
       }
-      pass += barrier->end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); });
+      pass += team.end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); });
     }
-  }
+  };
+  with_team(cloth.threads, take_passes, cloth.team_gain);
 }
 
 constexpr std::size_t vector_springs = hn::MaxLanes(FloatTag());
@@ -365,7 +356,8 @@ HWY_INLINE void project_batch(SpringBatches& bodies, const SpringBatches::Batch&
                               std::size_t end) {
   const FloatTag d;
   float* const nodes = bodies.nodes.data();
-  const Lanes h(bodies.h_s), stiffness(batch.stiffness), damping(batch.damping);
+  const Lanes h(bodies.h_s);
+  SpringLanes spring(batch.stiffness, Lanes(0.0F), batch.damping);
   const Lanes first_mobility(batch.first_mobility), second_mobility(batch.second_mobility);
   const float* const last = bodies.springs.data() + end * 3 * vector_springs;
   for (const float* entry = bodies.springs.data() + begin * 3 * vector_springs; entry < last;
@@ -378,23 +370,21 @@ HWY_INLINE void project_batch(SpringBatches& bodies, const SpringBatches::Batch&
                          SpringBatches::offset_floats;
     };
     const NodeLanes a = load_records<vector_springs>(first), b = load_records<vector_springs>(second);
-    const Lanes3 u = b.v - a.v, way = mul_add(h, u, b.x - a.x);
-    const Lanes pull = spring_pull_at(inverse_length(dot(way, way)), dot(u, way), stiffness,
-                                      Lanes(hn::Load(d, entry + 2 * vector_springs)), damping);
+    spring.stiffness_rest = hn::Load(d, entry + 2 * vector_springs);
+    Lanes3 way;
+    const Lanes pull = pull_between(a, b, h, spring, way);
     scatter_velocities(mul_add(first_mobility * pull, way, a.v), first);
     scatter_velocities(mul_add(-(second_mobility * pull), way, b.v), second);
   }
 }
 
-/// A thread's share, by vectors, of a colour.
+/// Vectors [begin, end) of the springs of a colour.
 HWY_NOINLINE inline void project_colour(SpringBatches& bodies, const SpringBatches::Colour& colour,
-                                        std::size_t thread, std::size_t threads) {
-  const std::size_t first = bodies.batches[colour.begin].begin, vectors = bodies.vectors(colour);
-  const std::size_t begin = first + vectors * thread / threads,
-                    end = first + vectors * (thread + 1) / threads;
+                                        std::size_t begin, std::size_t end) {
+  const std::size_t first = bodies.batches[colour.begin].begin;
   for (std::size_t i = colour.begin; i < colour.end; ++i) {
     const SpringBatches::Batch& batch = bodies.batches[i];
-    project_batch(bodies, batch, std::max(begin, batch.begin), std::min(end, batch.end));
+    project_batch(bodies, batch, std::max(first + begin, batch.begin), std::min(first + end, batch.end));
   }
 }
 
@@ -427,8 +417,10 @@ HWY_NOINLINE inline void move_nodes(SpringBatches& bodies, const Between& betwee
   }
 }
 
-/// How a thread meets those that share a part with it: not at all.
+/// A Team of one, who has all and meets nobody.
 struct Alone {
+  static HWY_INLINE std::size_t begin(std::size_t /*count*/) { return 0; }
+  static HWY_INLINE std::size_t end(std::size_t count) { return count; }
   HWY_INLINE void meet() const {}
   template <class TakeRound>
   HWY_INLINE std::size_t end_round(TakeRound&& /*take_round*/) const {
@@ -436,46 +428,36 @@ struct Alone {
   }
 };
 
-/// At a barrier. One of them may take small steps for all.
-struct Together {
-  SpinBarrier& barrier;
-  HWY_INLINE void meet() const { barrier.wait(); }
-  template <class TakeRound>
-  HWY_INLINE std::size_t end_round(TakeRound&& take_round) const {
-    return barrier.end_round(take_round);
-  }
-};
-
 /// A thread's share of a small step of a part, up to the last colour; what moves its nodes stands before it.
-template <class Team>
+template <class Threads>
 HWY_INLINE void step_colours(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t small,
-                             std::size_t thread, std::size_t threads, const Team& team) {
-  const std::size_t vectors = part.end - part.begin;
+                             const Threads& team) {
+  const std::size_t nodes = part.end - part.begin;
   move_nodes(bodies, {small > 0, small > 0 && small % bodies.substeps == 0, true},
-             part.begin + vectors * thread / threads, part.begin + vectors * (thread + 1) / threads);
+             part.begin + team.begin(nodes), part.begin + team.end(nodes));
   for (std::size_t colour = part.first_colour; colour < part.end_colour; ++colour) {
+    const std::size_t springs = bodies.vectors(bodies.colours[colour]);
     team.meet();
-    project_colour(bodies, bodies.colours[colour], thread, threads);
+    project_colour(bodies, bodies.colours[colour], team.begin(springs), team.end(springs));
   }
 }
 
 /// A thread's share of `count` small steps of a part.
-template <class Team>
+template <class Threads>
 HWY_INLINE void step_part(SpringBatches& bodies, const SpringBatches::Part& part, std::size_t count,
-                          std::size_t thread, std::size_t threads, const Team& team) {
+                          const Threads& team) {
   if (count == 0) return;
   for (std::size_t small = 0; small < count; ++small) {
-    step_colours(bodies, part, small, thread, threads, team);
+    step_colours(bodies, part, small, team);
     small += team.end_round([&](std::size_t taken) HWY_ATTR {
       const std::size_t next = small + 1 + taken;
       if (next >= count) return false;
-      step_colours(bodies, part, next, 0, 1, Alone());
+      step_colours(bodies, part, next, Alone());
       return true;
     });
   }
-  const std::size_t vectors = part.end - part.begin;
-  move_nodes(bodies, {true, true, false}, part.begin + vectors * thread / threads,
-             part.begin + vectors * (thread + 1) / threads);
+  const std::size_t nodes = part.end - part.begin;
+  move_nodes(bodies, {true, true, false}, part.begin + team.begin(nodes), part.begin + team.end(nodes));
 }
 
 /// Takes `count` steps.
@@ -483,33 +465,25 @@ void step_bodies(SpringBatches& bodies, int count) {
   // The springs of a colour share no node, and parts share nothing: the result is the same to the last bit
   // for any number of threads.
   const std::size_t small_steps = static_cast<std::size_t>(count) * bodies.substeps;
-  std::optional<SpinBarrier> barrier;
-#pragma omp parallel num_threads(static_cast <int>(bodies.threads))
-  {
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
-#pragma omp single
-    barrier.emplace(threads, bodies.team_gain);
+  const auto take_parts = [&](const Team& team) HWY_ATTR {
     for (const std::size_t part : bodies.shared_parts)
-      step_part(bodies, bodies.parts[part], small_steps, thread, threads, Together{*barrier});
-    for (std::size_t owner = thread; owner < bodies.own_parts.size(); owner += threads)
+      step_part(bodies, bodies.parts[part], small_steps, team);
+    for (std::size_t owner = team.thread; owner < bodies.own_parts.size(); owner += team.threads)
       for (const std::size_t part : bodies.own_parts[owner])
-        step_part(bodies, bodies.parts[part], small_steps, 0, 1, Alone());
-  }
+        step_part(bodies, bodies.parts[part], small_steps, Alone());
+  };
+  with_team(bodies.threads, take_parts, bodies.team_gain);
 }
 
-ConstraintKernel constraint_kernel() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &step_cloth, &step_bodies};
-}
+StepKernel<QuarteredRows> xpbd_cloth_kernel() { return kernel_here(&step_cloth); }
+StepKernel<SpringBatches> xpbd_bodies_kernel() { return kernel_here(&step_bodies); }
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-HWY_EXPORT(constraint_kernel);
-std::vector<ConstraintKernel> constraint_kernels() {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(constraint_kernel));
-}
+MSSIM_COMPILED_KERNELS(QuarteredRows, xpbd_cloth_kernel)
+MSSIM_COMPILED_KERNELS(SpringBatches, xpbd_bodies_kernel)
 }  // namespace mssim
 #endif

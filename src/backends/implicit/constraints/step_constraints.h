@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "backends/implicit/nodes/vector_backend.h"
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
 #include "backends/layouts/spring_graph.h"
@@ -140,7 +139,8 @@ struct QuarteredRows : SmallSteps {
   std::size_t depth = 1;  ///< small steps that one pass over the cloth takes
   TeamGain team_gain;
 
-  /// Of a system that is a cloth. Throws Unsupported where the nodes differ in mass.
+  /// Of a system that is a cloth. A state must be set before the first step. Throws Unsupported where the
+  /// nodes differ in mass.
   QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count);
   void set_state(const State& state);
   State state() const;
@@ -189,6 +189,7 @@ struct SpringBatches : SmallSteps {
 
   TeamGain team_gain;  ///< of the threads that share parts
 
+  /// A state must be set before the first step.
   SpringBatches(const System& system, double dt_s, std::size_t lane_count, std::size_t thread_count);
   void set_state(const State& state);
   State state() const;
@@ -199,10 +200,5 @@ struct SpringBatches : SmallSteps {
     return batches[colour.end - 1].end - batches[colour.begin].begin;
   }
 };
-
-using ConstraintKernel = SolverKernel<QuarteredRows, SpringBatches>;
-
-/// The kernels for the instruction sets of this processor, at least one, the best first.
-std::vector<ConstraintKernel> constraint_kernels();
 
 }  // namespace mssim

@@ -5,6 +5,7 @@
 
 #include "backends/implicit/local_global/step_local_global.h"
 #include "backends/implicit/nodes/plain_nodes.h"
+#include "backends/vectors/step_kernels.h"
 
 namespace mssim {
 namespace {
@@ -185,7 +186,6 @@ LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix
     places.push_back({nodes.offset(node), static_cast<float>(system.node_mass[node])});
   }
   for (AlignedArray* field : {&x, &v, &y, &w, &e}) *field = AlignedArray(nodes.field_floats());
-  set_state(system.start);
 }
 
 template <class Nodes>
@@ -212,8 +212,7 @@ std::unique_ptr<Backend> make_local_global_reference(const System& system, doubl
 
 std::unique_ptr<Backend> make_openmp_local_global(const System& system, double dt_s,
                                                   const ExecutionOptions& options) {
-  return make_vector_backend(best_kernel(local_global_kernels(), options.roots), "cpu", system, dt_s,
-                             options.threads);
+  return make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(system, dt_s, options);
 }
 
 }  // namespace mssim

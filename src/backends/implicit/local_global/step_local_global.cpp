@@ -1,16 +1,15 @@
 // Steps of fast-springs with vectors: forces of whole vectors of nodes, products of dense blocks with three
 // vectors at once. Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+#include "backends/vectors/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/implicit/local_global/step_local_global.cpp"
-#include "backends/implicit/local_global/step_local_global.h"
-
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <omp.h>
 
 #include <algorithm>
-#include <optional>
 
+#include "backends/implicit/local_global/step_local_global.h"
 #include "backends/implicit/nodes/node_vectors-inl.h"
 #include "backends/threads/spin_barrier.h"
 
@@ -182,19 +181,12 @@ HWY_NOINLINE void end_step(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
 
 template <class Nodes>
 void take_steps(LocalGlobalNodes<Nodes>& system, int count) {
-  std::optional<SpinBarrier> barrier;
-#pragma omp parallel num_threads(static_cast <int>(system.threads))
-  {
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
-#pragma omp single
-    barrier.emplace(threads);
+  with_team(system.threads, [&](const Team& team) HWY_ATTR {
     AlignedArray scratch(3 * system.factor.most_rows);
     const auto for_chunks = [&](auto act) HWY_ATTR {
       const std::size_t chunks = system.nodes.chunks.size();
-      for (std::size_t i = chunks * thread / threads; i < chunks * (thread + 1) / threads; ++i)
-        act(system, system.nodes.chunks[i]);
-      barrier->wait();
+      for (std::size_t i = team.begin(chunks); i < team.end(chunks); ++i) act(system, system.nodes.chunks[i]);
+      team.meet();
     };
     // The fronts are shared out among system.threads: fewer take several shares each.
     const auto& phases = system.schedule.phases;
@@ -203,28 +195,30 @@ void take_steps(LocalGlobalNodes<Nodes>& system, int count) {
       for (std::uint32_t iteration = 0; iteration < system.iterations; ++iteration) {
         for_chunks(find_missing<Nodes>);
         for (const auto& phase : phases) {
-          for (std::size_t share = thread; share < system.threads; share += threads)
+          for (std::size_t share = team.thread; share < system.threads; share += team.threads)
             for (const FrontSchedule::Item& item : phase[share])
               for (std::size_t part = item.begin; part < item.end; ++part)
                 pass_upwards(system, part, scratch.data());
-          barrier->wait();
+          team.meet();
         }
         for (auto phase = phases.rbegin(); phase != phases.rend(); ++phase) {
-          for (std::size_t share = thread; share < system.threads; share += threads)
+          for (std::size_t share = team.thread; share < system.threads; share += team.threads)
             for (auto item = (*phase)[share].rbegin(); item != (*phase)[share].rend(); ++item)
               for (std::size_t part = item->end; part-- > item->begin;)
                 pass_downwards(system, part, scratch.data());
-          barrier->wait();
+          team.meet();
         }
       }
       for_chunks(end_step<Nodes>);
     }
-  }
+  });
 }
 
-LocalGlobalKernel local_global_kernel() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &take_steps<NodeRows>,
-          &take_steps<NodeSlices>};
+StepKernel<LocalGlobalNodes<NodeRows>> local_global_cloth_kernel() {
+  return kernel_here(&take_steps<NodeRows>);
+}
+StepKernel<LocalGlobalNodes<NodeSlices>> local_global_bodies_kernel() {
+  return kernel_here(&take_steps<NodeSlices>);
 }
 
 }  // namespace mssim::HWY_NAMESPACE
@@ -232,9 +226,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-HWY_EXPORT(local_global_kernel);
-std::vector<LocalGlobalKernel> local_global_kernels() {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(local_global_kernel));
-}
+MSSIM_COMPILED_KERNELS(LocalGlobalNodes<NodeRows>, local_global_cloth_kernel)
+MSSIM_COMPILED_KERNELS(LocalGlobalNodes<NodeSlices>, local_global_bodies_kernel)
 }  // namespace mssim
 #endif

@@ -6,7 +6,6 @@
 
 #include "backends/implicit/local_global/factor.h"
 #include "backends/implicit/nodes/node_vectors.h"
-#include "backends/implicit/nodes/vector_backend.h"
 
 namespace mssim {
 
@@ -45,6 +44,7 @@ struct LocalGlobalNodes {
   AlignedArray e;     ///< field: what is missing for w - v = dt a(y, w), m/s
   AlignedArray fronts;
 
+  /// A state must be set before the first step.
   LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
       : LocalGlobalNodes(system, {system, dt_s}, dt_s, lanes, thread_count) {}
   void set_state(const State& state);
@@ -54,10 +54,5 @@ struct LocalGlobalNodes {
   LocalGlobalNodes(const System& system, const StepMatrix& matrix, double dt_s, std::size_t lanes,
                    std::size_t thread_count);
 };
-
-using LocalGlobalKernel = SolverKernel<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>;
-
-/// The kernels for the instruction sets of this processor, at least one, the best first.
-std::vector<LocalGlobalKernel> local_global_kernels();
 
 }  // namespace mssim

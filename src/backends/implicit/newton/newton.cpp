@@ -7,6 +7,7 @@
 
 #include "backends/implicit/newton/newton_method.h"
 #include "backends/implicit/newton/step_newton.h"
+#include "backends/vectors/step_kernels.h"
 #include "laws/host_laws.h"
 
 namespace mssim {
@@ -205,9 +206,8 @@ std::unique_ptr<Backend> make_newton_reference(const System& system, const Integ
 
 std::unique_ptr<Backend> make_openmp_newton(const System& system, const Integrator& integrator, double dt_s,
                                             const ExecutionOptions& options) {
-  const NewtonKernel kernel = best_kernel(newton_kernels(), options.roots);
-  return make_vector_backend(kernel, std::string("cpu ") + kernel.instruction_set, system, dt_s,
-                             options.threads, integrator);
+  return make_vector_backend<VectorEquation<NodeRows>, VectorEquation<NodeSlices>>(system, dt_s, options,
+                                                                                   integrator);
 }
 
 }  // namespace mssim

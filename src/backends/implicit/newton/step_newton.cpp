@@ -1,16 +1,14 @@
 // The threads that take a step together, each running the methods of newton_method.h, and what each function
 // of the equation does to a chunk of nodes. Compiled once per instruction set: hwy/foreach_target.h includes
 // this file again for each.
+#include "backends/vectors/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backends/implicit/newton/step_newton.cpp"
-#include "backends/implicit/newton/step_newton.h"
-
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <omp.h>
 
-#include <optional>
-
+#include "backends/implicit/newton/step_newton.h"
 #include "backends/implicit/nodes/node_vectors-inl.h"
 #include "backends/threads/spin_barrier.h"
 
@@ -271,11 +269,11 @@ HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
 template <class Nodes>
 class TeamEquation {
  public:
-  TeamEquation(VectorEquation<Nodes>& shared, std::size_t thread, std::size_t threads, SpinBarrier& barrier)
+  TeamEquation(VectorEquation<Nodes>& shared, const Team& team)
       : shared_(shared),
-        barrier_(barrier),
-        begin_(shared.nodes.chunks.size() * thread / threads),
-        end_(shared.nodes.chunks.size() * (thread + 1) / threads) {}
+        barrier_(team.barrier),
+        begin_(team.begin(shared.nodes.chunks.size())),
+        end_(team.end(shared.nodes.chunks.size())) {}
 
   void begin() {
     for_own_chunks([&](NodeChunk chunk) HWY_ATTR {
@@ -350,33 +348,23 @@ class TeamEquation {
 
 template <class Nodes>
 void take_steps(VectorEquation<Nodes>& shared, int count) {
-  std::optional<SpinBarrier> barrier;
-#pragma omp parallel num_threads(static_cast <int>(shared.threads))
-  {
-    const auto threads = static_cast<std::size_t>(omp_get_num_threads());  // the runtime may give fewer
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-#pragma omp single
-    barrier.emplace(threads);
-    TeamEquation<Nodes> equation(shared, thread, threads, *barrier);
+  with_team(shared.threads, [&](const Team& team) HWY_ATTR {
+    TeamEquation<Nodes> equation(shared, team);
     SolverWork work;  // the same for all
     for (int step = 0; step < count; ++step) take_step(equation, *shared.integrator, shared.goal, work);
-    if (thread == 0) shared.work += work;
-  }
+    if (team.thread == 0) shared.work += work;
+  });
 }
 
-NewtonKernel newton_kernel() {
-  return {lane_count(), hwy::TargetName(HWY_TARGET), exact_roots, &take_steps<NodeRows>,
-          &take_steps<NodeSlices>};
-}
+StepKernel<VectorEquation<NodeRows>> newton_cloth_kernel() { return kernel_here(&take_steps<NodeRows>); }
+StepKernel<VectorEquation<NodeSlices>> newton_bodies_kernel() { return kernel_here(&take_steps<NodeSlices>); }
 
 }  // namespace mssim::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace mssim {
-HWY_EXPORT(newton_kernel);
-std::vector<NewtonKernel> newton_kernels() {
-  return kernels_of_this_processor(HWY_DISPATCH_TABLE(newton_kernel));
-}
+MSSIM_COMPILED_KERNELS(VectorEquation<NodeRows>, newton_cloth_kernel)
+MSSIM_COMPILED_KERNELS(VectorEquation<NodeSlices>, newton_bodies_kernel)
 }  // namespace mssim
 #endif

@@ -8,7 +8,6 @@
 
 #include "backends/implicit/newton/newton_method.h"
 #include "backends/implicit/nodes/node_vectors.h"
-#include "backends/implicit/nodes/vector_backend.h"
 #include "backends/layouts/node_arrays.h"
 
 namespace mssim {
@@ -39,7 +38,8 @@ struct VectorEquation {
   /// [chunks] what they add to a sum, for every second sum.
   std::array<std::vector<double>, 2> sums;
 
-  /// With at most `thread_count` threads. Slopes of more than `most_kept` bytes are not kept.
+  /// With at most `thread_count` threads. A state must be set before the first step. Slopes of more than
+  /// `most_kept` bytes are not kept.
   VectorEquation(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count,
                  const Integrator& method, std::size_t most_kept = most_slope_bytes)
       : nodes(system, lanes),
@@ -54,7 +54,6 @@ struct VectorEquation {
     else
       y = AlignedArray(nodes.field_floats());
     for (std::vector<double>& sum : sums) sum.resize(nodes.chunks.size());
-    set_state(system.start);
   }
 
   std::string note() const { return note_of(work); }
@@ -68,10 +67,5 @@ struct VectorEquation {
     return {.position = read_field(nodes, x.data()), .velocity = read_field(nodes, v.data())};
   }
 };
-
-using NewtonKernel = SolverKernel<VectorEquation<NodeRows>, VectorEquation<NodeSlices>>;
-
-/// The kernels for the instruction sets of this processor, at least one, the best first.
-std::vector<NewtonKernel> newton_kernels();
 
 }  // namespace mssim

@@ -29,17 +29,6 @@ HWY_INLINE SlopeLanes keep(Exists exists, const SlopeLanes& slope) {
   return {keep(exists, slope.n), keep(exists, slope.across)};
 }
 
-/// What every vector needs of the cloth. A copy, because a vector's store may change anything that has an
-/// address elsewhere, as far as the compiler knows.
-struct WalkedRows {
-  SpringLanes spring[3];
-  std::ptrdiff_t pitch;
-  HWY_INLINE explicit WalkedRows(const NodeRows& nodes)
-      : spring{SpringLanes(nodes.springs[structural]), SpringLanes(nodes.springs[shear]),
-               SpringLanes(nodes.springs[bending])},
-        pitch(static_cast<std::ptrdiff_t>(nodes.layout.pitch)) {}
-};
-
 /// The springs of a vector of nodes that lead to the neighbours of one place in the stencil, the i-th of
 /// spring_of_node().
 template <std::size_t i, class Exists>
@@ -56,11 +45,8 @@ struct RowSprings {
   /// A spring stands in a field of slopes once, at the node that owns it in grid_stencil.
   HWY_INLINE void store_slope(float* field, const SlopeLanes& spring) const {
     if constexpr (i % 2 == 0) {
-      const FloatTag d;
-      hn::Store(spring.n.x.v, d, field + slope);
-      hn::Store(spring.n.y.v, d, field + slope + pitch);
-      hn::Store(spring.n.z.v, d, field + slope + 2 * pitch);
-      hn::Store(spring.across.v, d, field + slope + 3 * pitch);
+      store3(field + slope, spring.n, pitch);
+      hn::Store(spring.across.v, FloatTag(), field + slope + 3 * pitch);
     }
   }
   HWY_INLINE SlopeLanes load_slope(const float* field) const {
@@ -78,17 +64,9 @@ struct RowVector {
   std::ptrdiff_t slopes;                           ///< of what belongs to it in a field of slopes
   std::size_t number;                              ///< from 0, in the order of the walk over the whole cloth
 
-  HWY_INLINE Lanes3 load(const float* field) const {
-    const FloatTag d;
-    const float* const from = field + offset;
-    return {hn::Load(d, from), hn::Load(d, from + constants.pitch), hn::Load(d, from + 2 * constants.pitch)};
-  }
+  HWY_INLINE Lanes3 load(const float* field) const { return load3(field + offset, constants.pitch); }
   HWY_INLINE void store(float* field, const Lanes3& value) const {
-    const FloatTag d;
-    float* const to = field + offset;
-    hn::Store(value.x.v, d, to);
-    hn::Store(value.y.v, d, to + constants.pitch);
-    hn::Store(value.z.v, d, to + 2 * constants.pitch);
+    store3(field + offset, value, constants.pitch);
   }
   /// Stores zero where no node moves.
   HWY_INLINE void store_free(float* field, const Lanes3& value) const { store(field, keep(free, value)); }
@@ -125,7 +103,7 @@ struct RowWalk {
   std::size_t rows, columns, row_vectors;
 
   HWY_INLINE explicit RowWalk(const NodeRows& nodes)
-      : constants(nodes),
+      : constants(nodes.springs, nodes.layout.pitch),
         node_row(static_cast<std::ptrdiff_t>(nodes.layout.row_floats())),
         slope_row(static_cast<std::ptrdiff_t>(nodes.slope_layout.row_floats())),
         margin(static_cast<std::ptrdiff_t>(nodes.layout.margin)),
@@ -161,16 +139,11 @@ struct RowWalk {
 template <class Act>
 HWY_INLINE void for_each_vector(const NodeRows& nodes, NodeChunk chunk, Act&& act) {
   const RowWalk walk(nodes);
-  constexpr std::size_t ring = NodeRows::Layout::ring;
   for (std::size_t row = chunk.begin; row < chunk.end; ++row) {
-    std::size_t begin = 0, end = 0;  // of the columns of vectors inside
-    if (row >= ring && row + ring < walk.rows && walk.columns >= nodes.layout.margin + ring &&
-        nodes.row_is_free[row]) {
-      begin = nodes.layout.margin;
-      end = begin + (walk.columns - ring - begin) / lane_count() * lane_count();
-    }
+    const auto inner = nodes.layout.inner_columns(row, lane_count());
+    const std::size_t end = nodes.row_is_free[row] ? inner.end : 0;
     for (std::size_t column = 0; column < walk.columns; column += lane_count())
-      if (column >= begin && column < end)
+      if (column >= inner.begin && column < end)
         act(walk.inner_vector(row, column));
       else
         act(walk.edge_vector(row, column, nodes.free.data() + nodes.plane.offset(row, column)));

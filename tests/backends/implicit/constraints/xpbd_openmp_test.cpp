@@ -11,6 +11,7 @@
 
 #include "backends/implicit/constraints/constraints.h"
 #include "backends/implicit/constraints/step_constraints.h"
+#include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"
@@ -30,11 +31,14 @@ const std::vector<std::pair<std::uint32_t, std::uint32_t>> cloth_sizes{
 
 std::vector<System> solids() { return {solid_block(2, 2, 2), solid_block(9, 8, 7), two_solid_blocks()}; }
 
+std::vector<StepKernel<QuarteredRows>> cloth_kernels() { return compiled_kernels<QuarteredRows>(); }
+
 /// The vector code for one instruction set.
 class EachXpbdKernel : public testing::TestWithParam<std::size_t> {
  protected:
   static std::unique_ptr<Backend> make(const System& system, int threads, std::size_t kernel) {
-    return make_vector_backend(constraint_kernels()[kernel], "cpu", system, backend_dt_s, threads);
+    return make_vector_backend<QuarteredRows, SpringBatches>(system, backend_dt_s, threads,
+                                                             cloth_kernels()[kernel].instruction_set);
   }
   static std::unique_ptr<Backend> make(const System& system, int threads) {
     return make(system, threads, GetParam());
@@ -47,8 +51,8 @@ class EachXpbdKernel : public testing::TestWithParam<std::size_t> {
   }
   /// The same bits at any number of threads, and as the best kernel that rounds alike.
   static void expect_same_bits(const System& system, const std::string& name) {
-    const std::vector<ConstraintKernel> kernels = constraint_kernels();
-    const auto best = std::ranges::find_if(kernels, [&](const ConstraintKernel& other) {
+    const auto kernels = cloth_kernels();
+    const auto best = std::ranges::find_if(kernels, [&](const auto& other) {
       return fuses(other.instruction_set) == fuses(kernels[GetParam()].instruction_set) &&
              other.exact_roots == kernels[GetParam()].exact_roots;
     });
@@ -66,8 +70,8 @@ class EachXpbdKernel : public testing::TestWithParam<std::size_t> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachXpbdKernel,
-                         testing::Range(std::size_t{0}, constraint_kernels().size()), [](const auto& test) {
-                           return std::string(constraint_kernels()[test.param].instruction_set);
+                         testing::Range(std::size_t{0}, cloth_kernels().size()), [](const auto& test) {
+                           return std::string(cloth_kernels()[test.param].instruction_set);
                          });
 
 TEST_P(EachXpbdKernel, AgreesWithTheReferenceOnClothsOfAnyShape) {
@@ -87,7 +91,8 @@ TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
     System system = cloth_system(rows, columns);
     system.floor.height = -100;
     const auto reference = make_constraints_reference(system, long_s);
-    const auto backend = make_vector_backend(constraint_kernels()[GetParam()], "cpu", system, long_s, 2);
+    const auto backend = make_vector_backend<QuarteredRows, SpringBatches>(
+        system, long_s, 2, cloth_kernels()[GetParam()].instruction_set);
     reference->step(1);
     backend->step(1);
     // Roundings come to 7e-5 m/s, two colours in another order to 5e-3 or more.
@@ -107,11 +112,12 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfThreads) {
 
 TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfSmallStepsInAPass) {
   const System system = cloth_system(113, 65);
-  const auto kernel = constraint_kernels()[GetParam()];
+  const auto kernel = cloth_kernels()[GetParam()];
   const auto after = [&](std::size_t depth, std::size_t threads) {
     QuarteredRows cloth(system, backend_dt_s, kernel.lanes, threads);
     cloth.depth = depth;
-    kernel.step_cloth(cloth, 7);
+    cloth.set_state(system.start);
+    kernel.step(cloth, 7);
     return cloth.state();
   };
   const State expected = after(1, 1);
@@ -142,7 +148,7 @@ System three_blocks() {
 
 TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
   const System system = three_blocks();
-  const ConstraintKernel kernel = constraint_kernels()[GetParam()];
+  const StepKernel<SpringBatches> kernel = compiled_kernels<SpringBatches>()[GetParam()];
   const auto after = [&](std::size_t threads, std::size_t shared) {
     SpringBatches bodies(system, backend_dt_s, kernel.lanes, threads);
     EXPECT_EQ(bodies.parts.size(), 3U);
@@ -153,7 +159,8 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
         bodies.shared_parts.push_back(part);
       else
         bodies.own_parts[part % threads].push_back(part);
-    kernel.step_bodies(bodies, 21);
+    bodies.set_state(system.start);
+    kernel.step(bodies, 21);
     return bodies.state();
   };
   const State expected = after(1, 0);
@@ -168,7 +175,7 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
 
 TEST_P(EachXpbdKernel, DoesEachBodyOnce) {
   for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
-    const SpringBatches bodies(three_blocks(), backend_dt_s, constraint_kernels()[GetParam()].lanes, threads);
+    const SpringBatches bodies(three_blocks(), backend_dt_s, cloth_kernels()[GetParam()].lanes, threads);
     std::vector<std::size_t> done(bodies.shared_parts);
     for (const auto& parts : bodies.own_parts) done.insert(done.end(), parts.begin(), parts.end());
     std::ranges::sort(done);
@@ -223,11 +230,11 @@ TEST(XpbdOfOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
     const auto device = [&](Roots roots) {
       return make_openmp_constraints(system, backend_dt_s, {.threads = 1, .roots = roots})->device();
     };
-    const std::vector<ConstraintKernel> kernels = constraint_kernels();
+    const auto kernels = cloth_kernels();
     EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
-    EXPECT_EQ(
-        device(Roots::exact),
-        std::string("cpu ") + std::ranges::find_if(kernels, &ConstraintKernel::exact_roots)->instruction_set);
+    EXPECT_EQ(device(Roots::exact),
+              std::string("cpu ") +
+                  std::ranges::find_if(kernels, &StepKernel<QuarteredRows>::exact_roots)->instruction_set);
   }
 }
 

@@ -5,11 +5,14 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "backends/implicit/local_global/step_local_global.h"
 #include "backends/implicit/newton/newton.h"
+#include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
@@ -163,19 +166,15 @@ TEST(FastSprings, DoesTheSameWithEachInstructionSet) {
     const auto reference = make_local_global_reference(system, dt_s);
     reference->step(10);
     const State expected = reference->state();
-    const auto expect_near = [&](const char* instruction_set, auto nodes, auto step) {
-      step(nodes, 10);
-      EXPECT_LT(largest_distance(nodes.state().position, expected.position),
+    for (const std::string_view set : instruction_sets_of(compiled_kernels<LocalGlobalNodes<NodeRows>>())) {
+      const auto vectors =
+          make_vector_backend<LocalGlobalNodes<NodeRows>, LocalGlobalNodes<NodeSlices>>(system, dt_s, 2, set);
+      vectors->step(10);
+      EXPECT_EQ(vectors->device(), "cpu " + std::string(set));
+      EXPECT_LT(largest_distance(vectors->state().position, expected.position),
                 1e-5 * motion_of(system, expected) + 1e-6)
-          << instruction_set << ", " << system.nodes() << " nodes";
-    };
-    for (const LocalGlobalKernel& kernel : local_global_kernels())
-      if (std::holds_alternative<GridPatch>(system.topology))
-        expect_near(kernel.instruction_set, LocalGlobalNodes<NodeRows>(system, dt_s, kernel.lanes, 2),
-                    kernel.step_cloth);
-      else
-        expect_near(kernel.instruction_set, LocalGlobalNodes<NodeSlices>(system, dt_s, kernel.lanes, 2),
-                    kernel.step_bodies);
+          << set << ", " << system.nodes() << " nodes";
+    }
   }
 }
 

@@ -15,6 +15,7 @@
 #include "backends/implicit/newton/newton.h"
 #include "backends/implicit/newton/step_newton.h"
 #include "backends/openmp/openmp.h"
+#include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
@@ -41,23 +42,26 @@ std::vector<System> implicit_systems() {
   return systems;
 }
 
+std::vector<std::string_view> newton_sets() {
+  return instruction_sets_of(compiled_kernels<VectorEquation<NodeRows>>());
+}
+
 class EachNewtonKernelAndIntegrator
     : public testing::TestWithParam<std::tuple<std::size_t, std::string_view>> {
  protected:
   const Integrator& integrator() const { return *find_integrator(std::get<1>(GetParam())); }
   std::unique_ptr<Backend> make(const System& system, int threads = 2, double dt_s = backend_dt_s,
                                 std::size_t most_kept = most_slope_bytes) const {
-    return make_vector_backend(newton_kernels()[std::get<0>(GetParam())], "cpu", system, dt_s, threads,
-                               integrator(), most_kept);
+    return make_vector_backend<VectorEquation<NodeRows>, VectorEquation<NodeSlices>>(
+        system, dt_s, threads, newton_sets()[std::get<0>(GetParam())], integrator(), most_kept);
   }
 };
 INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNewtonKernelAndIntegrator,
-                         testing::Combine(testing::Range(std::size_t{0}, newton_kernels().size()),
+                         testing::Combine(testing::Range(std::size_t{0}, newton_sets().size()),
                                           testing::Values("implicit-euler", "newton-euler")),
                          [](const auto& test) {
-                           std::string name =
-                               std::string(newton_kernels()[std::get<0>(test.param)].instruction_set) + "__" +
-                               std::string(std::get<1>(test.param));
+                           std::string name = std::string(newton_sets()[std::get<0>(test.param)]) + "__" +
+                                              std::string(std::get<1>(test.param));
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
@@ -167,7 +171,8 @@ TEST_P(EachNewtonKernelAndIntegrator, TreatsTheFloorLikeTheReference) {
 }
 
 TEST(NewtonOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
-  const std::vector<NewtonKernel> kernels = newton_kernels();
+  using Kernel = StepKernel<VectorEquation<NodeRows>>;
+  const std::vector<Kernel> kernels = compiled_kernels<VectorEquation<NodeRows>>();
   const System system = cloth_system(5, 6);
   const auto device = [&](Roots roots) {
     return make_openmp_newton(system, *find_integrator("implicit-euler"), backend_dt_s, {1, "", {}, roots})
@@ -175,7 +180,7 @@ TEST(NewtonOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
   };
   EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
   EXPECT_EQ(device(Roots::exact),
-            std::string("cpu ") + std::ranges::find_if(kernels, &NewtonKernel::exact_roots)->instruction_set);
+            std::string("cpu ") + std::ranges::find_if(kernels, &Kernel::exact_roots)->instruction_set);
 }
 
 /// The fastest of seven samples of `steps` steps, s a step. prepare() comes before each.
@@ -193,8 +198,8 @@ double fastest_step(const std::function<void()>& prepare, const std::function<vo
 
 /// Prints what a step and one of its products A p cost beside a step of semi-implicit Euler.
 template <class Nodes>
-void print_costs(const System& system, double dt_s, int threads, auto step_of) {
-  const NewtonKernel kernel = newton_kernels().front();
+void print_costs(const System& system, double dt_s, int threads) {
+  const auto kernel = compiled_kernels<VectorEquation<Nodes>>().front();
   const double plain_s = [&] {
     const auto simulation = make_openmp(system, integrators[0], 5e-5, {threads, ""});
     return fastest_step([&] { simulation->set_state(system.start); },
@@ -206,7 +211,7 @@ void print_costs(const System& system, double dt_s, int threads, auto step_of) {
                                    *find_integrator(name));
     const double step_s =
         fastest_step([&] { equation.set_state(system.start); },
-                     [&](int steps) { (kernel.*step_of)(equation, steps); }, system.nodes() < 10000 ? 10 : 2);
+                     [&](int steps) { kernel.step(equation, steps); }, system.nodes() < 10000 ? 10 : 2);
     const SolverWork& work = equation.work;
     const auto steps = static_cast<double>(work.steps);
     const double products = static_cast<double>(work.products) / steps;
@@ -224,9 +229,9 @@ TEST(NewtonOpenMp, DISABLED_PrintsWhatItCosts) {
     for (const double dt_s : {5e-5, 50 * 5e-5})
       for (const int threads : {1, 2})
         if (std::holds_alternative<GridPatch>(system.topology))
-          print_costs<NodeRows>(system, dt_s, threads, &NewtonKernel::step_cloth);
+          print_costs<NodeRows>(system, dt_s, threads);
         else
-          print_costs<NodeSlices>(system, dt_s, threads, &NewtonKernel::step_bodies);
+          print_costs<NodeSlices>(system, dt_s, threads);
   }
 }
 
