@@ -44,7 +44,7 @@ std::unique_ptr<DressingBackend> dress_by_openmp(const System& system, const Int
 
 std::unique_ptr<DressingBackend> dress_by_opencl(const System& system, const Integrator& integrator,
                                                  double dt_s, const ExecutionOptions& options) {
-  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
+  const OpenclDevice device = device_for(options);
   try_driver({"opencl", std::string(integrator.name), SteppedKind::garment, options}, device);
   return make_opencl_dressing(system, integrator, dt_s, device, options.memory,
                               DressingShape::of(device, lanes_for(device)));

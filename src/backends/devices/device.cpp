@@ -5,6 +5,7 @@
 #include <CL/opencl.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <utility>
@@ -15,21 +16,6 @@
 
 namespace mssim {
 namespace {
-
-OpenclDeviceType type_of(cl_device_type type) {
-  if ((type & CL_DEVICE_TYPE_GPU) != 0) return OpenclDeviceType::gpu;
-  if ((type & CL_DEVICE_TYPE_CPU) != 0) return OpenclDeviceType::cpu;
-  return OpenclDeviceType::other;
-}
-
-HostMemory host_memory_of(const cl::Device& device) {
-  if (device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_TRUE) return HostMemory::none;
-  // Before OpenCL 2.0 the question is an error.
-  cl_device_svm_capabilities can = 0;
-  const cl_int error = clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof can, &can, nullptr);
-  return error == CL_SUCCESS && (can & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0 ? HostMemory::fine_grained
-                                                                             : HostMemory::mapped;
-}
 
 std::string listing(std::span<const OpenclDevice> devices) {
   std::string text;
@@ -141,29 +127,6 @@ std::string_view name_of(OpenclDeviceType type) {
   return "other";
 }
 
-std::string trimmed(std::string text) {
-  const auto blank = [](char c) { return c == '\0' || std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && blank(text.back())) text.pop_back();
-  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
-  return text;
-}
-
-OpenclDevice described(cl_device_id id, const std::string& platform, int number) {
-  const cl::Device device(id, true);
-  return {.number = number,
-          .name = trimmed(device.getInfo<CL_DEVICE_NAME>()),
-          .platform = platform,
-          .driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>()),
-          .type = type_of(device.getInfo<CL_DEVICE_TYPE>()),
-          .compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(),
-          .global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
-          .max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
-          .float_width = std::max(device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
-                                  device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()),
-          .host_memory = host_memory_of(device),
-          .id = id};
-}
-
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted) {
   if (devices.empty())
     throw Unavailable(
@@ -221,10 +184,6 @@ int threads_of(const OpenclDevice& device) {
   static const std::size_t processors = process_cpus().size();
   const auto units = static_cast<int>(device.compute_units);
   return processors == 0 ? units : std::min(units, static_cast<int>(processors));
-}
-
-std::string label_of(const OpenclDevice& device, DeviceMemory memory) {
-  return memory == DeviceMemory::copy ? device.name + " (copied memory)" : device.name;
 }
 
 void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes) {

@@ -40,12 +40,6 @@ struct OpenclDevice {
 /// "cpu", "gpu" or "other".
 std::string_view name_of(OpenclDeviceType type);
 
-/// A text from a driver without its closing zero and the spaces that some pad names with.
-std::string trimmed(std::string text);
-
-/// What the device says of itself. Lets cl::Error through.
-OpenclDevice described(cl_device_id id, const std::string& platform, int number);
-
 /// The device that `wanted` names: empty for the first, its number, or a part of its name or its platform's
 /// in any case.
 /// Throws Unavailable when there is none or when the part fits several; the sentence lists what there is.
@@ -63,9 +57,6 @@ OpenclDevice part_of(const OpenclDevice& device, int count);
 
 /// Processors of this machine that run a device's kernels, or one thread that waits for it.
 int threads_of(const OpenclDevice& device);
-
-/// For the `device` column: the device's name, and that memory is copied where it is.
-std::string label_of(const OpenclDevice& device, DeviceMemory memory);
 
 /// Throws Unsupported unless the device can hold buffers of these many bytes all at once.
 void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes);

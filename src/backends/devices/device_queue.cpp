@@ -29,10 +29,11 @@ std::string slices_program_text(std::size_t slice_nodes, int lanes,
   return "#define MSSIM_SLICE " + std::to_string(slice_nodes) + "\n" + program_text(lanes, files);
 }
 
-cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text) {
+cl::Program DeviceQueue::build(const std::string& text) const {
+  const cl::Device device(device_.id, true);
   const bool exact =
       (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-  cl::Program program(context, text);
+  cl::Program program(context_, text);
   try {
     program.build(device, exact ? "-cl-fp32-correctly-rounded-divide-sqrt" : "");
   } catch (const cl::BuildError& error) {

@@ -36,10 +36,6 @@ std::string program_text(int lanes, std::initializer_list<const char*> files);
 /// The program text where nodes lie in slices of so many.
 std::string slices_program_text(std::size_t slice_nodes, int lanes, std::initializer_list<const char*> files);
 
-/// The built program. Square roots and divisions are correctly rounded where the device can do that.
-/// Throws Unavailable with the compiler's first complaint.
-cl::Program build_program(const cl::Context& context, const cl::Device& device, const std::string& text);
-
 /// An array of T that a device's kernels and the host take turns with.
 ///
 /// In shared memory, on a device that shares the host's, the array lies in aligned host memory and is never
@@ -51,8 +47,11 @@ cl::Program build_program(const cl::Context& context, const cl::Device& device, 
 template <class T>
 class OpenclBuffer {
  public:
-  OpenclBuffer(const cl::Context& context, const OpenclDevice& device, DeviceMemory memory, std::size_t size)
-      : size_(size),
+  /// `queue`: in order, of the work that takes turns with the host.
+  OpenclBuffer(const cl::Context& context, const cl::CommandQueue& queue, const OpenclDevice& device,
+               DeviceMemory memory, std::size_t size)
+      : queue_(queue),
+        size_(size),
         exchange_(memory == DeviceMemory::copy                     ? Exchange::copies
                   : device.host_memory == HostMemory::fine_grained ? Exchange::nothing
                                                                    : Exchange::maps) {
@@ -79,33 +78,42 @@ class OpenclBuffer {
   std::size_t size() const { return size_; }
 
   /// Hands the array to the host. Waits for the queue's work when `block`; else it is the host's once a later
-  /// blocking call on the same in-order queue has returned. `use`: CL_MAP_READ and/or CL_MAP_WRITE. With
+  /// blocking call on the same queue has returned. `use`: CL_MAP_READ and/or CL_MAP_WRITE. With
   /// CL_MAP_READ the host sees what kernels wrote; without it, it may not read what they wrote, and finds
   /// everything else as it left it.
-  std::span<T> map(const cl::CommandQueue& queue, cl_map_flags use, bool block = true) const {
+  std::span<T> map(cl_map_flags use, bool block = true) const {
     const cl_bool blocking = block ? CL_TRUE : CL_FALSE;
     if (exchange_ == Exchange::maps)
-      return {aligned(queue.enqueueMapBuffer(buffer_, blocking, use, 0, size_ * sizeof(T))), size_};
+      return {aligned(queue_.enqueueMapBuffer(buffer_, blocking, use, 0, size_ * sizeof(T))), size_};
     if (exchange_ == Exchange::copies && (use & CL_MAP_READ) != 0) {
-      queue.enqueueReadBuffer(buffer_, blocking, 0, size_ * sizeof(T), memory_.get());
+      queue_.enqueueReadBuffer(buffer_, blocking, 0, size_ * sizeof(T), memory_.get());
     } else if (block) {
-      queue.finish();  // kernels, or an earlier transfer to the device, may still be reading
+      queue_.finish();  // kernels, or an earlier transfer to the device, may still be reading
     }
     return {memory_.get(), size_};
   }
   /// Hands what `map` gave back, for the same `use`, to the device, for the work that is queued from now on.
-  void unmap(const cl::CommandQueue& queue, std::span<T> mapped, cl_map_flags use) const {
-    if (exchange_ == Exchange::maps) queue.enqueueUnmapMemObject(buffer_, mapped.data());
+  void unmap(std::span<T> mapped, cl_map_flags use) const {
+    if (exchange_ == Exchange::maps) queue_.enqueueUnmapMemObject(buffer_, mapped.data());
     if (exchange_ == Exchange::copies && (use & CL_MAP_WRITE) != 0)
-      queue.enqueueWriteBuffer(buffer_, CL_FALSE, 0, size_ * sizeof(T), memory_.get());
+      queue_.enqueueWriteBuffer(buffer_, CL_FALSE, 0, size_ * sizeof(T), memory_.get());
   }
   /// Lets `fill` write the array, a std::span<T>, while the device has nothing to do with it.
   template <class Fill>
-  void write(const cl::CommandQueue& queue, Fill&& fill) const {
-    const std::span<T> array = map(queue, CL_MAP_WRITE);
+  void write(Fill&& fill) const {
+    const std::span<T> array = map(CL_MAP_WRITE);
     fill(array);
-    unmap(queue, array, CL_MAP_WRITE);
-    queue.finish();
+    unmap(array, CL_MAP_WRITE);
+    queue_.finish();
+  }
+  /// What `look` returns of the array, a std::span<const T>, while the device has nothing to do with it.
+  template <class Look>
+  auto read(Look&& look) const {
+    const std::span<T> array = map(CL_MAP_READ);
+    auto seen = look(std::span<const T>(array));
+    unmap(array, CL_MAP_READ);
+    queue_.finish();
+    return seen;
   }
 
  private:
@@ -138,6 +146,7 @@ class OpenclBuffer {
     madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
   }
 
+  cl::CommandQueue queue_;
   std::size_t size_;
   Exchange exchange_;
   Memory memory_;  // outlives buffer_, which may refer to it
@@ -182,35 +191,33 @@ class DeviceQueue {
         context_(cl::Device(device.id, true)),
         commands_(context_, cl::Device(device.id, true)) {}
 
-  /// What an OpenclBuffer is mapped, unmapped and written with.
-  const cl::CommandQueue& commands() const { return commands_; }
-
   /// An array; of one element where `size` is 0, because OpenCL has no empty ones.
   template <class T>
   OpenclBuffer<T> array(std::size_t size) const {
-    return {context_, device_, memory_, std::max<std::size_t>(1, size)};
+    return {context_, commands_, device_, memory_, std::max<std::size_t>(1, size)};
   }
   template <class T>
   OpenclBuffer<T> zeros(std::size_t size) const {
     auto buffer = array<T>(size);
-    buffer.write(commands_, [](std::span<T> values) { std::ranges::fill(values, T{}); });
+    buffer.write([](std::span<T> values) { std::ranges::fill(values, T{}); });
     return buffer;
   }
   template <class T>
   OpenclBuffer<T> copy_of(std::span<const T> values) const {
     auto buffer = array<T>(values.size());
-    buffer.write(commands_, [&](std::span<T> copy) { std::ranges::copy(values, copy.begin()); });
+    buffer.write([&](std::span<T> copy) { std::ranges::copy(values, copy.begin()); });
     return buffer;
   }
 
-  /// See build_program.
-  cl::Program build(const std::string& text) const {
-    return build_program(context_, cl::Device(device_.id, true), text);
-  }
+  /// The built program. Square roots and divisions are correctly rounded where the device can do that.
+  /// Throws Unavailable with the compiler's first complaint.
+  cl::Program build(const std::string& text) const;
 
   void launch(const Launch& launch) const {
     commands_.enqueueNDRangeKernel(launch.kernel, cl::NullRange, launch.items.global, launch.items.local);
   }
+  /// Waits for all that has been launched.
+  void finish() const { commands_.finish(); }
   /// Takes steps, each of the launches that `launches_of(step)` gives, and waits for the last one.
   template <class LaunchesOf>
   void take_steps(int count, const LaunchesOf& launches_of) const {
@@ -218,13 +225,15 @@ class DeviceQueue {
     for (int step = 0; step < count; ++step)
       for (const Launch& each : launches_of(step)) {
         launch(each);
-        if (++queued % longest_queue == 0) commands_.finish();
+        if (++queued % longest_queue == 0) finish();
       }
-    commands_.finish();
+    finish();
   }
 
   /// What a backend says about where its steps run (Backend::device, threads, runs_on_host).
-  std::string label() const { return label_of(device_, memory_); }
+  std::string label() const {
+    return memory_ == DeviceMemory::copy ? device_.name + " (copied memory)" : device_.name;
+  }
   int threads() const { return threads_of(device_); }
   bool runs_on_host() const { return device_.type == OpenclDeviceType::cpu; }
 

@@ -4,6 +4,7 @@
 
 #include <CL/opencl.hpp>
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
@@ -30,6 +31,7 @@ constexpr const char* vendors_variable = "OCL_ICD_VENDORS";
 constexpr const char* pocl_platform = "Portable Computing Language";
 
 bool relied_on = false;
+std::function<void(const std::string&)> listener;
 
 /// What the process that asked has found out.
 struct Answer {
@@ -99,6 +101,46 @@ std::vector<Item> all_or_none(Query query, cl_int none) {
   return items;
 }
 
+OpenclDeviceType type_of(cl_device_type type) {
+  if ((type & CL_DEVICE_TYPE_GPU) != 0) return OpenclDeviceType::gpu;
+  if ((type & CL_DEVICE_TYPE_CPU) != 0) return OpenclDeviceType::cpu;
+  return OpenclDeviceType::other;
+}
+
+HostMemory host_memory_of(const cl::Device& device) {
+  if (device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_TRUE) return HostMemory::none;
+  // Before OpenCL 2.0 the question is an error.
+  cl_device_svm_capabilities can = 0;
+  const cl_int error = clGetDeviceInfo(device(), CL_DEVICE_SVM_CAPABILITIES, sizeof can, &can, nullptr);
+  return error == CL_SUCCESS && (can & CL_DEVICE_SVM_FINE_GRAIN_BUFFER) != 0 ? HostMemory::fine_grained
+                                                                             : HostMemory::mapped;
+}
+
+/// A text from a driver without its closing zero and the spaces that some pad names with.
+std::string trimmed(std::string text) {
+  const auto blank = [](char c) { return c == '\0' || std::isspace(static_cast<unsigned char>(c)) != 0; };
+  while (!text.empty() && blank(text.back())) text.pop_back();
+  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
+  return text;
+}
+
+/// What the device says of itself. Lets cl::Error through.
+OpenclDevice described(cl_device_id id, const std::string& platform, int number) {
+  const cl::Device device(id, true);
+  return {.number = number,
+          .name = trimmed(device.getInfo<CL_DEVICE_NAME>()),
+          .platform = platform,
+          .driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>()),
+          .type = type_of(device.getInfo<CL_DEVICE_TYPE>()),
+          .compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>(),
+          .global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
+          .max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
+          .float_width = std::max(device.getInfo<CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT>(),
+                                  device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()),
+          .host_memory = host_memory_of(device),
+          .id = id};
+}
+
 /// Takes what a platform offers.
 void take_devices(const cl::Platform& platform, const std::string& pocl_failure, OpenclOffer& offer) {
   const std::string name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
@@ -117,18 +159,13 @@ void take_devices(const cl::Platform& platform, const std::string& pocl_failure,
   }
 }
 
-/// Loads the drivers into this process, and takes what they offer.
-void take_devices(const std::string& pocl_failure, OpenclOffer& offer) {
+/// Loads drivers into this process that have survived being asked, with that answer; takes what they offer.
+void take_devices(Answer answer, const std::string& pocl_failure, OpenclOffer& offer) {
   const OnAllProcessCpus every;  // PoCL starts its threads here
   // The loader reports it as an error that there is no driver.
   const auto platforms =
       all_or_none<cl::Platform>([](auto& all) { cl::Platform::get(&all); }, CL_PLATFORM_NOT_FOUND_KHR);
   for (const cl::Platform& platform : platforms) take_devices(platform, pocl_failure, offer);
-}
-
-/// Takes devices of drivers that survived being asked with that answer.
-void take_devices(Answer answer, const std::string& pocl_failure, OpenclOffer& offer) {
-  take_devices(pocl_failure, offer);
   std::ranges::move(answer.troubles, std::back_inserter(offer.troubles));
 }
 
@@ -165,8 +202,6 @@ OpenclOffer ask() {
                              answer.end);
   return offer;
 }
-
-std::function<void(const std::string&)> listener;
 
 /// Arguments of the trial on this device: what tells trials apart.
 std::vector<std::string> arguments_of(const DriverTrial& trial, const OpenclDevice& device) {
@@ -220,7 +255,6 @@ std::string failure_of(const DriverTrial& trial, const OpenclDevice& device) {
 }  // namespace
 
 void rely_on_opencl_drivers() { relied_on = true; }
-bool opencl_drivers_relied_on() { return relied_on; }
 
 const OpenclOffer& opencl_offer() {
   static const OpenclOffer offer = [] {
@@ -241,6 +275,10 @@ OpenclDevice find_opencl_device(std::string_view wanted) {
   return choose_opencl_device(offer.devices, wanted);
 }
 
+OpenclDevice device_for(const ExecutionOptions& options) {
+  return part_of(find_opencl_device(options.device), options.threads);
+}
+
 void hear_of_slow_drivers(std::function<void(const std::string& sentence)> told) {
   listener = std::move(told);
 }
@@ -255,7 +293,7 @@ DriverTrial driver_trial_from(std::span<char*> arguments) {
 }
 
 void try_driver(const DriverTrial& trial, const OpenclDevice& device) {
-  if (opencl_drivers_relied_on()) return;
+  if (relied_on) return;
   static std::map<std::vector<std::string>, std::string> failures;
   const auto [tried, is_new] = failures.try_emplace(arguments_of(trial, device));
   if (is_new) tried->second = failure_of(trial, device);

@@ -25,11 +25,12 @@ const OpenclOffer& opencl_offer();
 
 /// From now on nothing is tried in another process first: this one is itself a process that drivers may end.
 void rely_on_opencl_drivers();
-bool opencl_drivers_relied_on();
 
 /// The device of this machine that `wanted` names (choose_opencl_device). Throws Unavailable where there is
 /// none.
 OpenclDevice find_opencl_device(std::string_view wanted);
+/// The one that options.device names, and where that is a processor the part_of() it with options.threads.
+OpenclDevice device_for(const ExecutionOptions& options);
 
 // Some OpenCL drivers end the process in which they compile, or launch, what they cannot. So a process of its
 // own, mssim too, makes each kind of backend for a small system before this one makes it. Programs depend on

@@ -20,6 +20,61 @@
 #include "backends/threads/chunk_tickets.h"
 
 namespace mssim {
+
+HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s)
+    : packed(system),
+      integrator(&method),
+      coefficients(coefficients_of<float>(method, dt_s)),
+      surroundings(surroundings_of(system)),
+      constants(packed.slots() * 2) {
+  constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
+  const auto of_slot = [&](std::size_t slot) {
+    return constants.data() + slot / slice_nodes * 2 * slice_nodes + slot % slice_nodes;
+  };
+  for (std::size_t slot = 0; slot < packed.slots(); ++slot) of_slot(slot)[slice_nodes] = 1;
+  for (std::size_t node = 0; node < system.nodes(); ++node) {
+    of_slot(packed.slot[node])[0] = static_cast<float>(1 / system.node_mass[node]);
+    of_slot(packed.slot[node])[slice_nodes] = 0;
+  }
+  for (const std::uint32_t pin : system.pins) of_slot(packed.slot[pin])[slice_nodes] = 1;
+  for (const SpringMaterial& material : system.materials)
+    materials.push_back({static_cast<float>(material.stiffness), static_cast<float>(material.damping)});
+}
+
+SpringKernel HostNodes::spring_kernel(int lanes) const {
+  const std::size_t units_of_part = lanes == 1 ? 1 : PackedSprings::slice_nodes;
+  return {program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "packed_springs.cl"}),
+          "packed_spring_forces",
+          packed.unit_count() / units_of_part,
+          packed.slots() * record_floats,
+          4 * (packed.unit_count() + 1),  // what lies behind the forces of the units stays zero
+          {std::as_bytes(std::span(packed.units)), std::as_bytes(std::span(packed.entries)),
+           std::as_bytes(std::span(materials))}};
+}
+
+void HostNodes::forget_units() {
+  packed.units = {};
+  packed.entries = {};
+}
+
+AlikeNodes::AlikeNodes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
+                       double dt_s)
+    : springs(bodies),
+      integrator(&method),
+      coefficients(coefficients_of<float>(method, dt_s)),
+      surroundings(surroundings_of(system)) {}
+
+SpringKernel AlikeNodes::spring_kernel(int lanes) const {
+  const std::size_t parts = AlikeSprings::slice_nodes / static_cast<std::size_t>(lanes);
+  return {slices_program_text(AlikeSprings::slice_nodes, lanes,
+                              {"lanes.h", "spring_law.h", "alike_slices.h", "alike_springs.cl"}),
+          "alike_spring_forces",
+          springs.springs.size() * parts,
+          springs.slices.floats(),
+          springs.springs.size() * 3 * AlikeSprings::slice_nodes,
+          {std::as_bytes(std::span(springs.springs)), std::as_bytes(std::span(springs.shapes))}};
+}
+
 namespace {
 
 /// What of `hybrid` lives on the device: the springs for good; the nodes and the forces in memory that it
@@ -29,8 +84,47 @@ class SpringDevice {
   /// `lanes`: those that the kernel was written for. `stored`: the pairs that the integrator needs; they and
   /// the forces are zero. Throws Unsupported where all this does not fit into the device's memory, cl::Error.
   SpringDevice(const SpringKernel& spring_kernel, const std::vector<Pair>& stored, const OpenclDevice& device,
-               int lanes, DeviceMemory memory);
-  ~SpringDevice();
+               int lanes, DeviceMemory memory)
+      : queue_(device, memory) {
+    std::vector<std::uint64_t> buffers(stored.size(), spring_kernel.pair_floats * sizeof(float));
+    for (const std::span<const std::byte> constants : spring_kernel.constants)
+      buffers.push_back(constants.size());
+    buffers.push_back(spring_kernel.force_floats * sizeof(float));
+    require_memory(device, buffers);
+
+    for (const Pair pair : stored) {
+      auto& buffer = pairs_[index(pair)];
+      buffer = queue_.zeros<float>(spring_kernel.pair_floats);
+      host_pairs_[index(pair)] = buffer->map(CL_MAP_WRITE);
+    }
+    forces_ = queue_.zeros<float>(spring_kernel.force_floats);
+    host_forces_ = forces_->map(CL_MAP_READ);
+    if (spring_kernel.parts == 0) return;
+
+    const OpenclChunks chunks(spring_kernel.parts, device, lanes);
+    cl::Kernel kernel(queue_.build(spring_kernel.text), spring_kernel.name);
+    kernel.setArg(1, forces_->buffer());
+    cl_uint argument = 2;
+    for (const std::span<const std::byte> constants : spring_kernel.constants) {
+      constants_.push_back(queue_.copy_of(constants));
+      kernel.setArg(argument++, constants_.back().buffer());
+    }
+    kernel.setArg(argument++, static_cast<cl_uint>(spring_kernel.parts));
+    kernel.setArg(argument, static_cast<cl_uint>(chunks.per_item));
+    launch_ = {kernel, chunks.items};
+  }
+  ~SpringDevice() {
+    // A driver keeps a buffer for ever that is mapped when it is released. As if read: nothing is copied
+    // back.
+    try {
+      for (std::size_t i = 0; i < pair_kinds; ++i)
+        if (pairs_[i]) pairs_[i]->unmap(host_pairs_[i], CL_MAP_READ);
+      forces_->unmap(host_forces_, CL_MAP_READ);
+      queue_.finish();
+    } catch (const cl::Error&) {
+      // After a failure, which has been told, some are not mapped; the process's end frees the others.
+    }
+  }
   SpringDevice(const SpringDevice&) = delete;
   SpringDevice& operator=(const SpringDevice&) = delete;
 
@@ -40,12 +134,19 @@ class SpringDevice {
   const float* forces() const { return host_forces_.data(); }
 
   /// Computes the forces of all springs in a stored pair, and waits for them. Throws cl::Error.
-  void compute_forces(Pair stored);
+  void compute_forces(Pair stored) {
+    if (!launch_) return;
+    const auto& pair = *pairs_[index(stored)];
+    auto& host_pair = host_pairs_[index(stored)];
+    forces_->unmap(host_forces_, CL_MAP_READ);
+    pair.unmap(host_pair, CL_MAP_WRITE);
+    launch_->kernel.setArg(0, pair.buffer());
+    queue_.launch(*launch_);
+    host_pair = pair.map(CL_MAP_WRITE, false);
+    host_forces_ = forces_->map(CL_MAP_READ);
+  }
 
  private:
-  void make_launch(const SpringKernel& spring_kernel);
-
-  OpenclChunks chunks_;
   DeviceQueue queue_;
   std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are stored
   std::array<std::span<float>, pair_kinds> host_pairs_;               // as mapped
@@ -54,62 +155,6 @@ class SpringDevice {
   std::vector<OpenclBuffer<std::byte>> constants_;
   std::optional<Launch> launch_;  // none without springs
 };
-
-SpringDevice::SpringDevice(const SpringKernel& spring_kernel, const std::vector<Pair>& stored,
-                           const OpenclDevice& device, int lanes, DeviceMemory memory)
-    : chunks_(spring_kernel.parts, device, lanes), queue_(device, memory) {
-  std::vector<std::uint64_t> buffers(stored.size(), spring_kernel.pair_floats * sizeof(float));
-  for (const std::span<const std::byte> constants : spring_kernel.constants)
-    buffers.push_back(constants.size());
-  buffers.push_back(spring_kernel.force_floats * sizeof(float));
-  require_memory(device, buffers);
-
-  for (const Pair pair : stored) {
-    auto& buffer = pairs_[index(pair)];
-    buffer = queue_.zeros<float>(spring_kernel.pair_floats);
-    host_pairs_[index(pair)] = buffer->map(queue_.commands(), CL_MAP_WRITE);
-  }
-  forces_ = queue_.zeros<float>(spring_kernel.force_floats);
-  host_forces_ = forces_->map(queue_.commands(), CL_MAP_READ);
-  if (spring_kernel.parts > 0) make_launch(spring_kernel);
-}
-
-SpringDevice::~SpringDevice() {
-  // A driver keeps a buffer for ever that is mapped when it is released. As if read: nothing is copied back.
-  try {
-    for (std::size_t i = 0; i < pair_kinds; ++i)
-      if (pairs_[i]) pairs_[i]->unmap(queue_.commands(), host_pairs_[i], CL_MAP_READ);
-    forces_->unmap(queue_.commands(), host_forces_, CL_MAP_READ);
-    queue_.commands().finish();
-  } catch (const cl::Error&) {
-    // After a failure, which has been told, some are not mapped; the process's end frees the others.
-  }
-}
-
-void SpringDevice::make_launch(const SpringKernel& spring_kernel) {
-  cl::Kernel kernel(queue_.build(spring_kernel.text), spring_kernel.name);
-  kernel.setArg(1, forces_->buffer());
-  cl_uint argument = 2;
-  for (const std::span<const std::byte> constants : spring_kernel.constants) {
-    constants_.push_back(queue_.copy_of(constants));
-    kernel.setArg(argument++, constants_.back().buffer());
-  }
-  kernel.setArg(argument++, static_cast<cl_uint>(spring_kernel.parts));
-  kernel.setArg(argument, static_cast<cl_uint>(chunks_.per_item));
-  launch_ = {kernel, chunks_.items};
-}
-
-void SpringDevice::compute_forces(Pair stored) {
-  if (!launch_) return;
-  const auto& pair = *pairs_[index(stored)];
-  auto& host_pair = host_pairs_[index(stored)];
-  forces_->unmap(queue_.commands(), host_forces_, CL_MAP_READ);
-  pair.unmap(queue_.commands(), host_pair, CL_MAP_WRITE);
-  launch_->kernel.setArg(0, pair.buffer());
-  queue_.launch(*launch_);
-  host_pair = pair.map(queue_.commands(), CL_MAP_WRITE, false);
-  host_forces_ = forces_->map(queue_.commands(), CL_MAP_READ);
-}
 
 /// Takes turns: the device computes the forces of all springs, then the host's threads sum them at the nodes
 /// and integrate. `Nodes`: the layout that both share, HostNodes or AlikeNodes.
@@ -243,60 +288,6 @@ std::unique_ptr<Backend> make(const System& system, const Integrator& integrator
 
 }  // namespace
 
-HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s)
-    : packed(system),
-      integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
-      surroundings(surroundings_of(system)),
-      constants(packed.slots() * 2) {
-  constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
-  const auto of_slot = [&](std::size_t slot) {
-    return constants.data() + slot / slice_nodes * 2 * slice_nodes + slot % slice_nodes;
-  };
-  for (std::size_t slot = 0; slot < packed.slots(); ++slot) of_slot(slot)[slice_nodes] = 1;
-  for (std::size_t node = 0; node < system.nodes(); ++node) {
-    of_slot(packed.slot[node])[0] = static_cast<float>(1 / system.node_mass[node]);
-    of_slot(packed.slot[node])[slice_nodes] = 0;
-  }
-  for (const std::uint32_t pin : system.pins) of_slot(packed.slot[pin])[slice_nodes] = 1;
-  for (const SpringMaterial& material : system.materials)
-    materials.push_back({static_cast<float>(material.stiffness), static_cast<float>(material.damping)});
-}
-
-SpringKernel HostNodes::spring_kernel(int lanes) const {
-  const std::size_t units_of_part = lanes == 1 ? 1 : PackedSprings::slice_nodes;
-  return {program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "packed_springs.cl"}),
-          "packed_spring_forces",
-          packed.unit_count() / units_of_part,
-          packed.slots() * record_floats,
-          4 * (packed.unit_count() + 1),  // what lies behind the forces of the units stays zero
-          {std::as_bytes(std::span(packed.units)), std::as_bytes(std::span(packed.entries)),
-           std::as_bytes(std::span(materials))}};
-}
-
-void HostNodes::forget_units() {
-  packed.units = {};
-  packed.entries = {};
-}
-
-AlikeNodes::AlikeNodes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
-                       double dt_s)
-    : springs(bodies),
-      integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
-      surroundings(surroundings_of(system)) {}
-
-SpringKernel AlikeNodes::spring_kernel(int lanes) const {
-  const std::size_t parts = AlikeSprings::slice_nodes / static_cast<std::size_t>(lanes);
-  return {slices_program_text(AlikeSprings::slice_nodes, lanes,
-                              {"lanes.h", "spring_law.h", "alike_slices.h", "alike_springs.cl"}),
-          "alike_spring_forces",
-          springs.springs.size() * parts,
-          springs.slices.floats(),
-          springs.springs.size() * 3 * AlikeSprings::slice_nodes,
-          {std::as_bytes(std::span(springs.springs)), std::as_bytes(std::span(springs.shapes))}};
-}
-
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const OpenclDevice& device, int threads, int lanes,
                                      DeviceMemory memory) {
@@ -305,7 +296,7 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
+  const OpenclDevice device = device_for(options);
   return make(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory,
               [&](SteppedKind kind) {
                 try_driver({"hybrid", std::string(integrator.name), kind, options}, device);

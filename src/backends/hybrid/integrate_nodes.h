@@ -26,8 +26,8 @@ struct SpringKernel {
 };
 
 /// What the host's threads need to sum the spring forces at the nodes and to integrate them, with one
-/// integrator and one dt. Nodes are records (kernels/records.h), forces lie as PackedSprings places them,
-/// four floats each, N.
+/// integrator and one dt (hybrid.cpp makes it). Nodes are records (kernels/records.h), forces lie as
+/// PackedSprings places them, four floats each, N.
 struct HostNodes {
   PackedSprings packed;
   const Integrator* integrator;

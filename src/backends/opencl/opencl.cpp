@@ -187,7 +187,7 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
-  const OpenclDevice device = part_of(find_opencl_device(options.device), options.threads);
+  const OpenclDevice device = device_for(options);
   return make(system, integrator, dt_s, device, lanes_for(device), options.memory, [&](SteppedKind kind) {
     try_driver({"opencl", std::string(integrator.name), kind, options}, device);
   });

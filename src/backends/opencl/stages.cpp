@@ -42,7 +42,7 @@ void OpenclBackend::add_launch(bool swapped, cl::Kernel kernel, cl_uint argument
 void OpenclBackend::write_state(const OpenclBuffer<float>& buffer, const PairLayout& layout,
                                 const State& state, std::size_t first) const {
   opencl_call<std::runtime_error>([&] {
-    buffer.write(queue_.commands(), [&](std::span<float> memory) {
+    buffer.write([&](std::span<float> memory) {
       const auto put = [&](std::size_t offset, std::size_t node) {
         const Vec3d &x = state.position[node], &v = state.velocity[node];
         const std::array values{x.x, x.y, x.z, v.x, v.y, v.z};
@@ -57,16 +57,15 @@ void OpenclBackend::write_state(const OpenclBuffer<float>& buffer, const PairLay
 
 State OpenclBackend::read_state(const OpenclBuffer<float>& buffer) const {
   return opencl_call<std::runtime_error>([&] {
-    const auto memory = buffer.map(queue_.commands(), CL_MAP_READ);
-    State state;
-    for (const std::size_t node : layout_.node) {
-      const auto number = [&](std::size_t i) { return double{memory[node + layout_.component[i]]}; };
-      state.position.push_back({number(0), number(1), number(2)});
-      state.velocity.push_back({number(3), number(4), number(5)});
-    }
-    buffer.unmap(queue_.commands(), memory, CL_MAP_READ);
-    queue_.commands().finish();
-    return state;
+    return buffer.read([&](std::span<const float> memory) {
+      State state;
+      for (const std::size_t node : layout_.node) {
+        const auto number = [&](std::size_t i) { return double{memory[node + layout_.component[i]]}; };
+        state.position.push_back({number(0), number(1), number(2)});
+        state.velocity.push_back({number(3), number(4), number(5)});
+      }
+      return state;
+    });
   });
 }
 

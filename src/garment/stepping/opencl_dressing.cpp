@@ -21,28 +21,6 @@
 namespace mssim {
 namespace {
 
-/// A garment as the kernels of a dressing have it (kernels/parameters.h): what stays constant.
-struct OpenclPanels {
-  /// Throws Unsupported like GarmentGrid, where layers touch each other and where the kernels' 32-bit offsets
-  /// do not reach; std::invalid_argument where the springs are not those of the panels.
-  OpenclPanels(const System& system, double dt_s);
-
-  /// Bytes of all these arrays and of those that the state takes.
-  std::vector<std::uint64_t> buffer_bytes() const;
-
-  DressingParameters parameters{};
-  std::vector<std::size_t> offset;  ///< [nodes] float of a node
-  std::vector<DressingBlock> blocks;
-  std::vector<BodyPixel> pixels;      ///< of all layers
-  std::vector<float> inverse_mass;    ///< [plane]
-  std::vector<float> rest;            ///< [directions][plane]
-  std::vector<float> stiffness;       ///< [directions][spring_rows]
-  std::vector<cl_int> at_joint;       ///< [plane] -1 for the nodes of joints, else 0
-  std::vector<DressingJoint> joints;  ///< level by level
-  std::vector<cl_int> level_ends;     ///< [levels]
-  std::vector<cl_int> joint_nodes;
-};
-
 /// Rows of nothing before the stiffnesses of a panel's first row, as far as springs reach up.
 constexpr std::size_t rows_before = 2;
 
@@ -93,86 +71,106 @@ std::vector<std::size_t> levels_of(const std::vector<GarmentGrid::Joint>& joints
   return levels;
 }
 
-OpenclPanels::OpenclPanels(const System& system, double dt_s) {
-  const auto& garment = std::get<Garment>(system.topology);
-  if (garment.touching)
-    throw Unsupported("opencl dresses without collisions between layers; serial and openmp have them");
-  const GarmentGrid grid(system);
-  const std::size_t plane = grid.inverse_mass.size();
-  if (plane * panel_stencil.size() > std::numeric_limits<cl_int>::max())
-    throw Unsupported(
-        "the garment needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit "
-        "offsets reach");
-  parameters = parameters_of(system, garment.dressing, dt_s);
-  parameters.plane = static_cast<int>(plane);
-  offset = grid.offset;
-  inverse_mass.assign(grid.inverse_mass.data(), grid.inverse_mass.data() + plane);
-  for (const AlignedArray& lengths : grid.rest)
-    rest.insert(rest.end(), lengths.data(), lengths.data() + plane);
+/// A garment as the kernels of a dressing have it (kernels/parameters.h): what stays constant.
+struct OpenclPanels {
+  /// Throws Unsupported like GarmentGrid, where layers touch each other and where the kernels' 32-bit offsets
+  /// do not reach; std::invalid_argument where the springs are not those of the panels.
+  OpenclPanels(const System& system, double dt_s) {
+    const auto& garment = std::get<Garment>(system.topology);
+    if (garment.touching)
+      throw Unsupported("opencl dresses without collisions between layers; serial and openmp have them");
+    const GarmentGrid grid(system);
+    const std::size_t plane = grid.inverse_mass.size();
+    if (plane * panel_stencil.size() > std::numeric_limits<cl_int>::max())
+      throw Unsupported(
+          "the garment needs OpenCL buffers of more than the 8191 MiB that the kernels' 32-bit "
+          "offsets reach");
+    parameters = parameters_of(system, garment.dressing, dt_s);
+    parameters.plane = static_cast<int>(plane);
+    offset = grid.offset;
+    inverse_mass.assign(grid.inverse_mass.data(), grid.inverse_mass.data() + plane);
+    for (const AlignedArray& lengths : grid.rest)
+      rest.insert(rest.end(), lengths.data(), lengths.data() + plane);
 
-  std::vector<std::size_t> first_row;  // [panels] among the stiffnesses
-  std::size_t rows = 0;
-  for (const GarmentGrid::Panel& panel : grid.panels) {
-    first_row.push_back(rows + rows_before);
-    rows += rows_before + panel.rows;
-  }
-  parameters.spring_rows = static_cast<int>(rows);
-  stiffness.assign(panel_stencil.size() * rows, 0);
-  for (std::size_t d = 0; d < panel_stencil.size(); ++d)
-    for (std::size_t p = 0; p < grid.panels.size(); ++p)
-      std::ranges::copy(grid.panels[p].stiffness[d],
-                        stiffness.begin() + static_cast<std::ptrdiff_t>(d * rows + first_row[p]));
-
-  std::map<const BodyMaps*, std::size_t> first_pixel;
-  for (const GarmentGrid::Block& block : grid.blocks) {
-    const GarmentGrid::Panel& panel = grid.panels[block.panel];
-    DressingBlock own{static_cast<int>(panel.first + block.begin * panel.stride),
-                      static_cast<int>(block.end - block.begin),
-                      static_cast<int>(panel.columns),
-                      static_cast<int>(panel.stride),
-                      static_cast<int>(first_row[block.panel] + block.begin),
-                      block.begin != 0 ? 1 : 0,
-                      {},
-                      0};
-    if (panel.body != nullptr) {
-      const auto [maps, is_new] = first_pixel.emplace(panel.body, pixels.size());
-      if (is_new) pixels.insert(pixels.end(), panel.body->pixels().begin(), panel.body->pixels().end());
-      own.body = panel.body->frame();
-      own.first_pixel = static_cast<int>(maps->second);
+    std::vector<std::size_t> first_row;  // [panels] among the stiffnesses
+    std::size_t rows = 0;
+    for (const GarmentGrid::Panel& panel : grid.panels) {
+      first_row.push_back(rows + rows_before);
+      rows += rows_before + panel.rows;
     }
-    blocks.push_back(own);
-  }
+    parameters.spring_rows = static_cast<int>(rows);
+    stiffness.assign(panel_stencil.size() * rows, 0);
+    for (std::size_t d = 0; d < panel_stencil.size(); ++d)
+      for (std::size_t p = 0; p < grid.panels.size(); ++p)
+        std::ranges::copy(grid.panels[p].stiffness[d],
+                          stiffness.begin() + static_cast<std::ptrdiff_t>(d * rows + first_row[p]));
 
-  at_joint.assign(plane, 0);
-  const std::vector<std::size_t> levels = levels_of(grid.joints);
-  const std::size_t level_count = levels.empty() ? 0 : std::ranges::max(levels) + 1;
-  for (std::size_t level = 0; level < level_count; ++level) {
-    for (std::size_t j = 0; j < levels.size(); ++j) {
-      if (levels[j] != level) continue;
-      const GarmentGrid::Joint& joint = grid.joints[j];
-      const mssim::Joint& rule = garment.joints[j];
-      joints.push_back({static_cast<int>(joint.node), static_cast<int>(joint.first),
-                        static_cast<int>(joint.second), joint.fraction, static_cast<float>(rule.length),
-                        static_cast<float>(rule.strength)});
-      for (const std::size_t node : {joint.node, joint.first, joint.second}) {
-        if (at_joint[node] == 0) joint_nodes.push_back(static_cast<cl_int>(node));
-        at_joint[node] = -1;
+    std::map<const BodyMaps*, std::size_t> first_pixel;
+    for (const GarmentGrid::Block& block : grid.blocks) {
+      const GarmentGrid::Panel& panel = grid.panels[block.panel];
+      DressingBlock own{static_cast<int>(panel.first + block.begin * panel.stride),
+                        static_cast<int>(block.end - block.begin),
+                        static_cast<int>(panel.columns),
+                        static_cast<int>(panel.stride),
+                        static_cast<int>(first_row[block.panel] + block.begin),
+                        block.begin != 0 ? 1 : 0,
+                        {},
+                        0};
+      if (panel.body != nullptr) {
+        const auto [maps, is_new] = first_pixel.emplace(panel.body, pixels.size());
+        if (is_new) pixels.insert(pixels.end(), panel.body->pixels().begin(), panel.body->pixels().end());
+        own.body = panel.body->frame();
+        own.first_pixel = static_cast<int>(maps->second);
       }
+      blocks.push_back(own);
     }
-    level_ends.push_back(static_cast<cl_int>(joints.size()));
-  }
-  parameters.joints = static_cast<int>(joints.size());
-  parameters.joint_levels = static_cast<int>(level_ends.size());
-  parameters.joint_nodes = static_cast<int>(joint_nodes.size());
-}
 
-std::vector<std::uint64_t> OpenclPanels::buffer_bytes() const {
-  const auto bytes = [](const auto& values) { return std::uint64_t{values.size() * sizeof(values.front())}; };
-  const std::uint64_t plane = bytes(inverse_mass), vectors = 3 * plane;
-  return {vectors,         vectors,       vectors,           vectors,           plane,
-          plane,           bytes(rest),   bytes(pixels),     bytes(stiffness),  bytes(blocks),
-          bytes(at_joint), bytes(joints), bytes(level_ends), bytes(joint_nodes)};
-}
+    at_joint.assign(plane, 0);
+    const std::vector<std::size_t> levels = levels_of(grid.joints);
+    const std::size_t level_count = levels.empty() ? 0 : std::ranges::max(levels) + 1;
+    for (std::size_t level = 0; level < level_count; ++level) {
+      for (std::size_t j = 0; j < levels.size(); ++j) {
+        if (levels[j] != level) continue;
+        const GarmentGrid::Joint& joint = grid.joints[j];
+        const mssim::Joint& rule = garment.joints[j];
+        joints.push_back({static_cast<int>(joint.node), static_cast<int>(joint.first),
+                          static_cast<int>(joint.second), joint.fraction, static_cast<float>(rule.length),
+                          static_cast<float>(rule.strength)});
+        for (const std::size_t node : {joint.node, joint.first, joint.second}) {
+          if (at_joint[node] == 0) joint_nodes.push_back(static_cast<cl_int>(node));
+          at_joint[node] = -1;
+        }
+      }
+      level_ends.push_back(static_cast<cl_int>(joints.size()));
+    }
+    parameters.joints = static_cast<int>(joints.size());
+    parameters.joint_levels = static_cast<int>(level_ends.size());
+    parameters.joint_nodes = static_cast<int>(joint_nodes.size());
+  }
+
+  /// Bytes of all these arrays and of those that the state takes.
+  std::vector<std::uint64_t> buffer_bytes() const {
+    const auto bytes = [](const auto& values) {
+      return std::uint64_t{values.size() * sizeof(values.front())};
+    };
+    const std::uint64_t plane = bytes(inverse_mass), vectors = 3 * plane;
+    return {vectors,         vectors,       vectors,           vectors,           plane,
+            plane,           bytes(rest),   bytes(pixels),     bytes(stiffness),  bytes(blocks),
+            bytes(at_joint), bytes(joints), bytes(level_ends), bytes(joint_nodes)};
+  }
+
+  DressingParameters parameters{};
+  std::vector<std::size_t> offset;  ///< [nodes] float of a node
+  std::vector<DressingBlock> blocks;
+  std::vector<BodyPixel> pixels;      ///< of all layers
+  std::vector<float> inverse_mass;    ///< [plane]
+  std::vector<float> rest;            ///< [directions][plane]
+  std::vector<float> stiffness;       ///< [directions][spring_rows]
+  std::vector<cl_int> at_joint;       ///< [plane] -1 for the nodes of joints, else 0
+  std::vector<DressingJoint> joints;  ///< level by level
+  std::vector<cl_int> level_ends;     ///< [levels]
+  std::vector<cl_int> joint_nodes;
+};
 
 /// panel_stencil for the kernels. Contractions would round differently in kernels of different shapes.
 std::string stencil_text() {
@@ -215,13 +213,12 @@ class OpenclDressing final : public DressingBackend {
       put(state.position, position_);
       put(state.velocity, velocity_);
       const auto open = static_cast<int>(start.open_joints);
-      sewn_.write(queue_.commands(),
-                  [&](std::span<cl_int> sewn) { std::ranges::fill(sewn, open > 0 ? 0 : 1); });
-      progress_.write(queue_.commands(), [&](std::span<DressingState> progress) {
+      sewn_.write([&](std::span<cl_int> sewn) { std::ranges::fill(sewn, open > 0 ? 0 : 1); });
+      progress_.write([&](std::span<DressingState> progress) {
         progress.front() = {0, start.draping ? 1 : 0, 0, open, open};
       });
       if (begin_joints_) queue_.launch(*begin_joints_);
-      queue_.commands().finish();
+      queue_.finish();
     });
   }
 
@@ -238,10 +235,7 @@ class OpenclDressing final : public DressingBackend {
 
   DressingProgress progress() const override {
     return opencl_call<std::runtime_error>([&]() -> DressingProgress {
-      const auto memory = progress_.map(queue_.commands(), CL_MAP_READ);
-      const DressingState progress = memory.front();
-      progress_.unmap(queue_.commands(), memory, CL_MAP_READ);
-      queue_.commands().finish();
+      const auto progress = progress_.read([](std::span<const DressingState> all) { return all.front(); });
       return {static_cast<std::size_t>(progress.open_joints), progress.draping != 0, progress.seamed_at};
     });
   }
@@ -310,7 +304,7 @@ class OpenclDressing final : public DressingBackend {
   }
 
   void put(const std::vector<Vec3d>& vectors, const OpenclBuffer<float>& buffer) {
-    buffer.write(queue_.commands(), [&](std::span<float> planes) {
+    buffer.write([&](std::span<float> planes) {
       for (std::size_t i = 0; i < offset_.size(); ++i) {
         const auto value = vec3_cast<float>(vectors[i]);
         planes[offset_[i]] = value.x;
@@ -320,15 +314,14 @@ class OpenclDressing final : public DressingBackend {
     });
   }
   std::vector<Vec3d> taken(const OpenclBuffer<float>& buffer) const {
-    const auto planes = buffer.map(queue_.commands(), CL_MAP_READ);
-    std::vector<Vec3d> vectors;
-    vectors.reserve(offset_.size());
-    for (const std::size_t at : offset_)
-      vectors.push_back(
-          vec3_cast<double>(Vec3<float>{planes[at], planes[plane_ + at], planes[2 * plane_ + at]}));
-    buffer.unmap(queue_.commands(), planes, CL_MAP_READ);
-    queue_.commands().finish();
-    return vectors;
+    return buffer.read([&](std::span<const float> planes) {
+      std::vector<Vec3d> vectors;
+      vectors.reserve(offset_.size());
+      for (const std::size_t at : offset_)
+        vectors.push_back(
+            vec3_cast<double>(Vec3<float>{planes[at], planes[plane_ + at], planes[2 * plane_ + at]}));
+      return vectors;
+    });
   }
 
   const Garment& garment_;

@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachWidth, OpenclBodyContact, testing::ValuesIn(openc
 TEST_P(OpenclBodyContact, DoesTheSame) {
   const std::size_t points = 64;
   const auto lanes = static_cast<std::size_t>(GetParam());
-  std::vector<float> in(inputs * points), out(outputs * points);
+  std::vector<float> in(inputs * points);
   RandomPoints random;
   for (std::size_t i = 0; i < points; ++i) {
     const Vec3d x = random.point(-0.02, 0.02), v = random.point(-2, 2);
@@ -186,22 +186,20 @@ TEST_P(OpenclBodyContact, DoesTheSame) {
                                              front.y, front.z, 0.004, back.x, back.y, back.z, 0.03};
     for (std::size_t k = 0; k < inputs; ++k) in[k * points + i] = static_cast<float>(numbers[k]);
   }
-  const cl::Device device(choose_opencl_device(opencl_offer().devices, "").id, true);
-  const cl::Context context(device);
-  const cl::CommandQueue queue(context, device);
-  const cl::Program program = build_program(
-      context, device,
+  const DeviceQueue queue(choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared);
+  const cl::Program program = queue.build(
       program_text(GetParam(), {"lanes.h", "node_laws.h", "parameters.h", "body_contact.h"}) + kernel);
-  const cl::Buffer given(context, CL_MEM_COPY_HOST_PTR, in.size() * sizeof(float), in.data());
-  const cl::Buffer result(context, CL_MEM_WRITE_ONLY, out.size() * sizeof(float));
+  const auto given = queue.copy_of(std::span<const float>(in));
+  const auto result = queue.zeros<float>(outputs * points);
   cl::Kernel meet(program, "meet");
-  meet.setArg(0, given);
-  meet.setArg(1, result);
+  meet.setArg(0, given.buffer());
+  meet.setArg(1, result.buffer());
   meet.setArg(2, to<float>(friction));
   meet.setArg(3, to<float>(push_speed));
   meet.setArg(4, to<float>(dt));
-  queue.enqueueNDRangeKernel(meet, cl::NullRange, cl::NDRange(points / lanes));
-  queue.enqueueReadBuffer(result, CL_TRUE, 0, out.size() * sizeof(float), out.data());
+  queue.launch({meet, {cl::NDRange(points / lanes), cl::NullRange}});
+  const auto out =
+      result.read([](std::span<const float> all) { return std::vector(all.begin(), all.end()); });
 
   int inside = 0, stuck = 0;
   for (std::size_t i = 0; i < points; ++i) {
