@@ -45,7 +45,7 @@ backends/implicit/nodes        geometry laws integrators model backends/interfac
 backends/implicit/newton       text geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
 backends/implicit/local_global platform geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
 backends/implicit/constraints  geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
-backends/implicit     integrators backends/interface backends/implicit/newton backends/implicit/local_global backends/implicit/constraints
+backends/implicit     integrators backends/interface backends/implicit/nodes
 backends/openmp       integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/opencl       kernels integrators model backends/interface backends/layouts backends/devices
 backends/hybrid       integrators model backends/interface backends/vectors backends/threads backends/layouts backends/devices

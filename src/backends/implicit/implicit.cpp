@@ -8,9 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "backends/implicit/constraints/constraints.h"
-#include "backends/implicit/local_global/local_global.h"
-#include "backends/implicit/newton/newton.h"
+#include "backends/implicit/nodes/solvers.h"
 
 namespace mssim {
 namespace {

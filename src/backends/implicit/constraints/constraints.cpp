@@ -1,5 +1,3 @@
-#include "backends/implicit/constraints/constraints.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +10,7 @@
 
 #include "backends/implicit/constraints/step_constraints.h"
 #include "backends/implicit/nodes/plain_nodes.h"
+#include "backends/implicit/nodes/solvers.h"
 #include "backends/layouts/spring_graph.h"
 #include "backends/vectors/step_kernels.h"
 

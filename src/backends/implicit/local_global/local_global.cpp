@@ -1,10 +1,9 @@
-#include "backends/implicit/local_global/local_global.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "backends/implicit/local_global/step_local_global.h"
 #include "backends/implicit/nodes/plain_nodes.h"
+#include "backends/implicit/nodes/solvers.h"
 #include "backends/vectors/step_kernels.h"
 
 namespace mssim {

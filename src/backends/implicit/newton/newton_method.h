@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "backends/implicit/nodes/plain_nodes.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
 #include "text/text.h"
@@ -226,59 +225,5 @@ inline std::string note_of(const SolverWork& work) {
   return "the solver ended before its tolerance in " + std::to_string(work.unfinished_steps) + " of " +
          pluralize(work.steps, "step");
 }
-
-/// The BackwardEulerEquation as a straightforward program holds it: arrays of nodes, and for each spring of
-/// the list what it adds to A.
-template <class Real>
-class SpringEquation {
- public:
-  /// `system` must outlive it.
-  SpringEquation(const System& system, double dt_s);
-
-  void set_state(const State& state) { nodes_.set_state(state); }
-  State state() const { return nodes_.state(); }
-
-  void begin() { w_ = nodes_.v; }
-  void linearise_at_state() { linearise_springs<true>(); }
-  double linearise() { return linearise_springs<false>(); }
-  double start_solving();
-  double turn(double factor);
-  double advance(double factor);
-  void add(double factor);
-  double along_solution() const;
-  double motion() const;
-  double change() const;
-  void end();
-
- private:
-  /// A spring's part of A: along n n^T + across (I - n n^T), kg.
-  struct SpringSlope {
-    Vec3<Real> n;
-    Real along, across;
-  };
-
-  template <bool at_state>
-  double linearise_springs();
-  /// z = P e. Returns e . z.
-  double precondition();
-  /// The sum of value(node), node by node.
-  template <class Value>
-  double sum_over_nodes(Value value) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) sum += static_cast<double>(value(i));
-    return sum;
-  }
-
-  const std::vector<Spring>& springs_;
-  PlainNodes<Real> nodes_;
-  Real dt_;
-  std::vector<SpringSlope> slopes_;            ///< [springs]
-  std::vector<SymmetricBlock<Real>> inverse_;  ///< [nodes] P, 1/kg; zero where pinned, so that z, p and s are
-  std::vector<Vec3<Real>> w_, z_, p_, s_;      ///< [nodes] m/s
-  std::vector<Vec3<Real>> e_, q_;              ///< [nodes] N s
-};
-
-extern template class SpringEquation<float>;
-extern template class SpringEquation<double>;
 
 }  // namespace mssim

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "backends/implicit/constraints/constraints.h"
 #include "backends/implicit/constraints/step_constraints.h"
+#include "backends/implicit/nodes/solvers.h"
 #include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/implicit/constraints/constraints.h"
 #include "backends/implicit/constraints/step_constraints.h"
+#include "backends/implicit/nodes/solvers.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"

@@ -1,6 +1,4 @@
 // fast-springs: what it converges to, on the spring list and with vectors.
-#include "backends/implicit/local_global/local_global.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +9,7 @@
 #include <vector>
 
 #include "backends/implicit/local_global/step_local_global.h"
-#include "backends/implicit/newton/newton.h"
+#include "backends/implicit/nodes/solvers.h"
 #include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/implicit/newton/newton.h"
 #include "backends/implicit/newton/step_newton.h"
+#include "backends/implicit/nodes/solvers.h"
 #include "backends/openmp/openmp.h"
 #include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"

@@ -1,6 +1,4 @@
 // implicit-euler and newton-euler against their equations, written out with dense matrices.
-#include "backends/implicit/newton/newton.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +12,8 @@
 #include <vector>
 
 #include "backends/implicit/newton/newton_method.h"
+#include "backends/implicit/newton/spring_equation.h"
+#include "backends/implicit/nodes/solvers.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backward_euler.h"
 #include "tests/support/cloth_system.h"
