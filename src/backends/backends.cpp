@@ -8,12 +8,10 @@
 #include "backends/devices/drivers.h"
 #include "backends/hybrid/hybrid.h"
 #include "backends/implicit/implicit.h"
-#include "backends/interface/ahead.h"
 #include "backends/opencl/opencl.h"
 #include "backends/openmp/openmp.h"
 #include "backends/process/process_backend.h"
-#include "backends/spring_list/serial.h"
-#include "backends/spring_list/threads_mutex.h"
+#include "backends/spring_list/list_backends.h"
 #include "garment/stepping/dressing_backend.h"
 #include "text/text.h"
 

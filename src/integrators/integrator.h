@@ -69,7 +69,7 @@ struct Integrator {
   /// The row of the table of stages that these stages are; null: this one is a row of that table.
   const Integrator* row = nullptr;
   /// Part of a step by which the positions that the stages see stand ahead of the state's
-  /// (backends/interface/ahead.h).
+  /// (step_ahead, backends/interface/backend.h).
   double ahead = 0;
 };
 

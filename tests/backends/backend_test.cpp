@@ -12,7 +12,7 @@
 #include "backends/backends.h"
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/openmp.h"
-#include "backends/spring_list/serial.h"
+#include "backends/spring_list/list_backends.h"
 #include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"

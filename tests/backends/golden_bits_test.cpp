@@ -12,7 +12,7 @@
 #include <string>
 
 #include "backends/openmp/openmp.h"
-#include "backends/spring_list/serial.h"
+#include "backends/spring_list/list_backends.h"
 #include "garment/stepping/dressing_backend.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"

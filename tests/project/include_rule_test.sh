@@ -113,14 +113,11 @@ scene/fields          fields
 scene/spec            scene_spec
 scene                 scene_file scene_kinds cloth
 backends              backends
-backends/interface    backend ahead
+backends/interface    backend
 backends/vectors      step_kernels instruction_sets lanes-inl
 backends/openmp       openmp bodies
 backends/accumulation accumulation_methods
 backends/implicit     implicit
-backends/implicit/newton       newton
-backends/implicit/local_global local_global
-backends/implicit/constraints  constraints
 backends/opencl       opencl
 backends/hybrid       hybrid
 backends/process      process_backend

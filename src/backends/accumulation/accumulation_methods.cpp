@@ -14,8 +14,8 @@
 
 #include "backends/accumulation/gather_vectors.h"
 #include "backends/layouts/spring_graph.h"
+#include "backends/spring_list/list_backends.h"
 #include "backends/spring_list/spring_list.h"
-#include "backends/spring_list/threads_mutex.h"
 #include "backends/threads/spin_barrier.h"
 
 namespace mssim {
@@ -23,13 +23,13 @@ namespace {
 
 /// The plain spring list stepped by several threads. The methods on it to avoid the data race of Hong et
 /// al.'s Figure 1 have this step in common, and the layout, the force and the update of SpringList, so that
-/// they differ in the accumulation alone. An Accumulation is made of (const System&, SpringList<float>&,
+/// they differ in the accumulation alone. A Method is made of (const System&, SpringList<float>&,
 /// std::size_t threads), and in every stage each thread calls, with its Team:
 /// - prepare(team), while others may still be in the last stage's `finish` and update: it writes only what no
 ///   other thread touches there, and reads no node;
 /// - add(team, pair to gather), after all have prepared: computes the forces and adds them;
 /// - finish(team), after all have added: completes the forces of this thread's slice of the nodes.
-template <class Accumulation>
+template <class Method>
 class ListMethod final : public Backend {
  public:
   ListMethod(const System& system, const Integrator& integrator, double dt_s, int threads)
@@ -69,14 +69,14 @@ class ListMethod final : public Backend {
   SpringList<float> list_;
   const Integrator& integrator_;
   const int threads_;
-  Accumulation accumulation_;
+  Method accumulation_;
 };
 
 /// What the table of methods holds for an accumulation.
-template <class Accumulation>
+template <class Method>
 std::unique_ptr<Backend> make_list_method(const System& system, const Integrator& integrator, double dt_s,
                                           const ExecutionOptions& options) {
-  return std::make_unique<ListMethod<Accumulation>>(system, integrator, dt_s, options.threads);
+  return std::make_unique<ListMethod<Method>>(system, integrator, dt_s, options.threads);
 }
 
 /// A lock of one byte that spins: what it guards, three additions, is over before a thread could be put to
@@ -94,15 +94,22 @@ class ByteLock {
   std::atomic_flag taken_;
 };
 
-/// What methods have in common that add to the forces of the list.
-class AddingAccumulation {
+/// An accumulation that needs neither prepare nor finish.
+class Accumulation {
  public:
-  explicit AddingAccumulation(SpringList<float>& list) : list_(list) {}
-  void prepare(const Team& team) { list_.clear_forces(team.begin(list_.nodes()), team.end(list_.nodes())); }
+  explicit Accumulation(SpringList<float>& list) : list_(list) {}
+  void prepare(const Team& /*team*/) {}
   void finish(const Team& /*team*/) {}
 
  protected:
   SpringList<float>& list_;
+};
+
+/// One that adds to the forces of the list.
+class AddingAccumulation : public Accumulation {
+ public:
+  using Accumulation::Accumulation;
+  void prepare(const Team& team) { list_.clear_forces(team.begin(list_.nodes()), team.end(list_.nodes())); }
 };
 
 class LockPerNode : public AddingAccumulation {
@@ -147,12 +154,10 @@ class Atomic : public AddingAccumulation {
   }
 };
 
-class ThreadPrivate {
+class ThreadPrivate : public Accumulation {
  public:
   ThreadPrivate(const System& system, SpringList<float>& list, std::size_t threads)
-      : list_(list), forces_(threads, std::vector<Vec3<float>>(system.nodes())) {}
-
-  void prepare(const Team& /*team*/) {}
+      : Accumulation(list), forces_(threads, std::vector<Vec3<float>>(system.nodes())) {}
 
   void add(const Team& team, Pair gather) {
     std::vector<Vec3<float>>& forces = forces_[team.thread];
@@ -175,7 +180,6 @@ class ThreadPrivate {
   }
 
  private:
-  SpringList<float>& list_;
   std::vector<std::vector<Vec3<float>>> forces_;  // [threads][nodes] N, zero between stages
 };
 
@@ -196,10 +200,10 @@ class Colouring : public AddingAccumulation {
   SpringColouring colouring_;
 };
 
-class Gather {
+class Gather : public Accumulation {
  public:
   Gather(const System& system, SpringList<float>& list, std::size_t /*threads*/)
-      : list_(list), begin_(system.nodes() + 1, 0), springs_(2 * system.springs.size()) {
+      : Accumulation(list), begin_(system.nodes() + 1, 0), springs_(2 * system.springs.size()) {
     for (const Spring& spring : system.springs) {
       ++begin_[spring.first + 1];
       ++begin_[spring.second + 1];
@@ -213,8 +217,6 @@ class Gather {
     }
   }
 
-  void prepare(const Team& /*team*/) {}
-
   void add(const Team& team, Pair gather) {
     for (std::size_t node = team.begin(list_.nodes()); node < team.end(list_.nodes()); ++node) {
       Vec3<float> sum;
@@ -224,10 +226,7 @@ class Gather {
     }
   }
 
-  void finish(const Team& /*team*/) {}
-
  private:
-  SpringList<float>& list_;
   std::vector<std::size_t> begin_;  // [nodes + 1] where a node's springs begin
   std::vector<Spring> springs_;     // node by node, each spring twice, the node itself the first end
 };

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <optional>
 #include <stdexcept>
 #include <system_error>
 
@@ -21,10 +20,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* usual_folder = "/etc/OpenCL/vendors";
 
-std::optional<fs::path> path_from(const char* variable) {
+/// Empty where it is not set.
+std::string value_of(const char* variable) {
   const char* value = std::getenv(variable);
-  if (value == nullptr || *value == '\0') return std::nullopt;
-  return value;
+  return value == nullptr ? "" : value;
 }
 
 RegisteredDriver registered_by(const fs::path& icd_file) {
@@ -43,11 +42,6 @@ std::vector<RegisteredDriver> registered_in(const fs::path& folder) {
 }
 
 constexpr const char* cache_variable = "POCL_CACHE_DIR";
-
-std::string value_of(const char* variable) {
-  const char* value = std::getenv(variable);
-  return value == nullptr ? "" : value;
-}
 
 /// Empty where the folder is there, or can be made, and files can be made in it; else what the system says.
 std::string obstacle_to_writing(const fs::path& folder) {
@@ -83,11 +77,14 @@ fs::path own_cache() {
 
 std::vector<RegisteredDriver> registered_drivers() {
   std::error_code error;
-  const auto chosen = path_from("OCL_ICD_VENDORS");
-  if (!chosen) return registered_in(path_from("OPENCL_VENDOR_PATH").value_or(usual_folder));
-  if (fs::is_directory(*chosen, error)) return registered_in(*chosen);
-  if (chosen->extension() != ".icd") return {{*chosen, chosen->string()}};
-  return {registered_by(chosen->has_parent_path() ? *chosen : usual_folder / *chosen)};
+  const fs::path chosen = value_of("OCL_ICD_VENDORS");
+  if (chosen.empty()) {
+    const fs::path folder = value_of("OPENCL_VENDOR_PATH");
+    return registered_in(folder.empty() ? usual_folder : folder);
+  }
+  if (fs::is_directory(chosen, error)) return registered_in(chosen);
+  if (chosen.extension() != ".icd") return {{chosen, chosen.string()}};
+  return {registered_by(chosen.has_parent_path() ? chosen : usual_folder / chosen)};
 }
 
 bool is_pocl(const RegisteredDriver& driver) {

@@ -1,6 +1,6 @@
-#include "backends/interface/ahead.h"
-
 #include <algorithm>
+
+#include "backends/interface/backend.h"
 
 namespace mssim {
 namespace {

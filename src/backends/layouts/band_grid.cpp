@@ -44,6 +44,12 @@ std::size_t cache_bytes(int name, long usual) {
   return static_cast<std::size_t>(found > 0 ? found : usual);
 }
 
+/// Columns of the narrowest partition. Threads recompute two columns a stage and side; a partition narrower
+/// than this would be mostly that. Its ghosts belong to the partitions beside it.
+std::size_t narrowest_partition(const Integrator& integrator, std::size_t steps_per_pass) {
+  return std::max(2 * halo * integrator.stage_count, ghost_columns(integrator, steps_per_pass));
+}
+
 /// Rows that a pass over one of the partitions walks through, as many as take its time.
 double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std::size_t steps_per_pass,
                     std::size_t threads) {
@@ -79,10 +85,6 @@ BandRows::BandRows(const BandLayout& layout, const std::vector<SpringConstants>&
   }
   values_ = AlignedArray(all.size());
   std::ranges::copy(all, values_.data());
-}
-
-std::size_t narrowest_partition(const Integrator& integrator, std::size_t steps_per_pass) {
-  return std::max(2 * halo * integrator.stage_count, ghost_columns(integrator, steps_per_pass));
 }
 
 std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integrator& integrator,

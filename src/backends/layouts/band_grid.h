@@ -134,10 +134,6 @@ struct BandCut {
   std::optional<std::size_t> halves{};  ///< BandLayout::halves
 };
 
-/// Columns of the narrowest partition. Threads recompute two columns a stage and side; a partition narrower
-/// than this would be mostly that. Its ghosts belong to the partitions beside it.
-std::size_t narrowest_partition(const Integrator& integrator, std::size_t steps_per_pass);
-
 /// Partitions that so many columns of a layout had best have, of `threads` at most.
 std::size_t partitions_for(std::size_t columns, std::size_t threads, const Integrator& integrator,
                            std::size_t steps_per_pass);

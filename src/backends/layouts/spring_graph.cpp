@@ -44,19 +44,6 @@ std::vector<std::uint32_t> degrees_of(std::size_t nodes, std::span<const Spring>
   return degree;
 }
 
-Adjacency::Adjacency(std::size_t nodes, std::span<const Spring> springs)
-    : first(nodes + 1, 0), neighbours(2 * springs.size()) {
-  const std::vector<std::uint32_t> degrees = degrees_of(nodes, springs);
-  std::partial_sum(degrees.begin(), degrees.end(), first.begin() + 1);
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (const Spring& spring : springs) {
-    neighbours[next[spring.first]++] = spring.second;
-    neighbours[next[spring.second]++] = spring.first;
-  }
-  for (std::size_t node = 0; node < nodes; ++node)
-    std::sort(neighbours.begin() + first[node], neighbours.begin() + first[node + 1]);
-}
-
 std::vector<std::uint32_t> reverse_cuthill_mckee(std::size_t nodes, std::span<const Spring> springs) {
   const Adjacency graph(nodes, springs);
   const auto none = static_cast<std::uint32_t>(nodes);

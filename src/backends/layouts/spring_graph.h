@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -18,7 +20,19 @@ struct Adjacency {
   std::vector<std::uint32_t> first;       ///< [nodes + 1]
   std::vector<std::uint32_t> neighbours;  ///< [2 springs]
 
-  Adjacency(std::size_t nodes, std::span<const Spring> springs);
+  /// `links`: springs, or others with a `first` and a `second` node.
+  template <class Links>
+  Adjacency(std::size_t nodes, const Links& links) : first(nodes + 1, 0), neighbours(2 * links.size()) {
+    for (const auto& link : links) ++first[link.first + 1], ++first[link.second + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (const auto& link : links) {
+      neighbours[next[link.first]++] = link.second;
+      neighbours[next[link.second]++] = link.first;
+    }
+    for (std::size_t node = 0; node < nodes; ++node)
+      std::sort(neighbours.begin() + first[node], neighbours.begin() + first[node + 1]);
+  }
   std::size_t nodes() const { return first.size() - 1; }
   std::uint32_t degree(std::uint32_t node) const { return first[node + 1] - first[node]; }
   std::span<const std::uint32_t> of(std::uint32_t node) const {

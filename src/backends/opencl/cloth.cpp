@@ -170,7 +170,7 @@ class OpenclBands final : public OpenclBackend {
     const cl::Program program = queue_.build(grid_program_text(integrator, static_cast<int>(bands.lanes)));
     for (const bool swapped : {false, true})
       for (int steps = 1; steps <= steps_per_launch_; ++steps) {
-        cl::Kernel kernel(program, steps_kernel_name().c_str());
+        cl::Kernel kernel(program, steps_kernel_name);
         kernel.setArg(0, state_.buffer());
         kernel.setArg(1, ghosts_.buffer());
         kernel.setArg(2, cl_int{swapped ? 1 : 0});
@@ -200,7 +200,7 @@ std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch&
                                           const Integrator& integrator, double dt_s,
                                           const OpenclDevice& device, DeviceMemory memory, int lanes,
                                           std::optional<std::size_t> steps_in_a_launch) {
-  if (!grid_program_walks(lanes))
+  if (lanes == 1)
     return std::make_unique<OpenclGridNodes>(system, integrator, dt_s, device, memory,
                                              NodeShape(grid, device));
   const auto cache_bytes = cl::Device(device.id, true).getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();

@@ -216,7 +216,7 @@ std::string walk_kernel_text(const Integrator& integrator) {
   const std::string stages = std::to_string(integrator.stage_count);
   std::ostringstream text;
   text
-      << "\n__kernel void " << steps_kernel_name()
+      << "\n__kernel void " << steps_kernel_name
       << "(__global float* state, __global float* ghosts, int swapped, int steps,\n"
          "    __constant struct StepParameters* step, __constant struct GridParameters* parameters,\n"
          "    __global const int* restrict free_masks, __global const int* restrict is_free, __global float* "
@@ -269,7 +269,7 @@ std::string kernel_text(const StoredStage& stage, const MeshText& mesh) {
           "  for (uint number = first; number < end; ++number) {\n"
           "    const Tile tile = tile_at(number, &mesh);\n"
        << "    const Node node = load_node(" << gathered << ", tile);\n"
-       << "    update_" << number << "(" << pair_names_of(stage) << "tile, node, gather_springs(" << gathered
+       << "    " << update_call(stage) << "gather_springs(" << gathered
        << ", tile, node, &mesh), &mesh, step);\n"
        << "  }\n"
           "}\n";
@@ -302,10 +302,8 @@ std::vector<Pair> stage_arguments(const StoredStage& stage) {
   return pairs;
 }
 
-bool grid_program_walks(int lanes) { return lanes > 1; }
-
 std::string grid_program_text(const Integrator& integrator, int lanes) {
-  const bool walks = grid_program_walks(lanes);
+  const bool walks = lanes > 1;
   std::string text = program_text(lanes, {"lanes.h", "spring_law.h", "node_laws.h", "parameters.h", "stage.h",
                                           "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
   std::string kinds;
@@ -320,8 +318,6 @@ std::string grid_program_text(const Integrator& integrator, int lanes) {
   if (walks) text += walk_kernel_text(integrator);
   return text;
 }
-
-std::string steps_kernel_name() { return "take_steps"; }
 
 std::size_t mesh_slice_lanes(int lanes) {
   // Where a work-item owns one node, hardware reads the entries of 32 of them at once.

@@ -15,9 +15,8 @@ namespace mssim {
 /// (kernels/grid_nodes.cl); with several one kernel that takes steps, where a work-item walks over columns of
 /// bands (kernels/grid_bands.cl).
 std::string grid_program_text(const Integrator& integrator, int lanes);
-bool grid_program_walks(int lanes);
 /// Name of the kernel that takes steps in a walk.
-std::string steps_kernel_name();
+inline constexpr const char* steps_kernel_name = "take_steps";
 
 /// Steps a sliced graph by one kernel per stage of the integrator (kernels/mesh_stage.cl), and the nodes in a
 /// slice of the graph that it reads.

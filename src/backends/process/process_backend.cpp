@@ -18,7 +18,6 @@
 #include <utility>
 #include <vector>
 
-#include "backends/interface/ahead.h"
 #include "backends/process/conversation.h"
 #include "backends/process/exchanged_files.h"
 #include "platform/files.h"

@@ -1,7 +1,6 @@
-#include "backends/spring_list/serial.h"
-
 #include <string>
 
+#include "backends/spring_list/list_backends.h"
 #include "backends/spring_list/spring_list.h"
 
 namespace mssim {

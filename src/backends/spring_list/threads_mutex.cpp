@@ -1,5 +1,3 @@
-#include "backends/spring_list/threads_mutex.h"
-
 #include <algorithm>
 #include <array>
 #include <barrier>
@@ -10,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "backends/spring_list/list_backends.h"
 #include "backends/spring_list/spring_list.h"
 #include "platform/machine.h"
 

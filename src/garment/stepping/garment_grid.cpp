@@ -57,16 +57,19 @@ std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::u
   throw std::invalid_argument("panel " + panel.name + " has a spring that is not of its stencil");
 }
 
-}  // namespace
-
+/// The rows at which a panel's blocks begin, which are corrected side by side, and its number of rows at the
+/// end.
 std::vector<std::uint32_t> correction_blocks(const GarmentPanel& panel) {
+  // At least. Small enough that a panel makes work for several threads, large enough that corrections travel.
+  constexpr std::uint32_t block_rows = 16;
   std::vector<std::uint32_t> begins{0};
-  for (std::uint32_t row = correction_block_rows; row + correction_block_rows <= panel.rows;
-       row += correction_block_rows)
+  for (std::uint32_t row = block_rows; row + block_rows <= panel.rows; row += block_rows)
     begins.push_back(row);
   begins.push_back(panel.rows);
   return begins;
 }
+
+}  // namespace
 
 std::vector<std::uint32_t> correction_order(const Garment& garment, const std::vector<Spring>& springs) {
   SpringNumbers numbers;

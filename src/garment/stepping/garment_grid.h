@@ -30,13 +30,6 @@ inline constexpr auto panel_stencil = [] {
 inline constexpr auto limited_directions = static_cast<std::size_t>(
     std::ranges::count_if(panel_stencil, [](const GridSpring& spring) { return spring.kind != bending; }));
 
-/// A panel is cut into blocks of at least so many rows, which are corrected side by side. Small enough that a
-/// panel makes work for several threads, large enough that corrections travel.
-inline constexpr std::uint32_t correction_block_rows = 16;
-
-/// The rows at which a panel's blocks begin, and its number of rows at the end.
-std::vector<std::uint32_t> correction_blocks(const GarmentPanel& panel);
-
 /// The springs whose elongation is limited, structural and shear, as numbers into System::springs, in the
 /// order in which velocities are corrected: within each block along the rows, along the columns and along
 /// the two kinds of diagonals, then in the same order of directions what joins a block to the next. Springs

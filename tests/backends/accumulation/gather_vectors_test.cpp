@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/spring_list/serial.h"
+#include "backends/spring_list/list_backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/integrators.h"
 #include "tests/support/backend_step.h"

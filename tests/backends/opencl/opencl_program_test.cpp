@@ -32,7 +32,7 @@ TEST(GridProgram, HasOneKernelThatTakesEveryStageOnMoreLanes) {
   for (const Integrator& integrator : integrators) {
     const std::string text = grid_program_text(integrator, 16);
     EXPECT_EQ(count(text, "__kernel"), 1) << integrator.name;
-    EXPECT_THAT(text, HasSubstr("__kernel void " + steps_kernel_name() + "(")) << integrator.name;
+    EXPECT_THAT(text, HasSubstr("__kernel void " + std::string(steps_kernel_name) + "(")) << integrator.name;
     for (std::size_t stage = 0; stage < integrator.stage_count; ++stage)
       EXPECT_EQ(count(text, "  walk_stage_" + std::to_string(stage) + "("), 1) << integrator.name;
   }

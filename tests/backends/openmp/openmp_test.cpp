@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "backends/openmp/bodies.h"
-#include "backends/spring_list/serial.h"
+#include "backends/spring_list/list_backends.h"
 #include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/backend_step.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "backends/spring_list/serial.h"
+#include "backends/spring_list/list_backends.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/cloth_system.h"
 #include "tests/support/solid_system.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "backends/openmp/openmp.h"
-#include "backends/spring_list/serial.h"
+#include "backends/spring_list/list_backends.h"
 #include "bench/verification/second_stretch.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "backends/interface/backend.h"
+#include "backends/layouts/spring_graph.h"
 #include "platform/machine.h"
 
 namespace mssim {
@@ -59,31 +60,36 @@ std::size_t count_entries(const Matrix& upper) {
   return count;
 }
 
+/// Eliminates the last `pivots` of `rows` unknowns from a dense symmetric system F, [rows][rows] by columns,
+/// of which the lower triangle is given. With F = (F_rr, F_rp; F_pr, F_pp), r: the rows that remain, first,
+///
+///     F_rr (its lower triangle) becomes  F_rr - F_rp F_pp^-1 F_pr,
+///     panel, [rows][pivots] by columns, (-F_rp F_pp^-1; F_pp^-1).
+///
+/// The rest of F is changed. Throws Unsupported where F_pp is not positive definite.
+void eliminate(std::span<double> front, std::size_t rows, std::size_t pivots, std::span<double> panel) {
+  using Dense = Eigen::MatrixXd;
+  const std::ptrdiff_t n = signed_size(rows), w = signed_size(pivots), r = n - w;
+  Eigen::Map<Dense> whole(front.data(), n, n), result(panel.data(), n, w);
+  const Eigen::LLT<Dense> cholesky(whole.bottomRightCorner(w, w));
+  if (cholesky.info() != Eigen::Success) refuse_indefinite();
+  auto solved = whole.bottomLeftCorner(w, r);  // F_pr
+  cholesky.matrixL().solveInPlace(solved);
+  whole.topLeftCorner(r, r).selfadjointView<Eigen::Lower>().rankUpdate(solved.transpose(), -1.0);
+  cholesky.matrixU().solveInPlace(solved);
+  result.topRows(r) = -solved.transpose();
+  result.bottomRows(w) = cholesky.solve(Dense::Identity(w, w));
+}
+
 using Rows = std::span<std::uint32_t>;
-
-/// The rows that each row has a coupling with: those of row i are others[first[i]] to others[first[i+1] - 1].
-struct Couplings {
-  std::vector<std::uint32_t> first, others;
-
-  explicit Couplings(const StepMatrix& matrix) : first(matrix.rows() + 1) {
-    for (const auto& coupling : matrix.couplings) ++first[coupling.first + 1], ++first[coupling.second + 1];
-    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    others.resize(first.back());
-    std::vector<std::uint32_t> next = first;
-    for (const auto& coupling : matrix.couplings) {
-      others[next[coupling.first]++] = coupling.second;
-      others[next[coupling.second]++] = coupling.first;
-    }
-  }
-  std::span<const std::uint32_t> of(std::uint32_t row) const {
-    return std::span(others).subspan(first[row], first[row + 1] - first[row]);
-  }
-};
 
 class Dissector {
  public:
   Dissector(const StepMatrix& matrix, std::span<const Vec3d> places, std::size_t smallest)
-      : couplings_(matrix), places_(places), smallest_(smallest), side_(matrix.rows()) {}
+      : couplings_(matrix.rows(), matrix.couplings),
+        places_(places),
+        smallest_(smallest),
+        side_(matrix.rows()) {}
 
   /// Appends the parts of everything, one piece that hangs together after the other.
   void dissect_all(Dissection& into) {
@@ -171,7 +177,7 @@ class Dissector {
     return static_cast<std::uint32_t>(into.parts.size() - 1);
   }
 
-  const Couplings couplings_;
+  const Adjacency couplings_;
   const std::span<const Vec3d> places_;
   const std::size_t smallest_;
   std::vector<std::uint32_t> side_;  ///< [rows] `present_` where a row is of the side that is looked at
@@ -215,7 +221,7 @@ StepMatrix::StepMatrix(const System& system, double dt_s) {
   }
 }
 
-void require_memory(std::size_t entries, std::size_t entry_bytes) {
+void require_factor_memory(std::size_t entries, std::size_t entry_bytes) {
   if (const auto shortage = memory_shortage(entries * entry_bytes))
     throw Unsupported("the factor of its global step " + *shortage);
 }
@@ -232,7 +238,7 @@ ColumnFactor factorise(const StepMatrix& matrix) {
     throw Unsupported("the factor of its global step would have " + std::to_string(entries) +
                       " entries, more than Eigen can number");
   // Eigen's factor and this one, and what a backend makes of it.
-  require_memory(entries, 2 * (sizeof(double) + sizeof(Index)) + sizeof(double));
+  require_factor_memory(entries, 2 * (sizeof(double) + sizeof(Index)) + sizeof(double));
   const Eigen::SimplicialLLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<Index>> cholesky(upper);
   if (cholesky.info() != Eigen::Success) refuse_indefinite();
 
@@ -243,20 +249,6 @@ ColumnFactor factorise(const StepMatrix& matrix) {
   result.place.assign(factor.innerIndexPtr(), factor.innerIndexPtr() + factor.nonZeros());
   result.value.assign(factor.valuePtr(), factor.valuePtr() + factor.nonZeros());
   return result;
-}
-
-void eliminate(std::span<double> front, std::size_t rows, std::size_t pivots, std::span<double> panel) {
-  using Dense = Eigen::MatrixXd;
-  const std::ptrdiff_t n = signed_size(rows), w = signed_size(pivots), r = n - w;
-  Eigen::Map<Dense> whole(front.data(), n, n), result(panel.data(), n, w);
-  const Eigen::LLT<Dense> cholesky(whole.bottomRightCorner(w, w));
-  if (cholesky.info() != Eigen::Success) refuse_indefinite();
-  auto solved = whole.bottomLeftCorner(w, r);  // F_pr
-  cholesky.matrixL().solveInPlace(solved);
-  whole.topLeftCorner(r, r).selfadjointView<Eigen::Lower>().rankUpdate(solved.transpose(), -1.0);
-  cholesky.matrixU().solveInPlace(solved);
-  result.topRows(r) = -solved.transpose();
-  result.bottomRows(w) = cholesky.solve(Dense::Identity(w, w));
 }
 
 Dissection::Dissection(const StepMatrix& matrix, std::span<const Vec3d> places, std::size_t smallest) {
@@ -322,7 +314,7 @@ BlockFactor::BlockFactor(const StepMatrix& matrix, const Dissection& dissection,
     front_floats += 3 * rows;
     most_rows = std::max(most_rows, rows);
   }
-  require_memory(floats + front_floats, sizeof(float));
+  require_factor_memory(floats + front_floats, sizeof(float));
   panels = AlignedArray(floats);
   eliminate_all(matrix);
 }

@@ -47,18 +47,9 @@ struct ColumnFactor {
 /// Unsupported where there is not the memory for it, or where the matrix is not positive definite.
 ColumnFactor factorise(const StepMatrix& matrix);
 
-/// Eliminates the last `pivots` of `rows` unknowns from a dense symmetric system F, [rows][rows] by columns,
-/// of which the lower triangle is given. With F = (F_rr, F_rp; F_pr, F_pp), r: the rows that remain, first,
-///
-///     F_rr (its lower triangle) becomes  F_rr - F_rp F_pp^-1 F_pr,
-///     panel, [rows][pivots] by columns, (-F_rp F_pp^-1; F_pp^-1).
-///
-/// The rest of F is changed. Throws Unsupported where F_pp is not positive definite.
-void eliminate(std::span<double> front, std::size_t rows, std::size_t pivots, std::span<double> panel);
-
 /// Throws Unsupported where a factor's `entries`, which take so many bytes each, are more than there is
 /// memory for.
-void require_memory(std::size_t entries, std::size_t entry_bytes);
+void require_factor_memory(std::size_t entries, std::size_t entry_bytes);
 
 /// An order of elimination that fills a factor little and gives threads work that does not depend on each
 /// other: nested dissection (A. George, 1973) by the nodes' places, of each piece that hangs together. The

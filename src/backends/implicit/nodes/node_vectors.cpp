@@ -14,22 +14,22 @@ std::uint32_t record_of(std::size_t slot, std::size_t lanes) {
 
 }  // namespace
 
-NodeRows::NodeRows(const System& system, const GridPatch& grid, std::size_t lanes)
-    : layout(grid, lanes),
-      slope_layout(grid, lanes),
-      plane(grid, lanes),
-      springs(spring_constants_of(system, grid)),
+NodeRows::NodeRows(const System& system, std::size_t lanes)
+    : layout(std::get<GridPatch>(system.topology), lanes),
+      slope_layout(std::get<GridPatch>(system.topology), lanes),
+      plane(std::get<GridPatch>(system.topology), lanes),
+      springs(spring_constants_of(system, std::get<GridPatch>(system.topology))),
       surroundings(surroundings_of(system)),
       nodes(system.nodes()),
       mass(system.node_mass.front()),
       free(plane.floats()),
-      row_is_free(grid.rows, 1),
-      chunks(balanced_node_chunks(grid.rows, [](std::size_t row) { return row; })) {
-  for (std::size_t row = 0; row < grid.rows; ++row)
-    std::fill_n(free.data() + plane.offset(row, 0), grid.columns, 1.0F);
+      row_is_free(layout.rows, 1),
+      chunks(balanced_node_chunks(layout.rows, [](std::size_t row) { return row; })) {
+  for (std::size_t row = 0; row < layout.rows; ++row)
+    std::fill_n(free.data() + plane.offset(row, 0), layout.columns, 1.0F);
   for (const std::uint32_t pin : system.pins) {
-    free.data()[plane.offset(pin / grid.columns, pin % grid.columns)] = 0;
-    row_is_free[pin / grid.columns] = 0;
+    free.data()[plane.offset(pin / layout.columns, pin % layout.columns)] = 0;
+    row_is_free[pin / layout.columns] = 0;
   }
 }
 

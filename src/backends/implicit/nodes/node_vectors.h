@@ -64,8 +64,7 @@ struct NodeRows {
 
   /// Of a system that is a cloth. `lanes`: floats of a vector. Throws Unsupported where the nodes differ in
   /// mass.
-  NodeRows(const System& system, std::size_t lanes)
-      : NodeRows(system, std::get<GridPatch>(system.topology), lanes) {}
+  NodeRows(const System& system, std::size_t lanes);
 
   /// Floats of a field.
   std::size_t field_floats() const { return layout.floats(); }
@@ -86,9 +85,6 @@ struct NodeRows {
   }
   /// Floats from a component of a node to its next one.
   std::size_t component_step() const { return layout.pitch; }
-
- private:
-  NodeRows(const System& system, const GridPatch& grid, std::size_t lanes);
 };
 
 /// Bodies, in the slices of SlicedGraph. A field is an array of records x y z 0: a vector of neighbours is
