@@ -4,16 +4,11 @@ namespace mssim {
 
 PaddedRows::PaddedRows(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
                        std::size_t lanes, std::size_t thread_count)
-    : layout(grid, lanes),
-      integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
+    : SeparateSteps(system, method, dt_s),
+      layout(grid, lanes),
       springs(spring_constants_of(system, grid)),
-      surroundings(surroundings_of(system)),
       threads(thread_count) {
-  for (const Pair pair : stored_pairs(method, Storage::separate)) {
-    pairs[index(pair)] = AlignedArray(layout.floats());
-    base[index(pair)] = pairs[index(pair)].data();
-  }
+  make_pairs(layout.floats());
   first_pin.assign(1, 0);
   for (const std::uint32_t node : system.pins) {
     const std::size_t row = node / layout.columns;
@@ -26,12 +21,9 @@ PaddedRows::PaddedRows(const System& system, const GridPatch& grid, const Integr
 
 void PaddedRows::set_state(const State& state) {
   for (std::size_t node = 0; node < state.position.size(); ++node) {
-    const Vec3d &x = state.position[node], &v = state.velocity[node];
     float* out = base[index(Pair::state)] + layout.offset(node / layout.columns, node % layout.columns);
-    for (const double value : {x.x, x.y, x.z, v.x, v.y, v.z}) {
-      *out = static_cast<float>(value);
-      out += layout.pitch;
-    }
+    write_vector(out, layout.pitch, state.position[node]);
+    write_vector(out + 3 * layout.pitch, layout.pitch, state.velocity[node]);
   }
 }
 
@@ -39,12 +31,11 @@ State PaddedRows::state() const {
   State state;
   state.position.reserve(layout.rows * layout.columns);
   state.velocity.reserve(layout.rows * layout.columns);
-  const std::size_t step = layout.pitch;
   for (std::size_t row = 0; row < layout.rows; ++row) {
     const float* in = base[index(Pair::state)] + layout.offset(row, 0);
     for (std::size_t column = 0; column < layout.columns; ++column, ++in) {
-      state.position.push_back(vec3_cast<double>(Vec3<float>{in[0], in[step], in[2 * step]}));
-      state.velocity.push_back(vec3_cast<double>(Vec3<float>{in[3 * step], in[4 * step], in[5 * step]}));
+      state.position.push_back(read_vector(in, layout.pitch));
+      state.velocity.push_back(read_vector(in + 3 * layout.pitch, layout.pitch));
     }
   }
   return state;

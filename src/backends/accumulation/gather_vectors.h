@@ -8,7 +8,6 @@
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
 #include "backends/vectors/step_kernels.h"
-#include "integrators/coefficients.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -22,8 +21,8 @@ std::unique_ptr<Backend> make_gather_vectors(const System& system, const Integra
 /// A cloth with the components x y z u v w (u v w: velocity).
 using PairRows = RowLayout<6>;
 
-/// What the vector code needs to take steps: one cloth, one integrator, one dt.
-struct PaddedRows {
+/// What the vector code needs to take steps of a cloth. Pairs have PairRows::floats.
+struct PaddedRows : SeparateSteps {
   /// A node that is put back after every update.
   struct Pin {
     std::size_t offset;  ///< PairRows::offset
@@ -31,15 +30,10 @@ struct PaddedRows {
   };
 
   PairRows layout;
-  const Integrator* integrator = nullptr;
-  Coefficients<float> coefficients{};
   std::vector<SpringConstants> springs;  ///< [kinds]
-  Surroundings surroundings{};
   std::size_t threads = 1;
-  std::vector<Pin> pins;                       ///< row by row
-  std::vector<std::size_t> first_pin;          ///< [rows + 1] where a row's pins begin
-  std::array<AlignedArray, pair_kinds> pairs;  ///< [PairRows::floats]; empty where not stored
-  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
+  std::vector<Pin> pins;               ///< row by row
+  std::vector<std::size_t> first_pin;  ///< [rows + 1] where a row's pins begin
 
   /// Throws Unsupported where the nodes differ in mass. Set a state before the first step.
   PaddedRows(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,

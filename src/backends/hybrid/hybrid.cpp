@@ -22,11 +22,7 @@
 namespace mssim {
 
 HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s)
-    : packed(system),
-      integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
-      surroundings(surroundings_of(system)),
-      constants(packed.slots() * 2) {
+    : ExplicitSteps(system, method, dt_s), packed(system), constants(packed.slots() * 2) {
   constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
   const auto of_slot = [&](std::size_t slot) {
     return constants.data() + slot / slice_nodes * 2 * slice_nodes + slot % slice_nodes;
@@ -59,10 +55,7 @@ void HostNodes::forget_units() {
 
 AlikeNodes::AlikeNodes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,
                        double dt_s)
-    : springs(bodies),
-      integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
-      surroundings(surroundings_of(system)) {}
+    : ExplicitSteps(system, method, dt_s), springs(bodies) {}
 
 SpringKernel AlikeNodes::spring_kernel(int lanes) const {
   const std::size_t parts = AlikeSprings::slice_nodes / static_cast<std::size_t>(lanes);

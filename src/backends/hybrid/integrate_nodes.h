@@ -10,7 +10,6 @@
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
 #include "backends/layouts/packed_springs.h"
-#include "integrators/coefficients.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -28,11 +27,8 @@ struct SpringKernel {
 /// What the host's threads need to sum the spring forces at the nodes and to integrate them, with one
 /// integrator and one dt (hybrid.cpp makes it). Nodes are records (kernels/records.h), forces lie as
 /// PackedSprings places them, four floats each, N.
-struct HostNodes {
+struct HostNodes : ExplicitSteps {
   PackedSprings packed;
-  const Integrator* integrator;
-  Coefficients<float> coefficients;
-  Surroundings surroundings;
   /// [slices][inverse mass, held][16]: 1/kg; 1 where nothing may move (pinned, or no node), else 0.
   AlignedArray constants;
   struct Material {
@@ -54,11 +50,8 @@ struct HostNodes {
 
 /// HostNodes for alike bodies: what the host's threads need to sum the forces of their springs and to
 /// integrate.
-struct AlikeNodes {
+struct AlikeNodes : ExplicitSteps {
   AlikeSprings springs;
-  const Integrator* integrator;
-  Coefficients<float> coefficients;
-  Surroundings surroundings;
 
   /// `bodies`: all of the system.
   AlikeNodes(const System& system, const std::vector<AlikeBodies>& bodies, const Integrator& method,

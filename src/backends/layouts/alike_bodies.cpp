@@ -1,7 +1,6 @@
 #include "backends/layouts/alike_bodies.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "backends/layouts/node_arrays.h"
@@ -68,7 +67,7 @@ std::optional<std::vector<AlikeBodies>> alike_bodies_for(const System& system, s
   if (!bodies) return bodies;
   std::size_t springs_of_lanes = 0;
   for (const AlikeBodies& of : *bodies)
-    springs_of_lanes += (of.bodies.size() + lanes - 1) / lanes * lanes * of.springs.size();
+    springs_of_lanes += round_up(of.bodies.size(), lanes) * of.springs.size();
   if (static_cast<double>(springs_of_lanes) > per_body * static_cast<double>(system.springs.size()))
     bodies.reset();
   return bodies;
@@ -92,10 +91,8 @@ void AlikeSlices::write(const State& state, float* pair) const {
   for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::uint32_t node = scene_node[slice * lanes + lane];
-      const Vec3<float> x = vec3_cast<float>(state.position[node]),
-                        v = vec3_cast<float>(state.velocity[node]);
-      const std::array<float, components> values{x.x, x.y, x.z, v.x, v.y, v.z};
-      for (std::size_t i = 0; i < components; ++i) pair[i * lanes + lane] = values[i];
+      write_vector(pair + lane, lanes, state.position[node]);
+      write_vector(pair + 3 * lanes + lane, lanes, state.velocity[node]);
     }
 }
 
@@ -104,9 +101,8 @@ State AlikeSlices::read(const float* pair) const {
   for (std::size_t slice = 0; slice < count; ++slice, pair += components * lanes)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::uint32_t node = scene_node[slice * lanes + lane];
-      const auto value = [&](std::size_t i) { return static_cast<double>(pair[i * lanes + lane]); };
-      state.position[node] = {value(0), value(1), value(2)};
-      state.velocity[node] = {value(3), value(4), value(5)};
+      state.position[node] = read_vector(pair + lane, lanes);
+      state.velocity[node] = read_vector(pair + 3 * lanes + lane, lanes);
     }
   return state;
 }

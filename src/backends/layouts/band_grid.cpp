@@ -126,10 +126,8 @@ std::size_t halves_for(const BandLayout& layout, const Integrator& integrator, s
 
 BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator& method, double dt_s,
                    std::size_t lanes, std::size_t most_threads, const BandCut& given)
-    : layout(grid, lanes),
-      integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
-      surroundings(surroundings_of(system)),
+    : ExplicitSteps(system, method, dt_s),
+      layout(grid, lanes),
       columns(layout.columns),
       own(given.piece.value_or(ColumnRange{0, columns})),
       spacing_(grid.spacing),
@@ -249,9 +247,8 @@ void BandGrid::fill_partition(BandPartition& partition, const State& state) cons
           x = state.position[node];
           v = state.velocity[node];
         }
-        const std::array<double, BandLayout::components> value{x.x, x.y, x.z, v.x, v.y, v.z};
-        for (std::size_t k = 0; k < value.size(); ++k)
-          out[k * layout.lanes + lane] = static_cast<float>(value[k]);
+        write_vector(out + lane, layout.lanes, x);
+        write_vector(out + 3 * layout.lanes + lane, layout.lanes, v);
       }
   }
 }
@@ -296,9 +293,9 @@ State BandGrid::state(const GridWindow& window) const {
       const float* column = partition.column(layout, Pair::state, its);
       for (std::size_t row = 0; row < window.rows; ++row) {
         const float* in = column + layout.offset(window.row + row, half);
-        const std::size_t node = row * window.columns + of_cloth - window.column, step = layout.lanes;
-        state.position[node] = vec3_cast<double>(Vec3<float>{in[0], in[step], in[2 * step]});
-        state.velocity[node] = vec3_cast<double>(Vec3<float>{in[3 * step], in[4 * step], in[5 * step]});
+        const std::size_t node = row * window.columns + of_cloth - window.column;
+        state.position[node] = read_vector(in, layout.lanes);
+        state.velocity[node] = read_vector(in + 3 * layout.lanes, layout.lanes);
       }
     }
   return state;

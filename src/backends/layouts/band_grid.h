@@ -14,7 +14,6 @@
 #include "backends/layouts/node_arrays.h"
 #include "backends/threads/team_gain.h"
 #include "backends/threads/thread_progress.h"
-#include "integrators/coefficients.h"
 #include "integrators/integrators.h"
 #include "model/system.h"
 
@@ -232,16 +231,13 @@ struct BandPartition {
   }
 };
 
-/// What the vector code needs to take steps: one cloth, one integrator, one dt.
+/// What the vector code needs to take steps of a cloth.
 ///
 /// The cloth may be a piece of a larger one, whose other columns other processes step: it owns some of its
 /// columns, and those beside them are ghosts, which messages bring. What the others wait for is walked first:
 /// of a wide piece, the columns at its ends are partitions of their own.
-struct BandGrid {
+struct BandGrid : ExplicitSteps {
   BandLayout layout;
-  const Integrator* integrator = nullptr;
-  Coefficients<float> coefficients{};
-  Surroundings surroundings{};
   std::map<ColumnsToEnd, BandRows> band_rows;
   std::size_t steps_per_pass = 1;  ///< steps under way at once
   /// Columns of the layout. Those of the cloth; if it is folded, those of a half and ghosts at both ends, in

@@ -11,7 +11,7 @@ namespace mssim {
 AlignedArray::AlignedArray(std::size_t size) : size_(size) {
   constexpr std::size_t huge_page = std::size_t{2} << 20;
   const std::size_t page = size * sizeof(float) >= huge_page ? huge_page : alignment;
-  const std::size_t bytes = (size * sizeof(float) + page - 1) / page * page;
+  const std::size_t bytes = round_up(size * sizeof(float), page);
   if (bytes == 0) return;
   void* memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,9 +8,32 @@
 #include <vector>
 
 #include "backends/interface/backend.h"
+#include "integrators/coefficients.h"
 #include "model/system.h"
 
 namespace mssim {
+
+constexpr std::size_t round_up(std::size_t value, std::size_t multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
+/// So many floats in whole vectors, an odd number of them: rows and components whose distance is a power of
+/// two share a few sets of the first-level cache.
+constexpr std::size_t odd_pitch(std::size_t floats, std::size_t lanes) {
+  const std::size_t whole = round_up(floats, lanes);
+  return whole / lanes % 2 == 0 ? whole + lanes : whole;
+}
+
+/// A vector in space whose components lie `step` floats apart.
+inline Vec3d read_vector(const float* from, std::size_t step) {
+  return {double{from[0]}, double{from[step]}, double{from[2 * step]}};
+}
+/// Rounds to float.
+inline void write_vector(float* to, std::size_t step, const Vec3d& value) {
+  to[0] = static_cast<float>(value.x);
+  to[step] = static_cast<float>(value.y);
+  to[2 * step] = static_cast<float>(value.z);
+}
 
 /// An array of floats whose start suits every vector width and the devices' zero-copy buffers. Its memory is
 /// zero and, where large, asks for huge pages, which made the 350,000-node cloth 2 to 14 % faster.
@@ -68,8 +92,8 @@ struct RowLayout {
       : lanes(lane_count),
         rows(grid.rows),
         columns(grid.columns),
-        margin(vectors_of(ring, lanes) * lanes),
-        pitch(odd(vectors_of(margin + columns, lanes)) * lanes) {}
+        margin(round_up(ring, lanes)),
+        pitch(odd_pitch(margin + columns, lanes)) {}
 
   static constexpr std::size_t ring = 2;  ///< longest spring, in rows or columns
   static constexpr std::size_t components = component_count;
@@ -89,14 +113,33 @@ struct RowLayout {
     if (row < ring || row + ring >= rows || columns < margin + ring) return {0, 0};
     return {margin, margin + (columns - ring - margin) / vector_lanes * vector_lanes};
   }
+};
 
- private:
-  static std::size_t vectors_of(std::size_t floats, std::size_t lanes) {
-    return (floats + lanes - 1) / lanes;
+/// What explicit steps compute with, however nodes lie in memory: one integrator, one dt.
+struct ExplicitSteps {
+  const Integrator* integrator;
+  Coefficients<float> coefficients;
+  Surroundings surroundings;
+
+  ExplicitSteps(const System& system, const Integrator& method, double dt_s)
+      : integrator(&method),
+        coefficients(coefficients_of<float>(method, dt_s)),
+        surroundings(surroundings_of(system)) {}
+};
+
+/// Those whose pairs are arrays of their own.
+struct SeparateSteps : ExplicitSteps {
+  std::array<AlignedArray, pair_kinds> pairs;  ///< empty where not stored
+  std::array<float*, pair_kinds> base{};       ///< of `pairs`, by role: `state` and `next` change places
+
+  using ExplicitSteps::ExplicitSteps;
+  /// Makes the pairs, of so many floats each.
+  void make_pairs(std::size_t floats) {
+    for (const Pair pair : stored_pairs(*integrator, Storage::separate)) {
+      pairs[index(pair)] = AlignedArray(floats);
+      base[index(pair)] = pairs[index(pair)].data();
+    }
   }
-  /// Where the number of vectors is a power of two, the rows and components that a vector's springs load from
-  /// share a few sets of the first-level cache.
-  static std::size_t odd(std::size_t vectors) { return vectors % 2 == 0 ? vectors + 1 : vectors; }
 };
 
 /// What kernels/spring_law.h asks for, divided by the mass of a node, so that the force is an acceleration.

@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "backends/interface/backend.h"
+#include "backends/layouts/node_arrays.h"
 #include "backends/layouts/spring_graph.h"
 
 namespace mssim {
@@ -78,7 +78,7 @@ PackedSprings::PackedSprings(const System& system) : slot(system.nodes()) {
   NodeOrder order = node_order(system);
   scene_node = std::move(order.scene_node);
   for (std::uint32_t i = 0; i < scene_node.size(); ++i) slot[scene_node[i]] = i;
-  scene_node.resize((scene_node.size() + slice_nodes - 1) / slice_nodes * slice_nodes, no_node);
+  scene_node.resize(round_up(scene_node.size(), slice_nodes), no_node);
 
   pack_units(system, order.rank);
   list_subtracted();

@@ -73,7 +73,7 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const Gr
     std::ranges::sort(group, {}, [&](std::uint32_t node) { return part.place[node]; });
     sort_in_windows(group, degree);
     scene_node.insert(scene_node.end(), group.begin(), group.end());
-    scene_node.resize((scene_node.size() + lanes - 1) / lanes * lanes, no_node);
+    scene_node.resize(round_up(scene_node.size(), lanes), no_node);
   };
   append(inner);
   first_edge_slice = slots() / lanes;

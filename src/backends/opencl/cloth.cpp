@@ -47,10 +47,6 @@ struct Masks {
   }
 };
 
-constexpr std::size_t round_up(std::size_t value, std::size_t multiple) {
-  return (value + multiple - 1) / multiple * multiple;
-}
-
 /// One work-item a node (kernels/grid_nodes.cl).
 struct NodeShape {
   GridPatch grid;

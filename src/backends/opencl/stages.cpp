@@ -22,9 +22,9 @@ std::vector<std::uint64_t> with_pairs(const Integrator& integrator, std::size_t 
 }  // namespace
 
 OpenclBackend::OpenclBackend(const System& system, const Integrator& integrator, double dt_s,
-                             const OpenclDevice& device, DeviceMemory memory, PairLayout layout,
+                             const OpenclDevice& device, DeviceMemory memory, const PairLayout& layout,
                              std::span<const std::uint64_t> buffers)
-    : layout_(std::move(layout)), queue_(device, memory) {
+    : layout_(layout), queue_(device, memory) {
   require_memory(device, buffers);
   StepParameters step{};
   step.surroundings = surroundings_of(system);
@@ -70,7 +70,7 @@ State OpenclBackend::read_state(const OpenclBuffer<float>& buffer) const {
 }
 
 OpenclStages::OpenclStages(const System& system, const Integrator& integrator, double dt_s,
-                           const OpenclDevice& device, DeviceMemory memory, PairLayout layout,
+                           const OpenclDevice& device, DeviceMemory memory, const PairLayout& layout,
                            std::vector<std::uint64_t> others)
     : OpenclBackend(system, integrator, dt_s, device, memory, layout,
                     with_pairs(integrator, layout.floats, std::move(others))),

@@ -37,7 +37,7 @@ class OpenclBackend : public Backend {
   /// Throws Unsupported unless the device can hold `buffers`, all bytes. The step parameters are the first
   /// argument.
   OpenclBackend(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-                DeviceMemory memory, PairLayout layout, std::span<const std::uint64_t> buffers);
+                DeviceMemory memory, const PairLayout& layout, std::span<const std::uint64_t> buffers);
 
   /// The next argument of every kernel: a buffer with a copy of `values`.
   template <class T>
@@ -57,7 +57,9 @@ class OpenclBackend : public Backend {
   DeviceQueue queue_;
   std::vector<OpenclBuffer<std::byte>> arguments_;
   std::array<std::vector<Launch>, 2> launches_;  ///< [swapped]
-  bool swapped_ = false;                         ///< the next launch is
+  /// The next launch is: the state lies in the pair `next`, or ghosts are read from the second half of
+  /// theirs.
+  bool swapped_ = false;
 };
 
 /// Steps a system by one kernel per stage of the integrator, all steps queued one behind the other: what the
@@ -72,7 +74,7 @@ class OpenclStages : public OpenclBackend {
  protected:
   /// Throws Unsupported unless the device can hold the integrator's pairs and `others`, all bytes.
   OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-               DeviceMemory memory, PairLayout layout, std::vector<std::uint64_t> others);
+               DeviceMemory memory, const PairLayout& layout, std::vector<std::uint64_t> others);
 
   /// Builds the program and warms up; then stands at `start`.
   void prepare(const std::string& program_text, const WorkItems& items, const State& start);

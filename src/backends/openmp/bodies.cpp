@@ -156,18 +156,6 @@ BodyLanes::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut, const
 
 }  // namespace
 
-BodySteps::BodySteps(const System& system, const Integrator& method, double dt_s)
-    : integrator(&method),
-      coefficients(coefficients_of<float>(method, dt_s)),
-      surroundings(surroundings_of(system)) {}
-
-void BodySteps::make_pairs(std::size_t floats) {
-  for (const Pair pair : stored_pairs(*integrator, Storage::separate)) {
-    pairs[index(pair)] = AlignedArray(floats);
-    base[index(pair)] = pairs[index(pair)].data();
-  }
-}
-
 SlicedBodies::SlicedBodies(const System& system, const Integrator& method, double dt_s,
                            std::size_t slice_lanes, std::size_t thread_count)
     : SlicedBodies(system, graph_of_whole(system, slice_lanes), method, dt_s, thread_count) {}

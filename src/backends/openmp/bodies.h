@@ -9,31 +9,23 @@
 #include "backends/layouts/alike_bodies.h"
 #include "backends/layouts/node_arrays.h"
 #include "backends/layouts/sliced_graph.h"
-#include "integrators/coefficients.h"
 #include "model/system.h"
 
 namespace mssim {
 
-/// What steps of bodies take, however these lie in memory: one integrator, one dt.
-struct BodySteps {
+/// What steps of bodies take, however these lie in memory.
+struct BodySteps : SeparateSteps {
   /// What a thread takes at a time: slices, or pieces, [begin, end).
   struct Chunk {
     std::size_t begin, end;
   };
 
-  const Integrator* integrator;
-  Coefficients<float> coefficients;
-  Surroundings surroundings;
   std::size_t threads = 1;
   std::vector<Chunk> chunks;  ///< of about the same work
-  int spins =
-      0;  ///< of a thread that waits for others before it offers its core: about as long as a chunk takes
-  std::array<AlignedArray, pair_kinds> pairs{};  ///< empty where not stored
-  std::array<float*, pair_kinds> base{};         ///< of `pairs`, by role: `state` and `next` change places
+  /// Of a thread that waits for others before it offers its core: about as long as a chunk takes.
+  int spins = 0;
 
-  BodySteps(const System& system, const Integrator& method, double dt_s);
-  /// Makes the pairs, of so many floats each.
-  void make_pairs(std::size_t floats);
+  using SeparateSteps::SeparateSteps;
 };
 
 /// How the nodes that one process steps reach those that step their neighbours, which have them as ghosts:

@@ -36,10 +36,6 @@ void append_row(const GarmentPanel& panel, std::uint32_t row, const GridSpring& 
 
 constexpr std::size_t widest_vector = 16, empty_rows = 2;
 
-std::size_t round_up(std::size_t number, std::size_t multiple) {
-  return (number + multiple - 1) / multiple * multiple;
-}
-
 /// The direction of a spring between two nodes of a panel, from the one that owns it; throws where there is
 /// none.
 std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::uint32_t& other) {

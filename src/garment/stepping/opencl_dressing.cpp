@@ -306,10 +306,7 @@ class OpenclDressing final : public DressingBackend {
   void put(const std::vector<Vec3d>& vectors, const OpenclBuffer<float>& buffer) {
     buffer.write([&](std::span<float> planes) {
       for (std::size_t i = 0; i < offset_.size(); ++i) {
-        const auto value = vec3_cast<float>(vectors[i]);
-        planes[offset_[i]] = value.x;
-        planes[plane_ + offset_[i]] = value.y;
-        planes[2 * plane_ + offset_[i]] = value.z;
+        write_vector(&planes[offset_[i]], plane_, vectors[i]);
       }
     });
   }
@@ -317,9 +314,7 @@ class OpenclDressing final : public DressingBackend {
     return buffer.read([&](std::span<const float> planes) {
       std::vector<Vec3d> vectors;
       vectors.reserve(offset_.size());
-      for (const std::size_t at : offset_)
-        vectors.push_back(
-            vec3_cast<double>(Vec3<float>{planes[at], planes[plane_ + at], planes[2 * plane_ + at]}));
+      for (const std::size_t at : offset_) vectors.push_back(read_vector(&planes[at], plane_));
       return vectors;
     });
   }

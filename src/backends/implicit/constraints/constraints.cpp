@@ -127,12 +127,8 @@ class SerialConstraints final : public Backend {
 /// threads, which only some of them do.
 constexpr std::size_t cached_bytes = std::size_t{4} << 20, most_depth = 4;
 
-/// An odd number of vectors: rows and components whose distance is a power of two share a few sets of the
-/// first-level cache.
-std::size_t pitch_of(std::size_t floats, std::size_t lanes) {
-  const std::size_t vectors = (floats + lanes - 1) / lanes;
-  return (vectors + (vectors % 2 == 0 ? 1 : 0)) * lanes;
-}
+/// What a position lacks that is rounded to float.
+Vec3d rest_of(const Vec3d& x) { return x - vec3_cast<double>(vec3_cast<float>(x)); }
 
 /// Fewest blocks that a thread needs for passes of so many small steps.
 constexpr std::size_t least_blocks(std::size_t depth) { return 4 * depth; }
@@ -206,7 +202,7 @@ QuarterLayout::QuarterLayout(const GridPatch& grid, std::size_t lane_count)
     : lanes(lane_count),
       rows(grid.rows),
       columns(grid.columns),
-      pitch(pitch_of((columns + streams - 1) / streams, lanes)) {}
+      pitch(odd_pitch((columns + streams - 1) / streams, lanes)) {}
 
 QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
     : SmallSteps(system, dt_s),
@@ -249,17 +245,10 @@ QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lane
 void QuarteredRows::set_state(const State& state) {
   for (std::size_t node = 0; node < state.position.size(); ++node) {
     const std::size_t row = node / layout.columns, column = node % layout.columns;
-    const Vec3d &x = state.position[node], &v = state.velocity[node];
     float* out = nodes.data() + layout.offset(row, column);
-    for (const double value : {x.x, x.y, x.z, v.x, v.y, v.z}) {
-      *out = static_cast<float>(value);
-      out += layout.pitch;
-    }
-    out = rest.data() + layout.rest_offset(row, column);
-    for (const double value : {x.x, x.y, x.z}) {
-      *out = static_cast<float>(value - static_cast<double>(static_cast<float>(value)));
-      out += layout.pitch;
-    }
+    write_vector(out, layout.pitch, state.position[node]);
+    write_vector(out + 3 * layout.pitch, layout.pitch, state.velocity[node]);
+    write_vector(rest.data() + layout.rest_offset(row, column), layout.pitch, rest_of(state.position[node]));
   }
 }
 
@@ -267,9 +256,7 @@ State QuarteredRows::state() const {
   State state;
   state.position.reserve(layout.rows * layout.columns);
   state.velocity.reserve(layout.rows * layout.columns);
-  const auto vector_at = [&](const float* in) {
-    return vec3_cast<double>(Vec3<float>{in[0], in[layout.pitch], in[2 * layout.pitch]});
-  };
+  const auto vector_at = [&](const float* in) { return read_vector(in, layout.pitch); };
   for (std::size_t row = 0; row < layout.rows; ++row)
     for (std::size_t column = 0; column < layout.columns; ++column) {
       const float* in = nodes.data() + layout.offset(row, column);
@@ -295,7 +282,7 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
       part_of[node_at[begin]] = static_cast<std::uint32_t>(parts.size());
       slot[node_at[begin]] = static_cast<std::uint32_t>(slots++);
     }
-    slots = (slots + lanes - 1) / lanes * lanes;
+    slots = round_up(slots, lanes);
     parts.push_back({first / lanes, slots / lanes, 0, 0});
   }
   nodes = AlignedArray(slots * record_floats);
@@ -368,22 +355,14 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
 
 void SpringBatches::set_state(const State& state) {
   write_records(state, slot, nodes.data());
-  for (std::size_t node = 0; node < slot.size(); ++node) {
-    float* out = rest.data() + rest_offset(slot[node]);
-    const Vec3d& x = state.position[node];
-    for (const double value : {x.x, x.y, x.z}) {
-      *out = static_cast<float>(value - static_cast<double>(static_cast<float>(value)));
-      out += lanes;
-    }
-  }
+  for (std::size_t node = 0; node < slot.size(); ++node)
+    write_vector(rest.data() + rest_offset(slot[node]), lanes, rest_of(state.position[node]));
 }
 
 State SpringBatches::state() const {
   State state = read_records(nodes.data(), slot);
-  for (std::size_t node = 0; node < slot.size(); ++node) {
-    const float* in = rest.data() + rest_offset(slot[node]);
-    state.position[node] += vec3_cast<double>(Vec3<float>{in[0], in[lanes], in[2 * lanes]});
-  }
+  for (std::size_t node = 0; node < slot.size(); ++node)
+    state.position[node] += read_vector(rest.data() + rest_offset(slot[node]), lanes);
   return state;
 }
 

@@ -308,7 +308,7 @@ BlockFactor::BlockFactor(const StepMatrix& matrix, const Dissection& dissection,
     : order(dissection.order), fronts(matrix, dissection) {
   std::size_t floats = 0;
   for (std::size_t part = 0; part < fronts.parts.size(); ++part) {
-    const std::size_t rows = (fronts.rows(part) + lanes - 1) / lanes * lanes;
+    const std::size_t rows = round_up(fronts.rows(part), lanes);
     blocks.push_back({floats, rows, front_floats});
     floats += rows * fronts.pivots(part);
     front_floats += 3 * rows;

@@ -187,17 +187,6 @@ LocalGlobalNodes<Nodes>::LocalGlobalNodes(const System& system, const StepMatrix
   for (AlignedArray* field : {&x, &v, &y, &w, &e}) *field = AlignedArray(nodes.field_floats());
 }
 
-template <class Nodes>
-void LocalGlobalNodes<Nodes>::set_state(const State& state) {
-  write_field(nodes, state.position, x.data());
-  write_field(nodes, state.velocity, v.data());
-}
-
-template <class Nodes>
-State LocalGlobalNodes<Nodes>::state() const {
-  return {.position = read_field(nodes, x.data()), .velocity = read_field(nodes, v.data())};
-}
-
 template struct LocalGlobalNodes<NodeRows>;
 template struct LocalGlobalNodes<NodeSlices>;
 

@@ -116,7 +116,7 @@ HWY_NOINLINE void pass_downwards(LocalGlobalNodes<Nodes>& system, std::size_t pa
   const BlockFactor::Block& block = system.factor.blocks[part];
   const std::size_t rows = block.rows, border = fronts.border_size(part), pivots = fronts.pivots(part);
   const std::size_t step = system.nodes.component_step(), lanes = lane_count();
-  const std::size_t length = (border + lanes - 1) / lanes * lanes;
+  const std::size_t length = round_up(border, lanes);
   float* const front = system.fronts.data() + block.front;
   if (border > 0) {
     const std::uint32_t* const at = fronts.at_parent.data() + fronts.first_border[part];

@@ -47,8 +47,13 @@ struct LocalGlobalNodes {
   /// A state must be set before the first step.
   LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
       : LocalGlobalNodes(system, {system, dt_s}, dt_s, lanes, thread_count) {}
-  void set_state(const State& state);
-  State state() const;
+  void set_state(const State& state) {
+    write_field(nodes, state.position, x.data());
+    write_field(nodes, state.velocity, v.data());
+  }
+  State state() const {
+    return {.position = read_field(nodes, x.data()), .velocity = read_field(nodes, v.data())};
+  }
 
  private:
   LocalGlobalNodes(const System& system, const StepMatrix& matrix, double dt_s, std::size_t lanes,

@@ -126,12 +126,8 @@ struct NodeSlices {
 template <class Nodes>
 void write_field(const Nodes& nodes, const std::vector<Vec3d>& values, float* field) {
   const std::size_t step = nodes.component_step();
-  for (std::size_t node = 0; node < values.size(); ++node) {
-    float* const to = field + nodes.offset(node);
-    to[0] = static_cast<float>(values[node].x);
-    to[step] = static_cast<float>(values[node].y);
-    to[2 * step] = static_cast<float>(values[node].z);
-  }
+  for (std::size_t node = 0; node < values.size(); ++node)
+    write_vector(field + nodes.offset(node), step, values[node]);
 }
 
 template <class Nodes>
@@ -139,10 +135,8 @@ std::vector<Vec3d> read_field(const Nodes& nodes, const float* field) {
   std::vector<Vec3d> values;
   values.reserve(nodes.nodes);
   const std::size_t step = nodes.component_step();
-  for (std::size_t node = 0; node < nodes.nodes; ++node) {
-    const float* const from = field + nodes.offset(node);
-    values.push_back(vec3_cast<double>(Vec3<float>{from[0], from[step], from[2 * step]}));
-  }
+  for (std::size_t node = 0; node < nodes.nodes; ++node)
+    values.push_back(read_vector(field + nodes.offset(node), step));
   return values;
 }
 
