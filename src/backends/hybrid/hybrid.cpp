@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "backends/devices/device_queue.h"
-#include "backends/devices/drivers.h"
 #include "backends/hybrid/integrate_nodes.h"
 #include "backends/threads/chunk_tickets.h"
 
@@ -257,11 +256,11 @@ class Hybrid final : public Backend {
   Pair present_ = Pair::state;
 };
 
-/// `before`: is told of what kind the system is before any program is compiled.
-template <class Before>
-std::unique_ptr<Backend> make(const System& system, const Integrator& integrator, double dt_s,
-                              const OpenclDevice& device, int threads, int lanes, DeviceMemory memory,
-                              const Before& before) {
+}  // namespace
+
+std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int threads, int lanes, DeviceMemory memory,
+                                     const std::function<void(SteppedKind)>& before) {
   if (threads < 1)
     throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
@@ -279,21 +278,13 @@ std::unique_ptr<Backend> make(const System& system, const Integrator& integrator
   });
 }
 
-}  // namespace
-
-std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
-                                     const OpenclDevice& device, int threads, int lanes,
-                                     DeviceMemory memory) {
-  return make(system, integrator, dt_s, device, threads, lanes, memory, [](SteppedKind) {});
-}
-
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
   const OpenclDevice device = device_for(options);
-  return make(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory,
-              [&](SteppedKind kind) {
-                try_driver({"hybrid", std::string(integrator.name), kind, options}, device);
-              });
+  return make_hybrid(system, integrator, dt_s, device, options.threads, lanes_for(device), options.memory,
+                     [&](SteppedKind kind) {
+                       try_driver({"hybrid", std::string(integrator.name), kind, options}, device);
+                     });
 }
 
 }  // namespace mssim

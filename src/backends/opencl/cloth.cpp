@@ -80,26 +80,24 @@ struct NodeShape {
   }
 };
 
-class OpenclGridNodes final : public OpenclStages {
- public:
-  OpenclGridNodes(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-                  DeviceMemory memory, const NodeShape& shape)
-      : OpenclStages(system, integrator, dt_s, device, memory, shape.pair_layout(), {}) {
-    GridParameters parameters = grid_parameters_of(system, shape.grid);
-    parameters.stride = static_cast<int>(shape.stride);
-    parameters.plane = static_cast<int>(shape.plane);
-    Masks pinned(shape.grid.rows, shape.stride);
-    const std::vector<cl_int> none(shape.stride, 0);
-    for (const std::uint32_t pin : system.pins)
-      pinned.mask(pin / shape.grid.columns, none)[pin % shape.grid.columns] = -1;
-    add_argument(std::span<const GridParameters>(&parameters, 1));
-    add_argument(std::span<const cl_int>(pinned.mask_of));
-    add_argument(std::span<const cl_int>(pinned.numbers));
-    prepare(grid_program_text(integrator, 1),
-            {cl::NDRange(shape.global[0], shape.global[1]), cl::NDRange(shape.local[0], shape.local[1])},
-            system.start);
-  }
-};
+std::unique_ptr<Backend> make_grid_nodes(const System& system, const NodeShape& shape,
+                                         const Integrator& integrator, double dt_s,
+                                         const OpenclDevice& device, DeviceMemory memory) {
+  GridParameters parameters = grid_parameters_of(system, shape.grid);
+  parameters.stride = static_cast<int>(shape.stride);
+  parameters.plane = static_cast<int>(shape.plane);
+  Masks pinned(shape.grid.rows, shape.stride);
+  const std::vector<cl_int> none(shape.stride, 0);
+  for (const std::uint32_t pin : system.pins)
+    pinned.mask(pin / shape.grid.columns, none)[pin % shape.grid.columns] = -1;
+  return std::make_unique<OpenclStages>(
+      system, integrator, dt_s, device, memory,
+      StageKernels{
+          shape.pair_layout(),
+          {bytes_of(parameters), bytes_of(pinned.mask_of), bytes_of(pinned.numbers)},
+          grid_program_text(integrator, 1),
+          {cl::NDRange(shape.global[0], shape.global[1]), cl::NDRange(shape.local[0], shape.local[1])}});
+}
 
 /// A cloth in bands, a launch a few steps.
 class OpenclBands final : public OpenclBackend {
@@ -157,9 +155,9 @@ class OpenclBands final : public OpenclBackend {
     free.numbers.insert(free.numbers.end(), unpinned.begin(), unpinned.end());
     std::replace(free.mask_of.begin(), free.mask_of.end(), -1, last);
 
-    add_argument(std::span<const GridParameters>(&parameters, 1));
-    add_argument(std::span<const cl_int>(free.mask_of));
-    add_argument(std::span<const cl_int>(free.numbers));
+    add_argument(bytes_of(parameters));
+    add_argument(bytes_of(free.mask_of));
+    add_argument(bytes_of(free.numbers));
     // Zeros in the padding, so that no arithmetic there meets a denormal number, which can be slow.
     arguments_.push_back(queue_.zeros<std::byte>(ring_bytes(shape, integrator)));
     arguments_.push_back(queue_.array<std::byte>(sum_bytes(shape)));
@@ -196,9 +194,7 @@ std::unique_ptr<Backend> make_opencl_grid(const System& system, const GridPatch&
                                           const Integrator& integrator, double dt_s,
                                           const OpenclDevice& device, DeviceMemory memory, int lanes,
                                           std::optional<std::size_t> steps_in_a_launch) {
-  if (lanes == 1)
-    return std::make_unique<OpenclGridNodes>(system, integrator, dt_s, device, memory,
-                                             NodeShape(grid, device));
+  if (lanes == 1) return make_grid_nodes(system, NodeShape(grid, device), integrator, dt_s, device, memory);
   const auto cache_bytes = cl::Device(device.id, true).getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   return std::make_unique<OpenclBands>(system, grid, integrator, dt_s, device, memory,
                                        BandShape(grid, integrator, static_cast<std::size_t>(lanes),

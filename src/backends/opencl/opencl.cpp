@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "backends/devices/drivers.h"
 #include "backends/layouts/alike_bodies.h"
 #include "backends/layouts/node_arrays.h"
 #include "backends/layouts/sliced_graph.h"
@@ -28,25 +27,15 @@ PairLayout record_layout(const SlicedGraph& graph) {
   return pair;
 }
 
-/// Bodies, from their sliced graph, which holds one material of springs a node.
-class OpenclMesh final : public OpenclStages {
- public:
-  OpenclMesh(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-             DeviceMemory memory, int lanes, const SlicedGraph& graph)
-      : OpenclStages(system, integrator, dt_s, device, memory, record_layout(graph),
-                     {graph.neighbour.size() * sizeof(cl_uint), graph.neighbour.size() * sizeof(float)}) {
-    const std::size_t tiles = graph.slots() / static_cast<std::size_t>(lanes);
-    const OpenclChunks chunks(tiles, device, lanes);
-    const MeshParameters parameters{static_cast<cl_uint>(tiles), static_cast<cl_uint>(chunks.per_item)};
-    add_argument(std::span(&parameters, 1));
-    add_argument(std::span(graph.first_entry));
-    add_argument(std::span(graph.neighbour));
-    add_argument(std::span(graph.stiffness_rest));
-    add_argument(std::span(graph.stiffness));
-    add_argument(std::span(graph.damping));
-    add_argument(std::span(graph.held));
-    prepare(mesh_program_text(integrator, lanes), chunks.items, system.start);
-  }
+/// How work-items share the nodes of bodies, `lanes` in a tile.
+struct MeshTiles {
+  OpenclChunks chunks;
+  MeshParameters parameters;
+
+  MeshTiles(std::size_t slots, const OpenclDevice& device, int lanes)
+      : chunks(slots / static_cast<std::size_t>(lanes), device, lanes),
+        parameters{static_cast<cl_uint>(slots / static_cast<std::size_t>(lanes)),
+                   static_cast<cl_uint>(chunks.per_item)} {}
 };
 
 /// The bodies as the kernels see them (kernels/alike_stage.cl).
@@ -128,36 +117,11 @@ PairLayout slice_layout(const AlikeSlices& slices) {
   return pair;
 }
 
-/// Alike bodies, `lanes` of them side by side, to the bits of OpenclMesh.
-class OpenclAlikeMesh final : public OpenclStages {
- public:
-  OpenclAlikeMesh(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-                  DeviceMemory memory, int lanes, const AlikeSlices& slices, const AlikeGraph& graph)
-      : OpenclStages(system, integrator, dt_s, device, memory, slice_layout(slices),
-                     {graph.slices.size() * sizeof(AlikeGraph::Slice),
-                      graph.springs.size() * sizeof(AlikeGraph::Neighbour)}),
-        stored_springs_(graph.stored_springs) {
-    const std::size_t tiles = slices.scene_node.size() / static_cast<std::size_t>(lanes);
-    const OpenclChunks chunks(tiles, device, lanes);
-    const MeshParameters parameters{static_cast<cl_uint>(tiles), static_cast<cl_uint>(chunks.per_item)};
-    add_argument(std::span(&parameters, 1));
-    add_argument(std::span(graph.slices));
-    add_argument(std::span(graph.springs));
-    add_argument(std::span(graph.constants));
-    prepare(alike_program_text(integrator, lanes), chunks.items, system.start);
-  }
+}  // namespace
 
-  std::optional<std::uint64_t> stored_springs() const override { return stored_springs_; }
-
- private:
-  std::uint64_t stored_springs_;
-};
-
-/// `before`: is told of what kind the system is before any program is compiled.
-template <class Before>
-std::unique_ptr<Backend> make(const System& system, const Integrator& integrator, double dt_s,
-                              const OpenclDevice& device, int lanes, DeviceMemory memory,
-                              const Before& before) {
+std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
+                                     const OpenclDevice& device, int lanes, DeviceMemory memory,
+                                     const std::function<void(SteppedKind)>& before) {
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     if (const auto* grid = std::get_if<GridPatch>(&system.topology)) {
       before(SteppedKind::cloth);
@@ -168,29 +132,40 @@ std::unique_ptr<Backend> make(const System& system, const Integrator& integrator
     constexpr double lanes_per_body = 1.8;
     const auto alike = alike_bodies_for(system, alike_slice_lanes(lanes), lanes_per_body);
     before(alike ? SteppedKind::alike_bodies : SteppedKind::bodies);
-    if (!alike)
-      return std::make_unique<OpenclMesh>(system, integrator, dt_s, device, memory, lanes,
-                                          SlicedGraph(system, mesh_slice_lanes(lanes)));
+    const auto stages = [&](const StageKernels& kernels) {
+      return std::make_unique<OpenclStages>(system, integrator, dt_s, device, memory, kernels);
+    };
+    if (!alike) {
+      const SlicedGraph graph(system, mesh_slice_lanes(lanes));
+      const MeshTiles tiles(graph.slots(), device, lanes);
+      return stages({record_layout(graph),
+                     {bytes_of(tiles.parameters), bytes_of(graph.first_entry), bytes_of(graph.neighbour),
+                      bytes_of(graph.stiffness_rest), bytes_of(graph.stiffness), bytes_of(graph.damping),
+                      bytes_of(graph.held)},
+                     mesh_program_text(integrator, lanes),
+                     tiles.chunks.items});
+    }
+    // To the same bits.
     const AlikeSlices slices(*alike, alike_slice_lanes(lanes));
     require_numbers(*alike, slices.scene_node.size());
-    return std::make_unique<OpenclAlikeMesh>(system, integrator, dt_s, device, memory, lanes, slices,
-                                             AlikeGraph(*alike, slices));
+    const AlikeGraph graph(*alike, slices);
+    const MeshTiles tiles(slices.scene_node.size(), device, lanes);
+    return stages({slice_layout(slices),
+                   {bytes_of(tiles.parameters), bytes_of(graph.slices), bytes_of(graph.springs),
+                    bytes_of(graph.constants)},
+                   alike_program_text(integrator, lanes),
+                   tiles.chunks.items,
+                   graph.stored_springs});
   });
-}
-
-}  // namespace
-
-std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
-                                     const OpenclDevice& device, int lanes, DeviceMemory memory) {
-  return make(system, integrator, dt_s, device, lanes, memory, [](SteppedKind) {});
 }
 
 std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options) {
   const OpenclDevice device = device_for(options);
-  return make(system, integrator, dt_s, device, lanes_for(device), options.memory, [&](SteppedKind kind) {
-    try_driver({"opencl", std::string(integrator.name), kind, options}, device);
-  });
+  return make_opencl(system, integrator, dt_s, device, lanes_for(device), options.memory,
+                     [&](SteppedKind kind) {
+                       try_driver({"opencl", std::string(integrator.name), kind, options}, device);
+                     });
 }
 
 }  // namespace mssim

@@ -12,11 +12,12 @@ namespace {
 
 constexpr Storage storage = Storage::separate;
 
-/// The sizes of the integrator's pairs and of `others`.
-std::vector<std::uint64_t> with_pairs(const Integrator& integrator, std::size_t pair_floats,
-                                      std::vector<std::uint64_t> others) {
-  others.insert(others.end(), stored_pairs(integrator, storage).size(), pair_floats * sizeof(float));
-  return others;
+/// The bytes of all buffers.
+std::vector<std::uint64_t> buffers_of(const Integrator& integrator, const StageKernels& kernels) {
+  std::vector<std::uint64_t> bytes(stored_pairs(integrator, storage).size(),
+                                   kernels.layout.floats * sizeof(float));
+  for (const std::span<const std::byte> argument : kernels.arguments) bytes.push_back(argument.size());
+  return bytes;
 }
 
 }  // namespace
@@ -31,7 +32,7 @@ OpenclBackend::OpenclBackend(const System& system, const Integrator& integrator,
   const Coefficients<float> coefficients = coefficients_of<float>(integrator, dt_s);
   static_assert(sizeof(coefficients) == sizeof(step.coefficients));
   std::memcpy(step.coefficients, coefficients.data(), sizeof(step.coefficients));
-  add_argument(std::span<const StepParameters>(&step, 1));
+  add_argument(bytes_of(step));
 }
 
 void OpenclBackend::add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items) {
@@ -70,27 +71,24 @@ State OpenclBackend::read_state(const OpenclBuffer<float>& buffer) const {
 }
 
 OpenclStages::OpenclStages(const System& system, const Integrator& integrator, double dt_s,
-                           const OpenclDevice& device, DeviceMemory memory, const PairLayout& layout,
-                           std::vector<std::uint64_t> others)
-    : OpenclBackend(system, integrator, dt_s, device, memory, layout,
-                    with_pairs(integrator, layout.floats, std::move(others))),
-      integrator_(integrator) {
+                           const OpenclDevice& device, DeviceMemory memory, const StageKernels& kernels)
+    : OpenclBackend(system, integrator, dt_s, device, memory, kernels.layout,
+                    buffers_of(integrator, kernels)),
+      stored_springs_(kernels.stored_springs) {
   // Zeros in the padding too, so that no arithmetic there meets a denormal number, which can be slow.
   for (const Pair pair : stored_pairs(integrator, storage))
     pairs_[index(pair)] = queue_.zeros<float>(layout_.floats);
-}
-
-void OpenclStages::prepare(const std::string& program_text, const WorkItems& items, const State& start) {
-  const cl::Program program = queue_.build(program_text);
+  for (const std::span<const std::byte> argument : kernels.arguments) add_argument(argument);
+  const cl::Program program = queue_.build(kernels.program);
   for (const bool swapped : {false, true})
-    for (std::size_t stage = 0; stage < integrator_.stage_count; ++stage) {
+    for (std::size_t stage = 0; stage < integrator.stage_count; ++stage) {
       cl::Kernel kernel(program, stage_kernel_name(stage).c_str());
       cl_uint argument = 0;
-      for (const Pair pair : stage_arguments({integrator_, stage, storage}))
+      for (const Pair pair : stage_arguments({integrator, stage, storage}))
         kernel.setArg(argument++, arrays(pair, swapped).buffer());
-      add_launch(swapped, kernel, argument, items);
+      add_launch(swapped, kernel, argument, kernels.items);
     }
-  warm_up(*this, start, 2);  // in both roles of the pairs
+  warm_up(*this, system.start, 2);  // in both roles of the pairs
 }
 
 const OpenclBuffer<float>& OpenclStages::arrays(Pair pair, bool swapped) const {

@@ -16,6 +16,16 @@
 
 namespace mssim {
 
+/// The bytes of an array, or of one object.
+template <class T>
+std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span(values));
+}
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+  return std::as_bytes(std::span(&value, 1));
+}
+
 /// How a topology's nodes lie in the buffer of a pair.
 struct PairLayout {
   std::size_t floats = 0;         ///< in the buffer
@@ -39,11 +49,8 @@ class OpenclBackend : public Backend {
   OpenclBackend(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
                 DeviceMemory memory, const PairLayout& layout, std::span<const std::uint64_t> buffers);
 
-  /// The next argument of every kernel: a buffer with a copy of `values`.
-  template <class T>
-  void add_argument(std::span<const T> values) {
-    arguments_.push_back(queue_.copy_of(std::as_bytes(values)));
-  }
+  /// The next argument of every kernel: a buffer with a copy of these bytes.
+  void add_argument(std::span<const std::byte> bytes) { arguments_.push_back(queue_.copy_of(bytes)); }
   /// A launch whose kernel object has its arguments set once and for all: the common ones from `argument` on.
   void add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items);
 
@@ -62,29 +69,35 @@ class OpenclBackend : public Backend {
   bool swapped_ = false;
 };
 
+/// What one kernel per stage of the integrator needs of a system.
+struct StageKernels {
+  PairLayout layout;
+  /// Those of every kernel behind its pairs (stage_arguments) and the step parameters. They are copied.
+  std::vector<std::span<const std::byte>> arguments;
+  std::string program;  ///< text
+  WorkItems items;
+  std::optional<std::uint64_t> stored_springs = {};  ///< Backend::stored_springs
+};
+
 /// Steps a system by one kernel per stage of the integrator, all steps queued one behind the other: what the
-/// `opencl` backend does unless it walks over a cloth (cloth.h). A derived class says how nodes lie in
-/// memory, gives the program and the arguments that its kernels take, and then calls `prepare`.
-class OpenclStages : public OpenclBackend {
+/// `opencl` backend does unless it walks over a cloth (cloth.h).
+class OpenclStages final : public OpenclBackend {
  public:
+  /// Throws Unsupported unless the device can hold the integrator's pairs and the arguments.
+  OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
+               DeviceMemory memory, const StageKernels& kernels);
+
   void set_state(const State& state) override;
   void step(int count) override;
   State state() const override;
-
- protected:
-  /// Throws Unsupported unless the device can hold the integrator's pairs and `others`, all bytes.
-  OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
-               DeviceMemory memory, const PairLayout& layout, std::vector<std::uint64_t> others);
-
-  /// Builds the program and warms up; then stands at `start`.
-  void prepare(const std::string& program_text, const WorkItems& items, const State& start);
+  std::optional<std::uint64_t> stored_springs() const override { return stored_springs_; }
 
  private:
   /// The arrays that hold `pair`; `state` and `next` change roles after every step.
   const OpenclBuffer<float>& arrays(Pair pair, bool swapped) const;
 
-  const Integrator& integrator_;
   std::array<std::optional<OpenclBuffer<float>>, pair_kinds> pairs_;  // [Pair], those that are needed
+  std::optional<std::uint64_t> stored_springs_;
 };
 
 }  // namespace mssim
