@@ -21,7 +21,7 @@ std::unique_ptr<Backend> make_hybrid(
 /// threads sum them at the nodes and integrate. In every stage the nodes go to the device and the forces come
 /// back: in shared memory, as published, or by copying (options.memory). Works from System::springs, whatever
 /// the topology. Throws Unavailable where there is no such device or its driver fails, Unsupported where the
-/// scene does not fit into its memory.
+/// scene does not fit into its memory or has too many springs.
 std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 

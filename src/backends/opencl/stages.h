@@ -54,8 +54,9 @@ class OpenclBackend : public Backend {
   /// A launch whose kernel object has its arguments set once and for all: the common ones from `argument` on.
   void add_launch(bool swapped, cl::Kernel kernel, cl_uint argument, const WorkItems& items);
 
-  /// Writes the state into a buffer of this layout that begins `first` floats into `buffer`. This and
-  /// read_state throw std::runtime_error where the driver fails.
+  /// Writes the state into a buffer of this layout that begins `first` floats into `buffer`: ghosts have one
+  /// of their own, and nothing is read from them. This and read_state throw std::runtime_error where the
+  /// driver fails.
   void write_state(const OpenclBuffer<float>& buffer, const PairLayout& layout, const State& state,
                    std::size_t first = 0) const;
   State read_state(const OpenclBuffer<float>& buffer) const;

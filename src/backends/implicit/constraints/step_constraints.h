@@ -74,7 +74,7 @@ SpringColouring spring_order(const System& system);
 
 /// The small steps of a system.
 struct SmallSteps {
-  double small_s;        ///< the small step
+  double small_s;        ///< the small step, s
   float h_s;             ///< the same
   float fall;            ///< m/s, of gravity in a small step
   float kept;            ///< part of the velocity that the air leaves in a small step

@@ -39,10 +39,10 @@ struct LocalGlobalNodes {
   float dt;  ///< s
   std::uint32_t iterations;
   std::vector<Place> places;
-  AlignedArray x, v;  ///< fields: the state, m and m/s
-  AlignedArray y, w;  ///< fields: x + dt w, m, and the velocities sought, m/s
-  AlignedArray e;     ///< field: what is missing for w - v = dt a(y, w), m/s
-  AlignedArray fronts;
+  AlignedArray x, v;    ///< fields: the state, m and m/s
+  AlignedArray y, w;    ///< fields: x + dt w, m, and the velocities sought, m/s
+  AlignedArray e;       ///< field: what is missing for w - v = dt a(y, w), m/s
+  AlignedArray fronts;  ///< [parts][3][rows], each at its BlockFactor::Block::front
 
   /// A state must be set before the first step.
   LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
