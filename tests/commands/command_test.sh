@@ -12,24 +12,17 @@ column() { column_of "$work/results/timings.csv" "$1"; }
 
 # Usage.
 expect 2 'nothing to measure' bench
-expect 2 'rounds' bench --rounds 0 --scene cloth2500
-expect 2 'threads' bench --threads -3 --scene cloth2500
 OMP_THREAD_LIMIT=1 expect 2 'threads 2 is more than OMP_THREAD_LIMIT allows, 1;' run --threads 2 --scene cloth2500
 expect 2 'memory.*unified.*copy.*shared' bench --scene cloth2500 --backend hybrid --memory unified
 expect 2 'memory.*unified.*copy.*shared' run --scene cloth2500 --memory unified
-expect 2 'unknown backend "openpm" (did you mean openmp?)' bench --scene cloth2500 --backend openpm
 expect 2 'known are serial, threads-mutex, openmp, opencl, hybrid, mpi and mpi-copies' bench --scene cloth2500 --backend cuda
 expect 2 'rk4-frozen' bench --scene cloth2500 --integrator euler
-expect 2 'cloth2500' bench --scene cloth2501
 expect 2 '/no/such/scene.json' bench --scene /no/such/scene.json
-expect 2 'table1.*races.*scaling' bench --suite table9
 expect 2 'did you mean gather?): known are serial, mutex-per-group' bench --suite races --backend gahter
 expect 2 'unknown backend "atomic"' bench --scene cloth2500 --backend atomic
 expect 2 'unknown backend "hybrid"' bench --suite races --backend hybrid
-expect 2 'give --out' bench --scene cloth2500 --trace
 expect 2 'duration' run --scene cloth2500 --duration 1e-9
 expect 2 'fps' run --scene cloth2500 --fps 1e9
-expect 2 'duration: "nan" is not a positive number' run --scene cloth2500 --duration nan
 expect 2 'dt' run --scene cloth2500 --dt -1
 expect 2 'serial' run --scene cloth2500 --backend openmp --precision double
 
@@ -43,32 +36,26 @@ expect 2 'too short: one round of all this takes about [0-9]* s' bench --suite t
 expect 2 'time-budget' bench --scene cloth2500 --time-budget nan
 
 # Scenes.
-sed 's/"rows"/"rowz"/' "$source/scenes/cloth2500.json" >"$work/typo.json"
-expect 2 'typo.json.*rowz.*rows' bench --scene "$work/typo.json"
 sed 's/"rows": 50/"rows": 1000000/; s/"columns": 50/"columns": 4000/' "$source/scenes/cloth2500.json" >"$work/huge.json"
 expect 2 'huge.json.*GB.*name fewer with --backend' bench --scene "$work/huge.json" --out "$work/never"
 
 # Devices and files.
 expect 3 'no such device' run --scene cloth2500 --backend opencl --device 'no such device'
-expect 4 'not-a-folder' bench --scene cloth2500 --out "$work/typo.json/not-a-folder"
+expect 4 'not-a-folder' bench --scene cloth2500 --out "$work/huge.json/not-a-folder"
 expect 4 'no/such' run --scene cloth2500 --duration 0.01 --trace "$work/no/such/trace.h5"
 [ -z "$(find "$work" -name '*.part' -o -name never)" ] || fail "something half-written is left"
 
 # A simulation that blows up: named, and not verified.
 sed 's/"dt_s": 5e-5/"dt_s": 1e-2/' "$source/scenes/cloth2500.json" >"$work/wild.json"
 expect 1 'blew up at step [0-9]* (t = .* s): node [0-9]* is not finite' run --scene "$work/wild.json"
-status=0
-"$mssim" bench --scene "$work/wild.json" --backend serial,openmp --rounds 2 --out "$work/results" >"$work/out" 2>"$work/err" ||
-  status=$?
-[ "$status" -eq 1 ] || fail "a bench that blows up exits with $status"
+ends 1 bench --scene "$work/wild.json" --backend serial,openmp --rounds 2 --out "$work/results"
 [ "$(column verified | sort -u)" = false ] || fail "a row that blew up is verified"
 [ "$(grep -c '^mssim: wild, \(serial\|openmp\), [a-z0-9-]*: failed: ' "$work/err")" -eq 3 ] && grep -q '^mssim: and 3 more$' "$work/err" ||
   fail "stderr does not say which rows failed and why: $(cat "$work/err")"
 grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timings.csv does not say what failed"
 
 # Data copied between host and device: the rows that do so say it.
-"$mssim" bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite \
-  >"$work/out" 2>"$work/err" || fail "bench --memory copy exits with $?"
+succeed bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite
 [ "$(column verified | sort -u)" = true ] || fail "not every row is verified with copied memory"
 [ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
 
@@ -88,8 +75,7 @@ for command in 'bench --scene cloth2500' 'bench --scene cloth2500 --dry-run' 'be
 done
 
 # The methods to avoid the data race: those asked for, and the base of the ratios where it is one of them.
-"$mssim" bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races" >"$work/out" 2>"$work/err" ||
-  fail "races exits with $?"
+succeed bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races"
 [ "$(wc -l <"$work/races/races.csv")" -eq 5 ] || fail "races.csv has not four methods: $(cat "$work/races/races.csv")"
 [ "$(grep -c ',yes,ok$' "$work/races/races.csv")" -eq 4 ] || fail "races.csv: $(cat "$work/races/races.csv")"
 [ -s "$work/races/races.md" ] || fail "races.md is missing"
@@ -98,7 +84,7 @@ done
 # Help and listings.
 for arguments in '--help' 'bench --help' 'run --help' 'check --help' 'compare --help' 'measure --help' 'list --help' 'help --help'; do
   # shellcheck disable=SC2086 # words of their own
-  "$mssim" $arguments >"$work/out" 2>"$work/err" || fail "$arguments exits with $?"
+  succeed $arguments
   grep -q 'Example' "$work/out" || fail "$arguments shows no example"
   [ ! -s "$work/err" ] || fail "$arguments writes to stderr"
 done
@@ -110,4 +96,3 @@ done
 "$mssim" bench --help | tr -s '\n ' ' ' | grep 'tables stands for table1, table2 and table3' >/dev/null || fail "bench --help does not say what tables is"
 "$mssim" list schema | cmp - "$2/scenes/scene.schema.json" || fail "list schema"
 if "$mssim" list methods >/dev/full 2>"$work/err"; then fail "a full standard output is no error"; fi
-[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -42,9 +42,7 @@ expect 2 'folder already holds results: give another --out, or --overwrite' "${t
 succeed "${tiny[@]}" --out "$work/folder" --overwrite --error 1e-9
 grep -q '^Nothing that was measured keeps the error within 1e-09 of a mean rest length' "$work/folder/guide.md" || fail "an error that nothing keeps: $(head -9 "$work/folder/guide.md")"
 
-status=0
-"$mssim" guide --scene cloth40k --backend serial --integrator newton-euler --threads 1 --time-budget 0.01 >"$work/out" 2>"$work/err" || status=$?
-[ "$status" -eq 1 ] || fail "a guide without time exits with $status"
+ends 1 guide --scene cloth40k --backend serial --integrator newton-euler --threads 1 --time-budget 0.01
 grep -q '^mssim: cloth40k: nothing was measured in 0.01 s: give --time-budget 90 or more' "$work/err" || fail "stderr says: $(cat "$work/err")"
 grep -Eq '^(Nothing was measured|No errors were measured: no time)' "$work/out" || fail "a guide without time recommends $(cat "$work/out")"
 
@@ -58,10 +56,8 @@ succeed bench --scene "$work/tiny.json" --backend serial --integrator semi-euler
 # Programs: one that fails, and one that hangs, cost their own points, and the status says why.
 program=$(realpath "${mssim%/*}/../bin/own_backend")  # tests/support/own_backend.cpp
 for mistake in exits hangs; do printf '{"command": ["%s", "%s"]}' "$program" "$mistake" >"$work/$mistake.json"; done
-status=0
-"$mssim" guide --scene "$work/tiny.json" --backend serial,exits,hangs --backend-limit 1 --integrator semi-euler,rk4 --threads 1 \
-  --horizon 0.01 --time-budget 8 --error 1e-2 --out "$work/programs" >"$work/out" 2>"$work/err" || status=$?
-[ "$status" -eq 1 ] || fail "a guide in which programs fail exits with $status: $(cat "$work/err")"
+ends 1 guide --scene "$work/tiny.json" --backend serial,exits,hangs --backend-limit 1 --integrator semi-euler,rk4 --threads 1 \
+  --horizon 0.01 --time-budget 8 --error 1e-2 --out "$work/programs"
 grep -q '^mssim: tiny, exits, semi-euler: failed: exits ended with exit code 3' "$work/err" || fail "stderr says: $(cat "$work/err")"
 for text in ',semi-euler,exits,.*failed: exits ended with exit code 3' ',semi-euler,hangs,.*failed: hangs did not answer ""step '; do
   grep -q "$text" "$work/programs/guide.csv" || fail "guide.csv does not say $text: $(cat "$work/programs/guide.csv")"
@@ -70,15 +66,12 @@ grep -q '^Take \(semi-euler\|rk4\) on serial with a step of ' "$work/programs/gu
 
 expect 2 '^mssim: --scene NAME|FILE,... is missing; see mssim guide --help$' guide
 expect 2 'jeans1k is a garment' guide --scene jeans1k
-expect 2 'unknown integrator "rk5"' guide --scene cloth2500 --integrator rk5
 expect 2 'unknown backend "opnemp" (did you mean openmp?)' guide --scene cloth2500 --backend opnemp
 expect 2 '^mssim: --error: "0" is not a positive number' guide --scene cloth2500 --error 0
 expect 2 '^mssim: --fps: "x" is not a number from 1 to 10000' guide --scene cloth2500 --fps x
-expect 2 '^mssim: --time-budget: "-1" is not a positive number' guide --scene cloth2500 --time-budget -1
 expect 2 '^mssim: --overwrite needs the folder of an earlier run' guide --scene cloth2500 --overwrite
 
 # The suite is the same for many scenes.
 succeed bench --suite guide --dry-run --time-budget 1080
 [ "$(grep -c '^\(cloth\|bodies\)[0-9].* 90$' "$work/out")" -eq 12 ] || fail "--suite guide: $(cat "$work/out")"
 expect 2 '^mssim: --rounds cannot be used with --suite guide: leave it out$' bench --suite guide --rounds 3
-[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

@@ -55,14 +55,14 @@ first_sample() { grep '^cloth2500,serial,semi-euler,1,' int/samples.csv | cut -d
 before=$(first_sample)
 
 # --resume keeps that and measures the rest; a finished folder is left as it is.
-"$mssim" "${bench[@]}" --out int --resume >out 2>err || fail "--resume exits with $?: $(cat err)"
+succeed "${bench[@]}" --out int --resume
 [ "$(rounds int)" = '6 6 6 6 ' ] || fail "after --resume the rows have the rounds $(rounds int)"
 grep -A 1 '"earlier_starts_utc": \[' int/provenance.json | grep '"20' >/dev/null || fail "the provenance does not tell of the first run"
 [ "$(first_sample)" = "$before" ] || fail "--resume has lost a sample"
 [ "$(grep -c '^cloth2500,serial,' int/samples.csv)" -eq 6 ] || fail "cloth2500 has not six samples"
 whole int
 cp int/samples.csv kept
-"$mssim" "${bench[@]}" --out int --resume >out 2>err || fail "--resume of a finished folder exits with $?"
+succeed "${bench[@]}" --out int --resume
 cmp -s kept int/samples.csv || fail "--resume measured a finished folder again"
 sed -n '/^cloth4900: /,$p' out | grep -q ' openmp ' || fail "--resume of a finished folder prints no table"
 
@@ -97,8 +97,7 @@ for signal in INT KILL; do
   [ "$signal" = KILL ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
   diff -r before int || fail "--overwrite that is ended by SIG$signal before it has a row changes what is there"
 done
-"$mssim" bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite >out 2>err ||
-  fail "--overwrite exits with $?: $(cat err)"
+succeed bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite
 [ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"
 [ "$(wc -l <int/samples.csv)" -eq 2 ] || fail "--overwrite left samples"
 
@@ -125,7 +124,7 @@ for delay in 0.3 0.7 1.1 1.6; do
   wait "$process" 2>/dev/null || true
   [ ! -e killed/timings.csv ] || whole killed
 done
-"$mssim" "${bench[@]}" --out killed --resume >out 2>err || fail "--resume after kill -9 exits with $?: $(cat err)"
+succeed "${bench[@]}" --out killed --resume
 [ "$(rounds killed)" = '6 6 6 6 ' ] || fail "after kill -9 and --resume the rows have the rounds $(rounds killed)"
 [ "$(cut -d, -f1-4 killed/samples.csv | sort | uniq -d | wc -l)" -eq 0 ] || fail "a sample stands twice"
 whole killed
@@ -178,5 +177,3 @@ start_and_signal INT dress.h5.part run --scene jeans16k --backend serial --trace
 h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"
 frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)
 [ "$frames" -ge 1 ] && [ "$(grep -c '^[0-9]' dress.csv)" -eq "$frames" ] || fail "$frames frames, energies: $(cat dress.csv)"
-
-[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

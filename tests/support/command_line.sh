@@ -1,6 +1,12 @@
-# Functions of the tests at the command line. Needs $mssim; sets $work (a folder that goes away) and $failures.
+# Functions of the tests at the command line. Needs $mssim; sets $work, a folder that goes away. A test that has called fail() goes on,
+# and in the end exits with 1.
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# finish STATUS: what every test ends with
+finish() {
+  rm -rf "$work"
+  if [ "$1" -eq 0 ] && [ "$failures" -gt 0 ]; then echo "$failures failures" && exit 1; fi
+}
+trap 'finish $?' EXIT
 export POCL_CACHE_DIR=${mssim%/*}/../pocl  # kernels compile for seconds
 failures=0
 
@@ -21,10 +27,13 @@ expect() {
   [ ! -s "$work/out" ] || fail "stdout is not empty"
 }
 
-# succeed ARGUMENTS...: mssim must exit with 0; what it says is in $work/out and $work/err
-succeed() {
-  "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null || fail "mssim $(printf '%q ' "$@") exits with $?: $(cat "$work/err")"
+# ends STATUS ARGUMENTS...: mssim must exit with STATUS; what it says is in $work/out and $work/err
+ends() {
+  local status=0
+  "$mssim" "${@:2}" >"$work/out" 2>"$work/err" </dev/null || status=$?
+  [ "$status" -eq "$1" ] || fail "mssim $(printf '%q ' "${@:2}") exits with $status instead of $1: $(cat "$work/out" "$work/err")"
 }
+succeed() { ends 0 "$@"; }
 
 # column_of FILE NAME: that column of a CSV file in which no field before it holds a comma
 column_of() {
