@@ -7,12 +7,11 @@
 #include <string>
 #include <string_view>
 #include <tuple>
-#include <vector>
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "model/energy.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/backend_checks.h"
 
 namespace mssim {
 namespace {
@@ -63,11 +62,6 @@ Momenta momenta_of(const System& system, const State& state) {
   return sum;
 }
 
-std::vector<std::string_view> backend_names() {
-  std::vector<std::string_view> names;
-  for (const BackendInfo& backend : backends()) names.push_back(backend.name);
-  return names;
-}
 constexpr std::array<std::string_view, 3> integrator_names{"semi-euler", "midpoint", "rk4"};
 
 class Body : public testing::TestWithParam<std::tuple<std::string_view, std::string_view>> {
@@ -79,14 +73,9 @@ class Body : public testing::TestWithParam<std::tuple<std::string_view, std::str
   }
 };
 INSTANTIATE_TEST_SUITE_P(BackendsAndIntegrators, Body,
-                         testing::Combine(testing::ValuesIn(backend_names()),
+                         testing::Combine(testing::ValuesIn(names_of(backends())),
                                           testing::ValuesIn(integrator_names)),
-                         [](const auto& test) {
-                           std::string name(std::get<0>(test.param));
-                           name.append("__").append(std::get<1>(test.param));
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+                         ByName());
 
 TEST_P(Body, AtRestOnTheFloorStaysAndGainsNothing) {
   const System system = resting_block();

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 
 #include "backends/openmp/openmp.h"
@@ -19,8 +18,7 @@
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/dressing_systems.h"
-#include "tests/support/fused_sets.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -4,15 +4,13 @@
 #include <fstream>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
 #include "integrators/all_integrators.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {
@@ -125,12 +123,6 @@ SceneJob job_of(const std::vector<std::string_view>& backend_names,
   for (const std::string_view name : integrator_names) job.integrators.push_back(find_integrator(name));
   job.execution.threads = 2;
   return job;
-}
-
-TEST(BenchMemory, OfOneSmallBackendIsThatOfTheReference) {
-  // System 56, reference 81, three states of 48 bytes a node; 16 bytes a spring.
-  EXPECT_EQ(bench_memory_needed(job_of({"openmp"}, {"semi-euler"}), {1000, 6000, true}),
-            1000U * (56 + 81 + 3 * 48) + 6000U * 16);
 }
 
 TEST(BenchMemory, HoldsAReferenceForEachThread) {

@@ -9,7 +9,7 @@
 #include "charts/layout.h"
 #include "platform/files.h"
 #include "platform/process.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/files_fixture.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -2,11 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
+#include <utility>
 
+#include "garment/body/mannequin.h"
 #include "mesh/meshing.h"
+#include "mesh/shapes.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {
@@ -14,6 +19,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::StartsWith;
 
 std::string surface_complaint(const Surface& surface) {
@@ -146,6 +152,205 @@ TEST(InteriorPoints, ParametersOutOfRangeAreRefused) {
   EXPECT_THAT(complaint_about({10, 1, 0.6, 0.5}), HasSubstr("jitter of interior points is 0.6"));
   EXPECT_THAT(complaint_about({10, 1, std::nan(""), 0.5}), HasSubstr("jitter of interior points is nan"));
   EXPECT_THAT(complaint_about({10, 1, 0.1, -1}), HasSubstr("margin of interior points is -1"));
+}
+
+/// A sphere of radius 1 without the triangles that lie wholly above `height`, on one of the two sides.
+Surface open_sphere(double height, double sign = 1) {
+  Surface surface = surface_of(SphereShape{1, 12});
+  std::erase_if(surface.triangles, [&](const auto& triangle) {
+    return std::ranges::all_of(triangle,
+                               [&](std::uint32_t p) { return sign * surface.points[p].y > height; });
+  });
+  // Points of no triangle go, as a file's reader would have it.
+  Surface used;
+  std::vector<std::uint32_t> number(surface.points.size(), UINT32_MAX);
+  for (auto& triangle : surface.triangles)
+    for (std::uint32_t& point : triangle) {
+      if (number[point] == UINT32_MAX) {
+        number[point] = static_cast<std::uint32_t>(used.points.size());
+        used.points.push_back(surface.points[point]);
+      }
+      point = number[point];
+    }
+  used.triangles = surface.triangles;
+  return used;
+}
+
+TEST(Openings, AClosedSurfaceHasNone) {
+  EXPECT_THAT(openings_of(mannequin({}, {16})), IsEmpty());
+  Surface body = unit_cube();
+  EXPECT_THAT(close_openings(body, 1), IsEmpty());
+  EXPECT_EQ(body.triangles, unit_cube().triangles);
+}
+
+TEST(Openings, AreMeasuredAndTheLargestComesFirst) {
+  Surface surface = both(open_sphere(0.95), open_sphere(0.8, -1));
+  const std::vector<Opening> openings = openings_of(surface);
+  ASSERT_EQ(openings.size(), 2U);
+  EXPECT_TRUE(openings[0].is_ring);
+  EXPECT_GT(openings[0].edges(), openings[1].edges());
+  EXPECT_NEAR(openings[0].centre.x, 0, 0.02);
+  EXPECT_NEAR(openings[0].centre.y, -0.78, 0.06);
+  EXPECT_NEAR(openings[0].size, 2 * 0.65, 0.15);
+  EXPECT_NEAR(openings[1].centre.y, 0.92, 0.04);
+}
+
+TEST(Openings, ThatAreClosedLeaveASurfaceThatEnclosesTheVolume) {
+  Surface surface = open_sphere(0.95);
+  const double whole = volume_of(surface_of(SphereShape{1, 12}));
+  EXPECT_EQ(close_openings(surface, 1).size(), 1U);
+  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "sphere"); }), "");
+  EXPECT_THAT(openings_of(surface), IsEmpty());
+  EXPECT_LT(volume_of(surface), whole);
+  EXPECT_GT(volume_of(surface), 0.98 * whole);
+}
+
+TEST(Openings, ThatAreSpannedGetNoNewPointsAndFollowTheirRing) {
+  // A strip from nearly pole to pole: a fan's middle lies deep within the sphere.
+  Surface surface = surface_of(SphereShape{1, 12});
+  const double whole = volume_of(surface);
+  std::erase_if(surface.triangles, [&](const auto& triangle) {
+    return std::ranges::all_of(triangle, [&](std::uint32_t corner) {
+      const Vec3d& p = surface.points[corner];
+      return p.z > 0 && std::abs(p.x) < 0.35 && std::abs(p.y) < 0.85;
+    });
+  });
+  ASSERT_EQ(openings_of(surface).size(), 1U);
+  Surface spanned = surface, with_middle = surface;
+  span_openings(spanned);
+  close_openings(with_middle, 2);
+  EXPECT_EQ(spanned.points, surface.points);
+  EXPECT_EQ(spanned.triangles.size(), surface.triangles.size() + openings_of(surface).front().edges() - 2);
+  EXPECT_THAT(openings_of(spanned), IsEmpty());
+  EXPECT_LT(whole - volume_of(spanned), 0.5 * (whole - volume_of(with_middle)));
+}
+
+TEST(Openings, AreNotSpannedByAnEdgeThatTheSurfaceHas) {
+  // A roof whose short ridge would also be the shortest edge across what is open below it.
+  Surface roof{{{-0.2, 0, 0}, {0.2, 0, 0}, {0, -0.3, 1}, {0, -0.3, -1}}, {{0, 2, 1}, {0, 1, 3}}};
+  span_openings(roof);
+  EXPECT_EQ(input_error_of([&] { validate_surface(roof, "roof"); }), "");
+  EXPECT_EQ(roof.triangles.size(), 4U);
+}
+
+TEST(Openings, AMissingTriangleIsPutBack) {
+  const Surface whole = surface_of(SphereShape{1, 4});
+  Surface surface = whole;
+  surface.triangles.pop_back();
+  EXPECT_EQ(close_openings(surface, 1).front().edges(), 3U);
+  EXPECT_EQ(surface.points, whole.points);
+  EXPECT_NEAR(volume_of(surface), volume_of(whole), 1e-12);
+  EXPECT_EQ(input_error_of([&] { validate_surface(surface, "sphere"); }), "");
+}
+
+TEST(Openings, ThatTouchInAPointAreToldApart) {
+  // Two opposite triangles of the four that meet in the middle of a side of the cube.
+  Surface cube = surface_of(BoxShape{{1, 1, 1}, {2, 2, 2}});
+  const auto middle = std::ranges::find_if(
+      cube.points, [](const Vec3d& p) { return std::abs(p.x) < 1e-9 && std::abs(p.z) < 1e-9 && p.y > 0.4; });
+  const auto top = static_cast<std::uint32_t>(middle - cube.points.begin());
+  std::vector<std::size_t> around;
+  for (std::size_t t = 0; t < cube.triangles.size(); ++t)
+    if (std::ranges::find(cube.triangles[t], top) != cube.triangles[t].end()) around.push_back(t);
+  ASSERT_GE(around.size(), 4U);
+  const auto share_an_edge = [&](std::size_t a, std::size_t b) {
+    return std::ranges::count_if(cube.triangles[a], [&](std::uint32_t p) {
+             return std::ranges::find(cube.triangles[b], p) != cube.triangles[b].end();
+           }) == 2;
+  };
+  const auto other = std::find_if(around.begin() + 1, around.end(),
+                                  [&](std::size_t t) { return !share_an_edge(around[0], t); });
+  ASSERT_NE(other, around.end());
+  cube.triangles.erase(cube.triangles.begin() + static_cast<std::ptrdiff_t>(*other));
+  cube.triangles.erase(cube.triangles.begin() + static_cast<std::ptrdiff_t>(around[0]));
+  const std::vector<Opening> openings = close_openings(cube, 2);
+  ASSERT_EQ(openings.size(), 2U);
+  for (const Opening& opening : openings) EXPECT_EQ(opening.edges(), 3U);
+  EXPECT_EQ(input_error_of([&] { validate_surface(cube, "cube"); }), "");
+  EXPECT_NEAR(volume_of(cube), 1, 1e-12);
+}
+
+TEST(Openings, LargeOnesAreRefusedAndNothingIsFilled) {
+  Surface surface = open_sphere(0.5);
+  const std::size_t before = surface.triangles.size();
+  EXPECT_THAT(
+      input_error_of([&] { close_openings(surface, 0.2); }),
+      AllOf(StartsWith("the opening of "), HasSubstr(" edges around ("), HasSubstr(" is 1.7"),
+            HasSubstr(" m across, and at most 0.2 m are closed; close it where the surface was made")));
+  EXPECT_EQ(surface.triangles.size(), before);
+}
+
+TEST(Openings, TrianglesThatDisagreeMakeNoRing) {
+  Surface surface = open_sphere(0.95);
+  const Opening ring = openings_of(surface).front();
+  for (auto& triangle : surface.triangles)
+    if (std::ranges::find(triangle, ring.points[0]) != triangle.end() &&
+        std::ranges::find(triangle, ring.points[1]) != triangle.end())
+      std::swap(triangle[1], triangle[2]);
+  EXPECT_FALSE(openings_of(surface).front().is_ring && openings_of(surface).back().is_ring);
+  EXPECT_THAT(input_error_of([&] { close_openings(surface, 1); }), HasSubstr("does not enclose a hole"));
+}
+
+TEST(Openings, OfNoSurfaceAtAllDoNoHarm) {
+  Surface triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  EXPECT_EQ(close_openings(triangle, 2).size(), 1U);
+  EXPECT_THAT(input_error_of([&] { validate_surface(triangle, "it"); }), HasSubstr("volume"));
+  Surface point{{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}}};
+  EXPECT_THAT(close_openings(point, 1), IsEmpty());
+  Surface nothing;
+  EXPECT_THAT(close_openings(nothing, 1), IsEmpty());
+}
+
+/// Every triangle with corners of its own, each off by up to `jitter` along every axis.
+Surface apart(const Surface& surface, double jitter) {
+  Surface loose;
+  std::mt19937 random(1);
+  const auto off = [&] { return jitter * (2 * static_cast<double>(random()) / 4294967295.0 - 1); };
+  for (const auto& triangle : surface.triangles) {
+    const auto first = static_cast<std::uint32_t>(loose.points.size());
+    for (const std::uint32_t point : triangle)
+      loose.points.push_back(surface.points[point] + Vec3d{off(), off(), off()});
+    loose.triangles.push_back({first, first + 1, first + 2});
+  }
+  return loose;
+}
+
+Surface slab(double thickness) {
+  Surface flat = unit_cube();
+  for (Vec3d& point : flat.points) point.y *= thickness;
+  return flat;
+}
+
+TEST(JoinedCorners, ThatDifferInTheirLastDigitsBecomeOne) {
+  // A body, and one that is thinner than what is merged, whose two sides stay apart.
+  for (const auto& [whole, jitter] : {std::pair{surface_of(SphereShape{1, 12}), 0.0},
+                                      {surface_of(SphereShape{1, 12}), 3e-6},
+                                      {mannequin({}, {24}), 1e-6},
+                                      {slab(5e-6), 2e-8}}) {
+    Surface loose = apart(whole, jitter);
+    EXPECT_EQ(join_corners(loose), 3 * whole.triangles.size() - whole.points.size());
+    EXPECT_EQ(loose.points.size(), whole.points.size());
+    EXPECT_EQ(input_error_of([&] { validate_surface(loose, "joined"); }), "");
+    EXPECT_NEAR(volume_of(loose) / volume_of(whole), 1, 0.05);
+  }
+}
+
+TEST(JoinedCorners, OfWhatIsClosedOrOpenOrFartherApartStayAsTheyAre) {
+  for (const Surface& surface :
+       {slab(1e-6), both(unit_cube(), unit_cube({1 + 1e-6, 0, 0})), open_sphere(0.5), Surface{}}) {
+    Surface same = surface;
+    EXPECT_EQ(join_corners(same), 0U);
+    EXPECT_EQ(same.points, surface.points);
+    EXPECT_EQ(input_error_of([&] { require_joined(same); }), "");
+  }
+  const Surface whole = surface_of(SphereShape{1, 12});
+  Surface loose = apart(whole, 1e-3);
+  join_corners(loose);
+  const auto says_so = AllOf(HasSubstr("triangles do not join: "), HasSubstr("merge the points"));
+  EXPECT_THAT(input_error_of([&] { require_joined(loose); }), says_so);
+  EXPECT_THAT(input_error_of([&] { close_openings(loose, 1); }), says_so)
+      << "they would be closed one by one";
+  EXPECT_THAT(input_error_of([&] { validate_surface(loose, "a"); }), says_so);
 }
 
 }  // namespace

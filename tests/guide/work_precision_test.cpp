@@ -1,12 +1,19 @@
 #include "guide/work_precision.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string_view>
 
+#include "backends/backends.h"
+#include "bench/verification/verification.h"
 #include "guide/guide.h"
+#include "guide/limits.h"
+#include "guide/trusted_state.h"
 #include "integrators/all_integrators.h"
-#include "tests/support/cloth_system.h"
+#include "model/spectrum.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {
@@ -108,6 +115,264 @@ TEST(EnergyBound, IsWhatTheSystemHasAndGravityGives) {
   system.start.velocity = {{2, 0, 0}};
   EXPECT_NEAR(energy_bound(system, 0.1), 64 + 0.01 * (4 + 1), 1e-12);
   EXPECT_NEAR(energy_bound(system, 10), 64 + 0.01 * (4 + 60), 1e-12);
+}
+
+bool never() { return false; }
+
+TEST(IndependentSolver, FollowsAnOscillator) {
+  const System system = spring_oscillator();
+  const double omega = oscillator_frequency(system), span_s = 20.3 / omega;
+  const auto state = independent_state(system, span_s, 1e-12, never);
+  ASSERT_TRUE(state);
+  // The springs' rest lengths are in single precision.
+  EXPECT_NEAR(state->position[1].x - 0.01, 1e-4 * std::cos(20.3), 1e-8);
+  EXPECT_NEAR(state->velocity[1].x, -1e-4 * omega * std::sin(20.3), 1e-8 * omega);
+  EXPECT_EQ(state->position[0], system.start.position[0]);
+}
+
+TEST(IndependentSolver, EndsWhereItIsStopped) {
+  const System system = spring_oscillator();
+  EXPECT_FALSE(independent_state(system, 1, 1e-12, [] { return true; }));
+}
+
+TEST(TrustedState, IsConfirmedByAnotherSolver) {
+  const System system = cloth_system(9, 9);
+  const TrustedState trusted =
+      trusted_state(system, {.longest_s = 0.02, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-7});
+  ASSERT_EQ(trusted.failure, "");
+  EXPECT_NEAR(trusted.horizon_s, 0.02, 1e-9);
+  EXPECT_LE(trusted.own_error, 1e-7);
+  ASSERT_TRUE(trusted.confirmed);
+  EXPECT_LE(*trusted.confirmed, 2e-7);
+  EXPECT_LT(trusted.dt_s, 1e-4);
+}
+
+TEST(TrustedState, EndsItsHorizonBeforeTheFloor) {
+  // Falls 1 mm in 14 ms.
+  const System system = build_system(sheet_spec(4, 4, 0.001));
+  const TrustedState trusted = trusted_state(system, {.longest_s = 0.05, .first_dt_s = 1e-4, .seconds = 100});
+  EXPECT_GT(trusted.horizon_s, 0.010);
+  EXPECT_LT(trusted.horizon_s, 0.0143);
+  EXPECT_THAT(trusted.why_there, testing::HasSubstr("floor"));
+}
+
+TEST(TrustedState, SaysThatThereIsNoHorizon) {
+  const System system = build_system(sheet_spec(4, 4, 1e-6));
+  EXPECT_THAT(trusted_state(system, {.longest_s = 1, .first_dt_s = 1e-4, .seconds = 100}).failure,
+              testing::HasSubstr("no horizon"));
+}
+
+TEST(TrustedState, IsNotBegunWithoutTimeForAStep) {
+  const TrustedState trusted =
+      trusted_state(cloth_system(9, 9), {.longest_s = 0.02, .first_dt_s = 1e-4, .seconds = 1e-9});
+  EXPECT_THAT(trusted.failure, testing::HasSubstr("no time"));
+}
+
+TEST(TrustedState, EndsItsHorizonWhereNeighboursPart) {
+  // Compressed springs: a node beside the line runs off, faster and faster.
+  System system = spring_chain(5);
+  for (Spring& spring : system.springs) spring.rest_length = 0.012F;
+  const TrustedState trusted = trusted_state(system, {.longest_s = 0.02, .first_dt_s = 1e-5, .seconds = 100});
+  ASSERT_EQ(trusted.failure, "");
+  EXPECT_LT(trusted.horizon_s, 0.01);
+  EXPECT_LE(trusted.parting, allowed_parting);
+  EXPECT_THAT(trusted.why_there, testing::HasSubstr("neighbouring trajectories part"));
+}
+
+/// Points of both Newton methods with a few steps over 20 ms, and where they ended.
+struct Measured {
+  System system = cloth_system(8, 8);
+  TrustedState trusted =
+      trusted_state(system, {.longest_s = 0.02, .first_dt_s = 1e-4, .seconds = 100, .wanted_error = 1e-7});
+  std::vector<WorkPoint> points;
+  std::vector<ImplicitEnd> ends;
+
+  Measured() {
+    for (const std::string_view name : {"implicit-euler", "newton-euler"})
+      for (const int steps : {8, 16, 32}) {
+        WorkPoint point;
+        point.integrator = find_integrator(name);
+        point.steps = steps;
+        const auto backend = make_backend(*find_backend("serial"), system, *point.integrator,
+                                          trusted.horizon_s / steps, {.threads = 1});
+        backend->step(steps);
+        ends.push_back({points.size(), backend->state()});
+        point.position_error = position_deviation(system, trusted.state, ends.back().state);
+        points.push_back(point);
+      }
+  }
+};
+
+TEST(ExactSteps, TellTheErrorOfTheSolverFromThatOfTheStep) {
+  Measured measured;
+  tell_errors_apart(measured.points, measured.ends, measured.system, measured.trusted, [] { return false; });
+  for (const WorkPoint& point : measured.points) {
+    ASSERT_TRUE(point.solver_error && point.step_error) << point.steps;
+    EXPECT_LE(*point.position_error, *point.solver_error + *point.step_error);
+    EXPECT_GE(*point.position_error, *point.step_error - *point.solver_error);
+    // newton-euler solves the step's equation, to its tolerance and what single precision leaves.
+    if (point.integrator->solver == Solver::newton)
+      EXPECT_LT(*point.solver_error, 1e-3 * *point.step_error) << point.steps;
+    else
+      EXPECT_GT(*point.solver_error, 1e-2 * *point.step_error) << point.steps;
+  }
+  EXPECT_LT(*measured.points[1].step_error, *measured.points[0].step_error);
+  EXPECT_LT(*measured.points[2].step_error, *measured.points[1].step_error);
+  EXPECT_EQ(measured.points[0].step_error, measured.points[3].step_error);
+}
+
+TEST(ExactSteps, AreLeftOutWhereTimeIsOver) {
+  Measured measured;
+  int asked = 0;
+  // Enough for the cheapest, which newton-euler took no time for, and not for the others.
+  measured.points[4].seconds_a_step = 1;
+  measured.points[5].seconds_a_step = 1;
+  tell_errors_apart(measured.points, measured.ends, measured.system, measured.trusted,
+                    [&] { return measured.points[0].step_error && ++asked > 2; });
+  EXPECT_TRUE(measured.points[0].step_error);
+  EXPECT_TRUE(measured.points[3].step_error);
+  for (const std::size_t point : {1U, 2U, 4U, 5U}) EXPECT_FALSE(measured.points[point].step_error) << point;
+}
+
+StepMaker reference_of(const System& system, std::string_view integrator) {
+  return [&system, &row = *find_integrator(integrator)](double dt_s) {
+    return make_reference(system, row, dt_s);
+  };
+}
+
+StepSearch search_from(double first_s) {
+  return {
+      .first_s = first_s, .longest_s = 100 * first_s, .shortest_s = first_s / 64, .span_s = 2000 * first_s};
+}
+
+TEST(StableStep, OfAnOscillatorIsTheKnownLimit) {
+  const System system = fast_and_slow_oscillator();
+  const double omega = oscillator_frequency(system);
+  struct Known {
+    std::string_view integrator;
+    double limit;
+  };
+  for (const Known& known : {Known{"semi-euler", 2}, Known{"verlet", 2}, Known{"rk4", 2 * std::sqrt(2.0)}})
+    for (const double first : {0.3, 1.0, 3.0}) {  // from below and from above
+      const StableStep found = largest_stable_step(system, reference_of(system, known.integrator),
+                                                   search_from(first * known.limit / omega));
+      EXPECT_LE(found.stable_s, known.limit / omega * 1.0001) << known.integrator << ' ' << first;
+      EXPECT_GE(found.stable_s * step_resolution * step_resolution, known.limit / omega)
+          << known.integrator << ' ' << first;
+      EXPECT_LE(found.unstable_s, step_resolution * found.stable_s) << known.integrator << ' ' << first;
+      EXPECT_TRUE(found.finished);
+    }
+}
+
+TEST(StableStep, OfExplicitEulerIsNoneWithoutDamping) {
+  const System system = fast_and_slow_oscillator();
+  const StableStep found = largest_stable_step(system, reference_of(system, "explicit-euler"),
+                                               search_from(2 / oscillator_frequency(system)));
+  EXPECT_EQ(found.stable_s, 0);
+  EXPECT_GT(found.unstable_s, 0);
+}
+
+TEST(StableStep, OfExplicitEulerWithDampingIsTheDampingOverTheStiffness) {
+  System system = spring_oscillator();
+  system.materials[0].damping = 0.002;
+  // x'' = -k x - c x' is stable under Euler's method up to dt = c / k where it oscillates.
+  const double limit = 0.002 / 200;
+  const StableStep found =
+      largest_stable_step(system, reference_of(system, "explicit-euler"), search_from(3 * limit));
+  EXPECT_NEAR(found.stable_s / limit, 1, 0.03);
+}
+
+TEST(StableStep, OfASmallClothIsThatOfItsSpectrum) {
+  const System system = cloth_system(10, 10);
+  const Spectrum spectrum = spectrum_at(system, system.start);
+  for (const std::string_view name : {"semi-euler", "rk4"}) {
+    const Integrator& integrator = *find_integrator(name);
+    const StepTheory theory = step_theory(integrator, system, spectrum, spectrum);
+    const StableStep found =
+        largest_stable_step(system, reference_of(system, name), search_from(theory.bound_s));
+    EXPECT_NEAR(found.stable_s / theory.at_start_s, 1, 0.05) << name;
+    EXPECT_LT(theory.bound_s, theory.at_start_s) << name;
+    EXPECT_EQ(why_they_differ(integrator, found, theory, false), "") << name;
+  }
+}
+
+TEST(StableStep, IsSearchedForNoFartherThanAsked) {
+  const System system = fast_and_slow_oscillator();
+  const double limit = 2 / oscillator_frequency(system);
+  StepSearch search = search_from(0.1 * limit);
+  search.longest_s = 0.2 * limit;
+  const StableStep found = largest_stable_step(system, reference_of(system, "semi-euler"), search);
+  EXPECT_EQ(found.stable_s, search.longest_s);
+  EXPECT_EQ(found.unstable_s, 0);
+}
+
+TEST(StableStep, SaysThatItsSearchWasStopped) {
+  const System system = spring_oscillator();
+  StepSearch search = search_from(0.1 / oscillator_frequency(system));
+  search.stop = [] { return true; };
+  const StableStep found = largest_stable_step(system, reference_of(system, "semi-euler"), search);
+  EXPECT_FALSE(found.finished);
+  EXPECT_EQ(found.runs, 1);
+}
+
+TEST(StableStep, EndsInAHurryWithABracket) {
+  const System system = fast_and_slow_oscillator();
+  const double limit = 2 / oscillator_frequency(system);
+  StepSearch search = search_from(0.3 * limit);
+  search.hurry = [] { return true; };
+  const StableStep found = largest_stable_step(system, reference_of(system, "semi-euler"), search);
+  EXPECT_FALSE(found.finished);
+  EXPECT_GT(found.stable_s, 0);
+  EXPECT_LE(found.stable_s, limit * 1.0001);
+  EXPECT_GE(found.unstable_s, limit);
+}
+
+/// A cloth without pins that hangs a row above the floor, or high above it.
+StepLimit limit_of_backward_euler(double ceiling_m) {
+  SceneSpec spec = cloth_spec(10, 10);
+  auto& cloth = std::get<ClothSpec>(spec.content);
+  cloth.pins.reset();
+  cloth.ceiling_height_m = ceiling_m;
+  const System system = build_system(spec);
+  const Spectrum spectrum = spectrum_at(system, system.start);
+  const LimitRequest request{.system = &system,
+                             .backends = {find_backend("serial")},
+                             .execution = {},
+                             .at_start = spectrum,
+                             .on_the_way = spectrum,
+                             .seconds = 1000,
+                             .stop = [] { return false; }};
+  return find_step_limit(*find_integrator("newton-euler"), request);
+}
+
+TEST(StepLimit, OfBackwardEulerIsTheFloors) {
+  const StepLimit near = limit_of_backward_euler(0.1);
+  EXPECT_GT(near.measured.unstable_s, 0);
+  EXPECT_TRUE(near.floor_is_why);
+  EXPECT_EQ(near.why.substr(0, 9), "the floor");
+  const StepLimit high = limit_of_backward_euler(20);
+  EXPECT_EQ(high.measured.unstable_s, 0);
+  EXPECT_FALSE(high.floor_is_why);
+  EXPECT_EQ(high.why, "");
+}
+
+TEST(StepTheory, SaysWhyAMeasuredStepIsAnotherOne) {
+  const Integrator& euler = *find_integrator("semi-euler");
+  const StepTheory theory{.at_start_s = 1, .on_the_way_s = 1, .bound_s = 0.5};
+  const auto measured = [](double stable) {
+    return StableStep{.stable_s = stable, .unstable_s = 1.01 * stable};
+  };
+  // Within a tenth up, or down by the same factor: 1 / 1.1 = 0.9091.
+  EXPECT_EQ(why_they_differ(euler, measured(1.099), theory, false), "");
+  EXPECT_EQ(why_they_differ(euler, measured(0.91), theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(1.101), theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(0.909), theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(1.5), theory, false).find("longer"), std::string::npos);
+  EXPECT_NE(why_they_differ(euler, measured(0.5), theory, false).find("shorter"), std::string::npos);
+  EXPECT_NE(why_they_differ(euler, measured(0.5), theory, true).find("floor"), std::string::npos);
+  EXPECT_NE(why_they_differ(euler, {}, theory, false), "");
+  EXPECT_NE(why_they_differ(euler, measured(1), {}, false), "");
+  EXPECT_EQ(why_they_differ(euler, {}, {}, false), "");
 }
 
 }  // namespace

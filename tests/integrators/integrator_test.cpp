@@ -13,9 +13,7 @@
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
 #include "model/energy.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/free_fall.h"
-#include "tests/support/largest_distance.h"
+#include "tests/support/backend_checks.h"
 
 namespace mssim {
 namespace {
@@ -30,24 +28,17 @@ std::vector<std::string_view> names_of_integrators(bool implicit) {
   return names;
 }
 
-std::string plain_name(const testing::TestParamInfo<std::string_view>& test) {
-  std::string name(test.param);
-  std::ranges::replace(name, '-', '_');
-  return name;
-}
-
 class EachIntegrator : public testing::TestWithParam<std::string_view> {
  protected:
   /// The table's own row: backends tell rows apart by address.
   const Integrator& integrator() const { return *find_integrator(GetParam()); }
 };
-INSTANTIATE_TEST_SUITE_P(Explicit, EachIntegrator, testing::ValuesIn(names_of_integrators(false)),
-                         plain_name);
-INSTANTIATE_TEST_SUITE_P(Implicit, EachIntegrator, testing::ValuesIn(names_of_integrators(true)), plain_name);
+INSTANTIATE_TEST_SUITE_P(Explicit, EachIntegrator, testing::ValuesIn(names_of_integrators(false)), ByName());
+INSTANTIATE_TEST_SUITE_P(Implicit, EachIntegrator, testing::ValuesIn(names_of_integrators(true)), ByName());
 
 class EachImplicitIntegrator : public EachIntegrator {};
 INSTANTIATE_TEST_SUITE_P(Table, EachImplicitIntegrator, testing::ValuesIn(names_of_integrators(true)),
-                         plain_name);
+                         ByName());
 
 State state_after(const System& system, const Integrator& integrator, double dt_s, int steps) {
   const auto backend = make_reference(system, integrator, dt_s);

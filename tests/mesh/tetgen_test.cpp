@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
 
 #include "mesh/meshing.h"
 #include "platform/process.h"

@@ -1,13 +1,22 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <numbers>
 #include <set>
+#include <string>
 #include <utility>
 
+#include "geometry/surface.h"
 #include "model/energy.h"
+#include "model/node_surface.h"
+#include "model/spectrum.h"
 #include "model/system.h"
 #include "model/topology.h"
+#include "tests/support/systems.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -113,6 +122,99 @@ TEST(RoundToSingle, LeavesNothingThatAFloatCannotHold) {
       EXPECT_EQ(std::fmod(std::abs(mantissa(rounded)) * 0x1p24, 1.0), 0) << "more than 24 bits: " << rounded;
       EXPECT_NEAR(rounded, before, 0x1p-24 * std::abs(before));
     }
+}
+
+TEST(Spectrum, OfAChainIsThatOfItsClosedForm) {
+  for (const std::uint32_t free : {1U, 2U, 7U, 40U}) {
+    System system = spring_chain(free);
+    system.materials[0].damping = 0.01;
+    system.viscous_damping = 3;
+    // 4 k/m sin^2(j pi / (2 (n + 1))) for j = 1 .. n.
+    const double sine = std::sin(free * std::numbers::pi / (2 * (free + 1)));
+    const Spectrum spectrum = spectrum_at(system, system.start);
+    EXPECT_NEAR(spectrum.stiffness / (4 * 200 / 2e-5 * sine * sine), 1, 1e-3) << free;
+    EXPECT_NEAR(spectrum.damping / (4 * 0.01 / 2e-5 * sine * sine + 3), 1, 1e-3) << free;
+  }
+}
+
+TEST(Spectrum, OfAStrainedSpringHasWhatItDoesSideways) {
+  System system = spring_chain(1);
+  for (Spring& spring : system.springs) spring.rest_length = 0.005F;
+  system.materials[0].stiffness = 1;
+  // Along: 2 k/m. With springs of twice their length, sideways 2 k (1 - 1/2)/m, which is less.
+  EXPECT_NEAR(spectrum_at(system, system.start).stiffness, 2 / 2e-5, 1e-3 * 2 / 2e-5);
+  // Compressed to a quarter: sideways 2 k (1 - 4)/m, larger and of the other sign.
+  for (Spring& spring : system.springs) spring.rest_length = 0.04F;
+  EXPECT_NEAR(spectrum_at(system, system.start).stiffness, -2 * 3 / 2e-5, 1e-3 * 6 / 2e-5);
+}
+
+TEST(Spectrum, IsBelowGershgorinsBoundAndNotFarBelow) {
+  const System system = cloth_system(12, 12);
+  const Spectrum spectrum = spectrum_at(system, system.start);
+  const StiffnessBound bound = stiffness_bound(system);
+  EXPECT_LT(spectrum.stiffness, bound.stiffness);
+  EXPECT_GT(spectrum.stiffness, 0.2 * bound.stiffness);
+  EXPECT_LT(spectrum.damping, bound.damping);
+}
+
+State state_of(std::size_t nodes) {
+  State state;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto x = static_cast<double>(i);
+    state.position.push_back({x, 0.5 * x, 1 / (x + 1)});
+    state.velocity.push_back({-x, 3, 0});
+  }
+  return state;
+}
+
+TEST(StateHash, IsThatOfTheBytesOfItsNumbersInATree) {
+  const State state = state_of(state_hash_leaf + 1);
+  const auto leaf = [&](std::size_t first, std::size_t end) {
+    std::string bytes;
+    for (std::size_t i = first; i < end; ++i)
+      for (const Vec3d& vector : {state.position[i], state.velocity[i]})
+        for (const double number : {vector.x, vector.y, vector.z}) {
+          char word[8];
+          std::memcpy(word, &number, 8);  // the lowest byte first, on all processors that mssim runs on
+          bytes.append(word, 8);
+        }
+    const std::uint64_t hash = fnv1a_64(bytes);
+    char word[8];
+    std::memcpy(word, &hash, 8);
+    return std::string(word, 8);
+  };
+  EXPECT_EQ(state_hash(state),
+            fnv1a_64(leaf(0, state_hash_leaf) + leaf(state_hash_leaf, state_hash_leaf + 1)));
+}
+
+TEST(StateHash, ChangesWithEveryBit) {
+  const State state = state_of(10);
+  std::set<std::uint64_t> hashes{state_hash(state)};
+  State next = state, zero = state, swapped = state, fewer = state_of(9);
+  next.position[9].z = std::nextafter(next.position[9].z, 2);
+  zero.velocity[3].z = -0.0;
+  std::swap(swapped.position[1], swapped.position[2]);
+  for (const State& other : {next, zero, swapped, fewer}) hashes.insert(state_hash(other));
+  EXPECT_EQ(hashes.size(), 5U);
+  EXPECT_EQ(state_hash(state_of(10)), state_hash(state));
+}
+
+TEST(StateHash, IsWrittenInDigitsThatAreReadBack) {
+  for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{0x0123456789abcdef}, UINT64_MAX})
+    EXPECT_EQ(from_hex(to_hex(value)), value);
+  for (const char* text :
+       {"", "0", "0123456789abcdeg", "0123456789ABCDEF", "00123456789abcdef", "0x23456789abcdef"})
+    EXPECT_EQ(from_hex(text), std::nullopt) << text;
+}
+
+TEST(NodeSurface, OfBodiesIsClosedAndHasNoInnerNodes) {
+  const System system = two_solid_blocks();
+  const NodeSurface surface = surface_of(system.topology, system.nodes());
+  Surface closed{{}, surface.triangles};
+  for (const std::uint32_t node : surface.node) closed.points.push_back(system.start.position[node]);
+  EXPECT_NO_THROW(validate_surface(closed, "two blocks"));  // every point in use, every edge in two triangles
+  EXPECT_TRUE(std::ranges::is_sorted(surface.node));
+  EXPECT_EQ(surface.node.size(), system.nodes() - 2 * 3 * 1 - 1 * 1 * 5);
 }
 
 }  // namespace

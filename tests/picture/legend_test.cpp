@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "tests/support/picture_content.h"
+#include "tests/support/picture_fixture.h"
 
 namespace mssim {
 namespace {
@@ -107,6 +112,221 @@ TEST(Legend, DrawsNothingWithoutEntriesAndSurvivesTinyPictures) {
   EXPECT_FALSE(ink_of(with_legend(640, 480, {}), ground));
   for (const std::uint32_t size : {1u, 7u, 30u})
     with_legend(size, size, entries_of(5, "panel"), Corner::bottom_right);
+}
+
+Picture with_bar(std::uint32_t width, std::uint32_t height, const ColourBar& bar) {
+  Picture picture(width, height, ground);
+  draw_colour_bar(picture, bar, Corner::top_right);
+  return picture;
+}
+
+TEST(ColourBar, RunsFromLowToHigh) {
+  const ColourMap& map = sequential_map();
+  for (const bool upright : {true, false}) {
+    const Picture picture = with_bar(640, 480, {map, 0, 1, "strain", upright});
+    const PixelBox low = box_of_colour(picture, map.colours.front()).value();
+    const PixelBox high = box_of_colour(picture, map.colours.back()).value();
+    if (upright) {
+      EXPECT_EQ(low.left, high.left);
+      EXPECT_EQ(low.width, high.width);
+      EXPECT_GT(low.top, high.top + 100);
+    } else {
+      EXPECT_EQ(low.top, high.top);
+      EXPECT_EQ(low.height, high.height);
+      EXPECT_GT(high.left, low.left + 100);
+    }
+  }
+}
+
+TEST(ColourBar, MarksNumbersWhereTheirColoursAre) {
+  const ColourMap& map = diverging_map();
+  const Picture picture = with_bar(640, 480, {map, -1, 1, "", true});
+  const PixelBox low = box_of_colour(picture, map.colours.front()).value();
+  const PixelBox high = box_of_colour(picture, map.colours.back()).value();
+  // Just right of the bar: dashes at -1, -0.5, 0, 0.5 and 1.
+  const auto x = static_cast<std::uint32_t>(low.left + low.width);
+  std::vector<int> dashes;
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    if (picture.at(x, y).red < 60) dashes.push_back(static_cast<int>(y));
+  ASSERT_EQ(dashes.size(), 5u);
+  EXPECT_EQ(dashes.front(), high.top);
+  EXPECT_EQ(dashes.back(), low.top + low.height - 1);
+  for (std::size_t i = 1; i < dashes.size(); ++i)
+    EXPECT_NEAR(dashes[i] - dashes[i - 1], (dashes.back() - dashes.front()) / 4.0, 1);
+}
+
+TEST(ColourBar, HasItsTitleOnlyWhereThereIsOne) {
+  const ColourBar bar{sequential_map(), 0, 1, "", false};
+  ColourBar titled = bar;
+  titled.title = "strain in %";
+  EXPECT_GT(ink_of(with_bar(640, 480, titled), ground)->height,
+            ink_of(with_bar(640, 480, bar), ground)->height + 10);
+  titled.title = std::string(300, 'n');
+  EXPECT_LE(ink_of(with_bar(640, 480, titled), ground)->width, 0.45 * 640);
+}
+
+TEST(ColourBar, ShowsARangeWithoutLength) {
+  for (const bool upright : {true, false}) {
+    const ColourMap& map = sequential_map();
+    EXPECT_TRUE(box_of_colour(with_bar(640, 480, {map, 0, 0, "strain", upright}), map.colours.front()));
+  }
+}
+
+TEST(ColourBar, RefusesARangeThatIsNone) {
+  EXPECT_THROW(with_bar(640, 480, {sequential_map(), 1, 0, "strain", true}), std::invalid_argument);
+}
+
+TEST(ColourBar, SurvivesTinyPicturesAndLongNumbers) {
+  for (const std::uint32_t size : {1u, 7u, 30u, 100u})
+    for (const bool upright : {true, false}) {
+      with_bar(size, size, {sequential_map(), 0, 1, "strain", upright});
+      with_bar(size, size, {sequential_map(), 123'456'788, 123'456'799, "strain", upright});
+      with_bar(size, size, {sequential_map(), 1e17, 1e17 + 64, "strain", upright});
+    }
+}
+
+using Linear = std::array<double, 3>;
+
+Linear linear(Rgb colour) {
+  const auto channel = [](std::uint8_t value) {
+    const double share = value / 255.0;
+    return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+  };
+  return {channel(colour.red), channel(colour.green), channel(colour.blue)};
+}
+
+/// CIE's L*.
+double lightness(const Linear& rgb) {
+  const double y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+  return y > 0.008856 ? 116 * std::cbrt(y) - 16 : 903.3 * y;
+}
+
+double lightness(Rgb colour) { return lightness(linear(colour)); }
+
+TEST(SequentialMap, GrowsEvenlyInLightness) {
+  const auto& colours = sequential_map().colours;
+  EXPECT_NEAR(lightness(colours.front()), 12, 1);
+  EXPECT_NEAR(lightness(colours.back()), 94, 1);
+  for (std::size_t i = 8; i < colours.size(); ++i)
+    EXPECT_NEAR(lightness(colours[i]) - lightness(colours[i - 8]), 8 * 82 / 256.0, 0.8) << i;
+}
+
+TEST(SequentialMap, HasNoJumps) {
+  for (const ColourMap* map : {&sequential_map(), &diverging_map()})
+    for (std::size_t i = 1; i < map->colours.size(); ++i) {
+      const Rgb a = map->colours[i - 1], b = map->colours[i];
+      for (const int step : {a.red - b.red, a.green - b.green, a.blue - b.blue})
+        EXPECT_LE(std::abs(step), 8) << i;
+    }
+}
+
+TEST(DivergingMap, IsLightestAndGreyInTheMiddleAndAsLightOnBothSides) {
+  const auto& colours = diverging_map().colours;
+  const Rgb middle = diverging_map().at(0.5);
+  EXPECT_EQ(middle, colours[128]);
+  EXPECT_LE(
+      std::max({middle.red, middle.green, middle.blue}) - std::min({middle.red, middle.green, middle.blue}),
+      1);
+  for (std::size_t i = 0; i <= 128; ++i) {
+    EXPECT_NEAR(lightness(colours[i]), lightness(colours[256 - i]), 0.8) << i;
+    EXPECT_NEAR(lightness(colours[i]), 36 + 58 * static_cast<double>(i) / 128, 0.8) << i;
+  }
+  EXPECT_GT(colours.front().blue, colours.front().red + 100);
+  EXPECT_GT(colours.back().red, colours.back().blue + 100);
+}
+
+TEST(ColourMap, ClampsAndShowsWhatIsNoNumberInGrey) {
+  const ColourMap& map = sequential_map();
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(map.at(-3), map.colours.front());
+  EXPECT_EQ(map.at(-infinity), map.colours.front());
+  EXPECT_EQ(map.at(infinity), map.colours.back());
+  EXPECT_EQ(map.at(0.25), map.colours[64]);
+  EXPECT_EQ(map.at(std::nan("")), (Rgb{128, 128, 128}));
+}
+
+TEST(CategoryColours, DifferInLightness) {
+  const auto& colours = category_colours();
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_GT(std::abs(lightness(colours[i]) - lightness(colours[k])), 8) << k << ' ' << i;
+}
+
+/// What a person without red or without green cones sees (Viénot, Brettel and Mollon 1999): red and green are
+/// confused, with these shares of their light.
+Linear confused(const Linear& rgb, double red_share) {
+  const double mixed = red_share * rgb[0] + (1 - red_share) * rgb[1];
+  return {mixed, mixed, rgb[2]};
+}
+
+TEST(CategoryColours, DifferWithoutRedOrGreenCones) {
+  const auto& colours = category_colours();
+  for (const double red_share : {0.1124, 0.2928})
+    for (std::size_t i = 0; i < colours.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k) {
+        const Linear a = confused(linear(colours[i]), red_share), b = confused(linear(colours[k]), red_share);
+        const double yellowness =
+            60 * (std::cbrt(a[0]) - std::cbrt(a[2]) - std::cbrt(b[0]) + std::cbrt(b[2]));
+        EXPECT_GT(std::hypot(lightness(a) - lightness(b), yellowness), 12)
+            << k << ' ' << i << ' ' << red_share;
+      }
+}
+
+std::string labels(double low, double high, int most = 6) {
+  std::string text;
+  for (const Tick& tick : ticks_between(low, high, most)) text += (text.empty() ? "" : " ") + tick.label;
+  return text;
+}
+
+TEST(Ticks, AreRoundNumbersWithTheSameDigits) {
+  EXPECT_EQ(labels(0, 0.37), "0 0.1 0.2 0.3");
+  EXPECT_EQ(labels(0, 1), "0 0.2 0.4 0.6 0.8 1.0");
+  EXPECT_EQ(labels(-1, 1), "−1.0 −0.5 0 0.5 1.0");
+  EXPECT_EQ(labels(1e-4, 3.4e-4), "0.00010 0.00015 0.00020 0.00025 0.00030");
+  EXPECT_EQ(labels(12'345, 56'789), "20,000 30,000 40,000 50,000");
+  EXPECT_EQ(labels(0, 3e-9), "0 1e-09 2e-09 3e-09");
+  EXPECT_EQ(labels(0, 2.1e12), "0 5e+11 1e+12 1.5e+12 2e+12");
+}
+
+TEST(Ticks, HaveTheirValuesToTheLastBit) {
+  for (const Tick& tick : ticks_between(0, 0.37, 6)) EXPECT_EQ(tick.value, std::stod(tick.label));
+  for (const Tick& tick : ticks_between(0, 1.1e-5, 6)) EXPECT_EQ(tick.value, std::stod(tick.label));
+}
+
+TEST(Ticks, KeepEndsThatARoundingHasMoved) {
+  EXPECT_EQ(labels(0, 0.1 + 0.2), labels(0, 0.3));
+  EXPECT_EQ(labels(0.1 + 0.2, 0.8).substr(0, 3), "0.3");
+  EXPECT_EQ(labels(-0.3, 0.3), labels(-0.1 - 0.2, 0.29999999999999993));
+}
+
+TEST(Ticks, AreAtMostAsManyAsAskedForAndLieInTheRange) {
+  for (int most = 1; most <= 9; ++most)
+    for (double high = 1e-7; high < 1e9; high *= 1.37)
+      for (const double low : {0.0, -high, 0.3 * high, -0.1 * high}) {
+        const auto ticks = ticks_between(low, high, most);
+        EXPECT_LE(ticks.size(), static_cast<std::size_t>(most)) << low << ' ' << high;
+        EXPECT_GE(ticks.size(), most >= 5 ? 2u : 0u) << low << ' ' << high;
+        for (const Tick& tick : ticks) {
+          EXPECT_GE(tick.value, low - 1e-8 * (high - low));
+          EXPECT_LE(tick.value, high + 1e-8 * (high - low));
+        }
+      }
+}
+
+TEST(Ticks, OfARangeWithoutLengthAreItsNumber) {
+  EXPECT_EQ(labels(0, 0), "0");
+  EXPECT_EQ(labels(-2.5, -2.5), "−2.5");
+  EXPECT_EQ(labels(1e17, 1e17 + 32), "1e+17");
+  EXPECT_EQ(labels(0, 1e-300), "0");
+}
+
+TEST(Ticks, RefuseARangeThatIsNone) {
+  const double infinity = std::numeric_limits<double>::infinity(),
+               nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(ticks_between(1, 0, 6), std::invalid_argument);
+  EXPECT_THROW(ticks_between(nan, 0, 6), std::invalid_argument);
+  EXPECT_THROW(ticks_between(0, infinity, 6), std::invalid_argument);
+  EXPECT_THROW(ticks_between(-1e308, 1e308, 6), std::invalid_argument);
 }
 
 }  // namespace

@@ -4,24 +4,111 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/prctl.h>
+#include <sys/types.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include "platform/machine.h"
-#include "tests/support/supervised_fixture.h"
+#include "tests/support/files_fixture.h"
+#include "tests/support/sentence_of.h"
 
 namespace mssim {
 namespace {
 
-using namespace std::chrono_literals;
 using testing::EndsWith;
 using testing::HasSubstr;
+
+/// Whether it becomes true soon; a machine may be busy.
+bool soon(const std::function<bool()>& becomes_true) {
+  for (int i = 0; i < 3000; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(10)))
+    if (becomes_true()) return true;
+  return false;
+}
+
+/// A file of /proc; empty where its process is gone.
+std::string proc_text(const std::string& name) {
+  std::ifstream file("/proc/" + name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A field of /proc/PROCESS/stat, counted from 3, which is the state, as its manual counts.
+std::string stat_field(pid_t process, int field) {
+  const std::string stat = proc_text(std::to_string(process) + "/stat");
+  const std::size_t name_end = stat.rfind(')');
+  if (name_end == std::string::npos) return {};
+  std::istringstream words(stat.substr(name_end + 1));
+  std::string word;
+  for (int i = 3; i <= field; ++i) words >> word;
+  return word;
+}
+
+/// By its command, because an emulator that runs it has another name.
+bool is_supervisor(pid_t process) {
+  return proc_text(std::to_string(process) + "/cmdline").find("supervise") != std::string::npos;
+}
+
+class SupervisedProcesses : public TemporaryFolderTest {
+ protected:
+  // What this process starts inherits the mark, the supervisor too.
+  SupervisedProcesses() { setenv("MSSIM_TEST_MARK", folder().c_str(), 1); }
+  ~SupervisedProcesses() override { unsetenv("MSSIM_TEST_MARK"); }
+
+  /// A shell's process becomes the last program of its commands.
+  SupervisedProgram shell(const std::string& commands) const {
+    return {"/bin/sh", {"-c", commands}, {}, folder(), {}};
+  }
+  /// How a shell with these commands ends by itself.
+  ProgramEnd end_of(const std::string& commands) const {
+    SupervisedProcess process(shell(commands));
+    return process.end(std::chrono::seconds(60));
+  }
+
+  /// The processes that are left of all that this test started; those that have ended and that nobody has
+  /// waited for have no environment any more.
+  std::vector<pid_t> processes() const {
+    const std::string mark = "MSSIM_TEST_MARK=" + folder().string();
+    std::vector<pid_t> marked;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry("/proc", error), end; entry != end; entry.increment(error))
+      if (const std::string name = entry->path().filename();
+          name.find_first_not_of("0123456789") == name.npos)
+        if (proc_text(name + "/environ").find(mark) != std::string::npos) marked.push_back(std::stoi(name));
+    return marked;
+  }
+  std::vector<pid_t> processes_of_program() const {
+    std::vector<pid_t> all = processes();
+    std::erase_if(all, is_supervisor);
+    return all;
+  }
+  bool all_stopped(bool stopped) const {
+    return soon([&] {
+      return std::ranges::all_of(processes_of_program(),
+                                 [&](pid_t one) { return (stat_field(one, 3) == "T") == stopped; });
+    });
+  }
+  std::string failure(const SupervisedProgram& program) const {
+    return sentence_of<std::runtime_error>([&] { const SupervisedProcess process(program); });
+  }
+};
+
+using namespace std::chrono_literals;
 
 TEST_F(SupervisedProcesses, EndByExitCodeOrBySignal) {
   const ProgramEnd code = end_of("echo one; echo two >&2; exit 3");
@@ -224,6 +311,113 @@ TEST_F(SupervisedProcesses, CostNothingWhileTheyWait) {
   EXPECT_FALSE(before.empty());
   std::this_thread::sleep_for(500ms);
   EXPECT_EQ(wakings(), before);
+}
+
+using namespace std::chrono_literals;
+
+/// With children that leave the group and become orphans.
+class SupervisedFamilies : public SupervisedProcesses {
+ protected:
+  void SetUp() override {
+    int is_subreaper = 0;
+    if (::prctl(PR_GET_CHILD_SUBREAPER, &is_subreaper) != 0)
+      GTEST_SKIP() << "this emulator has no subreapers";
+  }
+};
+
+/// A child, a session of its own, and a daemon that nobody of the family is the parent of, which all keep the
+/// output open.
+constexpr const char* family =
+    "sleep 1000 & setsid sleep 1000 & (setsid sh -c 'sleep 1000 & sleep 1000 & wait' &); ";
+constexpr std::size_t family_size = 5;
+
+TEST_F(SupervisedFamilies, LeaveNothingWhenTheyEnd) {
+  const ProgramEnd end =
+      end_of(std::string(family) + "until [ -e end ]; do sleep 0.01; touch end; done; exit 4");
+  EXPECT_EQ(end.exit_code, 4);
+  EXPECT_TRUE(processes().empty());
+}
+
+TEST_F(SupervisedFamilies, LeaveNothingWhenTheyAreEnded) {
+  {
+    const SupervisedProcess process(shell(std::string(family) + "wait"));
+    EXPECT_TRUE(soon([&] { return processes_of_program().size() == family_size + 1; }));
+  }
+  EXPECT_TRUE(processes().empty());
+}
+
+TEST_F(SupervisedFamilies, LeaveNothingThatForksAgainAndAgain) {
+  // Each process of a chain starts the next one and ends; some leave the group.
+  put("chain", "f() { f & }\nf\n");
+  for (int i = 0; i < 5; ++i) {
+    {
+      const SupervisedProcess process(
+          shell("sh ./chain & setsid sh ./chain & (setsid sh ./chain &); touch ready; sleep 1000"));
+      EXPECT_TRUE(soon([&] { return exists(folder() / "ready"); }));
+    }
+    EXPECT_TRUE(processes().empty());
+  }
+}
+
+TEST_F(SupervisedFamilies, AreGoneSoonAfterMssimWasKilled) {
+  const pid_t mssim = ::fork();
+  if (mssim == 0) {
+    try {
+      const SupervisedProcess process(shell(std::string(family) + "wait"));
+      ::pause();
+    } catch (const std::exception&) {
+    }
+    ::_exit(1);
+  }
+  EXPECT_TRUE(soon([&] { return processes_of_program().size() == family_size + 1; }));
+  ::kill(mssim, SIGKILL);
+  ::waitpid(mssim, nullptr, 0);
+  EXPECT_TRUE(soon([&] { return processes().empty(); }));
+}
+
+TEST_F(SupervisedFamilies, LeaveNothingWhenTheirSupervisorIsToldToEnd) {
+  const ProgramEnd end = end_of(std::string(family) + "kill -TERM $PPID; sleep 1000");
+  EXPECT_EQ(end.signal, SIGKILL);
+  EXPECT_TRUE(processes().empty());
+}
+
+TEST_F(SupervisedFamilies, StopAndGoOnWithAllThatTheyStarted) {
+  SupervisedProcess process(shell(std::string(family) + "while :; do echo >>count; done"));
+  ASSERT_TRUE(
+      soon([&] { return processes_of_program().size() == family_size + 1 && exists(folder() / "count"); }));
+  for (int i = 0; i < 2; ++i) {
+    process.pause();
+    EXPECT_TRUE(all_stopped(true));
+    const auto count = file_size(folder() / "count");
+    std::this_thread::sleep_for(50ms);
+    EXPECT_EQ(file_size(folder() / "count"), count);
+    process.resume();
+    EXPECT_TRUE(all_stopped(false));
+    EXPECT_TRUE(soon([&] { return file_size(folder() / "count") > count; }));
+  }
+  process.pause();
+  EXPECT_EQ(process.end(0s).signal, SIGKILL);
+  EXPECT_TRUE(processes().empty());
+}
+
+TEST_F(SupervisedFamilies, CountTheirProcessorTime) {
+  // In a child that has been waited for, in an orphan that has ended, and in the program itself.
+  const std::string work = "i=0; while [ $i -lt 200000 ]; do i=$((i + 1)); done; ";
+  SupervisedProcess process(shell("(" + work + "); touch child; (setsid sh -c '" + work +
+                                  "touch orphan' &); "
+                                  "until [ -e go ]; do sleep 0.01; done; while :; do :; done"));
+  ASSERT_TRUE(soon([&] { return exists(folder() / "child"); }));
+  const double child = process.processor_seconds();
+  EXPECT_GT(child, 0.02);
+  ASSERT_TRUE(soon([&] { return exists(folder() / "orphan"); }));
+  const double orphan = process.processor_seconds();
+  EXPECT_GT(orphan, child + 0.3 * child);
+  put("go", "");
+  EXPECT_TRUE(soon([&] { return process.processor_seconds() > orphan + 0.2; }));
+  const double before = process.processor_seconds();
+  process.end(0s);
+  EXPECT_GE(process.processor_seconds(), before);
+  EXPECT_LT(process.processor_seconds(), before + 60);
 }
 
 }  // namespace

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <functional>
-#include <memory>
-#include <numeric>
 #include <random>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "backends/layouts/spring_graph.h"
@@ -16,9 +13,8 @@
 #include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
 #include "ranks/shares.h"
-#include "tests/support/backend_step.h"
+#include "tests/support/backend_checks.h"
 #include "tests/support/mail.h"
-#include "tests/support/solid_system.h"
 
 namespace mssim {
 namespace {
@@ -132,13 +128,7 @@ State state_of_parts(const Divided& divided, const Integrator& integrator, std::
   return all;
 }
 
-std::vector<std::string> integrator_names() {
-  std::vector<std::string> all;
-  for (const Integrator& integrator : integrators) all.emplace_back(integrator.name);
-  return all;
-}
-
-class EachIntegratorInBodyPieces : public testing::TestWithParam<std::string> {};
+class EachIntegratorInBodyPieces : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(EachIntegratorInBodyPieces, GivesTheBitsOfTheWhole) {
   const Integrator& integrator = *find_integrator(GetParam());
@@ -157,12 +147,8 @@ TEST_P(EachIntegratorInBodyPieces, GivesTheBitsOfTheWhole) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorInBodyPieces, testing::ValuesIn(integrator_names()),
-                         [](const auto& instance) {
-                           std::string name = instance.param;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorInBodyPieces, testing::ValuesIn(names_of(integrators)),
+                         ByName());
 
 TEST(BodiesPieces, MeetTheFloorWithinTheStepsOfTheseTests) {
   const System block = solid_block(5, 6, 7, 0.002);

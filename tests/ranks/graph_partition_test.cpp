@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {

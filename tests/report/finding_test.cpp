@@ -53,18 +53,6 @@ TEST(OrderFindings, SayWhetherThePublishedOrderIsReproduced) {
   EXPECT_EQ(outcome(about(order_findings, rows), "cannot be told apart in 1"), Outcome::undecided);
 }
 
-TEST(OrderFindings, NameTheSizeFromWhichOnABackendIsFaster) {
-  const auto with = [](double at_small, double at_larger) {
-    return about(order_findings, {small("serial", 1), larger("serial", 2), small("opencl", at_small),
-                                  larger("opencl", at_larger)});
-  };
-  EXPECT_EQ(outcome(with(1.5, 0.5), "It becomes faster from 4,900 nodes (semi-euler) on."),
-            Outcome::not_reproduced);
-  for (const double at_small : {0.5, 1.5})
-    for (const Finding& finding : with(at_small, at_small * 2))
-      EXPECT_EQ(finding.sentence.find("becomes faster"), std::string::npos) << finding.sentence;
-}
-
 TEST(OrderFindings, NameASizeFromWhichOnABackendIsFasterAtEveryLargerOne) {
   constexpr double slower = 2, faster = 0.5, undecided = 1;
   const auto sentence = [&](double at_small, double at_larger, double at_largest) {

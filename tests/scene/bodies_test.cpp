@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <string>
 #include <tuple>
@@ -20,8 +19,7 @@
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "tests/support/scene_files.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/files_fixture.h"
 
 namespace mssim {
 namespace {

@@ -2,17 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <memory>
 
 #include "backends/backends.h"
 #include "integrators/host_stages.h"
 #include "integrators/integrators.h"
 #include "src/starters/cpp/mssim_backend.h"
-#include "tests/support/backend_step.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/largest_distance.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {

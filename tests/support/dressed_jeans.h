@@ -12,7 +12,7 @@
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
-#include "tests/support/scene_files.h"
+#include "tests/support/files_fixture.h"
 
 namespace mssim {
 

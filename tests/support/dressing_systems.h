@@ -5,14 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_backend.h"
 #include "mesh/shapes.h"
 #include "tests/support/garment_system.h"
-#include "tests/support/largest_distance.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 

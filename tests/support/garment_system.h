@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
+#include "integrators/all_integrators.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -63,5 +64,11 @@ inline void sew(System& system, const std::vector<std::uint32_t>& first,
     garment.joints.push_back({first[i], second[i], second[i], 0, length / static_cast<double>(first.size()),
                               1, static_cast<std::uint32_t>(garment.seams.size() - 1)});
 }
+
+/// The integrator that tests dress garments with.
+inline constexpr const Integrator& semi_euler = *find_integrator("semi-euler");
+
+/// The step that tests dress panels of 1 cm (garment_system.h) with: 0.55 of the limit 2 / sqrt(2 sum k / m).
+inline constexpr double dressing_dt_s = 1.5e-4;
 
 }  // namespace mssim

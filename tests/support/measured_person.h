@@ -6,7 +6,6 @@
 #include <istream>
 #include <numbers>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 

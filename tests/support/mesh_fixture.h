@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "mesh/shapes.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/files_fixture.h"
+#include "tests/support/sentence_of.h"
 #include "text/error.h"
 
 namespace mssim {
@@ -48,12 +49,7 @@ class MeshTest : public TemporaryFolderTest {
 
 /// What a InputError that `body` throws says, or "" when it throws none.
 inline std::string input_error_of(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return sentence_of<InputError>([&] { body(); });
 }
 
 /// A cube with sides of 1 m and one cell, its lowest corner at `corner`.

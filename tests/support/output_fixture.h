@@ -10,7 +10,7 @@
 
 #include "model/system.h"
 #include "model/topology.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/files_fixture.h"
 
 namespace mssim {
 

@@ -1,7 +1,7 @@
-#include "tests/support/scene_files.h"
-
 #include <filesystem>
 #include <string_view>
+
+#include "tests/support/files_fixture.h"
 
 namespace mssim {
 

@@ -13,7 +13,7 @@
 
 namespace mssim {
 
-inline constexpr std::uint32_t rows = 4, columns = 5;
+inline constexpr std::uint32_t cloth_rows = 4, cloth_columns = 5;
 
 inline Energy energy_at(int frame) { return {1. / 3 * frame, 0.1 * frame, 7. - frame}; }
 
@@ -107,7 +107,7 @@ class Trace : public TemporaryFolderTest {
     for (int frame = 0; frame < frames; ++frame) write_frame(trace, system_, frame);
     trace.close();
   }
-  const System system_ = small_cloth(rows, columns);
+  const System system_ = small_cloth(cloth_rows, cloth_columns);
 };
 
 }  // namespace mssim

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "geometry/surface.h"
 #include "tests/support/garment_system.h"
 

@@ -7,7 +7,8 @@
 #include <string>
 
 #include "scene/fields/fields.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/files_fixture.h"
+#include "tests/support/sentence_of.h"
 
 namespace mssim {
 namespace {
@@ -24,12 +25,7 @@ class BackendDescriptionTest : public TemporaryFolderTest {
     return parse_description(folder() / "mine.json", text);
   }
   std::string refusal(const std::string& text) const {
-    try {
-      parse(text);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "none";
+    return sentence_of<SceneError>([&] { parse(text); });
   }
 };
 

@@ -16,8 +16,7 @@
 #include "backends/layouts/node_arrays.h"
 #include "integrators/integrators.h"
 #include "model/system.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {

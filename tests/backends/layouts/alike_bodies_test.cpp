@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "tests/support/solid_system.h"
+#include "backends/layouts/packed_springs.h"
+#include "tests/support/backend_checks.h"
 
 namespace mssim {
 namespace {
@@ -134,9 +137,149 @@ TEST(AlikeSlices, HoldEveryNodeInTheLaneOfItsBody) {
       EXPECT_EQ((Vec3d{of_slice[3 * lanes], of_slice[4 * lanes], of_slice[5 * lanes]}), v);
     }
     const State state = slices.read(pair.data());
-    EXPECT_EQ(state.position, system.start.position);
-    EXPECT_EQ(state.velocity, system.start.velocity);
+    EXPECT_TRUE(same_state(state, system.start));
   }
+}
+
+constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
+
+/// The unit of a slice's node in an entry, in slots.
+struct Unit {
+  std::uint32_t first, second, kind;
+  float rest_length;
+};
+
+Unit unit_at(const PackedSprings& packed, std::size_t entry, std::size_t node) {
+  const std::uint32_t* at = &packed.units[entry * 2 * slice_nodes + node];
+  return {static_cast<std::uint32_t>(packed.entries[entry].slice * slice_nodes + node), at[0],
+          packed.entries[entry].kind, std::bit_cast<float>(at[slice_nodes])};
+}
+
+/// A unit in the scene's numbers, the lower node first.
+using Ends = std::tuple<std::uint32_t, std::uint32_t, float, std::uint32_t>;
+Ends in_scene(const PackedSprings& packed, const Unit& unit) {
+  const auto [low, high] = std::minmax(packed.scene_node[unit.first], packed.scene_node[unit.second]);
+  return {low, high, unit.rest_length, unit.kind};
+}
+
+/// A body in whose nodes springs of two materials meet.
+System mixed_block() {
+  System system = solid_block(7, 5, 6);
+  system.materials.push_back({100, 0});
+  for (std::size_t i = 0; i < system.springs.size(); i += 3) system.springs[i].kind = 1;
+  return system;
+}
+
+class EachSystem : public testing::TestWithParam<int> {
+ protected:
+  const System system = GetParam() == 0   ? solid_block(7, 5, 6)
+                        : GetParam() == 1 ? two_solid_blocks()
+                        : GetParam() == 2 ? solid_block(2, 2, 2)
+                        : GetParam() == 3 ? cloth_system(13, 9)
+                                          : mixed_block();
+  const PackedSprings packed{system};
+};
+INSTANTIATE_TEST_SUITE_P(Systems, EachSystem, testing::Range(0, 5));
+
+TEST_P(EachSystem, PacksEverySpringOnceInEntriesOfOneSliceAndKind) {
+  std::map<Ends, int> springs;
+  for (const Spring& spring : system.springs)
+    ++springs[{std::min(spring.first, spring.second), std::max(spring.first, spring.second),
+               spring.rest_length, spring.kind}];
+  std::size_t found = 0;
+  for (std::size_t slice = 0; slice < packed.slices(); ++slice)
+    for (std::size_t entry = packed.first_entry[slice]; entry < packed.first_entry[slice + 1]; ++entry) {
+      EXPECT_EQ(packed.entries[entry].slice, slice);
+      for (std::size_t node = 0; node < slice_nodes; ++node) {
+        const Unit unit = unit_at(packed, entry, node);
+        if (unit.rest_length == PackedSprings::empty_unit) {
+          EXPECT_EQ(unit.second, unit.first) << "a device may read what an empty unit names";
+          continue;
+        }
+        --springs[in_scene(packed, unit)];
+        ++found;
+      }
+    }
+  EXPECT_EQ(found, system.springs.size());
+  for (const auto& [spring, count] : springs) EXPECT_EQ(count, 0) << std::get<0>(spring);
+  EXPECT_EQ(packed.entries.size(), packed.first_entry.back());
+}
+
+TEST_P(EachSystem, ListsEveryForceAtItsSecondEndOnce) {
+  constexpr std::size_t list_nodes = PackedSprings::list_nodes;
+  std::vector<std::size_t> node_at(slice_nodes);  // by the slot of the force
+  for (std::size_t node = 0; node < slice_nodes; ++node) node_at[PackedSprings::force_place(node)] = node;
+  std::vector<int> listed(packed.unit_count(), 0);
+  for (std::size_t list = 0; list < packed.slots() / list_nodes; ++list)
+    for (std::size_t i = packed.first_subtracted[list] * list_nodes;
+         i < packed.first_subtracted[list + 1] * list_nodes; ++i) {
+      const std::uint32_t force = packed.subtracted[i];
+      if (force == packed.no_force()) continue;
+      ASSERT_LT(force, packed.unit_count());
+      ++listed[force];
+      const Unit unit = unit_at(packed, force / slice_nodes, node_at[force % slice_nodes]);
+      EXPECT_EQ(unit.second, list * list_nodes + i % list_nodes);
+      EXPECT_NE(unit.rest_length, PackedSprings::empty_unit);
+    }
+  for (const int times : listed) EXPECT_LE(times, 1);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(listed.begin(), listed.end(), 1)), system.springs.size());
+}
+
+TEST_P(EachSystem, NumbersEveryNodeOnce) {
+  ASSERT_EQ(packed.slots() % slice_nodes, 0U);
+  ASSERT_LT(packed.slots(), system.nodes() + slice_nodes);
+  for (std::size_t slot = system.nodes(); slot < packed.slots(); ++slot)
+    EXPECT_EQ(packed.scene_node[slot], PackedSprings::no_node);
+  for (std::uint32_t node = 0; node < system.nodes(); ++node)
+    EXPECT_EQ(packed.scene_node[packed.slot[node]], node);
+}
+
+TEST(PackedSprings, HaveFewEmptyUnitsInABody) {
+  const System system = solid_block(13, 13, 13);
+  const PackedSprings packed(system);
+  EXPECT_LT(static_cast<double>(packed.unit_count()), 1.12 * static_cast<double>(system.springs.size()));
+  EXPECT_LT(static_cast<double>(packed.subtracted.size()), 1.12 * static_cast<double>(system.springs.size()));
+}
+
+TEST(AlikeSprings, GiveEachSpringOfEachBodyToBothOfItsEndsOnce) {
+  System block = solid_block(3, 4, 3);
+  block.pins = {5};
+  block.start.velocity[5] = {};
+  System system = alike_bodies(block, 19);
+  append_body(system, alike_bodies(solid_block(2, 2, 2), 3), {0, 0, 1});
+  const AlikeSprings springs(*find_alike_bodies(system));
+  const AlikeSlices& slices = springs.slices;
+  ASSERT_EQ(springs.pinned.size(), slices.count);
+  ASSERT_EQ(springs.first_end.size(), slices.count + 1);
+  ASSERT_EQ(springs.first_subtracted.size(), slices.count + 1);
+  EXPECT_EQ(std::ranges::count(springs.pinned, 1), 2) << "a node of two groups";
+
+  std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
+  for (const Spring& spring : system.springs)
+    expected[std::minmax(spring.first, spring.second)] =
+        static_cast<float>(200 * static_cast<double>(spring.rest_length) / 0.004);
+  std::vector<int> subtracted(springs.springs.size(), 0);
+  for (std::uint32_t slice = 0; slice < slices.count; ++slice) {
+    const std::uint32_t pin = slices.scene_node[slice * AlikeSprings::slice_nodes];
+    EXPECT_EQ(springs.pinned[slice], std::ranges::count(system.pins, pin));
+    for (std::uint32_t s = springs.first_end[slice]; s < springs.first_end[slice + 1]; ++s) {
+      const AlikeSprings::SpringOfSlices& spring = springs.springs[s];
+      EXPECT_EQ(spring.first, slice);
+      for (std::size_t lane = 0; lane < AlikeSprings::slice_nodes; ++lane)
+        found[std::minmax(slices.scene_node[spring.first * AlikeSprings::slice_nodes + lane],
+                          slices.scene_node[spring.second * AlikeSprings::slice_nodes + lane])] =
+            spring.stiffness_rest;
+      EXPECT_EQ(springs.shapes[spring.shape].stiffness, static_cast<float>(200 / 0.004));
+      EXPECT_EQ(springs.shapes[spring.shape].damping, static_cast<float>(0.05 / 0.004));
+    }
+    for (std::uint32_t i = springs.first_subtracted[slice]; i < springs.first_subtracted[slice + 1]; ++i) {
+      EXPECT_EQ(springs.springs[springs.subtracted[i]].second, slice);
+      ++subtracted[springs.subtracted[i]];
+    }
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(springs.first_end.back(), springs.springs.size());
+  EXPECT_EQ(std::ranges::count(subtracted, 1), springs.springs.size());
 }
 
 }  // namespace

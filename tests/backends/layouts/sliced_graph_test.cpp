@@ -10,8 +10,8 @@
 #include <iterator>
 #include <map>
 #include <numeric>
-#include <string>
-#include <string_view>
+#include <random>
+#include <vector>
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
@@ -20,7 +20,9 @@
 #include "backends/openmp/openmp.h"
 #include "integrators/all_integrators.h"
 #include "integrators/integrators.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/expect_coloured.h"
+#include "tests/support/sentence_of.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {
@@ -178,12 +180,8 @@ TEST(SlicedGraph, RefusesSpringsOfUnlikeMaterialsInOneNode) {
   System system = solid_block(2, 2, 2);
   system.materials.push_back({100, 0});
   system.springs.back().kind = 1;
-  try {
-    const SlicedGraph graph(system, 8);
-    FAIL() << "it was taken";
-  } catch (const Unsupported& refusal) {
-    EXPECT_THAT(refusal.what(), HasSubstr("springs of different materials meet in node "));
-  }
+  EXPECT_THAT(sentence_of<Unsupported>([&] { const SlicedGraph graph(system, 8); }),
+              HasSubstr("springs of different materials meet in node "));
 }
 
 TEST(SlicedBodies, GiveEverySliceToOneLotInFairShares) {
@@ -242,6 +240,107 @@ TEST(SliceEntries, NameNeighboursAndRestLengthsAndBehindThemTheFirstRecord) {
     }
   for (std::size_t lane = 0; lane < lanes; ++lane) EXPECT_EQ(offset(graph.entries(), lane), 0U);
 }
+
+/// The same springs between nodes numbered at random, as a mesher might number them.
+std::vector<Spring> shuffled(std::vector<Spring> springs, std::size_t nodes) {
+  std::vector<std::uint32_t> number(nodes);
+  std::iota(number.begin(), number.end(), 0U);
+  std::shuffle(number.begin(), number.end(), std::mt19937(7));
+  for (Spring& spring : springs) {
+    spring.first = number[spring.first];
+    spring.second = number[spring.second];
+  }
+  return springs;
+}
+
+/// Largest distance between the two ends of a spring, by their slots in the order.
+std::uint32_t bandwidth(const std::vector<Spring>& springs, const std::vector<std::uint32_t>& order) {
+  std::vector<std::uint32_t> slot(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) slot[order[i]] = i;
+  std::uint32_t largest = 0;
+  for (const Spring& spring : springs)
+    largest = std::max(largest, std::max(slot[spring.first], slot[spring.second]) -
+                                    std::min(slot[spring.first], slot[spring.second]));
+  return largest;
+}
+
+bool is_permutation(std::vector<std::uint32_t> order, std::size_t nodes) {
+  std::sort(order.begin(), order.end());
+  for (std::uint32_t i = 0; i < order.size(); ++i)
+    if (order[i] != i) return false;
+  return order.size() == nodes;
+}
+
+TEST(ReverseCuthillMckee, ShrinksTheBandwidthOfABodyToAboutALayerOfNodes) {
+  const System system = solid_block(6, 6, 20);
+  const std::vector<Spring> springs = shuffled(system.springs, system.nodes());
+  std::vector<std::uint32_t> as_numbered(system.nodes());
+  std::iota(as_numbered.begin(), as_numbered.end(), 0U);
+  const auto order = reverse_cuthill_mckee(system.nodes(), springs);
+  ASSERT_TRUE(is_permutation(order, system.nodes()));
+  EXPECT_GT(bandwidth(springs, as_numbered), 600U);
+  EXPECT_LT(bandwidth(springs, order), 3U * 6 * 6);
+}
+
+TEST(ReverseCuthillMckee, PutsTheNodesOfAChainInARow) {
+  constexpr std::uint32_t nodes = 50;
+  std::vector<Spring> chain;
+  for (std::uint32_t i = 0; i + 1 < nodes; ++i) chain.push_back({i, i + 1, 1, 0});
+  chain = shuffled(chain, nodes);
+  const auto order = reverse_cuthill_mckee(nodes, chain);
+  ASSERT_TRUE(is_permutation(order, nodes));
+  EXPECT_EQ(bandwidth(chain, order), 1U);
+}
+
+TEST(ReverseCuthillMckee, KeepsBodiesOneAfterTheOtherAndLosesNoLoneNode) {
+  const System system = two_solid_blocks();
+  const std::size_t first = 4 * 5 * 3;
+  const auto order = reverse_cuthill_mckee(system.nodes() + 1, system.springs);
+  ASSERT_TRUE(is_permutation(order, system.nodes() + 1));
+  EXPECT_TRUE(
+      std::all_of(order.begin(), order.begin() + first, [](std::uint32_t node) { return node < 60; }));
+  EXPECT_EQ(order.back(), system.nodes());
+  EXPECT_TRUE(reverse_cuthill_mckee(0, {}).empty());
+}
+
+TEST(ReverseCuthillMckee, TellsWhereNoSpringGoesOn) {
+  // Nodes 0 to 3, of which a spring reaches over two others, 4 alone, and 5 and 6.
+  const std::vector<Spring> springs{{0, 3, 1, 0}, {1, 0, 1, 0}, {1, 2, 1, 0}, {6, 5, 1, 0}};
+  std::vector<std::uint32_t> place{0, 1, 2, 3, 4, 5, 6};
+  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(4, 5, 7));
+  std::ranges::reverse(place);
+  EXPECT_THAT(component_ends(springs, place), testing::ElementsAre(2, 3, 7));
+}
+
+/// Expects colours that are not empty, and neither too few nor too many.
+void expect_greedy_colours(const std::vector<Spring>& list, std::size_t nodes) {
+  const SpringColouring colouring = colour_springs(list, nodes);
+  expect_coloured(colouring, list);
+  std::vector<std::size_t> degree(nodes, 0);
+  for (const Spring& spring : list) {
+    ++degree[spring.first];
+    ++degree[spring.second];
+  }
+  const std::size_t largest = *std::ranges::max_element(degree);
+  EXPECT_GE(colouring.colours(), largest);
+  EXPECT_LE(colouring.colours(), 2 * largest - 1);
+  for (std::size_t colour = 0; colour < colouring.colours(); ++colour)
+    EXPECT_FALSE(colouring.of_colour(colour).empty()) << "colour " << colour;
+}
+
+TEST(SpringColouring, LetsNoTwoSpringsOfAColourShareANode) {
+  for (const System& system : {cloth_system(20, 13), cloth_system(2, 2), solid_block(5, 6, 7)})
+    expect_greedy_colours(system.springs, system.nodes());
+}
+
+TEST(SpringColouring, HasColoursEnoughForANodeOfManySprings) {
+  std::vector<Spring> star;  // needs a colour for each spring, more than a machine word has bits
+  for (std::uint32_t node = 1; node <= 200; ++node) star.push_back({0, node, 1, 0});
+  expect_greedy_colours(star, 201);
+  EXPECT_EQ(colour_springs(star, 201).colours(), 200U);
+}
+
+TEST(SpringColouring, OfNoSpringsHasNoColours) { EXPECT_EQ(colour_springs({}, 5).colours(), 0U); }
 
 }  // namespace
 }  // namespace mssim

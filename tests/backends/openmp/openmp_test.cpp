@@ -13,9 +13,7 @@
 #include "backends/spring_list/list_backends.h"
 #include "backends/vectors/step_kernels.h"
 #include "integrators/all_integrators.h"
-#include "tests/support/backend_step.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/backend_checks.h"
 
 namespace mssim {
 namespace {
@@ -41,12 +39,7 @@ System many_bodies() {
 class BodyLanesOf : public testing::TestWithParam<std::string_view> {};
 INSTANTIATE_TEST_SUITE_P(Integrators, BodyLanesOf,
                          testing::Values("semi-euler", "midpoint", "rk4", "rk4-frozen", "explicit-euler"),
-                         [](const auto& test) {
-                           std::string name(test.param);
-                           for (char& c : name)
-                             if (c == '-') c = '_';
-                           return name;
-                         });
+                         ByName());
 
 // What a body's node feels, and in which order that is added, does not depend on how bodies lie in memory.
 TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstructionSet) {
@@ -68,14 +61,12 @@ TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstruction
       for (const std::size_t threads : {1U, 2U, 3U, 7U, 64U}) {
         BodyLanes bodies(system, *alike, method, dt_s, kernel.lanes, threads);
         bodies.set_state(system.start);
-        EXPECT_EQ(bodies.state().position, system.start.position);
-        EXPECT_EQ(bodies.state().velocity, system.start.velocity);
+        EXPECT_TRUE(same_state(bodies.state(), system.start));
         kernel.step(bodies, 0);
         kernel.step(bodies, 31);  // an odd number: the pairs have changed places
         kernel.step(bodies, 29);
         const State state = bodies.state();
-        EXPECT_EQ(state.position, expected.position) << kernel.instruction_set << ", " << threads;
-        EXPECT_EQ(state.velocity, expected.velocity) << kernel.instruction_set << ", " << threads;
+        EXPECT_TRUE(same_state(state, expected)) << kernel.instruction_set << ", " << threads;
       }
     }
     EXPECT_EQ(found, 1U);

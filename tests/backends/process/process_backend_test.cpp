@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -17,11 +16,8 @@
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "platform/files.h"
-#include "tests/support/backend_step.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/largest_distance.h"
-#include "tests/support/solid_system.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/backend_checks.h"
+#include "tests/support/files_fixture.h"
 
 namespace mssim {
 namespace {
@@ -83,16 +79,7 @@ TEST(ProcessBackend, SaysWhatProcessesSpendOnEachOtherWhereTheProgramTells) {
 
 /// Every row of the table, by name, which the program is told as stages and assignments.
 class OwnProgram : public testing::TestWithParam<std::string_view> {};
-std::vector<std::string_view> integrator_names() {
-  std::vector<std::string_view> names;
-  for (const Integrator& integrator : integrators) names.push_back(integrator.name);
-  return names;
-}
-INSTANTIATE_TEST_SUITE_P(Each, OwnProgram, testing::ValuesIn(integrator_names()), [](const auto& tested) {
-  std::string name(tested.param);
-  std::erase(name, '-');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Each, OwnProgram, testing::ValuesIn(names_of(integrators)), ByName());
 
 TEST_P(OwnProgram, AgreesWithTheReference) {
   const BackendProgram program = program_that("");
@@ -227,23 +214,6 @@ TEST_F(ProcessBackendFiles, GoAwayWithTheBackend) {
   EXPECT_TRUE(is_empty());
   EXPECT_NE(std::string(failure_of("nonsense").what()), "none");
   EXPECT_TRUE(is_empty());
-}
-
-// What a step costs beside the steps of the program: the least of many, which other programs do not disturb.
-// A time is no test of a change: --gtest_also_run_disabled_tests --gtest_filter=*AsksForAStep* measures it in
-// a release.
-TEST(ProcessBackend, DISABLED_AsksForAStepQuickly) {
-  const System system = cloth_system(4, 5);
-  const BackendProgram program = program_that("idle");
-  const auto backend = make(program, system);
-  std::chrono::duration<double> least(std::numeric_limits<double>::max());
-  for (int i = 0; i < 2000; ++i) {
-    const auto before = std::chrono::steady_clock::now();
-    backend->step(1);
-    least = std::min<std::chrono::duration<double>>(least, std::chrono::steady_clock::now() - before);
-  }
-  RecordProperty("least_microseconds", std::to_string(1e6 * least.count()));
-  EXPECT_LE(least.count(), 50e-6);
 }
 
 }  // namespace

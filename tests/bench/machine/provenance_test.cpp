@@ -9,13 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "bench/machine/build_info.h"
 #include "bench/machine/machine.h"
 #include "output/folders/provenance_file.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/files_fixture.h"
 
 namespace mssim {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -160,6 +162,105 @@ TEST(Provenance, HoldsTheseFactsAndNoOthers) {
                                  "earlier_starts_utc", "kernel", "load_average", "memory_bytes",
                                  "memory_limit_bytes", "noise", "opencl_devices", "operating_system",
                                  "program_fnv1a_64", "scenes_fnv1a_64", "started_utc", "tetgen", "threads"));
+}
+
+TEST(BuildInfo, NamesTheCommitInFullOrSaysThatItIsUnknown) {
+  const std::string_view commit = build_info().commit;
+  if (commit == "unknown") {
+    EXPECT_FALSE(build_info().dirty) << "without a commit there is nothing to differ from";
+  } else {
+    EXPECT_EQ(commit.size(), 40U);
+    EXPECT_EQ(commit.find_first_not_of("0123456789abcdef"), std::string_view::npos) << commit;
+  }
+}
+
+TEST(BuildInfo, TellsTheFlagsAndTheBuildTypeThatItWasCompiledWith) {
+  std::string flags(build_info().flags);
+  flags.insert(0, 1, ' ').push_back(' ');
+#ifdef __OPTIMIZE__
+  EXPECT_EQ(flags.find(" -O0 "), std::string::npos) << flags;
+  EXPECT_NE(flags.find(" -O"), std::string::npos) << flags;
+#else
+  for (const char* level : {" -O1 ", " -O2 ", " -O3 "})
+    EXPECT_EQ(flags.find(level), std::string::npos) << flags;
+#endif
+#ifdef NDEBUG
+  EXPECT_NE(flags.find(" -DNDEBUG "), std::string::npos) << flags;
+#else
+  EXPECT_EQ(flags.find(" -DNDEBUG "), std::string::npos) << flags;
+#endif
+  EXPECT_NE(flags.find(" -fopenmp"), std::string::npos) << flags;
+  EXPECT_NE(flags.find(" -ffp-contract=off "), std::string::npos) << flags;
+  EXPECT_EQ(flags.find("$<"), std::string::npos) << "an expression that CMake left unevaluated: " << flags;
+  EXPECT_FALSE(build_info().build_type.empty());
+}
+
+TEST(BuildInfo, TellsTheCompilerThatItWasCompiledWith) {
+  const std::string compiler(build_info().compiler);
+#if defined(__clang__)
+  const std::string version = __clang_version__;  // Debian's ends with a blank
+  EXPECT_EQ(compiler, "Clang " + version.substr(0, version.find(' ')));
+#elif defined(__GNUC__)
+  EXPECT_EQ(compiler, "GNU " + std::to_string(__GNUC__) + "." + std::to_string(__GNUC_MINOR__) + "." +
+                          std::to_string(__GNUC_PATCHLEVEL__));
+#endif
+}
+
+Provenance quiet() {
+  Provenance provenance;
+  provenance.threads = 4;
+  provenance.allowed_cpus = {0, 1, 2, 3};
+  provenance.thread_environment = {{"OMP_PROC_BIND", "true"}};
+  provenance.machine.load_average = {0.05, 3, 3};
+  provenance.machine.governor = "performance";
+  provenance.machine.turbo = false;
+  return provenance;
+}
+
+TEST(Noise, IsNotSeenOnAQuietMachineOrWhereNothingIsTold) {
+  EXPECT_THAT(noise_of(quiet()), ElementsAre());
+  EXPECT_THAT(noise_of(Provenance{}), ElementsAre());
+}
+
+TEST(Noise, ComesFromLoadGovernorTurboAndThreads) {
+  Provenance provenance = quiet();
+  provenance.machine.load_average = {1.25, 0, 0};
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("load 1.2")));
+  provenance.machine.load_average = {0.25, 0, 0};
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("load 0.2")));
+  provenance.machine.load_average = {0.24, 9, 9};
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
+  provenance = quiet();
+  provenance.machine.governor = "powersave";
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("\"powersave\"")));
+  provenance = quiet();
+  provenance.machine.turbo = true;
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("turbo is on")));
+  provenance = quiet();
+  provenance.threads = 5;
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("5 threads share 4 logical CPUs")));
+}
+
+TEST(Noise, ComesFromAQuotaThatThreadsExceed) {
+  Provenance provenance = quiet();
+  provenance.machine.cpu_quota = 4;
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
+  provenance.machine.cpu_quota = 2.5;
+  EXPECT_THAT(noise_of(provenance), ElementsAre(AllOf(HasSubstr("4 threads"), HasSubstr("2.5 processors"),
+                                                      HasSubstr("--threads"))));
+}
+
+TEST(Noise, ComesFromThreadsThatMayMove) {
+  Provenance provenance = quiet();
+  provenance.thread_environment = {{"OMP_PROC_BIND", "false"}};
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")));
+  provenance.thread_environment = {};
+  EXPECT_THAT(noise_of(provenance), ElementsAre(HasSubstr("OMP_PROC_BIND=true")));
+  provenance.thread_environment = {{"OMP_PLACES", "cores"}};
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
+  provenance.thread_environment = {};
+  provenance.threads = 1;
+  EXPECT_THAT(noise_of(provenance), ElementsAre());
 }
 
 }  // namespace

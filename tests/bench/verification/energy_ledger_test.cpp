@@ -13,8 +13,7 @@
 #include "backends/backends.h"
 #include "backends/spring_list/list_backends.h"
 #include "integrators/all_integrators.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/backend_checks.h"
 
 namespace mssim {
 namespace {
@@ -59,16 +58,7 @@ class EnergyLedgerOf : public testing::TestWithParam<std::string_view> {
  protected:
   const Integrator& integrator() const { return *find_integrator(GetParam()); }
 };
-std::vector<std::string_view> integrator_names() {
-  std::vector<std::string_view> names;
-  for (const Integrator& integrator : integrators) names.push_back(integrator.name);
-  return names;
-}
-INSTANTIATE_TEST_SUITE_P(Table, EnergyLedgerOf, testing::ValuesIn(integrator_names()), [](const auto& test) {
-  std::string name(test.param);
-  std::ranges::replace(name, '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Table, EnergyLedgerOf, testing::ValuesIn(names_of(integrators)), ByName());
 
 TEST_P(EnergyLedgerOf, BalancesABlockThatFallsSpinsBouncesAndSlides) {
   const System system = solid_block(4, 4, 4, 0.05);

@@ -18,9 +18,8 @@
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "scene/scene_file.h"
-#include "tests/support/backend_step.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/scene_files.h"
+#include "tests/support/files_fixture.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {

@@ -17,7 +17,7 @@
 #include "integrators/all_integrators.h"
 #include "scene/cloth.h"
 #include "scene/scene_kinds.h"
-#include "tests/support/cloth_system.h"
+#include "tests/support/backend_checks.h"
 
 namespace mssim {
 namespace {
@@ -73,7 +73,7 @@ class WholeInWindows final : public WindowBackend {
   std::unique_ptr<Backend> backend_;
 };
 
-class WindowOfEachIntegrator : public testing::TestWithParam<std::string> {};
+class WindowOfEachIntegrator : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(WindowOfEachIntegrator, HasTheReferenceOfTheWhole) {
   const Integrator& integrator = *find_integrator(GetParam());
@@ -118,18 +118,13 @@ TEST_P(WindowOfEachIntegrator, HasTheReferenceOfTheWhole) {
   }
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> all;
+std::vector<std::string_view> explicit_integrators() {
+  std::vector<std::string_view> names;
   for (const Integrator* integrator : all_integrators)
-    if (!is_implicit(*integrator)) all.emplace_back(integrator->name);
-  return all;
+    if (!is_implicit(*integrator)) names.push_back(integrator->name);
+  return names;
 }
-
-INSTANTIATE_TEST_SUITE_P(Table, WindowOfEachIntegrator, testing::ValuesIn(names()), [](const auto& instance) {
-  std::string name = instance.param;
-  std::ranges::replace(name, '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Table, WindowOfEachIntegrator, testing::ValuesIn(explicit_integrators()), ByName());
 
 TEST(WindowVerification, NoticesOneNodeAndOneThatIsNotFinite) {
   const SceneSpec spec = cloth_spec(40, 50);

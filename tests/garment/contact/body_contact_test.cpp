@@ -1,7 +1,6 @@
 // kernels/body_contact.h: what a body does to a point of cloth, by its text in C++ and as OpenCL C.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

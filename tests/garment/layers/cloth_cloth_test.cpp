@@ -14,6 +14,7 @@
 
 #include "model/topology.h"
 #include "tests/support/cloth_layers_fixture.h"
+#include "tests/support/sentence_of.h"
 
 namespace mssim {
 namespace {
@@ -312,14 +313,11 @@ TEST(ClothCloth, RefusesBadSettingsMassesAndArrays) {
   const LayeredCloth good = node_over_triangle();
   const auto refusal = [](LayeredCloth cloth, const ClothClothSettings& settings,
                           std::size_t sizes = 8) -> std::string {
-    try {
+    return sentence_of<std::invalid_argument>([&] {
       ClothClothCollision collision = cloth.collision(settings);
       cloth.velocity[1].resize(sizes);
       collision.collide(cloth.arrays(), dt);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    });
   };
   EXPECT_EQ(refusal(good, {}), "");
   EXPECT_THAT(refusal(good, {.thickness = 0}), HasSubstr("the thickness in metres is 0, give"));

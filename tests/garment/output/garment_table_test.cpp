@@ -9,6 +9,7 @@
 #include "garment/output/garment_csv.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
+#include "tests/support/sentence_of.h"
 
 namespace mssim {
 namespace {
@@ -114,12 +115,7 @@ TEST(GarmentCsv, SaysWhatCannotBeRead) {
   const auto complaint = [&](const std::string& from, const std::string& to) {
     std::string changed = csv;
     changed.replace(changed.find(from), from.size(), to);
-    try {
-      read_dressings(CsvTable("garment.csv", changed), rows);
-    } catch (const CsvError& error) {
-      return std::string(error.what());
-    }
-    return std::string("no complaint");
+    return sentence_of<CsvError>([&] { read_dressings(CsvTable("garment.csv", changed), rows); });
   };
   EXPECT_THAT(complaint(",2000,420,true,", ",2000,420,maybe,"),
               HasSubstr("garment.csv, line 2, column settled: \"maybe\" is neither true nor false"));

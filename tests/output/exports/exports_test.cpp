@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <fstream>
 #include <sstream>
 
 #include "output/exports/vtkhdf_export.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
-#include "tests/support/scene_files.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/sentence_of.h"
 
 namespace mssim {
 namespace {
@@ -180,12 +180,7 @@ TEST_F(ProvenanceFile, ThatIsNoJsonIsRefused) {
 
 TEST_F(ProvenanceFile, ThatIsNoFileIsRefused) {
   const auto refusal = [](const std::filesystem::path& file) {
-    try {
-      read_provenance(file);
-    } catch (const ProvenanceError& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
+    return sentence_of<ProvenanceError>([&] { read_provenance(file); });
   };
   EXPECT_EQ(refusal(folder()),
             folder().string() + ": is not a regular file: give a folder that mssim bench wrote");

@@ -2,13 +2,23 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "geometry/surface.h"
 #include "output/traces/trace_content.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/solid_system.h"
+#include "picture/picture.h"
+#include "platform/files.h"
+#include "tests/support/files_fixture.h"
+#include "tests/support/picture_fixture.h"
+#include "tests/support/systems.h"
 
 namespace mssim {
 namespace {
@@ -118,6 +128,167 @@ TEST(NodeStrain, IsTheMeanOfTheNodesSprings) {
   ASSERT_EQ(strain.size(), 4U);
   for (const auto& [node, expected] : {std::pair{0U, 0.1}, {1U, 0.2}, {2U, 0.3}, {3U, 0.0}})
     EXPECT_NEAR(strain[node], expected, 1e-12) << node;
+}
+
+const PictureOptions small{{35, 18}, 160, 120, ColourBy::object, 2};
+
+class PicturesOfARun : public TemporaryFolderTest {
+ protected:
+  const System system_ = cloth_system(12, 15);
+  PictureFolder pictures_in(const std::filesystem::path& name) const {
+    return {name, trace_content_of(system_, {}, {}), small};
+  }
+  static std::set<std::string> names_in(const std::filesystem::path& name) {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(name))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+};
+
+TEST_F(PicturesOfARun, AreWhatAPainterDrawsOfAllSoFar) {
+  const std::filesystem::path name = folder() / "new" / "pictures";
+  const std::vector<Vec3d>& start = system_.start.position;
+  std::vector<Vec3d> far = start;
+  for (Vec3d& position : far) position += Vec3d{2, -0.5, 1};
+  const TraceContent content = trace_content_of(system_, {}, {});
+  Painter painter(content, start, small);
+  {
+    PictureFolder pictures = pictures_in(name);
+    pictures.draw(start);
+    pictures.draw(far);
+    pictures.draw(start);
+    EXPECT_EQ(pictures.pictures(), 3U);
+  }
+  EXPECT_EQ(names_in(name),
+            (std::set<std::string>{"frame-000000.png", "frame-000001.png", "frame-000002.png"}));
+  painter.make_room_for(start);
+  EXPECT_EQ(decoded(text_of(name / "frame-000000.png")), painter.picture_of(start));
+  painter.make_room_for(far);
+  EXPECT_EQ(decoded(text_of(name / "frame-000001.png")), painter.picture_of(far));
+  EXPECT_EQ(decoded(text_of(name / "frame-000002.png")), painter.picture_of(start));
+}
+
+TEST_F(PicturesOfARun, NeedAFolderOfTheirOwn) {
+  put("used/notes.txt", "mine");
+  put("file", "no folder");
+  EXPECT_THROW(pictures_in(folder() / "used"), WriteError);
+  EXPECT_THROW(pictures_in(folder() / "file"), WriteError);
+  EXPECT_EQ(names_in(folder() / "used"), std::set<std::string>{"notes.txt"});
+  const PictureFolder first = pictures_in(folder() / "pictures");
+  EXPECT_THROW(pictures_in(folder() / "pictures"), WriteError);
+}
+
+Surface surface_of(const Skin& skin, const std::vector<Vec3d>& position) {
+  Surface surface{{}, skin.triangles};
+  for (const std::uint32_t node : skin.node) surface.points.push_back(position[node]);
+  return surface;
+}
+
+TEST(Skin, OfAClothIsTwoTrianglesACell) {
+  const System system = cloth_system(4, 6);
+  const Skin skin = skin_of(system.topology, system.start.position);
+  EXPECT_EQ(skin.node.size(), 24U);
+  EXPECT_EQ(skin.triangles.size(), 2U * 3 * 5);
+  EXPECT_EQ(skin.parts, std::vector<std::string>{"cloth"});
+  std::set<std::uint32_t> used;
+  for (const auto& triangle : skin.triangles) used.insert(triangle.begin(), triangle.end());
+  EXPECT_EQ(used.size(), 24U);
+}
+
+TEST(Skin, OfBodiesClosesAroundThem) {
+  const System system = solid_block(3, 4, 5);
+  const Skin skin = skin_of(system.topology, system.start.position);
+  double volume = 0;
+  const auto& nodes = system.start.position;
+  for (const auto& [a, b, c, d] : std::get<TetrahedralMesh>(system.topology).tetrahedra)
+    volume += dot(nodes[b] - nodes[a], cross(nodes[c] - nodes[a], nodes[d] - nodes[a])) / 6;
+  EXPECT_NEAR(volume_of(surface_of(skin, nodes)), volume, 1e-9 * volume);  // outwards, and whole
+  // Every edge lies in two triangles, which run along it in opposite directions.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& triangle : skin.triangles)
+    for (std::size_t i = 0; i < 3; ++i) ++edges[{skin.node[triangle[i]], skin.node[triangle[(i + 1) % 3]]}];
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(edges.count({edge.second, edge.first}), 1U);
+  }
+}
+
+TEST(Skin, HasAPointForEachSideOfASharpEdge) {
+  const System system = solid_block(2, 2, 2);
+  const Skin skin = skin_of(system.topology, system.start.position);
+  std::map<std::uint32_t, std::size_t> points;
+  for (const std::uint32_t node : skin.node) ++points[node];
+  std::map<std::size_t, std::size_t> nodes_with;
+  for (const auto& [node, count] : points) ++nodes_with[count];
+  EXPECT_EQ(nodes_with[3], 8U) << "corners of the block";
+  EXPECT_EQ(skin.node.size(), 3U * 8 + 2 * nodes_with[2] + nodes_with[1]);
+}
+
+TEST(Skin, KeepsBodiesApart) {
+  const System system = two_solid_blocks();
+  const Skin skin = skin_of(system.topology, system.start.position);
+  EXPECT_EQ(skin.parts, (std::vector<std::string>{"body 1", "body 2"}));
+  for (std::size_t point = 0; point < skin.node.size(); ++point)
+    EXPECT_EQ(skin.part[point], skin.node[point] < solid_block(4, 5, 3).nodes() ? 0U : 1U);
+}
+
+// Pictures of small scenes, pixel by pixel: they look as they did, and within one level of a channel alike on
+// every processor. Only functions of the C library (sines, powers) and what the compiler makes of sums may
+// differ.
+//
+// A change that is not meant to change pictures leaves tests/output/pictures/golden as it is. After one that
+// is, look at what the failing test has written, and put it there.
+
+constexpr int most_levels = 1;
+
+/// The picture of `position`, 240 x 180 pixels.
+Picture picture_of(const System& system, const std::vector<Vec3d>& position, ColourBy colour) {
+  const TraceContent content = trace_content_of(system, {}, {});
+  Painter painter(content, system.start.position, {{35, 18}, 240, 180, colour, 2});
+  painter.make_room_for(position);
+  return painter.picture_of(position);
+}
+
+/// By how many levels the channels of two pictures of the same size differ at most.
+int largest_difference(const Picture& a, const Picture& b) {
+  int largest = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    largest = std::max({largest, std::abs(a.pixels[i].red - b.pixels[i].red),
+                        std::abs(a.pixels[i].green - b.pixels[i].green),
+                        std::abs(a.pixels[i].blue - b.pixels[i].blue)});
+  return largest;
+}
+
+void expect_golden(const Picture& drawn, const std::string& name) {
+  const std::string committed = source_file("tests/output/pictures/golden/" + name);
+  const Picture golden = std::filesystem::exists(committed) ? decoded(text_of(committed)) : Picture();
+  const bool same_size = golden.width == drawn.width && golden.height == drawn.height;
+  const int difference = same_size ? largest_difference(golden, drawn) : 255;
+  testing::Test::RecordProperty("largest_difference", difference);
+  if (difference <= most_levels) return;
+  const std::string written = testing::TempDir() + name;
+  write_file_atomically(written, png_of(drawn));
+  ADD_FAILURE() << name << " differs by " << difference << " levels; what was drawn is in " << written;
+}
+
+TEST(GoldenPicture, OfTheStrainOfAWavyCloth) {
+  const System system = build_system(sheet_spec(24, 30, 0.5));
+  std::vector<Vec3d> position = system.start.position;
+  const Vec3d middle = 0.5 * (position.front() + position.back());
+  for (Vec3d& point : position) {
+    const Vec3d at = (1 / 0.15) * (point - middle);  // -1 to 1 in x, less in z
+    point.y += 0.06 * at.x * (at.x * at.x - 0.7) - 0.03 * at.z * at.z;
+  }
+  expect_golden(picture_of(system, position, ColourBy::strain), "wavy-cloth.png");
+}
+
+TEST(GoldenPicture, OfTwoBlocks) {
+  const System system = two_solid_blocks();
+  std::vector<Vec3d> position = system.start.position;
+  for (Vec3d& point : position) point.x -= point.x > 0.3 ? 0.4 : 0;  // the second above the first
+  for (Vec3d& point : position) point.z += 3 * (point.y - 0.5) * (point.y - 0.5);
+  expect_golden(picture_of(system, position, ColourBy::object), "two-blocks.png");
 }
 
 }  // namespace

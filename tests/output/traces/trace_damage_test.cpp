@@ -7,7 +7,7 @@
 
 #include "hdf5/hdf5.h"
 #include "output/traces/trace_reader.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"
 

@@ -3,10 +3,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <utility>
-
 #include "hdf5/hdf5.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"
 
@@ -83,8 +81,8 @@ TEST_F(TraceReading, GivesBackACloth) {
     const TraceReader reader = read_back(system_, in_double);
     EXPECT_EQ(reader.content().particles, "cloth");
     const auto& grid = std::get<GridPatch>(reader.content().topology);
-    EXPECT_EQ(grid.rows, rows);
-    EXPECT_EQ(grid.columns, columns);
+    EXPECT_EQ(grid.rows, cloth_rows);
+    EXPECT_EQ(grid.columns, cloth_columns);
     EXPECT_TRUE(reader.content().body.points.empty());
   }
 }
@@ -240,7 +238,7 @@ TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
                                   name);
     checked(H5Awrite(attribute.get(), memory, number), name);
   };
-  const int row_count = rows;
+  const int row_count = cloth_rows;
   others("/parameters", "rows", H5T_STD_U8LE, H5T_NATIVE_INT, &row_count);
   const double dt_s = header().dt_s;
   others("/parameters", "dt_s", H5T_IEEE_F64BE, H5T_NATIVE_DOUBLE, &dt_s);
@@ -252,7 +250,7 @@ TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
   const TraceReader reader(file());
   EXPECT_EQ(reader.content().step, (std::vector<std::int64_t>{0, 10, 20}));
   EXPECT_EQ(reader.content().dt_s, dt_s);
-  EXPECT_EQ(std::get<GridPatch>(reader.content().topology).rows, rows);
+  EXPECT_EQ(std::get<GridPatch>(reader.content().topology).rows, cloth_rows);
   ASSERT_EQ(reader.content().springs.size(), system_.springs.size());
   for (std::size_t s = 0; s < system_.springs.size(); ++s) {
     EXPECT_EQ(reader.content().springs[s], (std::array{system_.springs[s].first, system_.springs[s].second}));

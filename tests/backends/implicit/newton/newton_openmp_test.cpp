@@ -2,10 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <functional>
-#include <iostream>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -14,17 +10,10 @@
 #include "backends/backends.h"
 #include "backends/implicit/newton/step_newton.h"
 #include "backends/implicit/nodes/solvers.h"
-#include "backends/openmp/openmp.h"
 #include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
-#include "scene/scene_file.h"
-#include "scene/scene_kinds.h"
-#include "tests/support/backend_step.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/largest_distance.h"
-#include "tests/support/scene_files.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/backend_checks.h"
 
 namespace mssim {
 namespace {
@@ -60,23 +49,15 @@ INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNewtonKernelAndIntegrator,
                          testing::Combine(testing::Range(std::size_t{0}, newton_sets().size()),
                                           testing::Values("implicit-euler", "newton-euler")),
                          [](const auto& test) {
-                           std::string name = std::string(newton_sets()[std::get<0>(test.param)]) + "__" +
-                                              std::string(std::get<1>(test.param));
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
+                           return ByName::of(newton_sets()[std::get<0>(test.param)], std::get<1>(test.param));
                          });
 
 TEST_P(EachNewtonKernelAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShape) {
   for (const System& system : implicit_systems()) {
     const Reference reference = run_reference(system, integrator(), backend_dt_s);
-    ASSERT_FALSE(reference.failure) << *reference.failure;
-    ASSERT_EQ(reference.steps, verification_steps);
-    for (const std::size_t most_kept : {most_slope_bytes, std::size_t{0}}) {
-      const auto simulation = make(system, 2, backend_dt_s, most_kept);
-      const Verification verification = verify(*simulation, system, reference, backend_dt_s);
-      EXPECT_FALSE(verification.failure) << system.nodes() << " nodes, " << most_kept
-                                         << " bytes of slopes: " << verification.failure.value_or("");
-    }
+    for (const std::size_t most_kept : {most_slope_bytes, std::size_t{0}})
+      EXPECT_TRUE(agrees(*make(system, 2, backend_dt_s, most_kept), system, reference, backend_dt_s))
+          << most_kept << " bytes of slopes";
   }
 }
 
@@ -112,8 +93,7 @@ TEST_P(EachNewtonKernelAndIntegrator, GivesTheSameBitsAtEveryNumberOfThreads) {
       const State expected = steps_of(1, most_kept);
       for (const int threads : {2, 3, 7}) {
         const State state = steps_of(threads, most_kept);
-        EXPECT_EQ(state.position, expected.position) << threads << " threads, " << system.nodes() << " nodes";
-        EXPECT_EQ(state.velocity, expected.velocity) << threads << " threads, " << system.nodes() << " nodes";
+        EXPECT_TRUE(same_state(state, expected)) << threads << " threads, " << system.nodes() << " nodes";
       }
     }
   }
@@ -127,13 +107,11 @@ TEST_P(EachNewtonKernelAndIntegrator, StartsAgainFromAStateThatItIsGiven) {
     simulation->step(7);
     const State once = simulation->state();
     simulation->set_state(system.start);
-    EXPECT_EQ(simulation->state().position, system.start.position);
-    EXPECT_EQ(simulation->state().velocity, system.start.velocity);
+    EXPECT_TRUE(same_state(simulation->state(), system.start));
     simulation->step(3);
     simulation->set_state(middle);
     simulation->step(7);
-    EXPECT_EQ(simulation->state().position, once.position);
-    EXPECT_EQ(simulation->state().velocity, once.velocity);
+    EXPECT_TRUE(same_state(simulation->state(), once));
   }
 }
 
@@ -147,27 +125,14 @@ TEST_P(EachNewtonKernelAndIntegrator, HoldsPinsExactlyEvenBelowTheFloor) {
     const auto simulation = make(*system);
     simulation->step(20);
     const State state = simulation->state();
-    for (const std::uint32_t pin : system->pins) {
-      EXPECT_EQ(state.position[pin], system->start.position[pin]) << pin;
-      EXPECT_EQ(state.velocity[pin], Vec3d{}) << pin;
-    }
+    EXPECT_TRUE(pins_hold(*system, state));
     EXPECT_NE(state.position[1], system->start.position[1]) << "the others move";
   }
 }
 
 TEST_P(EachNewtonKernelAndIntegrator, TreatsTheFloorLikeTheReference) {
-  // A sheet that hits the floor flat, sliding: its nodes land in the same step in any precision.
-  System system = build_system(sheet_spec(20, 17, 0.00101));
-  for (Vec3d& v : system.start.velocity) v = {0.5, -1, 0.25};
-  const auto reference = make_reference(system, integrator(), backend_dt_s);
-  const auto simulation = make(system);
-  reference->step(15);
-  simulation->step(15);
-  const State expected = reference->state(), state = simulation->state();
-  EXPECT_GT(expected.velocity[0].y, 0.2) << "it has bounced";
-  EXPECT_LT(expected.velocity[0].x, 0.45) << "friction has slowed it";
-  EXPECT_LE(largest_distance(state.velocity, expected.velocity), 2e-3);
-  EXPECT_LE(largest_distance(state.position, expected.position), 1e-6);
+  const System system = sliding_sheet(20, 17);
+  expect_same_bounce(*make(system), *make_reference(system, integrator(), backend_dt_s), 15);
 }
 
 TEST(NewtonOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
@@ -181,58 +146,6 @@ TEST(NewtonOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
   EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
   EXPECT_EQ(device(Roots::exact),
             std::string("cpu ") + std::ranges::find_if(kernels, &Kernel::exact_roots)->instruction_set);
-}
-
-/// The fastest of seven samples of `steps` steps, s a step. prepare() comes before each.
-double fastest_step(const std::function<void()>& prepare, const std::function<void(int)>& step, int steps) {
-  double fastest = HUGE_VAL;
-  for (int sample = 0; sample < 7; ++sample) {
-    prepare();
-    const auto begin = std::chrono::steady_clock::now();
-    step(steps);
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-    fastest = std::min(fastest, time.count() / steps);
-  }
-  return fastest;
-}
-
-/// Prints what a step and one of its products A p cost beside a step of semi-implicit Euler.
-template <class Nodes>
-void print_costs(const System& system, double dt_s, int threads) {
-  const auto kernel = compiled_kernels<VectorEquation<Nodes>>().front();
-  const double plain_s = [&] {
-    const auto simulation = make_openmp(system, integrators[0], 5e-5, {threads, ""});
-    return fastest_step([&] { simulation->set_state(system.start); },
-                        [&](int steps) { simulation->step(steps); },
-                        static_cast<int>(2'000'000 / system.nodes()) + 2);
-  }();
-  for (const std::string_view name : {"implicit-euler", "newton-euler"}) {
-    VectorEquation<Nodes> equation(system, dt_s, kernel.lanes, static_cast<std::size_t>(threads),
-                                   *find_integrator(name));
-    const double step_s =
-        fastest_step([&] { equation.set_state(system.start); },
-                     [&](int steps) { kernel.step(equation, steps); }, system.nodes() < 10000 ? 10 : 2);
-    const SolverWork& work = equation.work;
-    const auto steps = static_cast<double>(work.steps);
-    const double products = static_cast<double>(work.products) / steps;
-    std::cout << system.nodes() << " nodes, dt " << dt_s << " s, " << threads << " threads, " << name << ": "
-              << 1e3 * step_s << " ms, " << static_cast<double>(work.newton_iterations) / steps
-              << " systems, " << products << " products, " << 1e6 * step_s / products << " us a product, "
-              << step_s / products / plain_s << " of a semi-euler step of " << 1e6 * plain_s << " us "
-              << note_of(work) << "\n";
-  }
-}
-
-TEST(NewtonOpenMp, DISABLED_PrintsWhatItCosts) {
-  for (const std::string_view scene : {"cloth2500", "cloth40k", "cloth350k", "bodies38233"}) {
-    const System system = build_system(load_scene(source_file("scenes/" + std::string(scene) + ".json")));
-    for (const double dt_s : {5e-5, 50 * 5e-5})
-      for (const int threads : {1, 2})
-        if (std::holds_alternative<GridPatch>(system.topology))
-          print_costs<NodeRows>(system, dt_s, threads);
-        else
-          print_costs<NodeSlices>(system, dt_s, threads);
-  }
 }
 
 }  // namespace

@@ -13,8 +13,7 @@
 #include <vector>
 
 #include "backends/implicit/nodes/node_vectors-inl.h"
-#include "tests/support/cloth_system.h"
-#include "tests/support/solid_system.h"
+#include "tests/support/systems.h"
 
 #ifndef MSSIM_ACCELERATION_KERNEL  // once, before the code of the first instruction set
 #define MSSIM_ACCELERATION_KERNEL

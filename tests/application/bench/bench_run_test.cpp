@@ -1,0 +1,168 @@
+#include "application/bench/bench_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "application/bench/bench_plan.h"
+#include "application/bench/bench_results.h"
+#include "backends/backends.h"
+#include "integrators/all_integrators.h"
+#include "output/folders/provenance_file.h"
+#include "tests/support/trace_fixture.h"
+#include "text/error.h"
+
+namespace mssim {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+ResultRow row(const std::string& scene, const std::string& backend, int rounds = 3) {
+  ResultRow row;
+  row.scene = scene;
+  row.backend = backend;
+  row.integrator = "semi-euler";
+  row.rounds = rounds;
+  return row;
+}
+
+std::string listed(const std::vector<ResultRow>& rows) {
+  std::string text;
+  for (const ResultRow& row : rows) text += row.scene + row.backend + ' ';
+  return text;
+}
+
+TEST(BenchRows, ReplaceAScenesRowsWhereTheyStand) {
+  BenchRows rows({row("a", "1"), row("a", "2"), row("b", "1"), row("c", "1")});
+  EXPECT_EQ(listed(rows.of_scene("a")), "a1 a2 ");
+  EXPECT_EQ(listed(rows.of_scene("d")), "");
+  rows.replace("b", {row("b", "8"), row("b", "9")});
+  EXPECT_EQ(listed(rows.all()), "a1 a2 b8 b9 c1 ");
+  rows.replace("a", {row("a", "3")});
+  EXPECT_EQ(listed(rows.all()), "a3 b8 b9 c1 ");
+  rows.replace("d", {row("d", "1"), row("d", "2")});
+  EXPECT_EQ(listed(rows.all()), "a3 b8 b9 c1 d1 d2 ");
+}
+
+TEST(BenchRows, AreFinishedWhenEachHasItsRoundsOrCannotRun) {
+  BenchSettings settings;
+  settings.rounds = 3;
+  settings.backends = {find_backend("serial"), find_backend("opencl")};
+  settings.integrators = {find_integrator("semi-euler")};
+  std::vector<ResultRow> rows{row("a", "serial"), row("a", "opencl")};
+  EXPECT_FALSE(is_finished(settings, "a", {}));
+  EXPECT_TRUE(is_finished(settings, "a", rows));
+  rows[1].rounds = 2;
+  EXPECT_FALSE(is_finished(settings, "a", rows));
+  rows[1].status = "unavailable: no device";
+  EXPECT_TRUE(is_finished(settings, "a", rows));
+  rows.pop_back();
+  EXPECT_THROW(is_finished(settings, "a", rows), UsageError);
+}
+
+ResultRow row(const std::string& backend, const std::string& status, bool verified) {
+  ResultRow row;
+  row.scene = "cloth";
+  row.backend = backend;
+  row.integrator = "rk4";
+  row.status = status;
+  row.verified = verified;
+  return row;
+}
+
+TEST(BenchVerdict, IsGoodWhereEveryRowThatWasAskedForIsVerified) {
+  const BenchVerdict verdict = verdict_of(
+      {row("serial", "ok", true), row("opencl", "unavailable: no device", false)}, {"serial"}, {"rk4"});
+  EXPECT_EQ(verdict.exit_code, exit_ok);
+  EXPECT_THAT(verdict.reasons, IsEmpty());
+}
+
+TEST(BenchVerdict, NamesTheRowsThatAreWrongBeforeThoseThatAreMissing) {
+  const BenchVerdict verdict =
+      verdict_of({row("serial", "ok", true), row("openmp", "failed: off by 1", false),
+                  row("hybrid", "ok", false), row("opencl", "unavailable: no device", false)},
+                 {"opencl"}, {});
+  EXPECT_EQ(verdict.exit_code, exit_not_verified);
+  EXPECT_THAT(verdict.reasons, ElementsAre("cloth, openmp, rk4: failed: off by 1",
+                                           "cloth, hybrid, rk4: failed: not verified"));
+}
+
+TEST(BenchVerdict, NamesWhatWasAskedForAndCouldNotRun) {
+  const std::vector<ResultRow> rows{row("serial", "ok", true),
+                                    row("opencl", "unavailable: no device", false)};
+  const BenchVerdict verdict = verdict_of(rows, {"serial", "opencl"}, {});
+  EXPECT_EQ(verdict.exit_code, exit_unavailable);
+  EXPECT_THAT(verdict.reasons, ElementsAre("cloth, opencl, rk4: unavailable: no device"));
+  EXPECT_EQ(verdict_of({rows[1]}, {}, {"rk4"}).exit_code, exit_unavailable);
+}
+
+using Clock = TimeBudget::Clock;
+
+double seconds_until(const std::optional<Clock::time_point>& when) {
+  return std::chrono::duration<double>(when.value() - Clock::now()).count();
+}
+
+TEST(TimeBudget, IsNoLimitWithoutSeconds) {
+  TimeBudget budget(std::nullopt, {{1000, 1000}});
+  EXPECT_EQ(budget.begin_scene(), std::nullopt);
+}
+
+TEST(TimeBudget, GivesAllScenesAsManyRounds) {
+  TimeBudget budget(100, {{10, 1}, {30, 3}});
+  // 60 seconds are left for rounds of 1 + 3 seconds: 15 each.
+  EXPECT_NEAR(seconds_until(budget.begin_scene()), 10 + 15 * 1, 0.5);
+}
+
+TEST(TimeBudget, GivesTheLastSceneAllThatIsLeft) {
+  TimeBudget budget(50, {{10, 1}, {10, 1}});
+  budget.begin_scene();
+  EXPECT_NEAR(seconds_until(budget.begin_scene()), 50, 0.5);
+}
+
+TEST(TimeBudget, BelievesWhatTheFirstRoundsTook) {
+  TimeBudget budget(10, {{0.01, 0.01}, {0.01, 0.01}, {0.01, 0.02}});
+  budget.begin_scene();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // at least ten times what was expected
+  budget.first_round_done();
+  // Of 9.8 seconds 0.2 at least are for preparing two scenes; of the rest this scene has a third.
+  const double seconds = seconds_until(budget.begin_scene());
+  EXPECT_GT(seconds, 3);
+  EXPECT_LT(seconds, 3.4);
+}
+
+TEST(TimeBudget, IsRefusedWhereItIsTooShortForARoundOfEach) {
+  EXPECT_THROW(TimeBudget(43, {{10, 1}, {30, 3}}), UsageError);
+  EXPECT_NO_THROW(TimeBudget(44, {{10, 1}, {30, 3}}));
+}
+
+class BenchTraceTest : public TemporaryFolderTest {};
+
+TEST_F(BenchTraceTest, HasTheProvenanceOfTheBench) {
+  BenchOptions options;
+  options.scenes = {"cloth2500", "cloth4900"};
+  options.backends = {"serial"};
+  options.integrators = {"semi-euler"};
+  options.execution.threads = 2;
+  options.rounds = 1;
+  options.output.folder = (folder() / "out").string();
+  options.output.trace = true;
+  BenchPlan plan = plan_of(options);
+  BenchResults results(plan);
+  TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
+  measure_scenes(plan, budget, StopRequest(), results);
+  const std::string expected = provenance_text(plan.provenance);
+  EXPECT_EQ(text_of(folder() / "out/provenance.json"), expected + '\n');
+  for (const std::string& scene : options.scenes)
+    EXPECT_EQ(text_in(open(folder() / "out/traces" / (scene + "-serial-semi-euler.h5")).get(),
+                      "/parameters/provenance"),
+              expected);
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,460 @@
+// What xpbd computes, against what is known without it, and the order in which it takes springs.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "backends/backends.h"
+#include "backends/implicit/constraints/step_constraints.h"
+#include "backends/implicit/nodes/solvers.h"
+#include "backends/vectors/step_kernels.h"
+#include "bench/verification/verification.h"
+#include "integrators/all_integrators.h"
+#include "integrators/stability.h"
+#include "model/energy.h"
+#include "tests/support/backend_checks.h"
+#include "tests/support/expect_coloured.h"
+
+namespace mssim {
+namespace {
+
+TEST(SpringOrder, HasTwelveColoursOfAClothInWhichNoTwoSpringsShareANode) {
+  for (const auto& [rows, columns] : std::vector<std::pair<std::uint32_t, std::uint32_t>>{
+           {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}}) {
+    const System system = cloth_system(rows, columns);
+    const SpringColouring order = spring_order(system);
+    EXPECT_EQ(order.colours(), 12U) << rows << " x " << columns;
+    expect_coloured(order, system.springs);
+  }
+}
+
+TEST(SpringOrder, GivesEachSpringTheColourOfItsPlace) {
+  using Ends = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  const auto ends = [](const System& system, ClothColour colour) {
+    const SpringColouring order = spring_order(system);
+    Ends found;
+    for (const Spring& spring : order.of_colour(colour))
+      found.emplace_back(std::minmax(spring.first, spring.second));
+    std::ranges::sort(found);
+    return found;
+  };
+  // A row or a column of seven nodes.
+  const System row = cloth_system(1, 7), column = cloth_system(7, 1);
+  EXPECT_EQ(ends(row, structural_from_even_columns), (Ends{{0, 1}, {2, 3}, {4, 5}}));
+  EXPECT_EQ(ends(row, structural_from_odd_columns), (Ends{{1, 2}, {3, 4}, {5, 6}}));
+  EXPECT_EQ(ends(row, bending_from_columns_01), (Ends{{0, 2}, {1, 3}, {4, 6}}));
+  EXPECT_EQ(ends(row, bending_from_columns_23), (Ends{{2, 4}, {3, 5}}));
+  EXPECT_EQ(ends(column, structural_below_even_rows), (Ends{{0, 1}, {2, 3}, {4, 5}}));
+  EXPECT_EQ(ends(column, structural_below_odd_rows), (Ends{{1, 2}, {3, 4}, {5, 6}}));
+  EXPECT_EQ(ends(column, bending_below_rows_01), (Ends{{0, 2}, {1, 3}, {4, 6}}));
+  EXPECT_EQ(ends(column, bending_below_rows_23), (Ends{{2, 4}, {3, 5}}));
+  // Three rows of two: 0 1 / 2 3 / 4 5.
+  const System rows = cloth_system(3, 2);
+  EXPECT_EQ(ends(rows, falling_below_even_rows), (Ends{{0, 3}}));
+  EXPECT_EQ(ends(rows, falling_below_odd_rows), (Ends{{2, 5}}));
+  EXPECT_EQ(ends(rows, rising_below_even_rows), (Ends{{1, 2}}));
+  EXPECT_EQ(ends(rows, rising_below_odd_rows), (Ends{{3, 4}}));
+}
+
+TEST(SpringOrder, FillsAllTwelveColoursOfAClothWithEqualSharesOfEachKind) {
+  const System system = cloth_system(49, 49);
+  const SpringColouring order = spring_order(system);
+  for (std::size_t colour = 0; colour < order.colours(); ++colour)
+    EXPECT_NEAR(static_cast<double>(order.of_colour(colour).size()), 49.0 * 48 / 2, 49) << colour;
+}
+
+TEST(SpringOrder, OfBodiesIsThatOfTheGreedyColouring) {
+  for (const System& system : {solid_block(5, 6, 7), two_solid_blocks()}) {
+    const SpringColouring order = spring_order(system);
+    expect_coloured(order, system.springs);
+    EXPECT_EQ(order.colours(), colour_springs(system.springs, system.nodes()).colours());
+  }
+}
+
+/// Two nodes of 1 and 0.5 kg joined by a spring of 1 m, along x, which is stretched by half a metre, and a
+/// third one alone; no gravity.
+System one_spring(SpringMaterial material) {
+  System system;
+  system.topology = TetrahedralMesh{};
+  system.springs = {{0, 1, 1, 0}};
+  system.materials = {material};
+  system.node_mass = {1, 0.5, 2};
+  system.start.position = {{0, 5, 0}, {1.5, 5, 0}, {0, 8, 0}};
+  system.start.velocity = {{}, {}, {1, 2, 3}};
+  return system;
+}
+
+/// Every way to take steps of xpbd.
+std::vector<std::unique_ptr<Backend>> all_backends(const System& system, double dt_s) {
+  std::vector<std::unique_ptr<Backend>> backends;
+  backends.push_back(make_constraints_reference(system, dt_s));
+  backends.push_back(make_serial_constraints(system, dt_s));
+  backends.push_back(make_openmp_constraints(system, dt_s, {2, ""}));
+  return backends;
+}
+
+TEST(Xpbd, TakesASmallStepOfOneSpringAsWorkedOutByHand) {
+  // h = 0.1 s, h^2 k = 1, h c = 0.5, w1 + w2 = 3 / kg: the impulse is h k 0.5 m / (1 + 1.5 * 3) = 10/11 N s.
+  System system = one_spring({100, 5});
+  system.solver.substeps = 1;
+  for (const auto& backend : all_backends(system, 0.1)) {
+    backend->step(1);
+    const State state = backend->state();
+    EXPECT_NEAR(state.velocity[0].x, 10.0 / 11, 1e-6);
+    EXPECT_NEAR(state.velocity[1].x, -20.0 / 11, 1e-6);
+    EXPECT_NEAR(state.position[0].x, 1.0 / 11, 1e-7);
+    EXPECT_NEAR(state.position[1].x, 1.5 - 2.0 / 11, 1e-6);
+    EXPECT_EQ(state.position[0].y, 5);
+    EXPECT_EQ(state.velocity[1].z, 0);
+  }
+}
+
+TEST(Xpbd, LetsNodesFallThroughViscousAirImplicitly) {
+  System system = one_spring({0, 0});
+  system.gravity = 10;
+  system.viscous_damping = 0.5;
+  system.solver.substeps = 2;
+  // Twice h = 0.1 s: v = (v - h g) / 1.05.
+  const double first = (2 - 1) / 1.05, second = (first - 1) / 1.05;
+  for (const auto& backend : all_backends(system, 0.2)) {
+    backend->step(1);
+    const State state = backend->state();
+    EXPECT_NEAR(state.velocity[2].y, second, 1e-6);
+    EXPECT_NEAR(state.position[2].y, 8 + 0.1 * (first + second), 1e-6);
+    EXPECT_NEAR(state.velocity[2].x, 1 / 1.05 / 1.05, 1e-6);
+  }
+}
+
+TEST(Xpbd, ConvergesToTheOscillatorWithOrderOneInSmallSteps) {
+  // The length l - L of the spring obeys m x'' = -k x - c x', m = 1/3 kg.
+  constexpr double mass = 1.0 / 3, k = 30, end_s = 0.5;
+  for (const double c : {0.0, 0.5, 2.0}) {
+    System system = one_spring({k, c});
+    const double decay = c / (2 * mass), angular = std::sqrt(k / mass - decay * decay);
+    const double exact = 0.5 * std::exp(-decay * end_s) *
+                         (std::cos(angular * end_s) + decay / angular * std::sin(angular * end_s));
+    std::vector<double> errors;
+    for (const std::uint32_t substeps : {200U, 400U, 800U}) {
+      system.solver.substeps = substeps;
+      const auto backend = make_constraints_reference(system, end_s / 5);
+      backend->step(5);
+      const State state = backend->state();
+      errors.push_back(std::abs(state.position[1].x - state.position[0].x - 1 - exact));
+    }
+    EXPECT_LT(errors.back(), 0.002) << c;
+    for (std::size_t i = 1; i < errors.size(); ++i)
+      EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 1, 0.1) << c;
+  }
+}
+
+TEST(Xpbd, ConvergesWithGrowingSubstepsToWhatRk4Finds) {
+  System system = cloth_system(13, 14);
+  const auto exact = make_reference(system, *find_integrator("rk4"), 1e-4);
+  exact->step(200);
+  std::vector<double> errors;
+  for (const std::uint32_t substeps : {5U, 10U, 20U, 40U}) {
+    system.solver.substeps = substeps;
+    const auto backend = make_constraints_reference(system, 1e-4);
+    backend->step(200);
+    errors.push_back(largest_distance(backend->state().position, exact->state().position));
+  }
+  for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 1, 0.2);
+}
+
+/// Takes 300 steps of 50 times the explicit limit with what hangs from its first row, and expects that it
+/// swings without gaining energy.
+void expect_stable(SceneSpec spec) {
+  spec.viscous_damping_per_s = 0;
+  auto& cloth = std::get<ClothSpec>(spec.content);
+  cloth.pins = ClothPins{0, 1};
+  for (auto& spring : cloth.springs) spring.stiffness *= 1000;
+  System system = build_system(spec);
+  system.floor.height = -100;
+  const StiffnessBound bound = stiffness_bound(system);
+  const double dt_s =
+      50 * largest_stable_dt(integrators[0], {bound.stiffness, bound.damping, system.viscous_damping});
+  const double start = energy_of(system, system.start).total();
+  for (const auto& backend : all_backends(system, dt_s))
+    for (int round = 0; round < 30; ++round) {
+      backend->step(10);
+      const State state = backend->state();
+      ASSERT_FALSE(first_bad_node(state)) << round;
+      EXPECT_LE(energy_of(system, state).total(), start + 1e-6 * std::abs(start)) << round;
+    }
+}
+
+TEST(Xpbd, KeepsAStiffHangingChainStableFarBeyondTheExplicitLimit) { expect_stable(cloth_spec(40, 1)); }
+TEST(Xpbd, KeepsAStiffClothStableFarBeyondTheExplicitLimit) { expect_stable(cloth_spec(21, 19)); }
+
+TEST(Xpbd, KeepsTheMomentumOfALoneCloth) {
+  const System system = lone_cloth(23, 18);
+  const auto momentum_of = [&](const State& state) {
+    Vec3d sum;
+    for (std::size_t i = 0; i < system.nodes(); ++i) sum += system.node_mass[i] * state.velocity[i];
+    return sum;
+  };
+  const Vec3d before = momentum_of(system.start);
+  for (const auto& backend : all_backends(system, 1e-3)) {
+    backend->step(50);
+    const State state = backend->state();
+    double sizes = 0;
+    for (std::size_t i = 0; i < system.nodes(); ++i) sizes += system.node_mass[i] * length(state.velocity[i]);
+    EXPECT_LE(length(momentum_of(state) - before), 1e-6 * sizes);
+    EXPECT_GT(largest_distance(state.velocity, system.start.velocity), 0.01) << "the nodes move";
+  }
+}
+
+TEST(Xpbd, MovesNodesThatASmallStepMovesByLessThanARounding) {
+  // At 8 m positions in single precision are 1e-6 m apart; a small step moves this node by 1e-7 m.
+  System system = one_spring({0, 0});
+  system.start.velocity[2] = {0, 0.01, 0};
+  for (const auto& backend : all_backends(system, 1e-4)) {
+    backend->step(1000);
+    EXPECT_NEAR(backend->state().position[2].y, 8.001, 1e-8);
+  }
+}
+
+TEST(Xpbd, PutsWhatFallsExactlyOntoTheFloor) {
+  // What the sum of y has lost would leave the node beside it.
+  System system = one_spring({0, 0});
+  system.floor.height = 8;
+  system.start.position[2].y = 8.0000123;
+  system.start.velocity[2] = {0, -0.37, 0};
+  for (const auto& backend : all_backends(system, 1e-4)) {
+    backend->step(1);
+    EXPECT_EQ(backend->state().position[2].y, 8);
+  }
+}
+
+TEST(Xpbd, GoesOnFromAStateAsIfNothingHadHappened) {
+  const System system = cloth_system(9, 11);
+  auto backends = all_backends(system, 1e-4);
+  backends.erase(backends.begin());  // what the reference's sums lose does not fit into a state's doubles
+  for (const auto& backend : backends) {
+    backend->step(30);
+    const State middle = backend->state();
+    backend->step(30);
+    const State end = backend->state();
+    backend->set_state(middle);
+    backend->step(30);
+    EXPECT_TRUE(same_state(backend->state(), end));
+  }
+}
+
+// xpbd in vectors, for every instruction set that this processor has.
+
+const Integrator& xpbd = *find_integrator("xpbd");
+
+/// Single rows and columns, fewer columns than lanes, and whole vectors inside; enough rows for threads.
+const std::vector<std::pair<std::uint32_t, std::uint32_t>> cloth_sizes{
+    {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}, {66, 131}, {113, 65}};
+
+std::vector<System> solids() { return {solid_block(2, 2, 2), solid_block(9, 8, 7), two_solid_blocks()}; }
+
+std::vector<StepKernel<QuarteredRows>> cloth_kernels() { return compiled_kernels<QuarteredRows>(); }
+
+/// The vector code for one instruction set.
+class EachXpbdKernel : public testing::TestWithParam<std::size_t> {
+ protected:
+  static std::unique_ptr<Backend> make(const System& system, int threads, std::size_t kernel) {
+    return make_vector_backend<QuarteredRows, SpringBatches>(system, backend_dt_s, threads,
+                                                             cloth_kernels()[kernel].instruction_set);
+  }
+  static std::unique_ptr<Backend> make(const System& system, int threads) {
+    return make(system, threads, GetParam());
+  }
+  static void expect_reference(const System& system, const std::string& name) {
+    EXPECT_TRUE(agrees(*make(system, 2), system, xpbd, backend_dt_s)) << name;
+  }
+  /// The same bits at any number of threads, and as the best kernel that rounds alike.
+  static void expect_same_bits(const System& system, const std::string& name) {
+    const auto kernels = cloth_kernels();
+    const auto best = std::ranges::find_if(kernels, [&](const auto& other) {
+      return fuses(other.instruction_set) == fuses(kernels[GetParam()].instruction_set) &&
+             other.exact_roots == kernels[GetParam()].exact_roots;
+    });
+    const auto alone = make(system, 1, static_cast<std::size_t>(best - kernels.begin()));
+    alone->step(23);
+    const State expected = alone->state();
+    for (const int threads : {1, 2, 3, 7}) {
+      const auto backend = make(system, threads);
+      backend->step(11);
+      backend->step(12);
+      const State state = backend->state();
+      EXPECT_TRUE(same_state(state, expected)) << name << ", " << threads;
+    }
+  }
+};
+INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachXpbdKernel,
+                         testing::Range(std::size_t{0}, cloth_kernels().size()), [](const auto& test) {
+                           return std::string(cloth_kernels()[test.param].instruction_set);
+                         });
+
+TEST_P(EachXpbdKernel, AgreesWithTheReferenceOnClothsOfAnyShape) {
+  for (const auto& [rows, columns] : cloth_sizes)
+    expect_reference(cloth_system(rows, columns), std::to_string(rows) + " x " + std::to_string(columns));
+}
+
+TEST_P(EachXpbdKernel, AgreesWithTheReferenceOnBodies) {
+  for (const System& system : solids()) expect_reference(system, std::to_string(system.nodes()) + " nodes");
+}
+
+TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
+  // In steps so long that an impulse makes up for most of what the one before has done to the other springs
+  // of a node.
+  constexpr double long_s = 0.02;
+  for (const auto& [rows, columns] : cloth_sizes) {
+    System system = cloth_system(rows, columns);
+    system.floor.height = -100;
+    const auto reference = make_constraints_reference(system, long_s);
+    const auto backend = make_vector_backend<QuarteredRows, SpringBatches>(
+        system, long_s, 2, cloth_kernels()[GetParam()].instruction_set);
+    reference->step(1);
+    backend->step(1);
+    // Roundings come to 7e-5 m/s, two colours in another order to 5e-3 or more.
+    EXPECT_LT(largest_distance(backend->state().velocity, reference->state().velocity), 5e-4)
+        << rows << " x " << columns;
+  }
+}
+
+TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfThreads) {
+  for (const auto& [rows, columns] : cloth_sizes) {
+    System system = cloth_system(rows, columns);
+    system.floor.height = system.start.position[0].y - 0.0001;
+    expect_same_bits(system, std::to_string(rows) + " x " + std::to_string(columns));
+  }
+  for (const System& system : solids()) expect_same_bits(system, std::to_string(system.nodes()) + " nodes");
+}
+
+TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfSmallStepsInAPass) {
+  const System system = cloth_system(113, 65);
+  const auto kernel = cloth_kernels()[GetParam()];
+  const auto after = [&](std::size_t depth, std::size_t threads) {
+    QuarteredRows cloth(system, backend_dt_s, kernel.lanes, threads);
+    cloth.depth = depth;
+    cloth.set_state(system.start);
+    kernel.step(cloth, 7);
+    return cloth.state();
+  };
+  const State expected = after(1, 1);
+  for (const std::size_t depth : {2U, 3U, 10U, 70U}) EXPECT_EQ(after(depth, 1).position, expected.position);
+  // 29 blocks of rows are enough for three threads and two small steps.
+  for (const std::size_t threads : {2U, 3U}) EXPECT_EQ(after(2, threads).position, expected.position);
+  EXPECT_EQ(after(3, 2).position, expected.position);
+}
+
+/// Three equal blocks beside each other, each large enough to be a part.
+System three_blocks() {
+  const System block = solid_block(7, 7, 7, 0.001);
+  System system = block;
+  const auto nodes = static_cast<std::uint32_t>(block.nodes());
+  for (std::uint32_t copy = 1; copy < 3; ++copy) {
+    for (const Vec3d& x : block.start.position) system.start.position.push_back(x + Vec3d{0.5 * copy, 0, 0});
+    for (const Vec3d& v : block.start.velocity) system.start.velocity.push_back(v);
+    for (Spring spring : block.springs) {
+      spring.first += copy * nodes;
+      spring.second += copy * nodes;
+      system.springs.push_back(spring);
+    }
+    system.node_mass.insert(system.node_mass.end(), block.node_mass.begin(), block.node_mass.end());
+  }
+  round_to_single(system.start);
+  return system;
+}
+
+TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
+  const System system = three_blocks();
+  const StepKernel<SpringBatches> kernel = compiled_kernels<SpringBatches>()[GetParam()];
+  const auto after = [&](std::size_t threads, std::size_t shared) {
+    SpringBatches bodies(system, backend_dt_s, kernel.lanes, threads);
+    EXPECT_EQ(bodies.parts.size(), 3U);
+    bodies.shared_parts.clear();
+    bodies.own_parts.assign(threads, {});
+    for (std::size_t part = 0; part < 3; ++part)
+      if (part < shared)
+        bodies.shared_parts.push_back(part);
+      else
+        bodies.own_parts[part % threads].push_back(part);
+    bodies.set_state(system.start);
+    kernel.step(bodies, 21);
+    return bodies.state();
+  };
+  const State expected = after(1, 0);
+  EXPECT_TRUE(has_met_floor(system, expected));
+  for (const std::size_t threads : {1U, 2U, 3U, 7U})
+    for (const std::size_t shared : {0U, 1U, 3U}) {
+      const State state = after(threads, shared);
+      EXPECT_TRUE(same_state(state, expected)) << threads << ", " << shared;
+    }
+}
+
+TEST_P(EachXpbdKernel, DoesEachBodyOnce) {
+  for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
+    const SpringBatches bodies(three_blocks(), backend_dt_s, cloth_kernels()[GetParam()].lanes, threads);
+    std::vector<std::size_t> done(bodies.shared_parts);
+    for (const auto& parts : bodies.own_parts) done.insert(done.end(), parts.begin(), parts.end());
+    std::ranges::sort(done);
+    EXPECT_EQ(done, (std::vector<std::size_t>{0, 1, 2})) << threads;
+  }
+}
+
+TEST_P(EachXpbdKernel, TreatsTheFloorLikeTheReference) {
+  const System sheet = sliding_sheet(20, 37);
+  System block = solid_block(3, 4, 5, 0.02);
+  for (Vec3d& v : block.start.velocity) v = {0.5, -4, 0.25};
+  for (const System& system : {sheet, block}) {
+    const auto reference = make_constraints_reference(system, backend_dt_s);
+    const auto backend = make(system, 2);
+    reference->step(100);
+    backend->step(100);
+    const State expected = reference->state(), state = backend->state();
+    EXPECT_TRUE(has_met_floor(system, expected));
+    for (std::size_t i = 0; i < system.nodes(); ++i) {
+      EXPECT_GE(state.position[i].y, system.floor.height);
+      EXPECT_NEAR(state.velocity[i].x, expected.velocity[i].x, 5e-3);
+      EXPECT_NEAR(state.velocity[i].y, expected.velocity[i].y, 5e-3);
+      EXPECT_NEAR(state.position[i].y, expected.position[i].y, 1e-5);
+    }
+  }
+}
+
+TEST_P(EachXpbdKernel, HoldsPinsExactlyWhereverTheyAreEvenBelowTheFloor) {
+  SceneSpec spec = cloth_spec(20, 23);
+  std::get<ClothSpec>(spec.content).pins = ClothPins{13, 5};
+  System cloth = build_system(spec);
+  cloth.floor.height = cloth.start.position[cloth.pins.front()].y + 0.01;
+  System block = solid_block(4, 5, 6);
+  block.pins = {0, 17, 118};
+  for (const std::uint32_t node : block.pins) block.start.velocity[node] = {};
+  for (const System& system : {cloth, block}) {
+    const auto backend = make(system, 3);
+    backend->step(51);
+    const State state = backend->state();
+    EXPECT_TRUE(pins_hold(system, state));
+    EXPECT_NE(state.position[1], system.start.position[1]) << "the others move";
+  }
+  expect_reference(block, "a block with pins");
+}
+
+TEST(XpbdOfOpenMp, TakesTheBestInstructionSetThatHasTheRoots) {
+  for (const System& system : {cloth_system(9, 11), solid_block(3, 3, 3)}) {
+    const auto device = [&](Roots roots) {
+      return make_openmp_constraints(system, backend_dt_s, {.threads = 1, .roots = roots})->device();
+    };
+    const auto kernels = cloth_kernels();
+    EXPECT_EQ(device(Roots::fast), std::string("cpu ") + kernels.front().instruction_set);
+    EXPECT_EQ(device(Roots::exact),
+              std::string("cpu ") +
+                  std::ranges::find_if(kernels, &StepKernel<QuarteredRows>::exact_roots)->instruction_set);
+  }
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,262 @@
+// Jeans that are dressed fit, and for each bound of a fit there is a case that only this bound, or it first,
+// finds out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "garment/fitting/fitting.h"
+#include "garment/stepping/dressing_backend.h"
+#include "tests/support/backend_checks.h"
+#include "tests/support/dressed_jeans.h"
+#include "tests/support/garment_system.h"
+
+namespace mssim {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+constexpr SettlingRule two_seconds{.longest_s = 2};
+
+Dressed dressed_after(const std::function<void(DressingCase&)>& change,
+                      const SettlingRule& rule = two_seconds) {
+  DressingCase jeans("jeans1k");
+  change(jeans);
+  return dressed(jeans, rule);
+}
+
+/// The body's surface as maps that lie this far before it.
+void let_maps_lie(DressingCase& jeans, double offset) {
+  const double pixel = std::get<GarmentSpec>(jeans.spec.content).pixel_m;
+  put_on(jeans.system, jeans.body->surface, {.pixel = pixel, .offset = offset});
+}
+
+TEST(DressedJeans, FitWithinAllBounds) {
+  const Dressed jeans = dressed_after([](DressingCase&) {});
+  EXPECT_THAT(jeans.found, IsEmpty());
+  EXPECT_EQ(jeans.fit.rows_astray, 0U);
+  EXPECT_GE(jeans.fit.rows, 40U);
+  EXPECT_GT(jeans.fit.side_distance.value(), 0.003) << "the skin alone";
+}
+
+TEST(DressedJeans, WithoutForceAreNotSewn) {
+  const Dressed jeans = dressed_after(
+      [](DressingCase& on) {
+        on.garment().dressing.seam_force = 0;
+        on.garment().dressing.longest_seaming_s = 100;
+      },
+      {.longest_s = 0.3});
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the seams did not close")));
+}
+
+TEST(DressedJeans, WhoseSewnSeamsDoNotCloseGape) {
+  const Dressed jeans = dressed_after([](DressingCase& on) { on.garment().dressing.closing_share = 0; });
+  EXPECT_TRUE(jeans.result.seamed_at);
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the largest gap of a seam is ")));
+}
+
+TEST(DressedJeans, LookedAtTooEarlyAreNotAtRest) {
+  const Dressed jeans = dressed_after([](DressingCase&) {}, {.longest_s = 0.3});
+  EXPECT_TRUE(jeans.result.seamed_at);
+  EXPECT_THAT(jeans.found, Contains(StartsWith("the garment did not come to rest; try ")));
+}
+
+TEST(DressedJeans, SinkIntoABodyWhoseMapsLieInside) {
+  const Dressed jeans = dressed_after([](DressingCase& on) { let_maps_lie(on, -0.004); });
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the deepest node inside the body is ")));
+}
+
+TEST(DressedJeans, LetTheBodyThroughFacesBetweenCleanNodes) {
+  // Cells of 27 mm and no room for their sagitta, 2.3 mm where the body bends with a radius of 40 mm.
+  const Dressed jeans = dressed_after([](DressingCase& on) { let_maps_lie(on, 0.0003); });
+  EXPECT_LT(jeans.fit.deepest_node, 1e-3);
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the deepest point of a face inside the body is ")));
+}
+
+TEST(DressedJeans, OfLimpClothAreOverlongWithoutCorrection) {
+  const Dressed jeans = dressed_after([](DressingCase& on) {
+    for (auto& material : on.system.materials) material.stiffness *= 0.1;
+    on.garment().dressing.correction = VelocityCorrection::none;
+  });
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the 99th percentile of elongations is ")));
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("the 99.9th percentile of elongations is ")));
+}
+
+TEST(DressedJeans, ThatFallWhileTheyAreSewnPassTheNaiveChecksAndAreFoundTooLow) {
+  const Dressed jeans = dressed_after([](DressingCase& on) {
+    on.garment().dressing.seaming_gravity = 1;
+    on.garment().dressing.seam_force = 1;
+  });
+  EXPECT_TRUE(jeans.result.seamed_at);
+  EXPECT_LT(jeans.fit.largest_gap, 1e-3);
+  EXPECT_LT(jeans.fit.deepest_node, 1e-3);
+  EXPECT_THAT(jeans.found,
+              Contains(HasSubstr("the distance of the upper edge from its place in the pattern is -")));
+}
+
+TEST(DressedJeans, ThatAreDrawnUpHaveTheirCrotchTooHigh) {
+  SceneSpec spec = find_scene("jeans1k");
+  std::get<GarmentSpec>(spec.content).jeans.value().measures.crotch_ease = 0.04;
+  spec.gravity_m_per_s2 = -50;
+  const Dressed jeans = dressed(DressingCase(spec), two_seconds);
+  EXPECT_THAT(jeans.found,
+              Contains(HasSubstr("the distance of the crotch from its place in the pattern is ")));
+  EXPECT_GT(jeans.fit.meeting_rise.value(), 0.03);
+}
+
+TEST(DressedJeans, ThatAreWideAtTheHipStandOffAtTheSides) {
+  SceneSpec spec = find_scene("jeans1k");
+  std::get<GarmentSpec>(spec.content).jeans.value().measures.hip_ease = 0.08;
+  const Dressed jeans = dressed(DressingCase(spec), two_seconds);
+  EXPECT_THAT(jeans.found, ElementsAre(HasSubstr("stands off at the sides: ")));
+  EXPECT_GT(jeans.fit.side_distance.value(), 0.015);
+  EXPECT_GT(jeans.fit.side_distance_height.value(), 0.758);
+  EXPECT_LT(jeans.fit.side_distance_height.value(), 0.86);
+}
+
+TEST(DressedJeans, SewnBeforeTheBodyDoNotGoAroundIt) {
+  const Dressed jeans = dressed_after([](DressingCase& on) {
+    for (Vec3d& node : on.system.start.position) node.z += 0.3;
+    round_to_single(on.system.start);
+  });
+  EXPECT_TRUE(jeans.result.seamed_at);
+  EXPECT_THAT(jeans.found, Contains(HasSubstr("rows that do not go once around their limb")));
+}
+
+// Looking at a dressing on its way: which frames come, and that they change nothing.
+
+/// Two squares that are sewn, side by side, and hung by a corner.
+System hung_squares() {
+  System system = garment_of({{10, 10, 0.01, {0, 0, 0}}, {10, 10, 0.01, {0.12, 0.004, 0.005}}});
+  const Garment& garment = garment_in(system);
+  std::vector<std::uint32_t> right, left;
+  for (std::uint32_t row = 0; row < 10; ++row) {
+    right.push_back(garment.panels[0].node(row, 9));
+    left.push_back(garment.panels[1].node(row, 0));
+  }
+  sew(system, right, left, 0.1);
+  system.pins = {garment.panels[0].node(9, 0)};
+  system.gravity = 9.81;
+  system.viscous_damping = 16;
+  return system;
+}
+
+std::vector<std::unique_ptr<DressingBackend>> backends(const System& system, int threads) {
+  std::vector<std::unique_ptr<DressingBackend>> made;
+  made.push_back(make_serial_dressing(system, semi_euler, dressing_dt_s));
+  made.push_back(make_reference_dressing(system, semi_euler, dressing_dt_s));
+  made.push_back(make_openmp_dressing(system, semi_euler, dressing_dt_s, threads));
+  return made;
+}
+
+void expect_same(const State& one, const State& other) { EXPECT_TRUE(same_state(one, other)); }
+
+bool always(const State& /*state*/, std::int64_t /*iterations*/) { return true; }
+
+TEST(DressingFrames, StepsGiveTheSameBitsHoweverTheyAreCut) {
+  const System system = hung_squares();
+  for (const auto& backend : backends(system, 2)) {
+    backend->step(500);
+    const State whole = backend->state();
+    EXPECT_TRUE(backend->progress().draping) << "both halves of Algorithm 1 are to be cut";
+    const std::int64_t seamed_at = backend->progress().seamed_at;
+    EXPECT_GT(seamed_at, 100);
+
+    backend->set_state(system.start);
+    int done = 0;
+    for (int next = 1; done < 500; next = next % 7 + 1) {
+      const int count = std::min(next, 500 - done);
+      backend->step(count);
+      done += count;
+      backend->state();
+    }
+    expect_same(backend->state(), whole);
+    EXPECT_EQ(backend->progress().seamed_at, seamed_at);
+  }
+}
+
+TEST(DressingFrames, ChangeNothing) {
+  const System system = hung_squares();
+  for (const auto& backend : backends(system, 1)) {
+    const SettlingRule soon{.distance = 1};  // it moves less in the first window after its seam has closed
+    const DressingResult alone = dress(*backend, system, dressing_dt_s, soon, always);
+    EXPECT_TRUE(alone.settled);
+    EXPECT_EQ(alone.iterations, 2 * 333);
+    for (const double steps_per_frame : {1.0, 37.3, 333.0, 1e9}) {
+      const DressingResult looked_at = dress(*backend, system, dressing_dt_s, soon, always,
+                                             {{steps_per_frame}, [](const State&, std::int64_t) {}});
+      EXPECT_EQ(looked_at.iterations, alone.iterations);
+      EXPECT_EQ(looked_at.seamed_at, alone.seamed_at);
+      EXPECT_TRUE(looked_at.settled);
+      expect_same(looked_at.state, alone.state);
+    }
+  }
+}
+
+TEST(DressingFrames, AreTheStartThoseOfTheGridAndTheEnd) {
+  const System system = hung_squares();
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto reference = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  // 0.003 s are windows of 20 steps; it does not settle in three of them.
+  const SettlingRule rule{.window_s = 0.003, .longest_s = 0.009};
+  const auto steps_at = [&](double steps_per_frame) {
+    std::vector<std::int64_t> steps;
+    std::int64_t done = 0;
+    reference->set_state(system.start);
+    const DressingResult result = dress(*backend, system, dressing_dt_s, rule, always,
+                                        {{steps_per_frame}, [&](const State& state, std::int64_t iterations) {
+                                           steps.push_back(iterations);
+                                           if (iterations == 0) return expect_same(state, system.start);
+                                           reference->step(static_cast<int>(iterations - done));
+                                           done = iterations;
+                                           expect_same(state, reference->state());
+                                         }});
+    EXPECT_EQ(result.iterations, 60);
+    return steps;
+  };
+  using Steps = std::vector<std::int64_t>;
+  EXPECT_EQ(steps_at(12.5), (Steps{0, 13, 25, 38, 50, 60}));
+  EXPECT_EQ(steps_at(20), (Steps{0, 20, 40, 60}));  // the windows themselves, the end not twice
+  EXPECT_EQ(steps_at(25), (Steps{0, 25, 50, 60}));
+  EXPECT_EQ(steps_at(1000), (Steps{0, 60}));
+  EXPECT_EQ(steps_at(1).size(), 61U);
+}
+
+TEST(Dressing, EndsWhenTheLongestTimeIsOverAndNoWindowThatIsCutShortCountsAsRest) {
+  const System system = hung_squares();
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  // A metre is more than any node moves: whatever counts as a window is one of rest.
+  const auto dressed_for = [&](double longest_s) {
+    return dress(*backend, system, dressing_dt_s, {.window_s = 0.003, .distance = 1, .longest_s = longest_s},
+                 always);
+  };
+  const DressingResult settled = dressed_for(1);
+  ASSERT_TRUE(settled.settled);
+  ASSERT_EQ(settled.iterations % 20, 0);
+  const DressingResult cut = dressed_for(settled.simulated_s - 3 * dressing_dt_s);
+  EXPECT_EQ(cut.iterations, settled.iterations - 3);
+  EXPECT_FALSE(cut.settled);
+  EXPECT_EQ(dressed_for(dressing_dt_s).iterations, 1);
+}
+
+TEST(DressingFrames, EndWhereTheDressingIsEnded) {
+  const System system = hung_squares();
+  const auto backend = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  std::vector<std::int64_t> steps;
+  const DressingResult result =
+      dress(*backend, system, dressing_dt_s, {.window_s = 0.003},
+            [](const State&, std::int64_t iterations) { return iterations < 40; },
+            {{15}, [&](const State&, std::int64_t iterations) { steps.push_back(iterations); }});
+  EXPECT_EQ(result.iterations, 40);
+  EXPECT_EQ(steps, (std::vector<std::int64_t>{0, 15, 30, 40}));
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,292 @@
+#include "mesh/tet_mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "geometry/geometry.h"
+#include "mesh/meshing.h"
+#include "mesh/tetgen.h"
+#include "tests/support/mesh_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Two tetrahedra that share a face.
+const std::string good_nodes = "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n";
+const std::string good_tetrahedra = "2 4 0\n0 0 1 2 3\n1 1 2 3 4\n";
+
+TetMesh parse(const std::string& nodes, const std::string& tetrahedra) {
+  return parse_tetgen_files({"a.node", nodes}, {"a.ele", tetrahedra});
+}
+
+void expect_good(const TetMesh& mesh) {
+  ASSERT_EQ(mesh.nodes.size(), 5U);
+  EXPECT_EQ(mesh.nodes[4], (Vec3d{1, 1, 1}));
+  EXPECT_THAT(mesh.tetrahedra, ElementsAre(Tetrahedron{0, 1, 2, 3}, Tetrahedron{1, 2, 3, 4}));
+}
+
+TEST(TetgenFiles, AreReadNumberedFromZero) { expect_good(parse(good_nodes, good_tetrahedra)); }
+
+TEST(TetgenFiles, AreReadNumberedFromOneWithCommentsAttributesAndMarkers) {
+  expect_good(parse(
+      "# made by hand\r\n\r\n  5 3 2 1 # header\r\n1 0 0 0 .5 6 1\r\n 2\t1 0 0 .5 6 1\r\n3 0 1 0 .5 6 1\r\n"
+      "4 0 0 1e0 .5 6 -1\r\n# between\r\n5 +1 1.0 1 .5 6 1",
+      "2 4 1\n1 1 2 3 4 7\n\n2 2 3 4 5 7 # last\n# Generated\n"));
+}
+
+TEST(TetgenFiles, AMirroredMeshIsTurned) {
+  const TetMesh mesh = parse(good_nodes, "2 4 0\n0 0 1 3 2\n1 1 2 4 3\n");
+  EXPECT_THAT(mesh.tetrahedra, ElementsAre(Tetrahedron{0, 1, 2, 3}, Tetrahedron{1, 2, 3, 4}));
+}
+
+TEST(TetgenFiles, ReadBackAsTheyWereWritten) {
+  TetMesh mesh = parse(good_nodes, good_tetrahedra);
+  mesh.nodes[4] = {1.0 / 3, 1 + 1e-15, 1.23456789e-10};
+  const TetMesh again = parse(node_text(mesh.nodes), ele_text(mesh.tetrahedra));
+  EXPECT_EQ(again.nodes, mesh.nodes);
+  EXPECT_EQ(again.tetrahedra, mesh.tetrahedra);
+}
+
+struct BrokenFile {
+  const char* nodes;  ///< nullptr: the good ones
+  const char* tetrahedra;
+  const char* begin;  ///< of the message
+  const char* about;  ///< in it
+};
+
+void PrintTo(const BrokenFile& file, std::ostream* out) { *out << file.about; }
+
+class BrokenTetgenFile : public testing::TestWithParam<BrokenFile> {};
+
+TEST_P(BrokenTetgenFile, IsRefusedWithPlaceAndValue) {
+  const BrokenFile& file = GetParam();
+  const std::string message = input_error_of([&] {
+    parse(file.nodes ? file.nodes : good_nodes, file.tetrahedra ? file.tetrahedra : good_tetrahedra);
+  });
+  EXPECT_THAT(message, AllOf(StartsWith(file.begin), HasSubstr(file.about)));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+#define FOUR_NODES "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n"
+#define FIVE_NODES "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n"
+
+INSTANTIATE_TEST_SUITE_P(
+    Nodes, BrokenTetgenFile,
+    testing::Values(
+        BrokenFile{"", nullptr, "a.node, line ", "the file ends before the number of nodes"},
+        BrokenFile{"# only this\n", nullptr, "a.node, line 1: ", "truncated"},
+        BrokenFile{"five 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is \"five\""},
+        BrokenFile{"\x01\x7f\xff\n", nullptr, "a.node, line 1: ", "is \"\\u0001\\u007f\xef\xbf\xbd\""},
+        BrokenFile{"0 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is 0"},
+        BrokenFile{"-5 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is -5"},
+        BrokenFile{"99999999999999999999 3 0 0\n", nullptr, "a.node, line 1: ", "99999999999999999999"},
+        BrokenFile{"9000000000000000000 3 0 0\n0 0 0 0\n", nullptr,
+                   "a.node, line 1: ", "more than a file of 34 bytes"},
+        BrokenFile{"1 2 0 0\n", nullptr, "a.node, line 1: ", "the dimension is 2"},
+        BrokenFile{"1 3 -1 0\n", nullptr, "a.node, line 1: ", "attributes is -1"},
+        // Found by fuzzing: such a number overflowed when the others were added to it.
+        BrokenFile{"1 3 9223372036854775807 0\n", nullptr,
+                   "a.node, line 1: ", "attributes is 9223372036854775807; give one from 0 to 1000"},
+        BrokenFile{"1 3 0 1001\n", nullptr, "a.node, line 1: ", "boundary markers is 1001"},
+        BrokenFile{FOUR_NODES, nullptr, "a.node, line 4: ", "the file ends before node 4 of 4"},
+        BrokenFile{FOUR_NODES "3 0 0", nullptr, "a.node, line 5: ", "there are 3 numbers"},
+        BrokenFile{FOUR_NODES "3 0 0 0 0", nullptr, "a.node, line 5: ", "there are 5 numbers"},
+        BrokenFile{FOUR_NODES "3 0 0 x", nullptr, "a.node, line 5: ", "z is \"x\""},
+        BrokenFile{FOUR_NODES "3 0 nan 1", nullptr, "a.node, line 5: ", "y is \"nan\""},
+        BrokenFile{FOUR_NODES "3 1e999 0 1", nullptr, "a.node, line 5: ", "x is \"1e999\""},
+        BrokenFile{FOUR_NODES "3 -2e9 0 1", nullptr,
+                   "a.node, line 5: ", "x is \"-2e9\"; give a number from -1e9 to 1e9"},
+        BrokenFile{FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 is where node 3 is expected"},
+        BrokenFile{FOUR_NODES "3 0 0 1\n4 1 1 1", nullptr, "a.node, line 6: ", "continues after the 4 nodes"},
+        BrokenFile{"1 3 0 0\n7 0 0 0\n", nullptr, "a.node, line 2: ", "the first node has the number 7"},
+        BrokenFile{FIVE_NODES "4 0 0 1\n", nullptr, "a.node, line 6: ", "another node is at (0, 0, 1)"},
+        BrokenFile{nullptr, "1 4 0\n0 0 1 2 3\n", "a.node, line 6: ", "no tetrahedron has this node"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Tetrahedra, BrokenTetgenFile,
+    testing::Values(
+        BrokenFile{nullptr, "", "a.ele, line ", "the file ends before the number of tetrahedra"},
+        BrokenFile{nullptr, "0 4 0\n", "a.ele, line 1: ", "the number of tetrahedra is 0"},
+        BrokenFile{nullptr, "4000000000 4 0\n0 0 1 2 3\n", "a.ele, line 1: ", "more than a file of 25 bytes"},
+        BrokenFile{nullptr, "2 10 0\n", "a.ele, line 1: ", "give linear tetrahedra"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n", "a.ele, line 2: ", "before tetrahedron 2 of 2"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3", "a.ele, line 3: ", "there are 4 numbers"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4.5",
+                   "a.ele, line 3: ", "is \"4.5\"; give a whole number"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 5\n",
+                   "a.ele, line 3: ", "node 5 is not one of the nodes 0 to 4"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 -1\n", "a.ele, line 3: ", "node -1 is not one of"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 4 3\n", "a.ele, line 3: ", "volume is -0.33333"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 2\n1 1 2 3 4\n", "a.ele, line 2: ", "it is flat"},
+        BrokenFile{nullptr, "3 4 0\n0 0 1 2 3\n1 1 2 3 4\n2 0 1 2 3\n",
+                   "a.ele, line 4: ", "shares a face with two"},
+        BrokenFile{nullptr, "2 4 0\n0 0 1 2 3\n1 1 2 3 4\nmore",
+                   "a.ele, line 4: ", "continues after the 2 tetrahedra"}));
+
+TEST(TetgenFiles, OfOneEndlessLineAreRefusedBeforeItIsSplitIntoWords) {
+  std::string words = "5 3 0 0\n0";
+  while (words.size() <= 9 + (std::size_t{1} << 20)) words += " 1";
+  EXPECT_THAT(input_error_of([&] { parse(words, good_tetrahedra); }),
+              AllOf(StartsWith("a.node, line 2: it has "), HasSubstr("break the file into lines")));
+}
+
+TEST_F(MeshTest, TetgenFilesThatAreMissingOrFoldersAreNamed) {
+  put("a.node", good_nodes);
+  const auto complaint = [&](const std::string& ele) {
+    return input_error_of([&] { read_tetgen_files(folder() / "a.node", folder() / ele); });
+  };
+  EXPECT_THAT(complaint("b.ele"), HasSubstr("b.ele: there is no such file: give the file of a mesh"));
+  std::filesystem::create_directory(folder() / "c.ele");
+  EXPECT_THAT(complaint("c.ele"), HasSubstr("c.ele: is not a regular file: give the file of a mesh"));
+  put("d.ele", good_tetrahedra);
+  expect_good(read_tetgen_files(folder() / "a.node", folder() / "d.ele"));
+}
+
+TEST(TetMesh, OfTwoTetrahedraIsCountedRight) {
+  const TetMesh mesh = parse(good_nodes, good_tetrahedra);
+  using Edge = std::array<std::uint32_t, 2>;
+  EXPECT_THAT(edges_of(mesh), ElementsAre(Edge{0, 1}, Edge{0, 2}, Edge{0, 3}, Edge{1, 2}, Edge{1, 3},
+                                          Edge{1, 4}, Edge{2, 3}, Edge{2, 4}, Edge{3, 4}));
+  EXPECT_EQ(euler_characteristic(mesh), 1);
+  EXPECT_DOUBLE_EQ(volume_of(mesh), 1.0 / 6 + 1.0 / 3);
+}
+
+TEST(TetMesh, TheSmallestDihedralAngleIsTheKnownOne) {
+  const TetMesh regular = parse("4 3\n0 1 1 1\n1 1 -1 -1\n2 -1 1 -1\n3 -1 -1 1\n", "1 4\n0 0 1 3 2\n");
+  EXPECT_NEAR(smallest_dihedral_angle(regular), 70.528779, 1e-6);
+  // At the edges of its large face a corner of a cube has the angle whose cosine is 1 / sqrt(3).
+  const TetMesh corner = parse("4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "1 4\n0 0 1 2 3\n");
+  EXPECT_NEAR(smallest_dihedral_angle(corner), 54.735610, 1e-6);
+}
+
+TEST(TetMesh, TheSmallestDihedralAngleIsFoundAtWhicheverEdgeItIs) {
+  // Legs of 1, 2 and 3 along the axes. Three angles are right; the large face, whose normal is (1, 1/2, 1/3)
+  // of length 7/6, has those of cosines 6/7, 3/7 and 2/7 to the others. Either sense of the nodes has the
+  // same angles.
+  TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}, {{0, 1, 2, 3}}};
+  std::array<std::uint32_t, 4> order{0, 1, 2, 3};
+  do {
+    mesh.tetrahedra = {order};
+    EXPECT_NEAR(smallest_dihedral_angle(mesh), 31.0027191, 1e-6);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(MeshDefect, OfAFlatTetrahedronIsByItsLongestEdgeCubed) {
+  // Six times the volume is the height h; the longest edge is sqrt(2), so that 1e-10 of its cube
+  // is 2.828e-10.
+  const auto defect = [](double height, double size) {
+    return find_defect({{{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, height * size}}, {{0, 1, 2, 3}}});
+  };
+  for (const double size : {0.01, 1.0, 30.0}) {
+    EXPECT_FALSE(defect(2.84e-10, size)) << size;
+    for (const double height : {2.81e-10, -2.81e-10}) {
+      ASSERT_TRUE(defect(height, size)) << size;
+      EXPECT_THAT(defect(height, size)->what, HasSubstr("it is flat"));
+    }
+    ASSERT_TRUE(defect(-2.84e-10, size)) << size;
+    EXPECT_THAT(defect(-2.84e-10, size)->what, HasSubstr("in the same sense"));
+  }
+}
+
+/// A body of Hong et al., Table 2: its published numbers (a third of the published springs) and the
+/// parameters that a search found to give a mesh with exactly these.
+struct Body {
+  const char* name;
+  std::size_t nodes, edges;
+  std::int64_t euler_characteristic;
+  Shape shape;
+  InteriorPoints interior;
+};
+
+const std::array<Body, 9> bodies{{
+    {"box_small", 700, 4307, 1, BoxShape{{0.13, 0.13, 0.13}, {7, 7, 7}}, {404, 1352, 0.1, 0.6}},
+    {"box_medium", 1579, 10005, 1, BoxShape{{0.18, 0.18, 0.18}, {9, 10, 10}}, {1017, 710, 0.1, 0.65}},
+    {"box_large", 2941, 19470, 1, BoxShape{{0.22, 0.22, 0.22}, {10, 10, 10}}, {2339, 1047, 0.08, 0.6}},
+    {"sphere_small", 726, 4715, 1, SphereShape{0.09, 4}, {564, 1453, 0.1, 0.65}},
+    {"sphere_medium", 1599, 10837, 1, SphereShape{0.12, 5}, {1347, 1061, 0.25, 0.65}},
+    {"sphere_large", 3002, 20217, 1, SphereShape{0.145, 6}, {2640, 1182, 0.1, 0.6}},
+    {"torus_small", 620, 3690, 0, TorusShape{0.105, 0.031, 30, 9}, {350, 1494, 0.1, 0.6}},
+    {"torus_medium", 962, 5847, 0, TorusShape{0.12, 0.036, 36, 11}, {566, 114, 0.1, 0.6}},
+    {"torus_large", 1977, 13011, 0, TorusShape{0.155, 0.05, 32, 11}, {1625, 1485, 0.16, 0.65}},
+}};
+
+void PrintTo(const Body& body, std::ostream* out) { *out << body.name; }
+
+class TableTwoBody : public MeshTest, public testing::WithParamInterface<Body> {};
+
+TEST_P(TableTwoBody, HasThePublishedNodesAndAThirdOfThePublishedSprings) {
+  const Body& body = GetParam();
+  const ShapePoints points = points_of(body.shape, body.interior);
+  const TetMesh mesh = shape_mesh(body.shape, body.interior);
+  EXPECT_EQ(mesh.nodes.size(), body.nodes);
+  EXPECT_EQ(edges_of(mesh).size(), body.edges);
+  EXPECT_EQ(euler_characteristic(mesh), body.euler_characteristic);
+  EXPECT_FALSE(find_defect(mesh));
+  EXPECT_NEAR(volume_of(mesh), volume_of(points.surface), 1e-9 * volume_of(points.surface));
+
+  EXPECT_EQ(point_count(body.shape, body.interior), body.nodes);
+
+  // The order of the nodes: surface points, then interior points.
+  ASSERT_EQ(points.surface.points.size() + points.interior.size(), body.nodes);
+  EXPECT_TRUE(std::equal(points.surface.points.begin(), points.surface.points.end(), mesh.nodes.begin()));
+  EXPECT_TRUE(std::equal(points.interior.rbegin(), points.interior.rend(), mesh.nodes.rbegin()));
+}
+
+TEST_P(TableTwoBody, HasNoVeryShortEdgesAndNoVeryFlatTetrahedra) {
+  const TetMesh mesh = shape_mesh(GetParam().shape, GetParam().interior);
+  double shortest = 1;
+  double sum = 0;
+  const auto edges = edges_of(mesh);
+  for (const auto& [a, b] : edges) {
+    const double metres = length(mesh.nodes[a] - mesh.nodes[b]);
+    shortest = std::min(shortest, metres);
+    sum += metres;
+  }
+  const double mean = sum / static_cast<double>(edges.size());
+  EXPECT_NEAR(mean, 0.02, 0.001);  // the same material in every body
+  EXPECT_GT(shortest, 0.3 * mean);
+  EXPECT_GT(smallest_dihedral_angle(mesh), 1.5);
+}
+
+TEST_P(TableTwoBody, HasNearlyTheVolumeOfItsShape) {
+  struct Volume {
+    double operator()(const BoxShape& box) const { return box.size.x * box.size.y * box.size.z; }
+    double operator()(const SphereShape& sphere) const {
+      return 4 * std::numbers::pi / 3 * sphere.radius_m * sphere.radius_m * sphere.radius_m;
+    }
+    double operator()(const TorusShape& torus) const {
+      return 2 * std::numbers::pi * std::numbers::pi * torus.major_radius_m * torus.minor_radius_m *
+             torus.minor_radius_m;
+    }
+  };
+  const double volume = std::visit(Volume{}, GetParam().shape);
+  const double meshed = volume_of(points_of(GetParam().shape, GetParam().interior).surface);
+  EXPECT_LE(meshed, volume * (1 + 1e-9));
+  EXPECT_GT(meshed, 0.9 * volume);
+}
+
+INSTANTIATE_TEST_SUITE_P(HongEtAl, TableTwoBody, testing::ValuesIn(bodies),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
+  const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {
+    return input_error_of([&] { shape_mesh(shape, interior); });
+  };
+  EXPECT_THAT(
+      complaint(BoxShape{{1, 1, 1}, {1000, 1000, 1000}}, {5}),
+      testing::StartsWith("its mesh would have 6000007 points or more, with which TetGen takes longer than"));
+  EXPECT_THAT(complaint(SphereShape{1, 1000}, {}), testing::HasSubstr("10000002 points or more"));
+  EXPECT_THAT(complaint(TorusShape{2, 1, 2000, 2001}, {}), testing::HasSubstr("4002000 points or more"));
+}
+
+}  // namespace
+}  // namespace mssim

@@ -1,0 +1,342 @@
+#include "output/tables/suite_tables.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "output/tables/table.h"
+#include "tests/support/result_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<ResultRow> peer_rows() {
+  std::vector<ResultRow> rows{measured_row("serial", 1, 1.0), measured_row("openmp", 0.125, 8.0),
+                              measured_row("numba", 0.5, 2.0),
+                              failed_row("jax", "unavailable: no module | jax")};
+  rows[0].threads = 1;
+  rows[2].note = "Numba 1.2; gather";
+  return rows;
+}
+
+ResultTable peer_table_of(const std::vector<ResultRow>& rows) {
+  return only_table(peer_tables()(rows, made_up_provenance()), "peers");
+}
+
+TEST(PeerTable, AsCsvHasTheRatioToOpenmpWithItsInterval) {
+  std::vector<ResultRow> rows = peer_rows();
+  rows[2].samples_ms = {0.5, 0.25, 0.125};  // of openmp's 0.25, 0.0625, 0.125
+  EXPECT_EQ(
+      table_csv(peer_table_of(rows).data),
+      "scene,nodes,integrator,peer,threads,processors_used,ms_per_step,ms_per_step_low,ms_per_step_high,"
+      "times_openmp,times_openmp_low,times_openmp_high,position_error,verified,status,note\n"
+      "cloth2500,2500,semi-euler,serial,1,1.5,1,0.5,2,8,8,8,1e-05,true,ok,\n"
+      "cloth2500,2500,semi-euler,openmp,2,1.5,0.125,0.0625,0.25,1,1,1,1e-05,true,ok,\n"
+      "cloth2500,2500,semi-euler,numba,2,1.5,0.5,0.25,1,2,1,4,1e-05,true,ok,Numba 1.2; gather\n"
+      "cloth2500,2500,semi-euler,jax,2,,,,,,,,,false,unavailable: no module | jax,\n");
+}
+
+TEST(PeerTable, AsMarkdownHasABlockASceneAndWhatTheySayOfThemselves) {
+  std::vector<ResultRow> rows = peer_rows();
+  rows.push_back(measured_row("serial", 2, 1.0));
+  rows.back().scene = "box";
+  const std::string page = markdown(peer_table_of(rows).page);
+  EXPECT_THAT(page, HasSubstr("## cloth2500, semi-euler: 2,500 nodes, 14,502 springs\n"));
+  EXPECT_THAT(page, HasSubstr("| `numba` | 2 | 1.50 | **0.500** | 4.00× | 4.00 to 4.00 | "));
+  EXPECT_THAT(page, HasSubstr("| `jax` | – | – | unavailable | – | – | – |\n"));
+  EXPECT_THAT(page, HasSubstr("## box, semi-euler"));
+  EXPECT_THAT(page, HasSubstr("- `numba`: Numba 1.2; gather\n"));
+  EXPECT_THAT(page, HasSubstr("- `jax`, `semi-euler`: unavailable: no module \\| jax"));
+}
+
+TEST(PeerTable, HasNoRatioWithoutOpenmp) {
+  std::vector<ResultRow> rows = peer_rows();
+  rows[1].verified = false;
+  EXPECT_THAT(markdown(peer_table_of(rows).page), HasSubstr("| `numba` | 2 | 1.50 | **0.500** | – | – | "));
+  rows = peer_rows();
+  rows[2].samples_ms.pop_back();
+  EXPECT_THAT(table_csv(peer_table_of(rows).data), HasSubstr("numba,2,1.5,0.5,0.25,1,,,,1e-05"));
+}
+
+TEST(PeerTable, ShowsNoTimeThatWasNotVerified) {
+  std::vector<ResultRow> rows = peer_rows();
+  rows[2].verified = false;
+  const ResultTable table = peer_table_of(rows);
+  EXPECT_THAT(markdown(table.page), HasSubstr("| `numba` | – | – | failed | – | – | – |"));
+  EXPECT_THAT(table_csv(table.data), HasSubstr("false,failed: not verified"));
+}
+
+const std::vector<RaceLegend> race_methods{{"serial", "one thread", "none", "once", "yes"},
+                                           {"gather", "each node sums", "32 bytes a spring", "twice", "yes"},
+                                           {"atomic", "atomic adds", "none", "once", "no"}};
+
+std::vector<ResultRow> race_rows() {
+  std::vector<ResultRow> rows{measured_row("serial", 1.5, 1.0), measured_row("gather", 0.75, 2.0),
+                              failed_row("atomic", "failed: step 3 | node 7 is not finite"),
+                              measured_row("hybrid", 1, 1.5), measured_row("serial", 0.25, 1.0)};
+  rows.back().scene = "box";
+  return rows;
+}
+
+ResultTable race_table_of(const std::vector<ResultRow>& rows) {
+  return only_table(race_tables(race_methods)(rows, made_up_provenance()), "races");
+}
+
+TEST(RaceTable, AsCsvHasTimesRatiosAndWhatAWayCosts) {
+  EXPECT_EQ(
+      table_csv(race_table_of(race_rows()).data),
+      "scene,nodes,springs_unique,integrator,method,threads,ms_per_step,ms_per_step_low,ms_per_step_high,"
+      "speedup_vs_serial,extra_memory,springs_computed,same_bits,status\n"
+      "cloth2500,2500,14502,semi-euler,serial,2,1.5,0.75,3,1,none,once,yes,ok\n"
+      "cloth2500,2500,14502,semi-euler,gather,2,0.75,0.375,1.5,2,32 bytes a spring,twice,yes,ok\n"
+      "cloth2500,2500,14502,semi-euler,atomic,2,,,,,none,once,no,failed: step 3 | node 7 is not finite\n"
+      "box,2500,14502,semi-euler,serial,2,0.25,0.125,0.5,1,none,once,yes,ok\n");
+}
+
+TEST(RaceTable, AsMarkdownHasABlockASceneAndALineAWay) {
+  const std::string page = markdown(race_table_of(race_rows()).page);
+  EXPECT_THAT(page, HasSubstr("## cloth2500, semi-euler: 2,500 nodes, 14,502 springs\n"));
+  EXPECT_THAT(page, HasSubstr("## box, semi-euler"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("| `gather` | **0.750** | 0.375 to 1.50 | 2.00× | 32 bytes a spring | twice | yes |\n"));
+  EXPECT_THAT(page, HasSubstr("| `atomic` | failed | – | – | none | once | no |\n"));
+  EXPECT_THAT(page, HasSubstr("- `atomic`, `semi-euler`: failed: step 3 \\| node 7"));
+  EXPECT_THAT(page, HasSubstr("- `gather`: each node sums\n"));
+  EXPECT_THAT(page, HasSubstr("Measured on A Processor (2 logical CPUs) with 2 threads"));
+  EXPECT_THAT(page, Not(HasSubstr("hybrid")));
+}
+
+TEST(RaceTable, ShowsNoTimeThatWasNotVerified) {
+  std::vector<ResultRow> rows{measured_row("gather", 0.75, 2.0)};
+  rows[0].verified = false;
+  const ResultTable table = race_table_of(rows);
+  EXPECT_THAT(markdown(table.page), HasSubstr("| `gather` | failed | – | – |"));
+  EXPECT_THAT(table_csv(table.data), HasSubstr("failed: not verified"));
+}
+
+TEST(RaceTable, MarksARatioThatItsTimesContradict) {
+  std::vector<ResultRow> rows = race_rows();
+  EXPECT_THAT(markdown(race_table_of(rows).page), Not(HasSubstr("†")));
+  rows[1].speedup_vs_serial = 0.923;
+  EXPECT_THAT(markdown(race_table_of(rows).page),
+              HasSubstr("| `gather` | **0.750** | 0.375 to 1.50 | 0.923×† |"));
+  EXPECT_THAT(markdown(race_table_of(rows).page),
+              HasSubstr("|\n\n† the two times shown contradict this ratio: "));
+}
+
+TEST(RaceTable, IsNotMadeOfOtherBackends) {
+  EXPECT_TRUE(
+      race_tables(race_methods)(std::vector{measured_row("hybrid", 1, 1.0)}, made_up_provenance()).empty());
+}
+
+ResultRow row_of(const std::string& scene, std::uint64_t nodes, const std::string& backend, double ms) {
+  ResultRow row = measured_row(backend, ms, 1.0);
+  row.scene = scene;
+  row.nodes = nodes;
+  return row;
+}
+
+std::vector<ResultRow> scaling_rows() {
+  std::vector<ResultRow> rows{row_of("small", 1000, "serial", 0.5), row_of("small", 1000, "openmp", 0.25),
+                              row_of("large", 4'000'000, "serial", 3000),
+                              row_of("large", 4'000'000, "openmp", 0)};
+  rows[3] = failed_row("openmp", "unsupported: too large");
+  rows[3].scene = "large";
+  rows[3].nodes = 4'000'000;
+  return rows;
+}
+
+ResultTable scaling_table_of(const std::vector<ResultRow>& rows) {
+  return only_table(scaling_tables("small")(rows, made_up_provenance()), "scaling");
+}
+
+TEST(ScalingTable, AsCsvHasNanosecondsANodeAndTheRatioToTheSameBackendsBase) {
+  EXPECT_EQ(table_csv(scaling_table_of(scaling_rows()).data),
+            "integrator,backend,scene,nodes,ms_per_step,ns_per_node,ns_per_node_low,ns_per_node_high,"
+            "ratio_to_small,status\n"
+            "semi-euler,serial,small,1000,0.5,500,250,1000,1,ok\n"
+            "semi-euler,openmp,small,1000,0.25,250,125,500,1,ok\n"
+            "semi-euler,serial,large,4000000,3000,750,375,1500,1.5,ok\n"
+            "semi-euler,openmp,large,4000000,,,,,,unsupported: too large\n");
+}
+
+TEST(ScalingTable, AsMarkdownHasAColumnASceneAndALineABackend) {
+  const std::string page = markdown(scaling_table_of(scaling_rows()).page);
+  EXPECT_THAT(page, HasSubstr("| backend | small<br>1,000 | large<br>4,000,000 |\n"));
+  EXPECT_THAT(page, HasSubstr("| `serial` | **500** (1.00×) | **750** (1.50×) |\n"));
+  EXPECT_THAT(page, HasSubstr("| `openmp` | **250** (1.00×) | unsupported |\n"));
+  EXPECT_THAT(page, HasSubstr("- `openmp`, `semi-euler`: unsupported: too large (`large`)\n"));
+}
+
+TEST(ScalingTable, HasNoRatioWhereTheBaseHasNoTime) {
+  std::vector<ResultRow> rows = scaling_rows();
+  rows[0].verified = false;
+  const ResultTable table = scaling_table_of(rows);
+  EXPECT_THAT(markdown(table.page), HasSubstr("| `serial` | failed | **750** |\n"));
+  EXPECT_THAT(table_csv(table.data), HasSubstr("serial,large,4000000,3000,750,375,1500,,ok\n"));
+  EXPECT_TRUE(scaling_tables("small")({}, made_up_provenance()).empty());
+}
+
+TEST(PublishedBodies, AreNineWhoseSpringsCanBeDividedByThree) {
+  const std::vector<PublishedBody> bodies = published_bodies();
+  EXPECT_EQ(bodies.size(), 9U);
+  for (const PublishedBody& body : bodies) EXPECT_EQ(body.springs % 3, 0U) << body.scene();
+  EXPECT_EQ(bodies.front().scene(), "box-small");
+  EXPECT_EQ(bodies.front().springs, 12921U);
+}
+
+const std::vector<StructureRow> structure_rows{{"box-small", 700, 4307, 12921, 3256, 4.25},
+                                               {"torus-large", 1977, 13012, 39036, 10000, 1.5},
+                                               {"torus-small", 621, 3690, 11070, 2000, 2},
+                                               {"my-own", 4, 6, 18, 1, 70.5}};
+
+TEST(StructureTable, AsCsvHasOurMeshesBesideThePublishedOnes) {
+  EXPECT_EQ(table_csv(structure_table(structure_rows, {}).data),
+            "scene,nodes,springs_unique,springs_published,tetrahedra,smallest_dihedral_angle_deg,paper_nodes,"
+            "paper_springs,same_as_paper\n"
+            "box-small,700,4307,12921,3256,4.25,700,12921,true\n"
+            "torus-large,1977,13012,39036,10000,1.5,1977,39033,false\n"
+            "torus-small,621,3690,11070,2000,2,620,11070,false\n"
+            "my-own,4,6,18,1,70.5,,,\n");
+}
+
+TEST(StructureTable, AsMarkdownShowsOnlyThePapersBodiesAndSaysWhichDiffer) {
+  const std::string page = markdown(structure_table(structure_rows, {}).page);
+  EXPECT_THAT(
+      page, HasSubstr("| box | small | 700 | **700** | 12,921 | **12,921** | 4,307 | 3,256 | 4.25° | yes |"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "| torus | large | 1,977 | **1,977** | 39,033 | **39,036** | 13,012 | 10,000 | 1.50° | **no** |"));
+  EXPECT_THAT(page, HasSubstr("three times the unique edges, by inference"));
+  EXPECT_THAT(page, Not(HasSubstr("my-own")));
+}
+
+ResultRow row_in_ranks(const std::string& scene, std::uint64_t nodes, const std::string& backend, int ranks,
+                       double ms) {
+  ResultRow row = measured_row(backend, ms, 1.0);
+  row.scene = scene;
+  row.nodes = nodes;
+  row.threads = ranks;
+  row.ms_per_step_low = row.ms_per_step_high = ms;
+  row.packing_share = 0;
+  row.messages_per_step = 0;
+  row.bytes_per_step = 0;
+  return row;
+}
+
+/// 100 x 100 nodes, shared by two processes and twice as wide: two columns of 100 nodes are 4,800 bytes.
+std::vector<ResultRow> cluster_of_two() {
+  std::vector<ResultRow> rows{
+      row_in_ranks("square", 10'000, "openmp", 1, 1.75), row_in_ranks("square", 10'000, "mpi:1", 1, 1.8),
+      row_in_ranks("square", 10'000, "mpi:2", 2, 1.25), row_in_ranks("square", 10'000, "mpi-copies:2", 2, 2),
+      row_in_ranks("square-x2", 20'000, "mpi:2", 2, 2.5)};
+  for (ResultRow* row : {&rows[2], &rows[4]}) {
+    row->note = "Open MPI v4.1.4, 2 ranks of 1 thread, AVX3, 1 step an exchange";
+    row->messages_per_step = 1;
+    row->bytes_per_step = 4800;
+    row->latency_us = 100;
+    row->link_gigabytes_per_second = 0.048;
+  }
+  return rows;
+}
+
+Provenance provenance_of_two() {
+  Provenance provenance = made_up_provenance();
+  provenance.backend_programs = {
+      {.name = "mpi-copies:2", .ranks = 2}, {.name = "mpi:1", .ranks = 1}, {.name = "mpi:2", .ranks = 2}};
+  return provenance;
+}
+
+std::vector<ResultTable> tables_of_two(const std::vector<ResultRow>& rows) {
+  return cluster_tables({{"semi-euler", 1}})(rows, provenance_of_two());
+}
+
+std::vector<std::string> column_of_two(std::string_view name) {
+  const CsvTable table("cluster.csv", table_csv(tables_of_two(cluster_of_two()).front().data));
+  std::vector<std::string> values;
+  for (std::size_t row = 0; row < table.size(); ++row) values.push_back(table.text(row, table.column(name)));
+  return values;
+}
+
+TEST(ClusterTable, TellsWideScenesFromOthers) {
+  EXPECT_EQ(wide_scene("cloth10k-x4").base, "cloth10k");
+  EXPECT_EQ(wide_scene("cloth10k-x4").times, 4);
+  for (const std::string_view scene : {"cloth10k", "cloth-x1", "cloth-xl", "jeans4k-hip88", "a-x"}) {
+    EXPECT_EQ(wide_scene(scene).base, scene);
+    EXPECT_EQ(wide_scene(scene).times, 1);
+  }
+}
+
+TEST(ClusterTable, HoldsEveryRowAgainstOneProcessAndAgainstCopies) {
+  using testing::ElementsAre;
+  // openmp, one rank, two ranks, two copies, two ranks on twice the scene
+  EXPECT_THAT(column_of_two("ranks"), ElementsAre("0", "1", "2", "2", "2"));
+  EXPECT_THAT(column_of_two("efficiency"), ElementsAre("", "1", "0.72", "", "0.72"));
+  EXPECT_THAT(column_of_two("efficiency_against_copies"), ElementsAre("", "", "0.8", "", "0.8"));
+  // Half of the 2 ms of a copy, or all of it, 0.1 ms of latency, and 4,800 bytes at 0.048 GB/s.
+  const std::vector<std::string> modelled = column_of_two("modelled_ms_per_step");
+  EXPECT_THAT(modelled, ElementsAre("", "", testing::_, "", testing::_));
+  EXPECT_NEAR(std::stod(modelled[2]), 1 + 0.1 + 0.1, 1e-12);
+  EXPECT_NEAR(std::stod(modelled[4]), 2 + 0.1 + 0.1, 1e-12);
+}
+
+TEST(ClusterTable, AsCsvHasSharesEfficienciesAndTheModel) {
+  const std::string csv = table_csv(tables_of_two(cluster_of_two()).front().data);
+  EXPECT_THAT(csv, HasSubstr("scaling,scene,nodes,integrator,backend,ranks,threads,ms_per_step,"));
+  EXPECT_THAT(csv, HasSubstr("\nstrong,square,10000,semi-euler,mpi:2,2,2,1.25,1.25,1.25,0.9375,0,0.0625,4800,"
+                             "1,100,0.048,0.72,0.8,1.2"));
+  EXPECT_THAT(csv, HasSubstr("\nweak,square-x2,20000,semi-euler,mpi:2,2,2,2.5,"));
+  EXPECT_THAT(csv, HasSubstr("\ncopies,square,10000,semi-euler,mpi-copies:2,"));
+  EXPECT_THAT(csv, HasSubstr("\none process,square,10000,semi-euler,openmp,0,1,1.75,"));
+}
+
+TEST(ClusterTable, AsAPageHasBothScalingsAndSaysHowGoodTheModelIs) {
+  const std::string page = markdown(tables_of_two(cluster_of_two()).front().page);
+  EXPECT_THAT(page, HasSubstr("10,000 nodes for all processes (strong scaling)"));
+  EXPECT_THAT(page, HasSubstr("10,000 nodes a process (weak scaling)"));
+  EXPECT_THAT(page, HasSubstr("within 12 % of the measured time in all 2 rows"));
+  EXPECT_THAT(page,
+              HasSubstr("| `mpi:2` on `square-x2` | **2.50** | 2.50 to 2.50 | 93.8 | 0.0 | 6.2 | 4,800 | "
+                        "1.00 | 0.72 | 0.80 | 2.20 (0.880×) |"));
+}
+
+TEST(ClusterTable, HasNoNumbersOfRowsThatDoNotCount) {
+  std::vector<ResultRow> rows = cluster_of_two();
+  rows[1].verified = false;
+  rows[3] = failed_row("mpi-copies:2", "not timed: 2 ranks of 1 thread on 1 processor of a machine");
+  rows[3].scene = "square";
+  const std::vector<ResultTable> tables = tables_of_two(rows);
+  ASSERT_EQ(tables.size(), 1U) << "estimates need the rate of a machine";
+  const std::string page = markdown(tables.front().page);
+  EXPECT_THAT(page, HasSubstr("| `mpi:1` | failed |"));
+  EXPECT_THAT(page, HasSubstr("| `mpi-copies:2` | not timed |"));
+  EXPECT_THAT(page, Not(HasSubstr("The model is within")));
+}
+
+TEST(ClusterEstimates, SayWhatManyMachinesDoAndWhereDeepHalosAndBlocksPay) {
+  const std::vector<ResultTable> tables = tables_of_two(cluster_of_two());
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[1].name, "cluster-estimates");
+  const std::string page = markdown(tables[1].page);
+  EXPECT_THAT(page, HasSubstr("Its 2 processors together took 100 ns a node and step of `semi-euler` "
+                              "(`mpi-copies:2`, `square`)"));
+  EXPECT_THAT(page, HasSubstr("has 64 processors"));
+  EXPECT_THAT(page, HasSubstr("ms, estimated"));
+  EXPECT_THAT(page, HasSubstr("10^10 nodes: several steps an exchange pay "));
+  const std::string csv = table_csv(tables[1].data);
+  EXPECT_THAT(csv, HasSubstr("estimated_ms_columns,"));
+  // 10^8 nodes at 100 * 2 / 64 ns on ten machines.
+  EXPECT_THAT(csv, HasSubstr(",10000,10000,10,31.25,31.25,1,1,"));
+  // There are no parts of a column each.
+  EXPECT_THAT(csv, testing::ContainsRegex(",10000,10000,10000,[0-9.e-]+,,,,[0-9]"));
+}
+
+}  // namespace
+}  // namespace mssim

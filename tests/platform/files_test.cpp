@@ -1,0 +1,197 @@
+#include "platform/files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/files_fixture.h"
+#include "tests/support/output_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+using testing::ThrowsMessage;
+
+class AtomicFileTest : public TemporaryFolderTest {};
+
+TEST_F(AtomicFileTest, ReplacesTheOldTextAndLeavesNothingElse) {
+  const auto file = folder() / "rows.csv";
+  write_file_atomically(file, "old, and longer than the new one\n");
+  write_file_atomically(file, "new\n");
+  EXPECT_EQ(text_of(file), "new\n");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1);
+}
+
+TEST_F(AtomicFileTest, WritesIntoTheWorkingFolderToo) {
+  EXPECT_EQ(exit_of_child([&] {
+              std::filesystem::current_path(folder());
+              write_file_atomically("rows.csv", "text");
+              return 0;
+            }),
+            0);
+  EXPECT_EQ(text_of(folder() / "rows.csv"), "text");
+}
+
+TEST_F(AtomicFileTest, NamesFileReasonAndRemedyWhenTheFolderIsMissing) {
+  const auto file = folder() / "missing" / "rows.csv";
+  EXPECT_THAT([&] { write_file_atomically(file, "text"); },
+              ThrowsMessage<WriteError>(AllOf(HasSubstr("cannot write " + file.string()),
+                                              HasSubstr("No such file or directory"),
+                                              HasSubstr("create its folder"))));
+}
+
+TEST_F(AtomicFileTest, RefusesToReplaceFoldersAndDevices) {
+  EXPECT_THAT([&] { write_file_atomically(folder(), "text"); },
+              ThrowsMessage<WriteError>(HasSubstr("is a folder; choose another file name")));
+  EXPECT_THAT([] { write_file_atomically("/dev/null", "text"); },
+              ThrowsMessage<WriteError>(HasSubstr("not a regular file")));
+}
+
+TEST_F(AtomicFileTest, RefusesFoldersOfTheSystemButForSharedMemory) {
+  for (const char* file : {"/dev/new", "/proc/new", "/sys/new", "/proc/self/fd/1", "/dev/fd/../new"})
+    EXPECT_THAT([&] { require_replaceable(file); },
+                ThrowsMessage<WriteError>(AllOf(HasSubstr(file), HasSubstr("choose another file name"))));
+  EXPECT_THAT([] { target_of("/dev/stdout"); }, ThrowsMessage<WriteError>(HasSubstr("/dev/stdout")));
+  EXPECT_NO_THROW(require_replaceable("/dev/shm/new"));
+  EXPECT_NO_THROW(require_replaceable("/devices"));
+}
+
+TEST_F(AtomicFileTest, WritesThroughNoLinkInThePlaceOfItsTemporary) {
+  const auto victim = put("victim", "mine"), file = folder() / "rows.csv";
+  std::filesystem::create_symlink(victim, temporary_of(file));
+  EXPECT_THAT([&] { write_file_atomically(file, "text"); },
+              ThrowsMessage<WriteError>(
+                  AllOf(HasSubstr(temporary_of(file).string() + " is a link"), HasSubstr("remove it"))));
+  std::filesystem::remove(temporary_of(file));
+  std::filesystem::create_hard_link(victim, temporary_of(file));
+  write_file_atomically(file, "text");
+  EXPECT_EQ(text_of(file), "text");
+  EXPECT_EQ(text_of(victim), "mine");
+}
+
+TEST_F(AtomicFileTest, ReplacesALinkUnlessItsTargetIsAskedFor) {
+  const auto victim = put("there/victim", "mine"), file = folder() / "rows.csv", second = folder() / "second";
+  std::filesystem::create_symlink("there/victim", file);
+  std::filesystem::create_symlink(file, second);
+  EXPECT_EQ(target_of("rows.csv"), "rows.csv");
+  EXPECT_TRUE(std::filesystem::equivalent(target_of(second), victim));
+  write_file_atomically(target_of(second), "text");
+  EXPECT_EQ(text_of(victim), "text");
+  EXPECT_TRUE(std::filesystem::is_symlink(file));
+  write_file_atomically(file, "new");
+  EXPECT_EQ(text_of(victim), "text");
+  EXPECT_FALSE(std::filesystem::is_symlink(file));
+  std::filesystem::create_symlink("b", folder() / "a");
+  std::filesystem::create_symlink("a", folder() / "b");
+  EXPECT_THAT([&] { target_of(folder() / "a"); }, ThrowsMessage<WriteError>(HasSubstr("in a circle")));
+}
+
+TEST_F(AtomicFileTest, KeepsTheOldTextAndRemovesItsTemporaryWhenWritingFails) {
+  const auto file = folder() / "rows.csv";
+  write_file_atomically(file, "old\n");
+  EXPECT_EQ(exit_of_child([&] {
+              std::signal(SIGXFSZ, SIG_IGN);
+              const rlimit limit{1000, 1000};
+              ::setrlimit(RLIMIT_FSIZE, &limit);
+              EXPECT_THAT([&] { write_file_atomically(file, std::string(5000, 'x')); },
+                          ThrowsMessage<WriteError>(HasSubstr("File too large")));
+              return testing::Test::HasFailure() ? 1 : 0;
+            }),
+            0);
+  EXPECT_EQ(text_of(file), "old\n");
+  EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
+}
+
+TEST_F(AtomicFileTest, HasOneWriterAtATime) {
+  const auto file = folder() / "rows.csv";
+  const auto writes_too = [&] { write_file_atomically(file, "second"); };
+  {
+    AtomicFile first(file);
+    first.append("first");
+    const auto refused =
+        ThrowsMessage<WriteError>(HasSubstr("another mssim is writing " + file.string() + "; wait until"));
+    EXPECT_THAT(writes_too, refused);
+    EXPECT_EQ(exit_of_child([&] {
+                EXPECT_THAT(writes_too, refused);
+                return testing::Test::HasFailure() ? 1 : 0;
+              }),
+              0);
+    EXPECT_EQ(text_of(temporary_of(file)), "first") << "who is refused has changed nothing";
+    first.move_into_place();
+    writes_too();
+  }
+  EXPECT_EQ(text_of(file), "second");
+  EXPECT_FALSE(std::filesystem::exists(temporary_of(file)));
+}
+
+TEST_F(AtomicFileTest, IsKeptOrRemovedWhenItsWriterGivesUp) {
+  const auto file = folder() / "rows.csv";
+  {
+    AtomicFile given_up(file);
+    given_up.append("lost");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder()));
+  {
+    AtomicFile kept(file);
+    kept.append("kept");
+    kept.keep();
+  }
+  EXPECT_EQ(text_of(temporary_of(file)), "kept");
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+class WholeFile : public TemporaryFolderTest {
+ protected:
+  static std::string refusal_of(const std::filesystem::path& file, std::size_t most_bytes = 1 << 20) {
+    try {
+      read_file(file, most_bytes);
+    } catch (const ReadError& error) {
+      return error.sentence(file, "REMEDY");
+    }
+    return "nothing";
+  }
+};
+
+TEST_F(WholeFile, IsReadByteByByte) {
+  std::string bytes(200'000, 'x');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i % 251);
+  EXPECT_EQ(read_file(put("bytes", bytes)), bytes);
+  EXPECT_EQ(read_file(put("empty", "")), "");
+  EXPECT_EQ(read_file(put("just", "12345"), 5), "12345");
+}
+
+TEST_F(WholeFile, OfProcIsReadThoughItsStatedLengthIsZero) {
+  ASSERT_EQ(std::filesystem::file_size("/proc/self/status"), 0U);
+  EXPECT_THAT(read_file("/proc/self/status"), StartsWith("Name:"));
+  const std::size_t bytes = read_file("/proc/version").size();
+  EXPECT_EQ(read_file("/proc/version", bytes).size(), bytes);
+  EXPECT_THAT(refusal_of("/proc/version", bytes - 1), HasSubstr("is longer than"));
+}
+
+TEST_F(WholeFile, IsRefusedWithTheReason) {
+  const std::string name = (folder() / "file").string();
+  EXPECT_EQ(refusal_of(name), name + ": there is no such file: REMEDY");
+  EXPECT_EQ(refusal_of(folder()), folder().string() + ": is not a regular file: REMEDY");
+  ASSERT_EQ(::mkfifo(name.c_str(), 0600), 0);
+  EXPECT_EQ(refusal_of(name), name + ": is not a regular file: REMEDY");  // rather than to wait for a writer
+  const auto long_file = put("long", std::string(2049, ' '));
+  EXPECT_EQ(refusal_of(long_file, 2048), long_file.string() + ": is longer than 2 KiB: REMEDY");
+  EXPECT_EQ(refusal_of("/proc/self/mem"),
+            "/proc/self/mem: cannot be read (Input/output error): check the file and its disk");
+  if (::geteuid() == 0) return;  // root may read everything
+  std::filesystem::permissions(long_file, std::filesystem::perms::none);
+  EXPECT_THAT(refusal_of(long_file),
+              HasSubstr(": cannot be opened (Permission denied): check its permissions"));
+}
+
+}  // namespace
+}  // namespace mssim

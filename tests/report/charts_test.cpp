@@ -1,0 +1,274 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "report/report_internal.h"
+#include "tests/support/result_fixture.h"
+
+namespace mssim {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Cloths of Table 1 with `serial`, `openmp` and `opencl`.
+std::vector<ResultRow> two_cloths() {
+  std::vector<ResultRow> rows;
+  for (const auto& [nodes, springs, ms] : {std::tuple(2500, 29004, 1.0), std::tuple(10000, 118004, 8.0)})
+    for (const auto& [backend, ratio] :
+         {std::pair("serial", 1.0), std::pair("openmp", 10.0), std::pair("opencl", 5.0)}) {
+      ResultRow& row = rows.emplace_back(measured_row(backend, ms / ratio, ratio));
+      row.scene = "cloth" + std::to_string(nodes);
+      row.nodes = static_cast<std::uint64_t>(nodes);
+      row.springs_published = springs;
+      row.springs_unique = static_cast<std::uint64_t>(springs / 2);
+    }
+  return rows;
+}
+
+const Series& series(const Chart& chart, const std::string& name) {
+  for (const Series& each : chart.series)
+    if (each.name == name) return each;
+  ADD_FAILURE() << chart.id << " has no series " << name;
+  return chart.series.front();
+}
+
+TEST(SpeedupCharts, ShowPublishedBesideMeasured) {
+  const std::vector<ResultRow> rows = two_cloths();
+  const PublishedTable table1(published_table_kinds[0]);
+  const auto charts = speedup_charts(PaperScenes(rows, legend, table1), "f1-table1");
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(charts[0].id, "f1-table1-speed-up-semi-euler");
+  EXPECT_EQ(charts[0].series.size(), 4U);
+  const Series &published = series(charts[0], "GPU, published"),
+               &measured = series(charts[0], "opencl, measured");
+  EXPECT_EQ(published.origin, Origin::published);
+  EXPECT_EQ(published.family, measured.family);
+  EXPECT_EQ(published.x, measured.x);
+  EXPECT_NEAR(published.y[1], 28.8355, 1e-4);
+  EXPECT_TRUE(published.low.empty());
+  EXPECT_EQ(measured.y, (std::vector<double>{5, 5}));
+  EXPECT_EQ(measured.low, measured.y);
+  EXPECT_TRUE(speedup_charts(PaperScenes({}, legend, table1), "f1").empty());
+}
+
+TEST(ScalingCharts, NameTheSlopes) {
+  const std::vector<ResultRow> rows = two_cloths();
+  const std::vector<PublishedTable> published = published_tables();
+  const auto charts = scaling_charts(rows, legend, published, "f1");
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_TRUE(charts[0].x.logarithmic && charts[0].y.logarithmic);
+  EXPECT_EQ(series(charts[0], "serial, measured, slope 1.50").high, (std::vector<double>{2, 16}));
+  EXPECT_EQ(series(charts[0], "CPU only, published, slope 1.02").y, (std::vector<double>{19.475, 80.48}));
+  const Table slopes = slope_table(rows, legend, published);
+  EXPECT_EQ(slopes.rows.size(), 3U);
+  EXPECT_TRUE(scaling_charts(std::vector(rows.begin(), rows.begin() + 3), legend, published, "f1").empty());
+}
+
+TEST(RooflineChart, PutsDotsBelowTheirRoofs) {
+  std::vector<ResultRow> rows = two_cloths();
+  for (ResultRow& row : rows) row.roofline_fraction = row.backend == "serial" ? 0.05 : 0.5;
+  for (ResultRow& row : rows) row.gigabytes_per_second = 0.12 / *row.ms_per_step;
+  for (ResultRow& row : rows)
+    if (row.backend == "opencl") row.roofline_fraction.reset();
+  const auto chart = roofline_chart(rows, "f1");
+  ASSERT_TRUE(chart);
+  EXPECT_EQ(chart->title, "Roofline: cloth10000, semi-euler");
+  const Series &dot = series(*chart, "openmp"), &roof = series(*chart, "roof of 2 threads");
+  EXPECT_EQ(roof.origin, Origin::reference);
+  ASSERT_EQ(roof.x.size(), 2U);
+  EXPECT_NEAR(roof.y[1] / roof.x[1] * dot.x[0], dot.y[0] / 0.5, 1e-9 * dot.y[0]);
+  EXPECT_EQ(chart->series.size(), 4U);
+  for (ResultRow& row : rows) row.roofline_fraction.reset();
+  EXPECT_FALSE(roofline_chart(rows, "f1"));
+}
+
+TEST(RooflineChart, EndsARoofAtItsCeiling) {
+  std::vector<ResultRow> rows = two_cloths();
+  rows.erase(rows.begin(), rows.begin() + 4);
+  rows[0].gigabytes_per_second = 10;
+  rows[0].roofline_fraction = 0.5;
+  rows[1].gigabytes_per_second = 0.5;  // ten times the intensity of openmp
+  rows[1].roofline_fraction = 0.5;
+  const auto chart = roofline_chart(rows, "f1");
+  const Series& roof = series(*chart, "roof of 2 threads");
+  ASSERT_EQ(roof.x.size(), 3U);
+  EXPECT_EQ(roof.y[1], roof.y[2]);
+  EXPECT_LT(roof.x[1], roof.x[2]);
+}
+
+TEST(Figure6Chart, HasALineForEachBackendThatDresses) {
+  std::vector<ResultRow> rows = two_cloths();
+  EXPECT_FALSE(figure6_chart(rows, "f1"));
+  for (ResultRow& row : rows)
+    if (row.backend != "opencl") row.dressing.emplace();
+  const auto chart = figure6_chart(rows, "f1");
+  ASSERT_TRUE(chart);
+  EXPECT_EQ(chart->series.size(), 2U);
+  EXPECT_EQ(series(*chart, "openmp, with parallelisation").y, (std::vector<double>{0.1, 0.8}));
+}
+
+TEST(EnergyChart, TakesTheReferenceOfTheLongestName) {
+  const std::vector<FoundCurve> references{
+      {"cloth", {0}, {1}}, {"cloth2500", {0, 1}, {2, 3}}, {"box-small", {0}, {4}}};
+  EXPECT_EQ(energy_chart({"cloth2500-rk4", {0}, {2}}, references, "f1-energy-0").series.at(1).y,
+            (std::vector<double>{2, 3}));
+  EXPECT_EQ(energy_chart({"torus", {0}, {2}}, references, "f1-energy-0").series.size(), 1U);
+}
+
+TEST(KindOf, FollowsFromHowSpringsAreCounted) {
+  ResultRow row = measured_row("serial", 1, 1.0);
+  EXPECT_EQ(kind_of(row), ContentKind::cloth);
+  row.springs_published = 3 * row.springs_unique;
+  EXPECT_EQ(kind_of(row), ContentKind::bodies);
+  row.springs_published.reset();
+  EXPECT_EQ(kind_of(row), ContentKind::other);
+  row.dressing.emplace();
+  EXPECT_EQ(kind_of(row), ContentKind::garment);
+}
+
+GuidePoint guide_point(const std::string& integrator, const std::string& backend, double dt_s, double wall_s,
+                       double error) {
+  return {.scene = "cloth",
+          .integrator = integrator,
+          .backend = backend,
+          .dt_s = dt_s,
+          .position_error = error,
+          .wall_s_per_s = wall_s,
+          .force_evaluations_per_s = integrator == "rk4" ? std::optional(4 / dt_s) : std::nullopt,
+          .status = "ok"};
+}
+
+GuidePoint diverged_point(GuidePoint point, std::optional<double> error = std::nullopt) {
+  point.diverged = true;
+  point.status = "diverged";
+  point.position_error = error;
+  return point;
+}
+
+/// rk4 on two backends, implicit-euler on one, xpbd on none.
+FoundGuide two_methods() {
+  FoundGuide guide;
+  guide.points = {
+      diverged_point(guide_point("rk4", "serial", 0.004, 1, 0), 1e12),
+      guide_point("rk4", "serial", 0.002, 4, 0.5),
+      guide_point("rk4", "serial", 0.001, 8, 0.03),
+      diverged_point(guide_point("rk4", "openmp", 0.004, 0.5, 0)),
+      guide_point("rk4", "openmp", 0.002, 2, 0.5),
+      guide_point("implicit-euler", "openmp", 0.02, 3, 2),
+      {.scene = "cloth", .integrator = "xpbd", .backend = "openmp", .status = "no time was left"}};
+  guide.points[1].on_front = guide.points[4].on_front = true;
+  return guide;
+}
+
+const Chart& chart_called(const std::vector<Chart>& charts, const std::string& id) {
+  for (const Chart& chart : charts)
+    if (chart.id == id) return chart;
+  ADD_FAILURE() << "no chart " << id;
+  return charts.front();
+}
+
+std::vector<std::string> names_in(const Chart& chart) {
+  std::vector<std::string> names;
+  for (const Series& series : chart.series) names.push_back(series.name);
+  return names;
+}
+
+const Series& series_called(const Chart& chart, const std::string& name) {
+  for (const Series& each : chart.series)
+    if (each.name == name) return each;
+  ADD_FAILURE() << chart.id << " has no series " << name;
+  return chart.series.front();
+}
+
+TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
+  const auto charts = guide_charts(two_methods(), "cloth", "f1-guide-1");
+  const Chart& work = chart_called(charts, "f1-guide-1-work-precision");
+  EXPECT_TRUE(work.x.logarithmic && work.y.logarithmic);
+  EXPECT_THAT(names_in(work), ElementsAre("rk4", "implicit-euler", "diverged", "on the front"));
+  EXPECT_THAT(series_called(work, "rk4").x, ElementsAre(2, 8));
+  EXPECT_THAT(series_called(work, "rk4").y, ElementsAre(0.5, 0.03));
+  EXPECT_THAT(series_called(work, "on the front").x, ElementsAre(2));
+  EXPECT_THAT(work.remarks,
+              Contains("1 of 2 points on the front not drawn, as their backends take longer for "
+                       "the same step"));
+  EXPECT_THAT(work.remarks, Contains("Each point is that of the cheapest backend with its step: "
+                                     "openmp (implicit-euler), openmp and serial (rk4)"));
+  EXPECT_THAT(work.remarks, Contains("No points: xpbd (no time was left)"));
+  EXPECT_THAT(guide_charts(two_methods(), "other", "f1"), IsEmpty());
+}
+
+TEST(GuideCharts, PutDivergedPointsAtTheEdgeWhateverTheirError) {
+  for (const Chart& chart : guide_charts(two_methods(), "cloth", "f1")) {
+    const Series& diverged = series_called(chart, "diverged");
+    EXPECT_EQ(diverged.mark, PointMark::cross);
+    EXPECT_THAT(diverged.y, ElementsAre(10)) << chart.id;
+    EXPECT_THAT(chart.remarks, Contains("Crosses at an error of 10 diverged, whatever their error"));
+  }
+  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  EXPECT_THAT(charts.front().remarks, Contains("Diverged: rk4 with 4.00 ms"));
+}
+
+TEST(GuideCharts, PreferABackendThatDidNotDiverge) {
+  FoundGuide guide = two_methods();
+  guide.points[0] = guide_point("rk4", "serial", 0.004, 1, 0.7);
+  const auto charts = guide_charts(guide, "cloth", "f1");
+  EXPECT_THAT(series_called(charts.front(), "rk4").x, ElementsAre(1, 2, 8));
+  EXPECT_THAT(names_in(charts.front()), Not(Contains("diverged")));
+}
+
+TEST(GuideCharts, MarkWhatIsNotCompared) {
+  FoundGuide guide = two_methods();
+  guide.points[2].status = "within the reference's error";
+  for (const Chart& chart : guide_charts(guide, "cloth", "f1")) {
+    const Series& marked = series_called(chart, "not compared");
+    EXPECT_EQ(marked.mark, PointMark::square);
+    EXPECT_THAT(marked.y, ElementsAre(0.03));
+    EXPECT_THAT(chart.remarks, Contains(HasSubstr("are not compared")));
+  }
+}
+
+TEST(GuideCharts, ShowErrorsOverStepsWithTheirOrders) {
+  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  const Chart& steps = chart_called(charts, "f1-error-step");
+  EXPECT_THAT(names_in(steps), ElementsAre("rk4", "implicit-euler", "diverged", "order 1", "order 4"));
+  EXPECT_THAT(series_called(steps, "rk4").x, ElementsAre(0.002, 0.001));
+  for (const int order : {1, 4}) {
+    const Series& line = series_called(steps, "order " + std::to_string(order));
+    ASSERT_EQ(line.x.size(), 2U);
+    EXPECT_NEAR(std::log(line.y[1] / line.y[0]) / std::log(line.x[1] / line.x[0]), order, 1e-9);
+  }
+}
+
+TEST(GuideCharts, SayWhichMethodsHaveNoNumberOfEvaluations) {
+  const auto charts = guide_charts(two_methods(), "cloth", "f1");
+  const Chart& evaluations = chart_called(charts, "f1-error-evaluations");
+  EXPECT_THAT(names_in(evaluations), ElementsAre("rk4", "diverged"));
+  EXPECT_THAT(series_called(evaluations, "rk4").x, ElementsAre(2000, 4000));
+  EXPECT_THAT(evaluations.remarks, Contains("Without a fixed number of force evaluations: implicit-euler"));
+}
+
+TEST(GuideCharts, ShowSizesOfAnExplicitAndAnImplicitIntegrator) {
+  FoundGuide guide;
+  for (const char* integrator : {"implicit-euler", "rk4", "semi-euler", "xpbd"})
+    for (const double nodes : {256.0, 529.0}) {
+      guide.times.push_back({"cloth", integrator, "openmp", nodes, nodes / 100});
+      if (nodes < 300) guide.times.push_back({"cloth", integrator, "serial", nodes, nodes / 10});
+    }
+  const auto charts = guide_charts(guide, "cloth", "f1");
+  ASSERT_EQ(charts.size(), 2U);
+  EXPECT_EQ(charts[0].id, "f1-sizes-explicit");
+  EXPECT_EQ(charts[0].title, "cloth in other sizes, semi-euler");
+  EXPECT_EQ(charts[1].title, "cloth in other sizes, implicit-euler");
+  EXPECT_THAT(names_in(charts[0]), ElementsAre("openmp")) << "one size is no line";
+  EXPECT_THAT(series_called(charts[0], "openmp").y, ElementsAre(2.56, 5.29));
+}
+
+}  // namespace
+}  // namespace mssim

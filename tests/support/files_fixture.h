@@ -1,0 +1,55 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "platform/files.h"
+
+namespace mssim {
+
+/// A test with an empty folder of its own, removed afterwards.
+class TemporaryFolderTest : public testing::Test {
+ protected:
+  TemporaryFolderTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "mssim-test-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
+    folder_ = name;
+  }
+  ~TemporaryFolderTest() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  const std::filesystem::path& folder() const { return folder_; }
+
+  /// Writes a file in the folder, with the folders that it lies in. Returns its path.
+  std::filesystem::path put(const std::filesystem::path& name, std::string_view text) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Throws ReadError when there is no such file.
+inline std::string text_of(const std::filesystem::path& file) { return read_file(file); }
+
+/// The committed files, for tests.
+std::filesystem::path source_file(std::string_view relative);
+
+/// `text` with its one `old_part` replaced; a test that replaces nothing would test nothing.
+inline std::string with_change(std::string text, std::string_view old_part, std::string_view new_part) {
+  const std::size_t place = text.find(old_part);
+  if (place == std::string::npos || text.find(old_part, place + 1) != std::string::npos)
+    throw std::runtime_error("not exactly once in the text: " + std::string(old_part));
+  return text.replace(place, old_part.size(), new_part);
+}
+
+}  // namespace mssim
