@@ -4,8 +4,7 @@
 #include <cstring>
 
 #include "platform/machine.h"
-#include "ranks/launch.h"
-#include "ranks/rank_program.h"
+#include "ranks/programs.h"
 #include "ranks/requests.h"
 
 int main(int argc, char** argv) {

@@ -7,7 +7,6 @@
 #include "application/choices.h"
 #include "backends/backends.h"
 #include "backends/interface/backend.h"
-#include "guide/cloth_sizes.h"
 #include "guide/guide.h"
 #include "scene/spec/scene_spec.h"
 

@@ -19,7 +19,6 @@
 #include "application/prepared_scene.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
-#include "bench/verification/energy_ledger.h"
 #include "bench/verification/verification.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"

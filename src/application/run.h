@@ -10,7 +10,6 @@
 #include "application/console.h"
 #include "application/prepared_scene.h"
 #include "backends/interface/backend.h"
-#include "model/energy.h"
 #include "model/system.h"
 #include "output/pictures/painter.h"
 #include "output/traces/energy_curve.h"

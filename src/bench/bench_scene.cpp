@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -11,17 +10,12 @@
 #include <optional>
 #include <random>
 #include <utility>
-#include <vector>
 
 #include "bench/estimates.h"
-#include "bench/job/combination.h"
-#include "bench/roofline/machine_peak.h"
-#include "bench/roofline/step_cost.h"
-#include "bench/verification/sample_check.h"
-#include "bench/verification/second_stretch.h"
+#include "bench/roofline/roofline.h"
+#include "bench/verification/verification.h"
 #include "bench/windows/windows.h"
-#include "garment/bench/dressing_record.h"
-#include "garment/bench/garment_verification.h"
+#include "garment/bench/garment_bench.h"
 #include "garment/stepping/dressing_backend.h"
 #include "platform/machine.h"
 #include "statistics/statistics.h"

@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "backends/backends.h"
-#include "bench/job/scene_job.h"
 #include "bench/verification/verification.h"
-#include "garment/bench/garment_verification.h"
+#include "garment/bench/garment_bench.h"
 #include "garment/stepping/dressing_backend.h"
 
 namespace mssim {
-
 namespace {
 
 constexpr double state_node = 2 * sizeof(Vec3d);
@@ -20,37 +18,6 @@ constexpr double state_node = 2 * sizeof(Vec3d);
 constexpr double reference_states = 3;
 /// What a garment's reference leaves: the states where stretches start and end, and their errors.
 constexpr double garment_reference_node = 4 * stretches * state_node + 2 * stretches * sizeof(double);
-
-}  // namespace
-
-std::size_t references_at_once(const BenchSettings& settings) {
-  return std::min(settings.integrators.size(), static_cast<std::size_t>(settings.execution.threads));
-}
-
-std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize& size) {
-  const auto nodes = static_cast<double>(size.nodes);
-  const double system =
-      nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
-  double running = 0, serial = 0, held = system + state_node * nodes;  // a round's start
-  for (const Integrator* integrator : settings.integrators) {
-    const MemoryUse reference = reference_memory(*integrator, size.grid);
-    running = std::max(running, reference.bytes(*integrator, size.nodes, size.springs, 1) +
-                                    reference_states * state_node * nodes +
-                                    (size.garment ? garment_reference_node * nodes : 0));
-    held += (size.garment ? garment_reference_node : state_node) * nodes;
-    for (const BackendInfo* backend : settings.backends) {
-      const double bytes = memory_of(*backend, *integrator, size.grid)
-                               .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
-      held += bytes;
-      if (backend->role == BackendRole::baseline) serial += bytes;  // verified while the references run
-    }
-  }
-  return static_cast<std::uint64_t>(
-      std::max(system + serial + static_cast<double>(references_at_once(settings)) * running,
-               held + state_node * nodes));
-}
-
-namespace {
 
 // Seconds, as measured on two cores of a server of 2024.
 constexpr double spring_s = 7e-9;          // the force of one, in the plain list
@@ -81,6 +48,33 @@ double step_time(const BackendInfo& backend, const Integrator& integrator, const
 }
 
 }  // namespace
+
+std::size_t references_at_once(const BenchSettings& settings) {
+  return std::min(settings.integrators.size(), static_cast<std::size_t>(settings.execution.threads));
+}
+
+std::uint64_t bench_memory_needed(const BenchSettings& settings, const SceneSize& size) {
+  const auto nodes = static_cast<double>(size.nodes);
+  const double system =
+      nodes * (state_node + sizeof(double)) + static_cast<double>(size.springs) * sizeof(Spring);
+  double running = 0, serial = 0, held = system + state_node * nodes;  // a round's start
+  for (const Integrator* integrator : settings.integrators) {
+    const MemoryUse reference = reference_memory(*integrator, size.grid);
+    running = std::max(running, reference.bytes(*integrator, size.nodes, size.springs, 1) +
+                                    reference_states * state_node * nodes +
+                                    (size.garment ? garment_reference_node * nodes : 0));
+    held += (size.garment ? garment_reference_node : state_node) * nodes;
+    for (const BackendInfo* backend : settings.backends) {
+      const double bytes = memory_of(*backend, *integrator, size.grid)
+                               .bytes(*integrator, size.nodes, size.springs, settings.execution.threads);
+      held += bytes;
+      if (backend->role == BackendRole::baseline) serial += bytes;  // verified while the references run
+    }
+  }
+  return static_cast<std::uint64_t>(
+      std::max(system + serial + static_cast<double>(references_at_once(settings)) * running,
+               held + state_node * nodes));
+}
 
 double expected_evaluations(const Integrator& integrator) {
   switch (integrator.solver) {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "bench/job/scene_job.h"
+#include "bench/job/job.h"
 
 namespace mssim {
 

@@ -22,7 +22,7 @@
 #include "commands/command.h"
 #include "commands/options.h"
 #include "integrators/all_integrators.h"
-#include "mesh/tet_mesh.h"
+#include "mesh/meshing.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
 #include "output/tables/table.h"

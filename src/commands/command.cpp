@@ -14,7 +14,7 @@
 #include "application/outputs.h"
 #include "backends/backends.h"
 #include "backends/devices/drivers.h"
-#include "bench/machine/build_info.h"
+#include "bench/machine/provenance.h"
 #include "commands/arguments/program_parser.h"
 #include "platform/files.h"
 #include "platform/process.h"

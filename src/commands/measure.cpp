@@ -15,7 +15,7 @@
 #include "garment/body/body_profile.h"
 #include "garment/body/stance.h"
 #include "garment/pattern/jeans.h"
-#include "garment/scene/garment_body.h"
+#include "garment/scene/garment_scene.h"
 #include "garment/spec/garment_spec.h"
 #include "geometry/geometry.h"
 #include "geometry/surface.h"

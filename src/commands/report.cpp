@@ -17,7 +17,7 @@
 #include "application/console.h"
 #include "application/outputs.h"
 #include "application/run.h"
-#include "bench/machine/build_info.h"
+#include "bench/machine/provenance.h"
 #include "commands/command.h"
 #include "output/pictures/painter.h"
 #include "output/traces/trace_reader.h"

@@ -8,12 +8,77 @@
 #include <string>
 #include <vector>
 
-#include "garment/cloth_layers.h"
 #include "garment/contact/body_maps.h"
-#include "garment/dressing.h"
 #include "geometry/vec3.h"
 
 namespace mssim {
+
+/// How over-elongated springs are kept from growing (Vassilev's loop 5).
+enum class VelocityCorrection : std::uint8_t {
+  none,
+  /// As published: what lengthens such a spring is taken from the velocities of its ends.
+  published,
+  /// Such a spring has to shorten, too: its ends may part at -rate * excess / dt at most.
+  bounded
+};
+
+/// What dressing takes beside springs: everything about one step that is no property of the cloth. The step
+/// is Vassilev's Algorithm 1; ARCHITECTURE.md says where it goes beyond what was published.
+struct DressingSettings {
+  /// While the seams close there is no friction and, by default, no gravity: the panels would fall before
+  /// they hold.
+  double seam_force = 4;               ///< N per metre of seam at first
+  double seam_force_doubling_s = 0.5;  ///< the force grows by its first value in this time
+  double seaming_damping = 8;          ///< 1/s, per mass; draping takes System::viscous_damping
+  double seaming_gravity = 0;          ///< share of gravity that acts meanwhile
+  double longest_seaming_s = 1;        ///< what is open then is sewn as it is
+  /// A joint nearer than this is sewn: from then on its gap closes by an inelastic constraint on velocities.
+  double sewn_gap = 0.01;      ///< m
+  double closing_share = 0.2;  ///< of a sewn joint's gap that a step closes at most
+  double closing_speed = 0.5;  ///< m/s, at most
+  double friction = 0.5;       ///< Coulomb's coefficient on the body, while draping
+  double push_speed = 1;       ///< m/s at which a point inside the body is moved out, at most
+
+  VelocityCorrection correction = VelocityCorrection::bounded;
+  double correction_threshold = 0.05;   ///< elongation over rest length
+  double correction_rate = 0.5;         ///< see VelocityCorrection::bounded
+  std::uint32_t correction_sweeps = 2;  ///< over all springs, forwards and backwards by turns
+};
+
+/// Two panels of a garment that may touch each other: `inner` lies between the body and `outer`.
+struct PanelPair {
+  std::uint32_t inner = 0;  ///< index into Garment::panels
+  std::uint32_t outer = 0;
+
+  bool operator==(const PanelPair&) const = default;
+};
+
+/// Which panels may touch each other, and which way they face.
+///
+/// A panel's right side is where its nodes are seen as the pattern is drawn, columns to the right and rows
+/// upwards: its normal is (direction of the columns) x (direction of the rows), and it points away from the
+/// body, unless the panel is listed as mirrored, like the left half of a pattern that is drawn for the right.
+struct ClothLayers {
+  std::vector<PanelPair> pairs;
+  std::vector<std::uint32_t> mirrored;  ///< panels whose normal points towards the body
+};
+
+/// How layers of cloth keep apart.
+struct ClothClothSettings {
+  double thickness = 0.003;  ///< m, the distance that layers keep; more than what they approach in a step
+  double friction = 0.3;     ///< Coulomb's coefficient, not negative
+  /// m/s, not negative: layers that are too near, or have crossed, move apart at most so fast. The move is
+  /// one of positions, and leaves no speed behind.
+  double push_speed = 1;
+  std::uint32_t sweeps =
+      2;  ///< over all contacts in a step, at least 1: more follow stacks of contacts farther
+};
+
+/// Layers of cloth that collide with each other (garment/layers/cloth_cloth.h).
+struct TouchingLayers {
+  ClothLayers layers;
+  ClothClothSettings settings;
+};
 
 /// A pattern piece as a grid: rows x columns nodes, row-major, row 0 at its lower edge, column 0 at its left
 /// one as the pattern is drawn, joined by the 12-neighbour stencil (grid_stencil).

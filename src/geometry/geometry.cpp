@@ -1,10 +1,8 @@
 #include "geometry/geometry.h"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <charconv>
-#include <cmath>
 #include <utility>
 
 namespace mssim {

@@ -1,15 +1,11 @@
 #include "geometry/surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <set>
-#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -19,7 +15,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// One side of a triangle, in the triangle's direction of travel.
@@ -140,22 +135,6 @@ class Check {
   std::string_view name_;
 };
 
-}  // namespace
-
-void validate_surface(const Surface& surface, std::string_view name) { Check(surface, name).all(); }
-
-double volume_of(const Surface& surface) {
-  if (surface.points.empty()) return 0;
-  // Measured from a point of the surface rather than the origin, so that a body far away loses no digits.
-  const Vec3d& apex = surface.points.front();
-  double six_times = 0;
-  for (const auto& [a, b, c] : surface.triangles)
-    six_times += six_volumes(apex, surface.points[a], surface.points[b], surface.points[c]);
-  return six_times / 6;
-}
-
-namespace {
-
 constexpr std::uint32_t unknown = UINT32_MAX;
 
 /// For each point, one point of the part that it belongs to, the same for the whole part.
@@ -168,49 +147,6 @@ std::vector<std::uint32_t> representatives(const Surface& surface) {
     representative[point] = parts.root(point);
   return representative;
 }
-
-}  // namespace
-
-std::vector<Surface> closed_parts(const Surface& surface) {
-  const std::vector<std::uint32_t> representative = representatives(surface);
-  std::vector<Surface> parts;
-  std::vector<std::uint32_t> part_of(surface.points.size(), unknown);
-  for (const auto& triangle : surface.triangles) {
-    std::uint32_t& part = part_of[representative[triangle[0]]];
-    if (part == unknown) {
-      part = static_cast<std::uint32_t>(parts.size());
-      parts.emplace_back();
-    }
-    parts[part].triangles.push_back(triangle);
-  }
-  std::vector<std::uint32_t> number(surface.points.size(), unknown);
-  for (std::size_t point = 0; point < surface.points.size(); ++point) {
-    const std::uint32_t part = part_of[representative[point]];
-    if (part == unknown) continue;  // of no triangle
-    number[point] = static_cast<std::uint32_t>(parts[part].points.size());
-    parts[part].points.push_back(surface.points[point]);
-  }
-  for (Surface& part : parts) {
-    for (auto& triangle : part.triangles)
-      for (std::uint32_t& point : triangle) point = number[point];
-    if (volume_of(part) < 0)
-      for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
-  }
-  return parts;
-}
-
-Surface facing_outwards(const Surface& surface) {
-  Surface all;
-  for (const Surface& part : closed_parts(surface)) {
-    const auto offset = static_cast<std::uint32_t>(all.points.size());
-    all.points.insert(all.points.end(), part.points.begin(), part.points.end());
-    for (const auto& [a, b, c] : part.triangles)
-      all.triangles.push_back({a + offset, b + offset, c + offset});
-  }
-  return all;
-}
-
-namespace {
 
 /// The edges that belong to one triangle only, as that triangle runs, by the point where they begin.
 class FreeEdges {
@@ -383,6 +319,57 @@ void span(Surface& surface, Opening opening, Edges& edges) {
 }
 
 }  // namespace
+
+void validate_surface(const Surface& surface, std::string_view name) { Check(surface, name).all(); }
+
+double volume_of(const Surface& surface) {
+  if (surface.points.empty()) return 0;
+  // Measured from a point of the surface rather than the origin, so that a body far away loses no digits.
+  const Vec3d& apex = surface.points.front();
+  double six_times = 0;
+  for (const auto& [a, b, c] : surface.triangles)
+    six_times += six_volumes(apex, surface.points[a], surface.points[b], surface.points[c]);
+  return six_times / 6;
+}
+
+std::vector<Surface> closed_parts(const Surface& surface) {
+  const std::vector<std::uint32_t> representative = representatives(surface);
+  std::vector<Surface> parts;
+  std::vector<std::uint32_t> part_of(surface.points.size(), unknown);
+  for (const auto& triangle : surface.triangles) {
+    std::uint32_t& part = part_of[representative[triangle[0]]];
+    if (part == unknown) {
+      part = static_cast<std::uint32_t>(parts.size());
+      parts.emplace_back();
+    }
+    parts[part].triangles.push_back(triangle);
+  }
+  std::vector<std::uint32_t> number(surface.points.size(), unknown);
+  for (std::size_t point = 0; point < surface.points.size(); ++point) {
+    const std::uint32_t part = part_of[representative[point]];
+    if (part == unknown) continue;  // of no triangle
+    number[point] = static_cast<std::uint32_t>(parts[part].points.size());
+    parts[part].points.push_back(surface.points[point]);
+  }
+  for (Surface& part : parts) {
+    for (auto& triangle : part.triangles)
+      for (std::uint32_t& point : triangle) point = number[point];
+    if (volume_of(part) < 0)
+      for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
+  }
+  return parts;
+}
+
+Surface facing_outwards(const Surface& surface) {
+  Surface all;
+  for (const Surface& part : closed_parts(surface)) {
+    const auto offset = static_cast<std::uint32_t>(all.points.size());
+    all.points.insert(all.points.end(), part.points.begin(), part.points.end());
+    for (const auto& [a, b, c] : part.triangles)
+      all.triangles.push_back({a + offset, b + offset, c + offset});
+  }
+  return all;
+}
 
 std::vector<Opening> openings_of(const Surface& surface) {
   FreeEdges edges(surface);

@@ -1,6 +1,5 @@
 #include "geometry/triangle_tree.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>

@@ -1,9 +1,8 @@
-#include "guide/cloth_sizes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "guide/guide.h"
 #include "guide/limits.h"
 #include "text/text.h"
 

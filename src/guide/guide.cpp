@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "bench/verification/verification.h"
-#include "guide/limits.h"
-#include "guide/work_precision.h"
 #include "integrators/all_integrators.h"
-#include "model/energy.h"
 #include "platform/machine.h"
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// The cheapest, or where `more_accurate` the most accurate, point that counts and that `takes` takes.
@@ -138,36 +133,6 @@ std::string who_comes_second(std::span<const WorkPoint> points, const Recommenda
          (wins.empty() ? "; it is cheaper at no error."
                        : "; it would win at errors of " + in_words(wins) + ".");
 }
-
-}  // namespace
-
-Recommendation recommend(std::span<const WorkPoint> points, const Wish& wish, double horizon_s) {
-  Recommendation chosen;
-  const auto within = [&](const WorkPoint& point) { return error_of(point) <= wish.error; };
-  chosen.best = least(points, within, cost_of);
-  if (!chosen.best)
-    chosen.nearest = least(
-        points, [](const WorkPoint&) { return true; }, error_of);
-  chosen.sentences.push_back(what_to_take(points, chosen, wish));
-  if (!chosen.best && !chosen.nearest) return chosen;
-  const WorkPoint& taken = points[chosen.best ? *chosen.best : *chosen.nearest];
-  if (chosen.best) {
-    chosen.runner_up = least(
-        points, [&](const WorkPoint& p) { return within(p) && p.integrator != taken.integrator; }, cost_of);
-    if (!chosen.runner_up)
-      chosen.runner_up = least(
-          points, [&](const WorkPoint& p) { return within(p) && p.backend != taken.backend; }, cost_of);
-  } else {
-    chosen.runner_up = least(
-        points, [&](const WorkPoint& p) { return p.integrator != taken.integrator; }, error_of);
-  }
-  chosen.holds_frames = holds(taken, wish.frames_per_second);
-  chosen.sentences.push_back(what_it_costs(taken, wish, horizon_s));
-  chosen.sentences.push_back(who_comes_second(points, chosen));
-  return chosen;
-}
-
-namespace {
 
 /// Shares of the wall time. A part that ends early leaves its time to the next, and one that takes longer
 /// takes none of theirs: on a busy machine the whole then takes longer.
@@ -325,36 +290,6 @@ void measure_cloths(SceneGuide& guide, const GuideRequest& request, const GuideW
                 });
 }
 
-}  // namespace
-
-SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
-  GuideClock clock(request.seconds);
-  SceneGuide guide;
-  guide.scene = request.scene;
-  guide.nodes = request.system->nodes();
-  guide.springs = request.system->springs.size();
-  guide.wish = request.wish;
-  watch.progress("spectrum of the start", 0);
-  guide.at_start = guide.on_the_way = spectrum_at(*request.system, request.system->start);
-  watch.progress("trusted trajectory", clock.fraction());
-  find_trusted_state(guide, request, watch);
-  if (guide.trusted.failure.empty()) {
-    watch.progress("spectrum on the way", clock.fraction());
-    guide.on_the_way = spectrum_at(*request.system, guide.trusted.state);
-  } else if (clock.spent() > request.seconds) {
-    return guide;
-  }
-  find_limits(guide, request, watch, clock);
-  if (!guide.trusted.failure.empty()) return guide;
-  measure_points(guide, request, watch, clock);
-  mark_pareto_front(guide.points);
-  guide.recommendation = recommend(guide.points, request.wish, guide.trusted.horizon_s);
-  if (request.make_cloth) measure_cloths(guide, request, watch, clock);
-  return guide;
-}
-
-namespace {
-
 constexpr std::array<std::string_view, 3> paper_integrators{"semi-euler", "midpoint", "rk4"};
 
 /// The integrator's time of a step and, where it reaches the error, its cost there.
@@ -433,6 +368,58 @@ std::string explicit_euler_beside(const SceneGuide& guide) {
 }
 
 }  // namespace
+
+Recommendation recommend(std::span<const WorkPoint> points, const Wish& wish, double horizon_s) {
+  Recommendation chosen;
+  const auto within = [&](const WorkPoint& point) { return error_of(point) <= wish.error; };
+  chosen.best = least(points, within, cost_of);
+  if (!chosen.best)
+    chosen.nearest = least(
+        points, [](const WorkPoint&) { return true; }, error_of);
+  chosen.sentences.push_back(what_to_take(points, chosen, wish));
+  if (!chosen.best && !chosen.nearest) return chosen;
+  const WorkPoint& taken = points[chosen.best ? *chosen.best : *chosen.nearest];
+  if (chosen.best) {
+    chosen.runner_up = least(
+        points, [&](const WorkPoint& p) { return within(p) && p.integrator != taken.integrator; }, cost_of);
+    if (!chosen.runner_up)
+      chosen.runner_up = least(
+          points, [&](const WorkPoint& p) { return within(p) && p.backend != taken.backend; }, cost_of);
+  } else {
+    chosen.runner_up = least(
+        points, [&](const WorkPoint& p) { return p.integrator != taken.integrator; }, error_of);
+  }
+  chosen.holds_frames = holds(taken, wish.frames_per_second);
+  chosen.sentences.push_back(what_it_costs(taken, wish, horizon_s));
+  chosen.sentences.push_back(who_comes_second(points, chosen));
+  return chosen;
+}
+
+SceneGuide guide_scene(const GuideRequest& request, const GuideWatch& watch) {
+  GuideClock clock(request.seconds);
+  SceneGuide guide;
+  guide.scene = request.scene;
+  guide.nodes = request.system->nodes();
+  guide.springs = request.system->springs.size();
+  guide.wish = request.wish;
+  watch.progress("spectrum of the start", 0);
+  guide.at_start = guide.on_the_way = spectrum_at(*request.system, request.system->start);
+  watch.progress("trusted trajectory", clock.fraction());
+  find_trusted_state(guide, request, watch);
+  if (guide.trusted.failure.empty()) {
+    watch.progress("spectrum on the way", clock.fraction());
+    guide.on_the_way = spectrum_at(*request.system, guide.trusted.state);
+  } else if (clock.spent() > request.seconds) {
+    return guide;
+  }
+  find_limits(guide, request, watch, clock);
+  if (!guide.trusted.failure.empty()) return guide;
+  measure_points(guide, request, watch, clock);
+  mark_pareto_front(guide.points);
+  guide.recommendation = recommend(guide.points, request.wish, guide.trusted.horizon_s);
+  if (request.make_cloth) measure_cloths(guide, request, watch, clock);
+  return guide;
+}
 
 std::optional<CostAtError> cost_at_error(std::span<const WorkPoint> points, const GuidedMethod& method,
                                          double error) {

@@ -3,156 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 #include "bench/verification/verification.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "integrators/stability.h"
-#include "platform/machine.h"
 #include "text/text.h"
 
 namespace mssim {
-
-double energy_bound(const System& system, double span_s) {
-  const Energy start = energy_of(system, system.start);
-  double mass = 0;
-  for (const double node : system.node_mass) mass += node;
-  const double fall = 0.5 * mass * system.gravity * system.gravity * span_s * span_s;
-  const double given = std::min(fall, std::max(0.0, start.gravitational));
-  return start.total() + allowed_energy_growth * (start.kinetic + start.elastic + given);
-}
-
-bool stays_below(Backend& backend, const System& system, int steps, double bound_j) {
-  constexpr int looks = 30;
-  backend.set_state(system.start);
-  for (int look = 0, done = 0; look < looks; ++look) {
-    const int until = static_cast<int>(static_cast<long long>(steps) * (look + 1) / looks);
-    if (until == done) continue;
-    backend.step(until - done);
-    done = until;
-    const State state = backend.state();
-    if (first_bad_node(state) || !(energy_of(system, state).total() <= bound_j)) return false;
-  }
-  return true;
-}
-
-bool is_stable(Backend& backend, const System& system, double dt_s, const StepSearch& search) {
-  const int steps = std::max(search.least_steps, static_cast<int>(std::ceil(search.span_s / dt_s)));
-  return stays_below(backend, system, steps, energy_bound(system, steps * dt_s));
-}
-
-StableStep largest_stable_step(const System& system, const StepMaker& make, const StepSearch& search) {
-  constexpr double first_stride = 1.5;
-  StableStep found;
-  found.span_s = search.span_s;
-  const auto try_step = [&](double dt_s) {
-    ++found.runs;
-    const bool stable = is_stable(*make(dt_s), system, dt_s, search);
-    (stable ? found.stable_s : found.unstable_s) = dt_s;
-    return stable;
-  };
-  double dt_s = std::clamp(search.first_s, search.shortest_s, search.longest_s);
-  const bool first_is_stable = try_step(dt_s);
-  // Away from the first until both kinds are known.
-  for (double stride = first_stride; found.stable_s == 0 || found.unstable_s == 0; stride *= first_stride) {
-    const double next =
-        std::clamp(first_is_stable ? dt_s * stride : dt_s / stride, search.shortest_s, search.longest_s);
-    if (next == dt_s) return found;
-    if (search.stop()) {
-      found.finished = false;
-      return found;
-    }
-    dt_s = next;
-    try_step(dt_s);
-  }
-  while (found.unstable_s > step_resolution * found.stable_s) {
-    if (search.stop() || search.hurry()) {
-      found.finished = false;
-      break;
-    }
-    try_step(std::sqrt(found.stable_s * found.unstable_s));
-  }
-  return found;
-}
-
 namespace {
 
 constexpr double worth_a_word = 1.1;
 
 std::string percent_more(double ratio) { return three_digits(100 * (ratio - 1)) + " %"; }
-
-}  // namespace
-
-StepTheory step_theory(const Integrator& integrator, const System& system, const Spectrum& start,
-                       const Spectrum& reached) {
-  const StiffnessBound bound = stiffness_bound(system);
-  const double air = system.viscous_damping;
-  return {largest_stable_dt(integrator, {start.stiffness, start.damping, air}),
-          largest_stable_dt(integrator, {reached.stiffness, reached.damping, air}),
-          largest_stable_dt(integrator, {bound.stiffness, bound.damping, air})};
-}
-
-bool is_shorter_than_theory(const StableStep& measured, const StepTheory& theory) {
-  return measured.unstable_s > 0 && measured.stable_s * worth_a_word < theory.shortest_s();
-}
-
-std::string why_they_differ(const Integrator& integrator, const StableStep& measured,
-                            const StepTheory& theory, bool floor_is_why) {
-  if (measured.stable_s == 0 && !measured.finished) return "no time was left to find the limit";
-  if (is_shorter_than_theory(measured, theory) && floor_is_why)
-    return "the floor: a node that a step takes below it is put onto it, which strains its springs the more, "
-           "the "
-           "longer the step is; without the floor longer steps are stable";
-  if (is_implicit(integrator)) {
-    if (measured.unstable_s == 0) return {};
-    return "backward Euler damps every linear mode at every step; a solver that stops before it has "
-           "converged, and springs that fold, are not linear";
-  }
-  const double limit = theory.shortest_s();
-  if (limit == 0 && measured.stable_s == 0) return {};
-  if (limit == 0)
-    return "theory finds modes that grow at every step, those that nothing but the air damps; they "
-           "grow so slowly below the measured step that a run of " +
-           three_digits(measured.span_s) +
-           " s does not show it; a longer one is stable with shorter steps only";
-  if (measured.stable_s == 0) return "no step that was tried was stable, though theory has one";
-  if (measured.stable_s > worth_a_word * limit) {
-    std::string why = "the measured step is " + percent_more(measured.stable_s / limit) + " longer: ";
-    if (theory.on_the_way_s < limit * 1.0001 && theory.on_the_way_s * worth_a_word < theory.at_start_s)
-      return why +
-             "the strained state that theory is asked about has stiffer modes (springs stiffen sideways), "
-             "which last too short for a run to blow up";
-    return why +
-           "theory counts a growth of one part in a million a step, which the undamped sideways modes "
-           "reach first; a run shows only what grows faster";
-  }
-  if (is_shorter_than_theory(measured, theory))
-    return "the measured step is " + percent_more(limit / measured.stable_s) +
-           " shorter: springs that strain on the way stiffen sideways, where nothing damps them";
-  return {};
-}
-
-StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s) {
-  constexpr std::size_t few = 5, many = 100;
-  const auto run = [&](int count) {
-    backend.set_state(system.start);
-    const Stopwatch watch;
-    backend.step(count);
-    return watch.seconds();
-  };
-  constexpr int first_steps = 10;
-  const double first = run(std::min(steps, first_steps));  // touches memory and starts threads
-  if (steps <= first_steps && first >= 10 * enough_s) return {first / steps, 1};
-  std::vector<double> seconds;
-  double sum = 0;
-  do {
-    seconds.push_back(run(steps));
-    sum += seconds.back();
-  } while (seconds.size() < many && (sum < enough_s || (seconds.size() < few && sum < 10 * enough_s)));
-  return {std::ranges::min(seconds) / steps, static_cast<int>(seconds.size())};
-}
-
-namespace {
 
 /// A step that the explicit methods are near to: the limit of semi-implicit Euler in the same theory.
 double usual_limit(const LimitRequest& request) {
@@ -223,6 +85,137 @@ void find_with(const BackendInfo& info, StepSearch search, const LimitRequest& r
 }
 
 }  // namespace
+
+double energy_bound(const System& system, double span_s) {
+  const Energy start = energy_of(system, system.start);
+  double mass = 0;
+  for (const double node : system.node_mass) mass += node;
+  const double fall = 0.5 * mass * system.gravity * system.gravity * span_s * span_s;
+  const double given = std::min(fall, std::max(0.0, start.gravitational));
+  return start.total() + allowed_energy_growth * (start.kinetic + start.elastic + given);
+}
+
+bool stays_below(Backend& backend, const System& system, int steps, double bound_j) {
+  constexpr int looks = 30;
+  backend.set_state(system.start);
+  for (int look = 0, done = 0; look < looks; ++look) {
+    const int until = static_cast<int>(static_cast<long long>(steps) * (look + 1) / looks);
+    if (until == done) continue;
+    backend.step(until - done);
+    done = until;
+    const State state = backend.state();
+    if (first_bad_node(state) || !(energy_of(system, state).total() <= bound_j)) return false;
+  }
+  return true;
+}
+
+bool is_stable(Backend& backend, const System& system, double dt_s, const StepSearch& search) {
+  const int steps = std::max(search.least_steps, static_cast<int>(std::ceil(search.span_s / dt_s)));
+  return stays_below(backend, system, steps, energy_bound(system, steps * dt_s));
+}
+
+StableStep largest_stable_step(const System& system, const StepMaker& make, const StepSearch& search) {
+  constexpr double first_stride = 1.5;
+  StableStep found;
+  found.span_s = search.span_s;
+  const auto try_step = [&](double dt_s) {
+    ++found.runs;
+    const bool stable = is_stable(*make(dt_s), system, dt_s, search);
+    (stable ? found.stable_s : found.unstable_s) = dt_s;
+    return stable;
+  };
+  double dt_s = std::clamp(search.first_s, search.shortest_s, search.longest_s);
+  const bool first_is_stable = try_step(dt_s);
+  // Away from the first until both kinds are known.
+  for (double stride = first_stride; found.stable_s == 0 || found.unstable_s == 0; stride *= first_stride) {
+    const double next =
+        std::clamp(first_is_stable ? dt_s * stride : dt_s / stride, search.shortest_s, search.longest_s);
+    if (next == dt_s) return found;
+    if (search.stop()) {
+      found.finished = false;
+      return found;
+    }
+    dt_s = next;
+    try_step(dt_s);
+  }
+  while (found.unstable_s > step_resolution * found.stable_s) {
+    if (search.stop() || search.hurry()) {
+      found.finished = false;
+      break;
+    }
+    try_step(std::sqrt(found.stable_s * found.unstable_s));
+  }
+  return found;
+}
+
+StepTheory step_theory(const Integrator& integrator, const System& system, const Spectrum& start,
+                       const Spectrum& reached) {
+  const StiffnessBound bound = stiffness_bound(system);
+  const double air = system.viscous_damping;
+  return {largest_stable_dt(integrator, {start.stiffness, start.damping, air}),
+          largest_stable_dt(integrator, {reached.stiffness, reached.damping, air}),
+          largest_stable_dt(integrator, {bound.stiffness, bound.damping, air})};
+}
+
+bool is_shorter_than_theory(const StableStep& measured, const StepTheory& theory) {
+  return measured.unstable_s > 0 && measured.stable_s * worth_a_word < theory.shortest_s();
+}
+
+std::string why_they_differ(const Integrator& integrator, const StableStep& measured,
+                            const StepTheory& theory, bool floor_is_why) {
+  if (measured.stable_s == 0 && !measured.finished) return "no time was left to find the limit";
+  if (is_shorter_than_theory(measured, theory) && floor_is_why)
+    return "the floor: a node that a step takes below it is put onto it, which strains its springs the more, "
+           "the "
+           "longer the step is; without the floor longer steps are stable";
+  if (is_implicit(integrator)) {
+    if (measured.unstable_s == 0) return {};
+    return "backward Euler damps every linear mode at every step; a solver that stops before it has "
+           "converged, and springs that fold, are not linear";
+  }
+  const double limit = theory.shortest_s();
+  if (limit == 0 && measured.stable_s == 0) return {};
+  if (limit == 0)
+    return "theory finds modes that grow at every step, those that nothing but the air damps; they "
+           "grow so slowly below the measured step that a run of " +
+           three_digits(measured.span_s) +
+           " s does not show it; a longer one is stable with shorter steps only";
+  if (measured.stable_s == 0) return "no step that was tried was stable, though theory has one";
+  if (measured.stable_s > worth_a_word * limit) {
+    std::string why = "the measured step is " + percent_more(measured.stable_s / limit) + " longer: ";
+    if (theory.on_the_way_s < limit * 1.0001 && theory.on_the_way_s * worth_a_word < theory.at_start_s)
+      return why +
+             "the strained state that theory is asked about has stiffer modes (springs stiffen sideways), "
+             "which last too short for a run to blow up";
+    return why +
+           "theory counts a growth of one part in a million a step, which the undamped sideways modes "
+           "reach first; a run shows only what grows faster";
+  }
+  if (is_shorter_than_theory(measured, theory))
+    return "the measured step is " + percent_more(limit / measured.stable_s) +
+           " shorter: springs that strain on the way stiffen sideways, where nothing damps them";
+  return {};
+}
+
+StepTime time_steps(Backend& backend, const System& system, int steps, double enough_s) {
+  constexpr std::size_t few = 5, many = 100;
+  const auto run = [&](int count) {
+    backend.set_state(system.start);
+    const Stopwatch watch;
+    backend.step(count);
+    return watch.seconds();
+  };
+  constexpr int first_steps = 10;
+  const double first = run(std::min(steps, first_steps));  // touches memory and starts threads
+  if (steps <= first_steps && first >= 10 * enough_s) return {first / steps, 1};
+  std::vector<double> seconds;
+  double sum = 0;
+  do {
+    seconds.push_back(run(steps));
+    sum += seconds.back();
+  } while (seconds.size() < many && (sum < enough_s || (seconds.size() < few && sum < 10 * enough_s)));
+  return {std::ranges::min(seconds) / steps, static_cast<int>(seconds.size())};
+}
 
 StepLimit find_step_limit(const Integrator& integrator, const LimitRequest& request) {
   StepLimit limit;

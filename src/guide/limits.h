@@ -9,7 +9,7 @@
 #include "backends/backends.h"
 #include "backends/interface/backend.h"
 #include "integrators/integrator.h"
-#include "model/spectrum.h"
+#include "model/system.h"
 #include "platform/machine.h"
 
 namespace mssim {

@@ -1,39 +1,157 @@
 #include "guide/work_precision.h"
 
 #include <algorithm>
+#include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
 #include <cmath>
+#include <cstdint>
+#include <future>
 #include <limits>
 #include <map>
-#include <optional>
+#include <memory>
+#include <random>
 #include <utility>
 
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
-#include "guide/limits.h"
 #include "integrators/all_integrators.h"
-#include "model/energy.h"
+#include "laws/host_laws.h"
 #include "platform/machine.h"
+#include "text/text.h"
 
 namespace mssim {
-
 namespace {
+
+/// Positions of all nodes, then their velocities, component by component.
+using Numbers = std::vector<double>;
+
+Vec3d vector_at(const Numbers& numbers, std::size_t node) {
+  return {numbers[3 * node], numbers[3 * node + 1], numbers[3 * node + 2]};
+}
+
+void put_vector(Numbers& numbers, std::size_t node, const Vec3d& value) {
+  numbers[3 * node] = value.x;
+  numbers[3 * node + 1] = value.y;
+  numbers[3 * node + 2] = value.z;
+}
+
+/// The derivative by time of positions and velocities.
+class MotionOfNodes {
+ public:
+  explicit MotionOfNodes(const System& system) : system_(system), force_(system.nodes()) {}
+
+  void operator()(const Numbers& now, Numbers& rate, double /*time_s*/) {
+    const std::size_t nodes = system_.nodes();
+    for (Vec3d& force : force_) force = {};
+    for (const Spring& spring : system_.springs) {
+      const Vec3d d = vector_at(now, spring.second) - vector_at(now, spring.first);
+      const Vec3d u = vector_at(now, nodes + spring.second) - vector_at(now, nodes + spring.first);
+      const SpringMaterial& material = system_.materials[spring.kind];
+      const Vec3d force =
+          spring_pull(dot(d, d), dot(u, d), material.stiffness,
+                      material.stiffness * static_cast<double>(spring.rest_length), material.damping) *
+          d;
+      force_[spring.first] += force;
+      force_[spring.second] -= force;
+    }
+    for (std::size_t node = 0; node < nodes; ++node) {
+      const Vec3d v = vector_at(now, nodes + node);
+      put_vector(rate, node, v);
+      put_vector(rate, nodes + node,
+                 node_acceleration((1 / system_.node_mass[node]) * force_[node], v, system_.viscous_damping,
+                                   system_.gravity));
+    }
+    for (const std::uint32_t pin : system_.pins) {
+      put_vector(rate, pin, {});
+      put_vector(rate, nodes + pin, {});
+    }
+  }
+
+ private:
+  const System& system_;
+  std::vector<Vec3d> force_;  // N
+};
+
+/// The system's start with every free node moved by up to `distance`.
+State neighbour_of(const System& system, double distance_m) {
+  std::mt19937 random(19630301);  // any fixed seed: the same neighbour each time
+  std::uniform_real_distribution<double> component(-distance_m, distance_m);
+  State state = system.start;
+  for (Vec3d& x : state.position) x += Vec3d{component(random), component(random), component(random)};
+  for (const std::uint32_t node : system.pins) state.position[node] = system.start.position[node];
+  return state;
+}
+
+bool is_in_the_air(const System& system, const State& state) {
+  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > system.floor.height; });
+}
+
+/// Two trajectories side by side until one of the conditions of a horizon ends them.
+class HorizonWalk {
+ public:
+  HorizonWalk(const System& system, double dt_s)
+      : system_(system),
+        dt_s_(dt_s),
+        floorless_(without_floor(system)),
+        near_(make_reference(floorless_, *find_integrator("rk4"), dt_s)),
+        beside_(make_reference(floorless_, *find_integrator("rk4"), dt_s)) {
+    const State neighbour = neighbour_of(system, 1e-7 * mean_rest_length(system));
+    first_distance_ = position_deviation(system, system.start, neighbour);
+    beside_->set_state(neighbour);
+  }
+
+  /// Goes on by so many steps, unless the horizon ends before; false then.
+  bool go_on(int steps) {
+    const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
+    std::future<void> beside = std::async(as_the_system_can, [&] { beside_->step(steps); });
+    near_->step(steps);
+    beside.get();
+    State state = near_->state();
+    if (first_bad_node(state)) return end_with("the trajectory cannot be followed any longer");
+    if (!is_in_the_air(system_, state)) return end_with("a node meets the floor next");
+    const double parting = position_deviation(system_, state, beside_->state()) / first_distance_;
+    if (!(parting <= allowed_parting)) return end_with("neighbouring trajectories part next");
+    steps_ += steps;
+    parting_ = parting;
+    state_ = std::move(state);
+    return true;
+  }
+
+  int steps() const { return steps_; }
+  double span_s() const { return steps_ * dt_s_; }
+  double parting() const { return parting_; }
+  const State& state() const { return state_; }
+  const std::string& why() const { return why_; }
+
+ private:
+  bool end_with(const std::string& why) {
+    why_ = why;
+    return false;
+  }
+
+  const System& system_;
+  double dt_s_;
+  System floorless_;  // who meets the floor stays below it, and is found at the next look
+  std::unique_ptr<Backend> near_, beside_;
+  double first_distance_ = 0, parting_ = 0;
+  int steps_ = 0;
+  State state_;
+  std::string why_;
+};
+
+/// Wall seconds of a step of the double-precision rk4.
+double seconds_a_step(const System& system, double dt_s) {
+  constexpr int steps = 3;
+  const auto backend = make_reference(system, *find_integrator("rk4"), dt_s);
+  const Stopwatch watch;
+  backend->step(steps);
+  return watch.seconds() / steps;
+}
 
 bool beats(const WorkPoint& a, const WorkPoint& b) {
   const double time = a.seconds_a_second(), other_time = b.seconds_a_second();
   const double error = *a.position_error, other_error = *b.position_error;
   return time <= other_time && error <= other_error && (time < other_time || error < other_error);
 }
-
-}  // namespace
-
-void mark_pareto_front(std::span<WorkPoint> points) {
-  for (WorkPoint& point : points)
-    point.on_front = point.counts() && std::ranges::none_of(points, [&](const WorkPoint& other) {
-                       return other.counts() && beats(other, point);
-                     });
-}
-
-namespace {
 
 /// Exact backward Euler at the horizon; none where it diverges, or was stopped.
 std::optional<State> exact_state(const System& system, const TrustedState& trusted, int steps,
@@ -63,25 +181,6 @@ std::vector<int> by_cost(std::span<const WorkPoint> points, std::span<const Impl
   std::ranges::stable_sort(order, {}, [&](int steps) { return seconds.at(steps); });
   return order;
 }
-
-}  // namespace
-
-void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd> ends, const System& system,
-                       const TrustedState& trusted, const std::function<bool()>& stop) {
-  for (const int steps : by_cost(points, ends)) {
-    if (stop()) return;
-    const std::optional<State> exact = exact_state(system, trusted, steps, stop);
-    if (!exact) continue;
-    const double step_error = position_deviation(system, trusted.state, *exact);
-    for (const ImplicitEnd& end : ends)
-      if (WorkPoint& point = points[end.point]; point.steps == steps) {
-        point.solver_error = position_deviation(system, *exact, end.state);
-        point.step_error = step_error;
-      }
-  }
-}
-
-namespace {
 
 std::optional<double> evaluations_of(const Integrator& integrator, const System& system) {
   switch (integrator.solver) {
@@ -116,6 +215,117 @@ void take_state(WorkPoint& point, const System& system, const TrustedState& trus
 }
 
 }  // namespace
+
+std::optional<State> independent_state(const System& system, double span_s, double tolerance,
+                                       const std::function<bool()>& stop) {
+  const std::size_t nodes = system.nodes();
+  Numbers numbers(6 * nodes);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    put_vector(numbers, node, system.start.position[node]);
+    put_vector(numbers, nodes + node, system.start.velocity[node]);
+  }
+  // By reference: the stepper copies what it calls.
+  MotionOfNodes motion(system);
+  const auto rate = [&motion](const Numbers& now, Numbers& out, double time_s) { motion(now, out, time_s); };
+  boost::numeric::odeint::bulirsch_stoer<Numbers> stepper(tolerance, 0);
+  const double shortest = 1e-9 * span_s;
+  double time_s = 0, step_s = span_s / 100;
+  while (span_s - time_s > shortest) {
+    if (stop() || step_s < shortest) return std::nullopt;
+    double tried = step_s < span_s - time_s ? step_s : span_s - time_s;
+    const bool last = tried < step_s;
+    const auto result = stepper.try_step(rate, numbers, time_s, tried);
+    if (!last || result == boost::numeric::odeint::fail) step_s = tried;
+  }
+  State state = system.start;
+  for (std::size_t node = 0; node < nodes; ++node) {
+    state.position[node] = vector_at(numbers, node);
+    state.velocity[node] = vector_at(numbers, nodes + node);
+  }
+  for (const std::uint32_t pin : system.pins)  // which extrapolation rounds
+    state.position[pin] = system.start.position[pin];
+  return state;
+}
+
+TrustedState trusted_state(const System& system, const TrustedRequest& request) {
+  constexpr double most_looks = 40;
+  // Two trajectories side by side, then half the step with the other solver beside it, which takes longer.
+  constexpr double runs = 4;
+  TrustedState trusted;
+  const Stopwatch watch;
+  const double step_seconds = seconds_a_step(system, request.first_dt_s);
+  const double affordable_steps = request.seconds / runs / step_seconds;
+  if (affordable_steps < 1) {
+    trusted.failure =
+        "no time is left for a reference, of which a step takes " + three_digits(step_seconds) + " s";
+    return trusted;
+  }
+  const double longest_s = std::min(request.longest_s, affordable_steps * request.first_dt_s);
+  const int looks = static_cast<int>(std::min(most_looks, affordable_steps));
+  const int steps_a_look = std::max(1, static_cast<int>(std::ceil(longest_s / looks / request.first_dt_s)));
+  double dt_s = longest_s / looks / steps_a_look;
+  HorizonWalk walk(system, dt_s);
+  int look = 0;
+  while (look < looks && !request.stop() && walk.go_on(steps_a_look)) ++look;
+  if (look == 0) {
+    trusted.failure = walk.why().empty()
+                          ? "it was stopped"
+                          : "there is no horizon to compare over: " + walk.why() + ", within " +
+                                three_digits(longest_s / looks) + " s of the start";
+    return trusted;
+  }
+  trusted.horizon_s = walk.span_s();
+  trusted.parting = walk.parting();
+  trusted.why_there = !walk.why().empty()             ? walk.why()
+                      : longest_s < request.longest_s ? "the time for a longer reference does not suffice"
+                                                      : "no longer horizon is asked for";
+
+  const OnAllProcessCpus unbound;  // a thread that OpenMP does not start would share the CPU of this one
+  const auto out_of_time = [&] { return request.stop() || watch.seconds() > 2 * request.seconds; };
+  std::future<std::optional<State>> other = std::async(as_the_system_can, [&] {
+    return independent_state(system, trusted.horizon_s, 1e-8 * mean_rest_length(system), out_of_time);
+  });
+  State coarse = walk.state();
+  int steps = walk.steps();
+  do {
+    steps *= 2;
+    dt_s /= 2;
+    const Stopwatch run_watch;
+    const auto backend = make_reference(system, *find_integrator("rk4"), dt_s);
+    backend->step(steps);
+    trusted.state = backend->state();
+    trusted.own_error = position_deviation(system, coarse, trusted.state) / 15;
+    coarse = trusted.state;
+    if (watch.seconds() + 2 * run_watch.seconds() > request.seconds) break;
+  } while (trusted.own_error > request.wanted_error && !request.stop());
+  trusted.dt_s = dt_s;
+  trusted.energy = energy_of(system, trusted.state);
+  if (const std::optional<State> found = other.get())
+    trusted.confirmed = position_deviation(system, *found, trusted.state);
+  return trusted;
+}
+
+void mark_pareto_front(std::span<WorkPoint> points) {
+  for (WorkPoint& point : points)
+    point.on_front = point.counts() && std::ranges::none_of(points, [&](const WorkPoint& other) {
+                       return other.counts() && beats(other, point);
+                     });
+}
+
+void tell_errors_apart(std::span<WorkPoint> points, std::span<const ImplicitEnd> ends, const System& system,
+                       const TrustedState& trusted, const std::function<bool()>& stop) {
+  for (const int steps : by_cost(points, ends)) {
+    if (stop()) return;
+    const std::optional<State> exact = exact_state(system, trusted, steps, stop);
+    if (!exact) continue;
+    const double step_error = position_deviation(system, trusted.state, *exact);
+    for (const ImplicitEnd& end : ends)
+      if (WorkPoint& point = points[end.point]; point.steps == steps) {
+        point.solver_error = position_deviation(system, *exact, end.state);
+        point.step_error = step_error;
+      }
+  }
+}
 
 int first_steps(const Integrator& integrator, const StableStep& limit, double horizon_s) {
   const int fewest = std::max(1, static_cast<int>(std::ceil(horizon_s / longest_useful_step_s - 1e-9)));

@@ -9,9 +9,60 @@
 
 #include "backends/interface/backend.h"
 #include "guide/limits.h"
-#include "guide/trusted_state.h"
+#include "model/system.h"
 
 namespace mssim {
+
+/// The state of a system `span_s` after its start, in double precision, by a solver that shares nothing with
+/// the table of integrators but the laws of springs and acceleration: Boost.Odeint's Bulirsch-Stoer method
+/// (extrapolated modified midpoint rules of variable order and step; Hairer, Norsett and Wanner, Solving
+/// Ordinary Differential Equations I, section II.9). `tolerance`: the error of a step, absolute, of
+/// positions in m and velocities in m/s. The floor does not act. None where `stop` ended it
+/// between two of its steps, or where it found no step that is small enough.
+std::optional<State> independent_state(const System& system, double span_s, double tolerance,
+                                       const std::function<bool()>& stop);
+
+/// What a trusted state is asked for with.
+struct TrustedRequest {
+  double longest_s = 0;        ///< simulated time that it is to be after the start, at most
+  double first_dt_s = 0;       ///< of rk4, which starts with it; well below its stability limit
+  double seconds = 0;          ///< wall time that it may take, about
+  double wanted_error = 2e-7;  ///< its own, in mean rest lengths: the step is halved until it is reached
+  std::function<bool()> stop = [] { return false; };
+};
+
+/// Neighbouring trajectories may part by this factor within a horizon. Where they part by more, an error at
+/// its end says how chaotic the motion is and not how good a step was: what single precision rounds grows as
+/// much.
+inline constexpr double allowed_parting = 10;
+
+/// Errors that are shown are at least so many times as large as the trusted state's own.
+inline constexpr double trusted_margin = 50;
+
+/// Where the nodes really are a while after the start: what errors are measured against.
+struct TrustedState {
+  double horizon_s = 0;   ///< how long after the start
+  std::string why_there;  ///< what ended the horizon, in words without a full stop
+  double parting = 0;     ///< factor by which a neighbouring trajectory was farther away at its end
+  double dt_s = 0;        ///< of rk4, the last and smallest
+  State state;
+  Energy energy;
+  double own_error = 0;  ///< in mean rest lengths, from the last halving
+  std::optional<double>
+      confirmed;        ///< largest distance from what the independent solver found; none: no time
+  std::string failure;  ///< why there is none; then all else is empty
+
+  /// The larger of the two, which errors that are shown exceed trusted_margin times.
+  double error() const { return confirmed && *confirmed > own_error ? *confirmed : own_error; }
+};
+
+/// Classical Runge-Kutta in double precision (backends/backends.h), twice or more often, each time with half
+/// the step: two results of order 4 differ by 15 times the error of the better one (Hairer, Norsett and
+/// Wanner, Solving Ordinary Differential Equations I, section II.4, Richardson). Then another solver
+/// (independent_state) must come to the same. The horizon ends before a node meets the floor, since after
+/// a bounce results differ by a step's worth of landing time; and before a trajectory that starts 1e-7 mean
+/// rest lengths beside it has parted by more than allowed_parting.
+TrustedState trusted_state(const System& system, const TrustedRequest& request);
 
 /// Marks the points that no other one beats: one that counts and is no slower, no less accurate and, in one
 /// of the two, better. Points that do not count are never on the front.

@@ -6,14 +6,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "platform/files.h"
 
 namespace mssim {
-
 namespace {
 
 struct Reason {
@@ -36,36 +32,6 @@ herr_t note_innermost(unsigned depth, const H5E_error2_t* entry, void* reason_) 
   }
   return 0;
 }
-
-}  // namespace
-
-void prepare_hdf5() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    // HDF5 reads it once, before anything else. A file under way is locked by its AtomicFile, which HDF5's
-    // own locks would take for another program's.
-    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  });
-}
-
-void throw_hdf5_error(const std::string& action) {
-  Reason reason;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_innermost, &reason);
-  if (reason.text.empty()) reason.text = "HDF5 gave no reason";
-  throw Hdf5Error(action, reason.text, reason.error_number);
-}
-
-void reserve_room(hid_t file, const std::filesystem::path& name, std::size_t bytes) {
-  void* descriptor = nullptr;
-  checked(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), "asking for the file descriptor");
-  const int error_number = reserve_space(*static_cast<const int*>(descriptor), bytes);
-  if (error_number != 0)
-    throw WriteError(write_failure(name, "reserving " + std::to_string(bytes) + " bytes", error_number));
-}
-
-namespace {
 
 constexpr int max_rank = 3;
 
@@ -126,7 +92,108 @@ void write_string_dataset(hid_t parent, const std::string& name, std::span<const
   dataset.close(action);
 }
 
+/// Throws unless a dataset's bytes lie in its file, stored in a way that mssim writes. A virtual or
+/// external one would read other files, and a filter from elsewhere run its code.
+void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) {
+  const std::string action = "looking up how " + path + " is stored";
+  const Hdf5Properties properties(H5Dget_create_plist(dataset.get()), action);
+  if (checked(H5Pget_layout(properties.get()), action) == H5D_VIRTUAL ||
+      checked(H5Pget_external_count(properties.get()), action) != 0)
+    throw Hdf5ContentError(path + " has its numbers elsewhere");
+  const Hdf5Type type(H5Dget_type(dataset.get()), action);
+  for (const Hdf5Filter& filter : filters_of(dataset)) {
+    constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
+    if (std::ranges::find(known, filter.number) == known.end())
+      throw Hdf5ContentError(path + " is packed by filter " + std::to_string(filter.number) +
+                             ", which mssim does not read: shuffle, deflate and Fletcher32 it does");
+    if (filter.number == H5Z_FILTER_SHUFFLE && filter.option != H5Tget_size(type.get()))
+      throw Hdf5ContentError(path + " is said to hold shuffled bytes of other numbers than it does");
+  }
+}
+
+/// What HDF5 calls a string, cut where it ends.
+std::string text_of(const char* bytes, std::size_t length, H5T_str_t padding) {
+  std::string text(bytes, ::strnlen(bytes, length));
+  if (padding == H5T_STR_SPACEPAD) text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+/// The strings of a dataset or an attribute; `read` fills memory of the file's own type.
+template <class Read>
+std::vector<std::string> texts_in(hid_t file, const std::string& path, const Hdf5Type& type,
+                                  const Hdf5Space& space, const Read& read) {
+  const std::string action = "reading " + path;
+  if (checked(H5Tget_class(type.get()), action) != H5T_STRING) throw Hdf5ContentError(path + " is no text");
+  const H5T_str_t padding = checked(H5Tget_strpad(type.get()), action);
+  const auto count = static_cast<hsize_t>(checked(H5Sget_simple_extent_npoints(space.get()), action));
+  const std::size_t length = H5Tget_size(type.get());
+  require_room(file, path, count, length);
+  std::vector<std::string> texts;
+  if (checked(H5Tis_variable_str(type.get()), action) > 0) {
+    std::vector<char*> pointers(count, nullptr);
+    const herr_t status = read(pointers.data());
+    for (const char* text : pointers)
+      texts.push_back(text ? text_of(text, std::strlen(text), padding) : std::string());
+    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, pointers.data());
+    checked(status, action);
+  } else {
+    std::string bytes(count * length, '\0');
+    checked(read(bytes.data()), action);
+    for (std::size_t i = 0; i < count; ++i)
+      texts.push_back(text_of(bytes.data() + i * length, length, padding));
+  }
+  return texts;
+}
+
+Hdf5Attribute open_attribute(hid_t file, const std::string& path, const std::string& name) {
+  if (!exists(file, path) || !has_attribute(file, path, name))
+    throw Hdf5ContentError(path + " has no attribute " + name);
+  return {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+          "opening attribute " + name + " of " + path};
+}
+
+template <class Number>
+Number read_number(hid_t file, const std::string& path, const std::string& name,
+                   bool (*is_known)(const Hdf5Type&), hid_t memory_type) {
+  const Hdf5Attribute attribute = open_attribute(file, path, name);
+  const std::string action = "reading attribute " + name + " of " + path;
+  const Hdf5Type type(H5Aget_type(attribute.get()), action);
+  const Hdf5Space space(H5Aget_space(attribute.get()), action);
+  if (!is_known(type) || H5Sget_simple_extent_npoints(space.get()) != 1)
+    throw Hdf5ContentError("attribute " + name + " of " + path +
+                           " is no single number of a type that mssim reads");
+  Number number{};
+  checked(H5Aread(attribute.get(), memory_type, &number), action);
+  return number;
+}
+
 }  // namespace
+
+void prepare_hdf5() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    // HDF5 reads it once, before anything else. A file under way is locked by its AtomicFile, which HDF5's
+    // own locks would take for another program's.
+    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  });
+}
+
+void throw_hdf5_error(const std::string& action) {
+  Reason reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_innermost, &reason);
+  if (reason.text.empty()) reason.text = "HDF5 gave no reason";
+  throw Hdf5Error(action, reason.text, reason.error_number);
+}
+
+void reserve_room(hid_t file, const std::filesystem::path& name, std::size_t bytes) {
+  void* descriptor = nullptr;
+  checked(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), "asking for the file descriptor");
+  const int error_number = reserve_space(*static_cast<const int*>(descriptor), bytes);
+  if (error_number != 0)
+    throw WriteError(write_failure(name, "reserving " + std::to_string(bytes) + " bytes", error_number));
+}
 
 Hdf5Group create_group(hid_t parent, const std::string& path) {
   return {H5Gcreate2(parent, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "creating group " + path};
@@ -221,85 +288,6 @@ void write_rows(const Hdf5Dataset& dataset, const std::string& name, hsize_t fir
           action);
   checked(H5Dwrite(dataset.get(), memory_type, memory.get(), space.get(), H5P_DEFAULT, data), action);
 }
-
-namespace {
-
-/// Throws unless a dataset's bytes lie in its file, stored in a way that mssim writes. A virtual or
-/// external one would read other files, and a filter from elsewhere run its code.
-void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) {
-  const std::string action = "looking up how " + path + " is stored";
-  const Hdf5Properties properties(H5Dget_create_plist(dataset.get()), action);
-  if (checked(H5Pget_layout(properties.get()), action) == H5D_VIRTUAL ||
-      checked(H5Pget_external_count(properties.get()), action) != 0)
-    throw Hdf5ContentError(path + " has its numbers elsewhere");
-  const Hdf5Type type(H5Dget_type(dataset.get()), action);
-  for (const Hdf5Filter& filter : filters_of(dataset)) {
-    constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
-    if (std::ranges::find(known, filter.number) == known.end())
-      throw Hdf5ContentError(path + " is packed by filter " + std::to_string(filter.number) +
-                             ", which mssim does not read: shuffle, deflate and Fletcher32 it does");
-    if (filter.number == H5Z_FILTER_SHUFFLE && filter.option != H5Tget_size(type.get()))
-      throw Hdf5ContentError(path + " is said to hold shuffled bytes of other numbers than it does");
-  }
-}
-
-/// What HDF5 calls a string, cut where it ends.
-std::string text_of(const char* bytes, std::size_t length, H5T_str_t padding) {
-  std::string text(bytes, ::strnlen(bytes, length));
-  if (padding == H5T_STR_SPACEPAD) text.erase(text.find_last_not_of(' ') + 1);
-  return text;
-}
-
-/// The strings of a dataset or an attribute; `read` fills memory of the file's own type.
-template <class Read>
-std::vector<std::string> texts_in(hid_t file, const std::string& path, const Hdf5Type& type,
-                                  const Hdf5Space& space, const Read& read) {
-  const std::string action = "reading " + path;
-  if (checked(H5Tget_class(type.get()), action) != H5T_STRING) throw Hdf5ContentError(path + " is no text");
-  const H5T_str_t padding = checked(H5Tget_strpad(type.get()), action);
-  const auto count = static_cast<hsize_t>(checked(H5Sget_simple_extent_npoints(space.get()), action));
-  const std::size_t length = H5Tget_size(type.get());
-  require_room(file, path, count, length);
-  std::vector<std::string> texts;
-  if (checked(H5Tis_variable_str(type.get()), action) > 0) {
-    std::vector<char*> pointers(count, nullptr);
-    const herr_t status = read(pointers.data());
-    for (const char* text : pointers)
-      texts.push_back(text ? text_of(text, std::strlen(text), padding) : std::string());
-    H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, pointers.data());
-    checked(status, action);
-  } else {
-    std::string bytes(count * length, '\0');
-    checked(read(bytes.data()), action);
-    for (std::size_t i = 0; i < count; ++i)
-      texts.push_back(text_of(bytes.data() + i * length, length, padding));
-  }
-  return texts;
-}
-
-Hdf5Attribute open_attribute(hid_t file, const std::string& path, const std::string& name) {
-  if (!exists(file, path) || !has_attribute(file, path, name))
-    throw Hdf5ContentError(path + " has no attribute " + name);
-  return {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-          "opening attribute " + name + " of " + path};
-}
-
-template <class Number>
-Number read_number(hid_t file, const std::string& path, const std::string& name,
-                   bool (*is_known)(const Hdf5Type&), hid_t memory_type) {
-  const Hdf5Attribute attribute = open_attribute(file, path, name);
-  const std::string action = "reading attribute " + name + " of " + path;
-  const Hdf5Type type(H5Aget_type(attribute.get()), action);
-  const Hdf5Space space(H5Aget_space(attribute.get()), action);
-  if (!is_known(type) || H5Sget_simple_extent_npoints(space.get()) != 1)
-    throw Hdf5ContentError("attribute " + name + " of " + path +
-                           " is no single number of a type that mssim reads");
-  Number number{};
-  checked(H5Aread(attribute.get(), memory_type, &number), action);
-  return number;
-}
-
-}  // namespace
 
 Hdf5File open_for_reading(const std::filesystem::path& file) {
   prepare_hdf5();

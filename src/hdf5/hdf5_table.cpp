@@ -2,9 +2,6 @@
 
 #include <zlib.h>
 
-#include <algorithm>
-#include <array>
-#include <limits>
 #include <optional>
 #include <type_traits>
 #include <utility>

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 
 namespace mssim {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "integrators/all_integrators.h"
 #include "integrators/coefficients.h"
-#include "integrators/integrators.h"
 
 namespace mssim {
 namespace {

@@ -37,6 +37,15 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
 #define MSSIM_LAW_INLINE inline
 #include "laws/laws-inl.h"
 
+/// Puts a node that has fallen below y = height (m) back onto the floor and changes its velocity as
+/// kernels/node_laws.h says; a node above it stays as it is. `x` in m, `v` in m/s.
+template <class Real>
+inline void touch_floor(Vec3<Real>& x, Vec3<Real>& v, Real height, Real restitution, Real friction) {
+  if (!(x.y < height)) return;
+  x.y = height;
+  v = floor_velocity(v, restitution, friction);
+}
+
 /// The way from a joint's node to the point that it is sewn to: kernels/garment_laws.h for vectors.
 template <class Real>
 inline Vec3<Real> joint_gap(const Vec3<Real>& node, const Vec3<Real>& first, const Vec3<Real>& second,

@@ -1,12 +1,12 @@
 #include "mesh/meshing.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
-#include <string>
+#include <numbers>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "geometry/geometry.h"
@@ -19,8 +19,77 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
+
+double six_volumes_of(const TetMesh& mesh, const Tetrahedron& nodes) {
+  return six_volumes(mesh.nodes[nodes[0]], mesh.nodes[nodes[1]], mesh.nodes[nodes[2]], mesh.nodes[nodes[3]]);
+}
+
+/// Volume below which a tetrahedron of the same longest edge counts as flat: rounding decides its sign.
+double flat_six_volumes(const TetMesh& mesh, const Tetrahedron& nodes) {
+  double longest = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j)
+      longest = std::max(longest, length(mesh.nodes[nodes[i]] - mesh.nodes[nodes[j]]));
+  return 1e-10 * longest * longest * longest;
+}
+
+std::optional<MeshDefect> unused_node(const TetMesh& mesh) {
+  std::vector<bool> used(mesh.nodes.size());
+  for (const Tetrahedron& nodes : mesh.tetrahedra)
+    for (const std::uint32_t node : nodes) used[node] = true;
+  const auto unused = std::find(used.begin(), used.end(), false);
+  if (unused == used.end()) return std::nullopt;
+  return MeshDefect{MeshDefect::node, static_cast<std::size_t>(unused - used.begin()),
+                    "no tetrahedron has this node; remove it"};
+}
+
+std::optional<MeshDefect> node_twice(const TetMesh& mesh) {
+  std::vector<std::size_t> order(mesh.nodes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t n) {
+    return std::tuple(mesh.nodes[n].x, mesh.nodes[n].y, mesh.nodes[n].z, n);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  const auto same = std::adjacent_find(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return mesh.nodes[a] == mesh.nodes[b];
+  });
+  if (same == order.end()) return std::nullopt;
+  return MeshDefect{MeshDefect::node, *(same + 1),
+                    "another node is at " + place(mesh.nodes[*same]) + " too; merge the two"};
+}
+
+std::optional<MeshDefect> bad_volume(const TetMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const double volume = six_volumes_of(mesh, mesh.tetrahedra[t]) / 6;
+    const double flat = flat_six_volumes(mesh, mesh.tetrahedra[t]) / 6;
+    if (volume > flat) continue;
+    const bool is_flat = volume >= -flat;
+    return MeshDefect{
+        MeshDefect::tetrahedron, t,
+        "the tetrahedron's volume is " + shown(volume) + " m^3" +
+            (is_flat ? ": it is flat; move its nodes apart or remove it"
+                     : " while others' are positive; list its nodes in the same sense as theirs")};
+  }
+  return std::nullopt;
+}
+
+std::optional<MeshDefect> crowded_face(const TetMesh& mesh) {
+  const auto faces = faces_of(mesh);
+  for (std::size_t f = 0; f + 2 < faces.size(); ++f) {
+    if (faces[f] != faces[f + 2]) continue;
+    const auto has_face = [&](Tetrahedron nodes) {
+      std::sort(nodes.begin(), nodes.end());
+      return std::includes(nodes.begin(), nodes.end(), faces[f].begin(), faces[f].end());
+    };
+    const auto last = std::find_if(mesh.tetrahedra.rbegin(), mesh.tetrahedra.rend(), has_face);
+    return MeshDefect{
+        MeshDefect::tetrahedron, static_cast<std::size_t>(mesh.tetrahedra.rend() - last) - 1,
+        "the tetrahedron shares a face with two others or more; tetrahedra of a body do not overlap, so "
+        "remove the duplicates"};
+  }
+  return std::nullopt;
+}
 
 /// Meshes that were made before, one file each, in mssim/meshes in the user's cache folder ($XDG_CACHE_HOME
 /// or ~/.cache). A file's name is INPUT-PROGRAM: the hash of what TetGen was given and that of the TetGen
@@ -85,101 +154,12 @@ std::string file_name(std::uint64_t input, std::uint64_t program) {
   return to_hex(input) + '-' + to_hex(program) + std::string(extension);
 }
 
-}  // namespace
-
-MeshCache::MeshCache() : folder_(cache_folder()) {}
-
-std::optional<TetMesh> MeshCache::find(std::uint64_t input, std::uint64_t program) const {
-  if (folder_.empty()) return std::nullopt;
-  return read_entry(folder_ / file_name(input, program));
-}
-
-std::optional<TetMesh> MeshCache::find_of_any_program(std::uint64_t input) const {
-  if (folder_.empty()) return std::nullopt;
-  std::optional<TetMesh> newest;
-  fs::file_time_type newest_time = fs::file_time_type::min();
-  std::error_code error;
-  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(to_hex(input) + '-') || !name.ends_with(extension)) continue;
-    std::error_code no_time;
-    const fs::file_time_type time = entry->last_write_time(no_time);
-    if (no_time || (newest && time <= newest_time)) continue;
-    if (auto mesh = read_entry(entry->path())) {
-      newest = std::move(mesh);
-      newest_time = time;
-    }
-  }
-  return newest;
-}
-
-void MeshCache::store(std::uint64_t input, std::uint64_t program, const TetMesh& mesh) const {
-  if (folder_.empty()) return;
-  std::error_code ignored;
-  fs::create_directories(folder_, ignored);
-  const std::string nodes = node_text(mesh.nodes);
-  const std::string tetrahedra = ele_text(mesh.tetrahedra);
-  const fs::path file = folder_ / file_name(input, program);
-  try {
-    write_file_atomically(file, header_of(nodes, tetrahedra) + nodes + tetrahedra);
-  } catch (const WriteError&) {
-    // The mesh is made anew next time; or another process is storing the same.
-  }
-}
-
-TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
-                       const std::string& switches, std::uint64_t added_points) {
-  const std::uint64_t input = fnv1a_64(switches + '\n' + smesh_text(surface) + node_text(interior));
-  const MeshCache cache;
-  const auto program = find_tetgen();
-  if (!program) {
-    if (auto mesh = cache.find_of_any_program(input)) return *mesh;
-    throw MissingProgram(
-        "the program tetgen, which makes the meshes of bodies, is not in PATH; install Debian's package "
-        "tetgen");
-  }
-  if (auto mesh = cache.find(input, program->fnv1a_64)) return *mesh;
-  require_meshing_memory(surface.points.size() + interior.size() + added_points);
-  TetMesh mesh = run_tetgen(*program, surface, interior, switches);
-  cache.store(input, program->fnv1a_64, mesh);
-  return mesh;
-}
-
-namespace {
-
 Vec3d half_size(const BoxShape& box) { return 0.5 * box.size; }
 Vec3d half_size(const SphereShape& sphere) { return {sphere.radius_m, sphere.radius_m, sphere.radius_m}; }
 Vec3d half_size(const TorusShape& torus) {
   const double outer = torus.major_radius_m + torus.minor_radius_m;
   return {outer, torus.minor_radius_m, outer};
 }
-
-}  // namespace
-
-std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior) {
-  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape) + interior.count;
-}
-
-ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
-  return std::visit(
-      [&](const auto& kind) {
-        ShapePoints points;
-        points.surface = surface_of(kind);
-        points.interior =
-            place_interior_points(interior, {volume_of(points.surface), half_size(kind),
-                                             [&](const Vec3d& point) { return depth_in(kind, point); }});
-        return points;
-      },
-      shape);
-}
-
-TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
-  require_meshable(point_count(shape, interior));
-  const ShapePoints points = points_of(shape, interior);
-  return tetrahedralise(points.surface, points.interior, keep_surface);
-}
-
-namespace {
 
 /// Nodes are added, on the surface too, until no tetrahedron's circumscribed sphere has a radius of more
 /// than 1.414 times its shortest edge. (The surface's triangles may be few and long; kept as they are, they
@@ -272,6 +252,157 @@ void require_thick(const Surface& surface) {
 }
 
 }  // namespace
+
+std::vector<std::array<std::uint32_t, 2>> edges_of(const TetMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  edges.reserve(6 * mesh.tetrahedra.size());
+  for (const Tetrahedron& nodes : mesh.tetrahedra)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        edges.push_back({std::min(nodes[i], nodes[j]), std::max(nodes[i], nodes[j])});
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+std::vector<std::array<std::uint32_t, 3>> faces_of(const TetMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  faces.reserve(4 * mesh.tetrahedra.size());
+  for (const auto& [a, b, c, d] : mesh.tetrahedra)
+    for (std::array<std::uint32_t, 3> face : {std::array{b, c, d}, {a, c, d}, {a, b, d}, {a, b, c}}) {
+      std::sort(face.begin(), face.end());
+      faces.push_back(face);
+    }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+double volume_of(const TetMesh& mesh) {
+  double six_times = 0;
+  for (const auto& [a, b, c, d] : mesh.tetrahedra)
+    six_times += six_volumes(mesh.nodes[a], mesh.nodes[b], mesh.nodes[c], mesh.nodes[d]);
+  return six_times / 6;
+}
+
+double smallest_dihedral_angle(const TetMesh& mesh) {
+  double largest_cosine = -1;
+  for (const Tetrahedron& nodes : mesh.tetrahedra) {
+    const Vec3d& a = mesh.nodes[nodes[0]];
+    const Vec3d ab = mesh.nodes[nodes[1]] - a;
+    const Vec3d ac = mesh.nodes[nodes[2]] - a;
+    const Vec3d ad = mesh.nodes[nodes[3]] - a;
+    // Outward normals of the four faces; the angle between two faces is 180 degrees less that of their
+    // normals.
+    const std::array normals{cross(ac - ab, ad - ab), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        largest_cosine = std::max(largest_cosine,
+                                  -dot(normals[i], normals[j]) / (length(normals[i]) * length(normals[j])));
+  }
+  return std::acos(std::clamp(largest_cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+std::int64_t euler_characteristic(const TetMesh& mesh) {
+  auto faces = faces_of(mesh);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return static_cast<std::int64_t>(mesh.nodes.size()) - static_cast<std::int64_t>(edges_of(mesh).size()) +
+         static_cast<std::int64_t>(faces.size()) - static_cast<std::int64_t>(mesh.tetrahedra.size());
+}
+
+std::optional<MeshDefect> find_defect(const TetMesh& mesh) {
+  for (const auto find : {unused_node, node_twice, bad_volume, crowded_face})
+    if (auto defect = find(mesh)) return defect;
+  return std::nullopt;
+}
+
+void turn_if_mirrored(TetMesh& mesh) {
+  const auto is_negative = [&](const Tetrahedron& nodes) {
+    return six_volumes_of(mesh, nodes) < -flat_six_volumes(mesh, nodes);
+  };
+  if (!std::all_of(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), is_negative)) return;
+  for (Tetrahedron& nodes : mesh.tetrahedra) std::swap(nodes[2], nodes[3]);
+}
+
+MeshCache::MeshCache() : folder_(cache_folder()) {}
+
+std::optional<TetMesh> MeshCache::find(std::uint64_t input, std::uint64_t program) const {
+  if (folder_.empty()) return std::nullopt;
+  return read_entry(folder_ / file_name(input, program));
+}
+
+std::optional<TetMesh> MeshCache::find_of_any_program(std::uint64_t input) const {
+  if (folder_.empty()) return std::nullopt;
+  std::optional<TetMesh> newest;
+  fs::file_time_type newest_time = fs::file_time_type::min();
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(to_hex(input) + '-') || !name.ends_with(extension)) continue;
+    std::error_code no_time;
+    const fs::file_time_type time = entry->last_write_time(no_time);
+    if (no_time || (newest && time <= newest_time)) continue;
+    if (auto mesh = read_entry(entry->path())) {
+      newest = std::move(mesh);
+      newest_time = time;
+    }
+  }
+  return newest;
+}
+
+void MeshCache::store(std::uint64_t input, std::uint64_t program, const TetMesh& mesh) const {
+  if (folder_.empty()) return;
+  std::error_code ignored;
+  fs::create_directories(folder_, ignored);
+  const std::string nodes = node_text(mesh.nodes);
+  const std::string tetrahedra = ele_text(mesh.tetrahedra);
+  const fs::path file = folder_ / file_name(input, program);
+  try {
+    write_file_atomically(file, header_of(nodes, tetrahedra) + nodes + tetrahedra);
+  } catch (const WriteError&) {
+    // The mesh is made anew next time; or another process is storing the same.
+  }
+}
+
+TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
+                       const std::string& switches, std::uint64_t added_points) {
+  const std::uint64_t input = fnv1a_64(switches + '\n' + smesh_text(surface) + node_text(interior));
+  const MeshCache cache;
+  const auto program = find_tetgen();
+  if (!program) {
+    if (auto mesh = cache.find_of_any_program(input)) return *mesh;
+    throw MissingProgram(
+        "the program tetgen, which makes the meshes of bodies, is not in PATH; install Debian's package "
+        "tetgen");
+  }
+  if (auto mesh = cache.find(input, program->fnv1a_64)) return *mesh;
+  require_meshing_memory(surface.points.size() + interior.size() + added_points);
+  TetMesh mesh = run_tetgen(*program, surface, interior, switches);
+  cache.store(input, program->fnv1a_64, mesh);
+  return mesh;
+}
+
+std::uint64_t point_count(const Shape& shape, const InteriorPoints& interior) {
+  return std::visit([](const auto& kind) { return surface_point_count(kind); }, shape) + interior.count;
+}
+
+ShapePoints points_of(const Shape& shape, const InteriorPoints& interior) {
+  return std::visit(
+      [&](const auto& kind) {
+        ShapePoints points;
+        points.surface = surface_of(kind);
+        points.interior =
+            place_interior_points(interior, {volume_of(points.surface), half_size(kind),
+                                             [&](const Vec3d& point) { return depth_in(kind, point); }});
+        return points;
+      },
+      shape);
+}
+
+TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
+  require_meshable(point_count(shape, interior));
+  const ShapePoints points = points_of(shape, interior);
+  return tetrahedralise(points.surface, points.interior, keep_surface);
+}
 
 TetMesh surface_mesh(const SurfaceShape& body) {
   const std::string name = body.file.string();

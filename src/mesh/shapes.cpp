@@ -1,5 +1,3 @@
-#include "mesh/shapes.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,10 +8,10 @@
 #include <unordered_map>
 
 #include "geometry/geometry.h"
+#include "mesh/meshing.h"
 #include "text/error.h"
 
 namespace mssim {
-
 namespace {
 
 /// Throws InputError unless `metres`, which is `what`, is between a tenth of a millimetre and a kilometre:
@@ -59,51 +57,6 @@ class SurfacePoints {
   Surface& surface_;
   std::unordered_map<std::uint32_t, std::uint32_t> number_;  ///< by the corner's place in the grid
 };
-
-}  // namespace
-
-std::uint64_t surface_point_count(const BoxShape& box) {
-  const std::uint64_t a = box.cells[0], b = box.cells[1], c = box.cells[2];
-  return 2 * (a * b + b * c + c * a) + 2;
-}
-
-Surface surface_of(const BoxShape& box) {
-  require_length(box.size.x, "a box's size along x");
-  require_length(box.size.y, "a box's size along y");
-  require_length(box.size.z, "a box's size along z");
-  for (const std::uint32_t cells : box.cells) require_cells(cells, 1, "a box's cells along a side");
-
-  Surface surface;
-  SurfacePoints points(box, surface);
-  for (std::size_t normal = 0; normal < 3; ++normal) {
-    const std::size_t right = (normal + 1) % 3;
-    const std::size_t up = (normal + 2) % 3;
-    for (const bool far_side : {false, true})
-      for (std::uint32_t r = 0; r < box.cells[right]; ++r)
-        for (std::uint32_t u = 0; u < box.cells[up]; ++u) {
-          const auto corner = [&](std::uint32_t to_right, std::uint32_t to_up) {
-            Index at{};
-            at[normal] = far_side ? box.cells[normal] : 0;
-            at[right] = r + to_right;
-            at[up] = u + to_up;
-            return points[at];
-          };
-          // (right, up, normal) is right-handed: counter-clockwise seen from the far side.
-          std::array<std::uint32_t, 4> square{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
-          if (!far_side) std::swap(square[1], square[3]);
-          surface.triangles.push_back({square[0], square[1], square[2]});
-          surface.triangles.push_back({square[0], square[2], square[3]});
-        }
-  }
-  return surface;
-}
-
-double depth_in(const BoxShape& box, const Vec3d& point) {
-  return std::min({box.size.x / 2 - std::abs(point.x), box.size.y / 2 - std::abs(point.y),
-                   box.size.z / 2 - std::abs(point.z)});
-}
-
-namespace {
 
 /// The corners of an icosahedron: (0, +-1, +-golden ratio) and its cyclic permutations.
 std::array<Vec3d, 12> icosahedron_corners() {
@@ -163,35 +116,6 @@ class SpherePoints {
   std::map<Weights, std::uint32_t> number_;
 };
 
-}  // namespace
-
-std::uint64_t surface_point_count(const SphereShape& sphere) {
-  return 10 * std::uint64_t{sphere.frequency} * sphere.frequency + 2;
-}
-
-Surface surface_of(const SphereShape& sphere) {
-  require_length(sphere.radius_m, "a sphere's radius");
-  require_cells(sphere.frequency, 1, "a sphere's triangles along an edge of the icosahedron (frequency)");
-  Surface surface;
-  SpherePoints point(sphere, surface);
-  const std::uint32_t n = sphere.frequency;
-  for (const auto& face : icosahedron_faces)
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (std::uint32_t j = 0; i + j < n; ++j) {
-        const auto corner = [&](std::uint32_t second, std::uint32_t third) {
-          return point(face, {n - second - third, second, third});
-        };
-        surface.triangles.push_back({corner(i, j), corner(i + 1, j), corner(i, j + 1)});
-        if (i + j + 1 < n)
-          surface.triangles.push_back({corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)});
-      }
-  return surface;
-}
-
-double depth_in(const SphereShape& sphere, const Vec3d& point) { return sphere.radius_m - length(point); }
-
-namespace {
-
 void require_ring(const TorusShape& torus) {
   require_length(torus.major_radius_m, "a torus's major radius");
   require_length(torus.minor_radius_m, "a torus's minor radius");
@@ -205,54 +129,6 @@ void require_ring(const TorusShape& torus) {
                      " m leaves no hole in a ring of " + decimal(torus.major_radius_m) +
                      " m; give one less than the major radius");
 }
-
-}  // namespace
-
-std::uint64_t surface_point_count(const TorusShape& torus) {
-  return std::uint64_t{torus.cells_around} * torus.cells_across;
-}
-
-Surface surface_of(const TorusShape& torus) {
-  require_ring(torus);
-  constexpr double full_turn = 2 * std::numbers::pi;
-  const std::uint32_t around = torus.cells_around;
-  const std::uint32_t across = torus.cells_across;
-  Surface surface;
-  for (std::uint32_t i = 0; i < around; ++i)
-    for (std::uint32_t j = 0; j < across; ++j) {
-      const double u = full_turn * i / around;
-      const double v = full_turn * (j + (i % 2 == 0 ? 0.0 : 0.5)) / across;
-      const double ring = torus.major_radius_m + torus.minor_radius_m * std::cos(v);
-      surface.points.push_back(
-          rounded({ring * std::cos(u), torus.minor_radius_m * std::sin(v), ring * std::sin(u)}));
-    }
-
-  for (std::uint32_t i = 0; i < around; ++i)
-    for (std::uint32_t j = 0; j < across; ++j) {
-      const auto point = [&](std::uint32_t circle, std::uint32_t place_on_it) {
-        return (circle % around) * across + place_on_it % across;
-      };
-      // Point j of an odd circle lies between points j and j + 1 of the even circles beside it.
-      const std::uint32_t a = point(i, j);
-      const std::uint32_t b = point(i, j + 1);
-      if (i % 2 == 0) {
-        surface.triangles.push_back({a, b, point(i + 1, j)});
-        surface.triangles.push_back({b, point(i + 1, j + 1), point(i + 1, j)});
-      } else {
-        surface.triangles.push_back({a, point(i + 1, j + 1), point(i + 1, j)});
-        surface.triangles.push_back({a, b, point(i + 1, j + 1)});
-      }
-    }
-  return surface;
-}
-
-double depth_in(const TorusShape& torus, const Vec3d& point) {
-  const double from_axis = std::sqrt(point.x * point.x + point.z * point.z);
-  const double from_circle = from_axis - torus.major_radius_m;
-  return torus.minor_radius_m - std::sqrt(from_circle * from_circle + point.y * point.y);
-}
-
-namespace {
 
 /// Uniform numbers from the engine's own output: the standard fixes what std::mt19937 gives, and leaves open
 /// what a std distribution makes of it.
@@ -331,6 +207,116 @@ void require_between(double value, double low, double high, const std::string& w
 }
 
 }  // namespace
+
+std::uint64_t surface_point_count(const BoxShape& box) {
+  const std::uint64_t a = box.cells[0], b = box.cells[1], c = box.cells[2];
+  return 2 * (a * b + b * c + c * a) + 2;
+}
+
+Surface surface_of(const BoxShape& box) {
+  require_length(box.size.x, "a box's size along x");
+  require_length(box.size.y, "a box's size along y");
+  require_length(box.size.z, "a box's size along z");
+  for (const std::uint32_t cells : box.cells) require_cells(cells, 1, "a box's cells along a side");
+
+  Surface surface;
+  SurfacePoints points(box, surface);
+  for (std::size_t normal = 0; normal < 3; ++normal) {
+    const std::size_t right = (normal + 1) % 3;
+    const std::size_t up = (normal + 2) % 3;
+    for (const bool far_side : {false, true})
+      for (std::uint32_t r = 0; r < box.cells[right]; ++r)
+        for (std::uint32_t u = 0; u < box.cells[up]; ++u) {
+          const auto corner = [&](std::uint32_t to_right, std::uint32_t to_up) {
+            Index at{};
+            at[normal] = far_side ? box.cells[normal] : 0;
+            at[right] = r + to_right;
+            at[up] = u + to_up;
+            return points[at];
+          };
+          // (right, up, normal) is right-handed: counter-clockwise seen from the far side.
+          std::array<std::uint32_t, 4> square{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+          if (!far_side) std::swap(square[1], square[3]);
+          surface.triangles.push_back({square[0], square[1], square[2]});
+          surface.triangles.push_back({square[0], square[2], square[3]});
+        }
+  }
+  return surface;
+}
+
+double depth_in(const BoxShape& box, const Vec3d& point) {
+  return std::min({box.size.x / 2 - std::abs(point.x), box.size.y / 2 - std::abs(point.y),
+                   box.size.z / 2 - std::abs(point.z)});
+}
+
+std::uint64_t surface_point_count(const SphereShape& sphere) {
+  return 10 * std::uint64_t{sphere.frequency} * sphere.frequency + 2;
+}
+
+Surface surface_of(const SphereShape& sphere) {
+  require_length(sphere.radius_m, "a sphere's radius");
+  require_cells(sphere.frequency, 1, "a sphere's triangles along an edge of the icosahedron (frequency)");
+  Surface surface;
+  SpherePoints point(sphere, surface);
+  const std::uint32_t n = sphere.frequency;
+  for (const auto& face : icosahedron_faces)
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j = 0; i + j < n; ++j) {
+        const auto corner = [&](std::uint32_t second, std::uint32_t third) {
+          return point(face, {n - second - third, second, third});
+        };
+        surface.triangles.push_back({corner(i, j), corner(i + 1, j), corner(i, j + 1)});
+        if (i + j + 1 < n)
+          surface.triangles.push_back({corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)});
+      }
+  return surface;
+}
+
+double depth_in(const SphereShape& sphere, const Vec3d& point) { return sphere.radius_m - length(point); }
+
+std::uint64_t surface_point_count(const TorusShape& torus) {
+  return std::uint64_t{torus.cells_around} * torus.cells_across;
+}
+
+Surface surface_of(const TorusShape& torus) {
+  require_ring(torus);
+  constexpr double full_turn = 2 * std::numbers::pi;
+  const std::uint32_t around = torus.cells_around;
+  const std::uint32_t across = torus.cells_across;
+  Surface surface;
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const double u = full_turn * i / around;
+      const double v = full_turn * (j + (i % 2 == 0 ? 0.0 : 0.5)) / across;
+      const double ring = torus.major_radius_m + torus.minor_radius_m * std::cos(v);
+      surface.points.push_back(
+          rounded({ring * std::cos(u), torus.minor_radius_m * std::sin(v), ring * std::sin(u)}));
+    }
+
+  for (std::uint32_t i = 0; i < around; ++i)
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const auto point = [&](std::uint32_t circle, std::uint32_t place_on_it) {
+        return (circle % around) * across + place_on_it % across;
+      };
+      // Point j of an odd circle lies between points j and j + 1 of the even circles beside it.
+      const std::uint32_t a = point(i, j);
+      const std::uint32_t b = point(i, j + 1);
+      if (i % 2 == 0) {
+        surface.triangles.push_back({a, b, point(i + 1, j)});
+        surface.triangles.push_back({b, point(i + 1, j + 1), point(i + 1, j)});
+      } else {
+        surface.triangles.push_back({a, point(i + 1, j + 1), point(i + 1, j)});
+        surface.triangles.push_back({a, b, point(i + 1, j + 1)});
+      }
+    }
+  return surface;
+}
+
+double depth_in(const TorusShape& torus, const Vec3d& point) {
+  const double from_axis = std::sqrt(point.x * point.x + point.z * point.z);
+  const double from_circle = from_axis - torus.major_radius_m;
+  return torus.minor_radius_m - std::sqrt(from_circle * from_circle + point.y * point.y);
+}
 
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space) {
   constexpr std::uint32_t most = 1000000;

@@ -1,7 +1,6 @@
 #include "mesh/surface_file.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -9,7 +8,6 @@
 #include <optional>
 
 #include "geometry/geometry.h"
-#include "geometry/surface.h"
 #include "mesh/text_lines.h"
 #include "text/error.h"
 #include "text/text.h"
@@ -36,26 +34,6 @@ class PointMerger {
   Surface& surface_;
   std::map<std::array<double, 3>, std::uint32_t> number_;
 };
-
-}  // namespace
-
-FileSurface read_surface(const std::filesystem::path& file) {
-  const std::string ending = to_lower(file.extension().string());
-  FileSurface read;
-  if (ending == ".obj")
-    read.surface = parse_obj(file.string(), read_text(file));
-  else if (ending == ".stl")
-    read.surface = parse_stl(file.string(), read_text(file));
-  else
-    throw InputError(file.string() +
-                     " ends in neither .obj nor .stl; give a surface in one of those formats");
-  if (const std::size_t merged = join_corners(read.surface); merged > 0)
-    read.note = file.string() + ": " + pluralize(merged, "point") + (merged == 1 ? " was" : " were") +
-                " merged with others within a hundred-thousandth of its size, so that its triangles join";
-  return read;
-}
-
-namespace {
 
 using Corners = std::array<std::size_t, 3>;
 
@@ -318,12 +296,6 @@ class ObjReader {
   PointMerger merger_;
 };
 
-}  // namespace
-
-Surface parse_obj(const std::string& name, std::string_view text) { return ObjReader(name, text).read(); }
-
-namespace {
-
 // A binary file: 80 bytes of any text, the number of triangles, and for each a normal, three corners and two
 // bytes; numbers are little-endian.
 constexpr std::size_t bytes_before_count = 80;
@@ -452,6 +424,24 @@ bool is_binary(std::string_view content) {
 }
 
 }  // namespace
+
+FileSurface read_surface(const std::filesystem::path& file) {
+  const std::string ending = to_lower(file.extension().string());
+  FileSurface read;
+  if (ending == ".obj")
+    read.surface = parse_obj(file.string(), read_text(file));
+  else if (ending == ".stl")
+    read.surface = parse_stl(file.string(), read_text(file));
+  else
+    throw InputError(file.string() +
+                     " ends in neither .obj nor .stl; give a surface in one of those formats");
+  if (const std::size_t merged = join_corners(read.surface); merged > 0)
+    read.note = file.string() + ": " + pluralize(merged, "point") + (merged == 1 ? " was" : " were") +
+                " merged with others within a hundred-thousandth of its size, so that its triangles join";
+  return read;
+}
+
+Surface parse_obj(const std::string& name, std::string_view text) { return ObjReader(name, text).read(); }
 
 Surface parse_stl(const std::string& name, std::string_view content) {
   if (content.empty()) throw InputError(name + " is empty; give a surface");

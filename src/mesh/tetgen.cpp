@@ -6,12 +6,10 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "geometry/geometry.h"
-#include "mesh/tet_mesh.h"
 #include "mesh/text_lines.h"
 #include "platform/files.h"
 #include "platform/machine.h"
@@ -20,7 +18,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,26 +55,6 @@ std::optional<std::string> version_in(std::string_view program) {
   }
   return std::nullopt;
 }
-
-}  // namespace
-
-std::optional<TetgenProgram> find_tetgen() {
-  const std::optional<fs::path> executable = find_program("tetgen");
-  if (!executable) return std::nullopt;
-  TetgenProgram program{*executable, "unknown", 0};
-  std::vector<fs::path> files = libraries_of(*executable);
-  files.insert(files.begin(), *executable);
-  std::string hashes;
-  for (const fs::path& file : files) {
-    const std::string bytes = read_text(file);
-    hashes += to_hex(fnv1a_64(bytes));
-    if (const auto version = version_in(bytes)) program.version = *version;
-  }
-  program.fnv1a_64 = fnv1a_64(hashes);
-  return program;
-}
-
-namespace {
 
 /// The count at the start of a file. A file of so many bytes cannot hold more lines than a byte each: a count
 /// beyond is refused before memory is taken for it.
@@ -212,62 +189,6 @@ void append(std::string& text, std::uint64_t value) { text += ' ' + std::to_stri
 void append(std::string& text, const Vec3d& point) {
   for (const double x : {point.x, point.y, point.z}) text += ' ' + decimal(x);
 }
-
-}  // namespace
-
-TetMesh parse_tetgen_files(const NamedText& node_file, const NamedText& ele_file) {
-  TetMesh mesh;
-  Lines at_line;
-  NodeFile node(node_file);
-  EleFile ele(ele_file);
-  const std::int64_t first = node.read(mesh.nodes, at_line.node);
-  ele.read(mesh.tetrahedra, at_line.tetrahedron, mesh.nodes.size(), first);
-  turn_if_mirrored(mesh);
-  if (const auto defect = find_defect(mesh)) {
-    if (defect->of == MeshDefect::node) node.lines().fail_at(at_line.node[defect->index], defect->what);
-    ele.lines().fail_at(at_line.tetrahedron[defect->index], defect->what);
-  }
-  return mesh;
-}
-
-TetMesh read_tetgen_files(const std::filesystem::path& node_file, const std::filesystem::path& ele_file) {
-  const std::string nodes = read_text(node_file);
-  const std::string tetrahedra = read_text(ele_file);
-  return parse_tetgen_files({node_file.string(), nodes}, {ele_file.string(), tetrahedra});
-}
-
-std::string node_text(const std::vector<Vec3d>& nodes) {
-  std::string text = std::to_string(nodes.size()) + " 3 0 0\n";
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    text += std::to_string(n);
-    append(text, nodes[n]);
-    text += '\n';
-  }
-  return text;
-}
-
-std::string ele_text(const std::vector<Tetrahedron>& tetrahedra) {
-  std::string text = std::to_string(tetrahedra.size()) + " 4 0\n";
-  for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
-    text += std::to_string(t);
-    for (const std::uint32_t node : tetrahedra[t]) append(text, node);
-    text += '\n';
-  }
-  return text;
-}
-
-std::string smesh_text(const Surface& surface) {
-  std::string text = node_text(surface.points);
-  text += std::to_string(surface.triangles.size()) + " 0\n";
-  for (const auto& triangle : surface.triangles) {
-    text += '3';
-    for (const std::uint32_t point : triangle) append(text, point);
-    text += '\n';
-  }
-  return text + "0\n0\n";  // no holes, no regions
-}
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -407,6 +328,74 @@ class Run {
 };
 
 }  // namespace
+
+std::optional<TetgenProgram> find_tetgen() {
+  const std::optional<fs::path> executable = find_program("tetgen");
+  if (!executable) return std::nullopt;
+  TetgenProgram program{*executable, "unknown", 0};
+  std::vector<fs::path> files = libraries_of(*executable);
+  files.insert(files.begin(), *executable);
+  std::string hashes;
+  for (const fs::path& file : files) {
+    const std::string bytes = read_text(file);
+    hashes += to_hex(fnv1a_64(bytes));
+    if (const auto version = version_in(bytes)) program.version = *version;
+  }
+  program.fnv1a_64 = fnv1a_64(hashes);
+  return program;
+}
+
+TetMesh parse_tetgen_files(const NamedText& node_file, const NamedText& ele_file) {
+  TetMesh mesh;
+  Lines at_line;
+  NodeFile node(node_file);
+  EleFile ele(ele_file);
+  const std::int64_t first = node.read(mesh.nodes, at_line.node);
+  ele.read(mesh.tetrahedra, at_line.tetrahedron, mesh.nodes.size(), first);
+  turn_if_mirrored(mesh);
+  if (const auto defect = find_defect(mesh)) {
+    if (defect->of == MeshDefect::node) node.lines().fail_at(at_line.node[defect->index], defect->what);
+    ele.lines().fail_at(at_line.tetrahedron[defect->index], defect->what);
+  }
+  return mesh;
+}
+
+TetMesh read_tetgen_files(const std::filesystem::path& node_file, const std::filesystem::path& ele_file) {
+  const std::string nodes = read_text(node_file);
+  const std::string tetrahedra = read_text(ele_file);
+  return parse_tetgen_files({node_file.string(), nodes}, {ele_file.string(), tetrahedra});
+}
+
+std::string node_text(const std::vector<Vec3d>& nodes) {
+  std::string text = std::to_string(nodes.size()) + " 3 0 0\n";
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    text += std::to_string(n);
+    append(text, nodes[n]);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string ele_text(const std::vector<Tetrahedron>& tetrahedra) {
+  std::string text = std::to_string(tetrahedra.size()) + " 4 0\n";
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+    text += std::to_string(t);
+    for (const std::uint32_t node : tetrahedra[t]) append(text, node);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string smesh_text(const Surface& surface) {
+  std::string text = node_text(surface.points);
+  text += std::to_string(surface.triangles.size()) + " 0\n";
+  for (const auto& triangle : surface.triangles) {
+    text += '3';
+    for (const std::uint32_t point : triangle) append(text, point);
+    text += '\n';
+  }
+  return text + "0\n0\n";  // no holes, no regions
+}
 
 void require_meshable(std::uint64_t points, std::string_view remedy) {
   if (points > most_meshable_points)

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/surface.h"
-#include "mesh/tet_mesh.h"
+#include "mesh/meshing.h"
 
 namespace mssim {
 

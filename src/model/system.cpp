@@ -1,15 +1,139 @@
 #include "model/system.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <functional>
 #include <limits>
+#include <random>
 #include <string>
 
+#include "laws/host_laws.h"
 #include "text/text.h"
 
 namespace mssim {
+namespace {
+
+void append(std::string& bytes, std::uint64_t word) {
+  for (int shift = 0; shift < 64; shift += 8) bytes += static_cast<char>(word >> shift & 255U);
+}
+
+void append(std::string& bytes, const Vec3d& vector) {
+  for (const double number : {vector.x, vector.y, vector.z})
+    append(bytes, std::bit_cast<std::uint64_t>(number));
+}
+
+/// What a spring answers changes of its ends with, in a state.
+struct LinearSpring {
+  std::uint32_t first, second;
+  Vec3d direction;
+  double along, across;
+};
+
+/// The springs' part of K, or of C, at the state.
+std::vector<LinearSpring> linear_springs(const System& system, const State& state, bool damping) {
+  std::vector<LinearSpring> springs;
+  springs.reserve(system.springs.size());
+  for (const Spring& spring : system.springs) {
+    const Vec3d d = state.position[spring.second] - state.position[spring.first];
+    const double inverse_length = 1 / length(d);
+    const SpringMaterial& material = system.materials[spring.kind];
+    const double rest = material.stiffness * static_cast<double>(spring.rest_length);
+    springs.push_back({spring.first, spring.second, inverse_length * d,
+                       damping ? material.damping : material.stiffness,
+                       damping ? 0 : spring_across(inverse_length, material.stiffness, rest)});
+  }
+  return springs;
+}
+
+class PowerIteration {
+ public:
+  PowerIteration(const System& system, const std::vector<LinearSpring>& springs)
+      : system_(system), springs_(springs), x_(system.nodes()), force_(system.nodes()) {
+    std::mt19937 random(19580101);  // any fixed seed: the same vector each time
+    std::uniform_real_distribution<double> component(-1, 1);
+    for (Vec3d& x : x_) x = {component(random), component(random), component(random)};
+    for (const std::uint32_t node : system.pins) x_[node] = {};
+    scale();
+  }
+
+  /// One iteration: the Rayleigh quotient of the vector before it.
+  double next() {
+    for (Vec3d& force : force_) force = {};
+    for (const LinearSpring& spring : springs_) {
+      const Vec3d pull = spring_jacobian_times(spring.direction, spring.along, spring.across,
+                                               x_[spring.second] - x_[spring.first]);
+      force_[spring.first] -= pull;
+      force_[spring.second] += pull;
+    }
+    for (const std::uint32_t node : system_.pins) force_[node] = {};
+    double quotient = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      quotient += dot(x_[i], force_[i]);
+      x_[i] = (1 / system_.node_mass[i]) * force_[i];
+    }
+    scale();
+    return quotient;
+  }
+
+ private:
+  void scale() {
+    double sum = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i) sum += system_.node_mass[i] * dot(x_[i], x_[i]);
+    if (!(sum > 0)) return;
+    const double factor = 1 / std::sqrt(sum);
+    for (Vec3d& x : x_) x = factor * x;
+  }
+
+  const System& system_;
+  const std::vector<LinearSpring>& springs_;
+  std::vector<Vec3d> x_, force_;
+};
+
+double spectral_radius_of(const System& system, const std::vector<LinearSpring>& springs) {
+  constexpr int stride = 100, most = 3000;
+  PowerIteration iteration(system, springs);
+  double before = 0, quotient = 0;
+  for (int done = 0; done < most; done += stride) {
+    for (int i = 0; i < stride; ++i) quotient = iteration.next();
+    if (!(std::abs(quotient - before) > 1e-3 * std::abs(quotient))) break;
+    before = quotient;
+  }
+  return quotient;
+}
+
+}  // namespace
+
+float GridPatch::rest_length(GridSpringKind kind) const {
+  return static_cast<float>(spacing * std::sqrt(grid_spring_kinds[kind].length_squared));
+}
+
+std::uint64_t count_springs(std::uint64_t rows, std::uint64_t columns) {
+  std::uint64_t count = 0;
+  for (const GridSpring& spring : grid_stencil) {
+    const auto down = static_cast<std::uint64_t>(spring.rows < 0 ? -spring.rows : spring.rows);
+    const auto right = static_cast<std::uint64_t>(spring.columns);
+    if (rows > down && columns > right) count += (rows - down) * (columns - right);
+  }
+  return count;
+}
+
+std::vector<Spring> springs_of(const GridPatch& grid) {
+  std::vector<Spring> springs;
+  springs.reserve(count_springs(grid.rows, grid.columns));
+  std::array<float, grid_spring_kinds.size()> rest_length{};
+  for (const GridSpringKind kind : {structural, shear, bending}) rest_length[kind] = grid.rest_length(kind);
+  const std::int64_t rows = grid.rows, columns = grid.columns;
+  for (std::int64_t row = 0; row < rows; ++row)
+    for (std::int64_t column = 0; column < columns; ++column)
+      for (const GridSpring& spring : grid_stencil) {
+        const std::int64_t other_row = row + spring.rows, other_column = column + spring.columns;
+        if (other_row < 0 || other_row >= rows || other_column >= columns) continue;
+        springs.push_back({static_cast<std::uint32_t>(row * columns + column),
+                           static_cast<std::uint32_t>(other_row * columns + other_column),
+                           rest_length[spring.kind], spring.kind});
+      }
+  return springs;
+}
 
 std::optional<double> uniform_node_mass(const System& system) {
   const std::vector<double>& mass = system.node_mass;
@@ -81,19 +205,6 @@ StiffnessBound stiffness_bound(const System& system) {
   return bound;
 }
 
-namespace {
-
-void append(std::string& bytes, std::uint64_t word) {
-  for (int shift = 0; shift < 64; shift += 8) bytes += static_cast<char>(word >> shift & 255U);
-}
-
-void append(std::string& bytes, const Vec3d& vector) {
-  for (const double number : {vector.x, vector.y, vector.z})
-    append(bytes, std::bit_cast<std::uint64_t>(number));
-}
-
-}  // namespace
-
 std::uint64_t state_hash(const State& state) {
   std::string hashes, leaf;
   const std::size_t nodes = state.position.size();
@@ -106,6 +217,47 @@ std::uint64_t state_hash(const State& state) {
     append(hashes, fnv1a_64(leaf));
   }
   return fnv1a_64(hashes);
+}
+
+Spectrum spectrum_at(const System& system, const State& state) {
+  return {spectral_radius_of(system, linear_springs(system, state, false)),
+          spectral_radius_of(system, linear_springs(system, state, true)) + system.viscous_damping};
+}
+
+Energy energy_of(const System& system, const State& state) {
+  Energy energy;
+  for (std::size_t i = 0; i < system.nodes(); ++i) {
+    const double mass = system.node_mass[i];
+    energy.kinetic += 0.5 * mass * dot(state.velocity[i], state.velocity[i]);
+    energy.gravitational += mass * system.gravity * (state.position[i].y - system.floor.height);
+  }
+  for (const Spring& spring : system.springs) energy.elastic += elastic_energy(system, spring, state);
+  return energy;
+}
+
+std::string_view energies_leave_out(const System& system) {
+  if (!std::holds_alternative<Garment>(system.topology)) return "";
+  return "the work of seams, of contacts and of the correction of elongations; and gravitational energy "
+         "counts "
+         "in full also while seams close, when gravity need not act in full";
+}
+
+double elastic_energy(const System& system, const Spring& spring, const State& state) {
+  const Vec3d d = state.position[spring.second] - state.position[spring.first];
+  const double stretch = length(d) - static_cast<double>(spring.rest_length);
+  return 0.5 * system.materials[spring.kind].stiffness * stretch * stretch;
+}
+
+double damping_power(const System& system, const State& state) {
+  double power = 0;
+  for (std::size_t i = 0; i < system.nodes(); ++i)
+    power += system.viscous_damping * system.node_mass[i] * dot(state.velocity[i], state.velocity[i]);
+  for (const Spring& spring : system.springs) {
+    const Vec3d d = state.position[spring.second] - state.position[spring.first];
+    const double closing = dot(state.velocity[spring.second] - state.velocity[spring.first], d);
+    power += system.materials[spring.kind].damping * closing * closing / dot(d, d);
+  }
+  return power;
 }
 
 }  // namespace mssim

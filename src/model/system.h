@@ -11,9 +11,92 @@
 
 #include "garment/garment.h"
 #include "geometry/vec3.h"
-#include "model/topology.h"
 
 namespace mssim {
+
+/// A spring between two nodes.
+struct Spring {
+  std::uint32_t first = 0;   ///< node index
+  std::uint32_t second = 0;  ///< node index, another node than `first`
+  /// m. Single precision on purpose: every backend, the double-precision reference too, then simulates the
+  /// very same springs, and an error against the reference is an error of arithmetic alone.
+  float rest_length = 0;
+  std::uint32_t kind = 0;  ///< index into System::materials
+};
+
+/// How a spring answers stretching.
+struct SpringMaterial {
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m, along the spring
+};
+
+/// The springs of a regular cloth, by what they resist. The numbers index GridSpringKind tables and
+/// materials.
+enum GridSpringKind : std::uint32_t { structural, shear, bending };
+
+/// One row per kind of cloth spring: its name in scene files and the length in units of the spacing, squared.
+struct GridSpringKindInfo {
+  std::string_view name;
+  double length_squared;
+};
+inline constexpr std::array<GridSpringKindInfo, 3> grid_spring_kinds{{
+    {"structural", 1},
+    {"shear", 2},
+    {"bending", 4},
+}};
+
+/// One spring of the stencil, from its owner to the other end. Down means higher rows, of panels too.
+struct GridSpring {
+  int rows;     ///< down
+  int columns;  ///< to the right
+  GridSpringKind kind;
+};
+
+/// The 12-neighbour stencil of Hong et al., Figure 2, each spring named once.
+inline constexpr std::array<GridSpring, 6> grid_stencil{{
+    {1, 0, structural},
+    {0, 1, structural},
+    {1, 1, shear},
+    {-1, 1, shear},
+    {2, 0, bending},
+    {0, 2, bending},
+}};
+
+/// A regular cloth: rows x columns nodes, row-major, joined by the 12-neighbour stencil.
+struct GridPatch {
+  std::uint32_t rows = 0;
+  std::uint32_t columns = 0;
+  double spacing = 0;              ///< m, between neighbours of a row or a column at rest
+  std::uint32_t first_column = 0;  ///< its place in the whole cloth, where this is a window of it
+
+  std::uint32_t nodes() const { return rows * columns; }
+  std::uint32_t node(std::uint32_t row, std::uint32_t column) const { return row * columns + column; }
+  /// Rest length of one kind of spring, m, as every backend uses it (see Spring::rest_length).
+  float rest_length(GridSpringKind kind) const;
+};
+
+/// The nodes of some rows and columns of a grid that follow each other.
+struct GridWindow {
+  std::uint32_t row = 0, column = 0;  ///< the first ones
+  std::uint32_t rows = 0, columns = 0;
+
+  std::size_t nodes() const { return std::size_t{rows} * columns; }
+};
+
+/// Number of unique springs of a rows x columns grid, without building them:
+/// structural 2rc - r - c, shear 2(r-1)(c-1), bending 2rc - 2r - 2c (for grids of at least 2 x 2).
+std::uint64_t count_springs(std::uint64_t rows, std::uint64_t columns);
+
+/// The springs of the grid in the order of their owners, each once. Throws nothing but std::bad_alloc.
+std::vector<Spring> springs_of(const GridPatch& grid);
+
+/// Node indices a, b, c, d of a tetrahedron of positive volume: (b - a) . ((c - a) x (d - a)) > 0.
+using Tetrahedron = std::array<std::uint32_t, 4>;
+
+/// The solid bodies of a scene, one after the other. The springs are the edges of the tetrahedra.
+struct TetrahedralMesh {
+  std::vector<Tetrahedron> tetrahedra;
+};
 
 /// How far the solvers of implicit integrators go.
 struct SolverSettings {
@@ -92,6 +175,20 @@ struct StiffnessBound {
 /// Gershgorin's bound: a node's springs all aligned, all neighbours moving against it.
 StiffnessBound stiffness_bound(const System& system);
 
+/// The largest eigenvalues of a system about a state: what bounds the step of an explicit integrator.
+struct Spectrum {
+  double stiffness = 0;  ///< 1/s^2, of M^-1 K: the square of the fastest angular frequency
+  double damping = 0;    ///< 1/s, of M^-1 C, viscous damping included
+};
+
+/// The spectral radii of M^-1 K and M^-1 C at `state`, by power iteration (for example Golub and Van Loan,
+/// Matrix Computations, section 7.3.1) from a fixed pseudo-random vector: x becomes M^-1 K x, and its
+/// Rayleigh quotient in the inner product of M, which is at most the largest eigenvalue, tends to it. K and C
+/// are the derivatives of the spring forces by positions and velocities (kernels/spring_jacobian.h), where
+/// pinned nodes do not move. Ends where a hundred iterations have raised the quotient by less than a
+/// thousandth, or after 3,000. A garment's joints and contacts are left out.
+Spectrum spectrum_at(const System& system, const State& state);
+
 /// Moments at equal times of a simulation, from its start on: a frame is the step nearest to its time.
 struct FrameGrid {
   double steps_per_frame = 1;  ///< at least 1, so that no two frames are the same step
@@ -110,5 +207,37 @@ inline constexpr std::size_t state_hash_leaf = 4096;
 /// (the six numbers of a node after each other, position before velocity, each a double from its lowest byte
 /// on), and FNV-1a of these hashes in their order, each from its lowest byte on.
 std::uint64_t state_hash(const State& state);
+
+/// The mechanical energy of a state, J.
+struct Energy {
+  double kinetic = 0;
+  double elastic = 0;        ///< of all springs, zero at rest length
+  double gravitational = 0;  ///< zero on the floor
+  double total() const { return kinetic + elastic + gravitational; }
+};
+
+/// What has been taken from the mechanical energy since the start, J.
+struct EnergyLosses {
+  double damping = 0;      ///< by the springs and by the air
+  double friction = 0;     ///< by sliding on the floor
+  double bounce = 0;       ///< by the floor otherwise; below zero where putting nodes back onto it gives more
+  double integration = 0;  ///< by the integrator's error off the floor; below zero where it feeds energy in
+  double total() const { return damping + friction + bounce + integration; }
+};
+
+/// Energy of `state` in double precision. Pinned nodes count, at their constant height.
+Energy energy_of(const System& system, const State& state);
+
+/// What does work on the nodes and is in none of these energies, in words; empty where there is nothing but
+/// what EnergyLosses account for.
+std::string_view energies_leave_out(const System& system);
+
+/// Energy of one spring, J.
+double elastic_energy(const System& system, const Spring& spring, const State& state);
+
+/// What damping of the springs and of the air takes in `state`, W: the sum of c ((u . d) / |d|)^2 over all
+/// springs, d and u the differences of positions and velocities of their ends, and of viscous_damping m v^2
+/// over all nodes.
+double damping_power(const System& system, const State& state);
 
 }  // namespace mssim

@@ -1,15 +1,17 @@
-#include "ranks/bodies_piece.h"
-
 #include <algorithm>
 #include <cstring>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "backends/layouts/spring_graph.h"
+#include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
-#include "ranks/common_kernel.h"
-#include "ranks/graph_partition.h"
+#include "ranks/messages.h"
+#include "ranks/piece.h"
 #include "ranks/shares.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
@@ -155,11 +157,35 @@ BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHe
   return part_of_bodies(system, place, owner, rank);
 }
 
-}  // namespace
+/// The bodies of a scene that one rank steps, whole ones and parts of divided ones, by openmp's own vector
+/// code: the same bits as there. Bodies do not touch each other: only the ranks of a divided one have
+/// something to say to each other while they step.
+class BodiesPiece final : public Piece {
+ public:
+  BodiesPiece(const Session& session, const RankJob& job);
 
-void require_shares(const SceneSpec& scene, int ranks) {
-  shares_for(ranks, nodes_of(counts_of_bodies(scene)));
-}
+  /// Without ghosts: messages bring those before the first stage.
+  std::vector<NodeRun> taken_by(int rank) const override { return runs_[static_cast<std::size_t>(rank)]; }
+  std::vector<NodeRun> owned_by(int rank) const override { return taken_by(rank); }
+  std::size_t scene_nodes() const override { return scene_nodes_; }
+  void set_state(const State& state) override {
+    whole_ ? whole_->set_state(state) : bodies_->set_state(state);
+  }
+  State state() const override { return whole_ ? whole_->state() : bodies_->state(); }
+  void step(int count) override { whole_ ? whole_->step(count) : kernel_.step(*bodies_, count); }
+  RankCosts costs() const override { return messages_ ? messages_->costs() : RankCosts{}; }
+  int threads() const override { return whole_ ? whole_->threads() : static_cast<int>(bodies_->threads); }
+  std::string note() const override;
+
+ private:
+  StepKernel<SlicedBodies> kernel_;
+  std::vector<std::vector<BodyShare>> shares_;  ///< [bodies of the scene]
+  std::vector<std::vector<NodeRun>> runs_;      ///< [ranks] on rank 0; elsewhere only its own
+  std::size_t scene_nodes_ = 0;
+  std::unique_ptr<Backend> whole_;      ///< openmp, where this rank has whole bodies only
+  std::optional<SlicedBodies> bodies_;  ///< else
+  std::optional<GhostMessages> messages_;
+};
 
 BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
     : kernel_(common_kernel(session, step_kernels<SlicedBodies>(*job.integrator), job.roots)) {
@@ -204,6 +230,16 @@ std::string BodiesPiece::note() const {
   const std::size_t whole = shares_.size() - divided;
   return text + (whole == 0 ? bodies(divided) : bodies(whole) + " whole, " + std::to_string(divided)) +
          " divided";
+}
+
+}  // namespace
+
+void require_shares(const SceneSpec& scene, int ranks) {
+  shares_for(ranks, nodes_of(counts_of_bodies(scene)));
+}
+
+std::unique_ptr<Piece> make_bodies_piece(const Session& session, const RankJob& job) {
+  return std::make_unique<BodiesPiece>(session, job);
 }
 
 }  // namespace mssim

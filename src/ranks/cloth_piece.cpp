@@ -1,13 +1,17 @@
-#include "ranks/cloth_piece.h"
-
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "ranks/common_kernel.h"
+#include "backends/layouts/band_grid.h"
 #include "ranks/messages.h"
-#include "scene/cloth.h"
+#include "ranks/piece.h"
+#include "scene/builders.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -19,28 +23,69 @@ std::size_t columns_on_host(const Session& session, std::size_t columns) {
   return std::max<std::size_t>(1, columns * static_cast<std::size_t>(session.ranks_on_host()) / ranks);
 }
 
-}  // namespace
+/// The columns of a cloth that one rank steps, and the ghost columns beside them, by openmp's own walk: the
+/// same bits as there.
+class ClothPiece final : public Piece {
+ public:
+  ClothPiece(const Session& session, const RankJob& job)
+      : scene_(job.scene),
+        ranks_(session.ranks()),
+        rank_(session.rank()),
+        columns_(std::get<ClothSpec>(job.scene.content).columns),
+        integrator_(job.integrator),
+        kernel_(common_kernel(session, step_kernels<BandGrid>(*job.integrator), job.roots)) {
+    require_columns(columns_, *job.integrator, ranks_);
+    make(session, job, chosen_steps(session, job));
+  }
 
-void require_columns(std::size_t columns, const Integrator& integrator, int ranks) {
-  const std::size_t least = ghost_columns(integrator, 1);
-  if (ranks > 1 && columns / static_cast<std::size_t>(ranks) < least)
-    throw Unsupported(pluralize(columns, "column") + " cannot be cut for " +
-                      pluralize(static_cast<std::uint64_t>(ranks), "rank") + ": a step of " +
-                      std::string(integrator.name) + " needs " + std::to_string(least) +
-                      " columns in each, so give at most --ranks " +
-                      std::to_string(std::max<std::size_t>(1, columns / least)));
-}
+  std::vector<NodeRun> taken_by(int rank) const override { return runs_of(with_ghosts(rank)); }
+  std::vector<NodeRun> owned_by(int rank) const override { return runs_of(columns_of(rank)); }
+  std::size_t scene_nodes() const override { return bands_->layout.rows * columns_; }
+  void set_state(const State& state) override { bands_->set_state(state); }
+  State state() const override;
+  void restart(double seconds) override;
+  std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const override;
+  State state(const GridWindow& window) const override;
+  void step(int count) override { kernel_.step(*bands_, count); }
+  RankCosts costs() const override { return messages_->costs(); }
+  int threads() const override { return static_cast<int>(bands_->threads); }
+  std::string note() const override {
+    return std::string(kernel_.instruction_set) + ", " + pluralize(bands_->steps_per_pass, "step") +
+           " an exchange";
+  }
 
-ClothPiece::ClothPiece(const Session& session, const RankJob& job)
-    : scene_(job.scene),
-      ranks_(session.ranks()),
-      rank_(session.rank()),
-      columns_(std::get<ClothSpec>(job.scene.content).columns),
-      integrator_(job.integrator),
-      kernel_(common_kernel(session, step_kernels<BandGrid>(*job.integrator), job.roots)) {
-  require_columns(columns_, *job.integrator, ranks_);
-  make(session, job, chosen_steps(session, job));
-}
+ private:
+  /// Makes bands and messages for so many steps between two messages, at the scene's start state.
+  void make(const Session& session, const RankJob& job, std::size_t steps);
+  /// How many steps there had best be between two messages, by trials of all ranks together: fewer messages
+  /// cost more columns that are computed twice. The result has the same bits with any number. Rank 0 decides.
+  std::size_t chosen_steps(const Session& session, const RankJob& job);
+  /// Seconds that a step takes as the piece is made.
+  double trial_seconds(const Session& session);
+  /// The columns of the scene that a rank owns.
+  ColumnRange columns_of(int rank) const {
+    return part_of({0, columns_}, static_cast<std::size_t>(rank), static_cast<std::size_t>(ranks_));
+  }
+  /// Those and its ghosts.
+  ColumnRange with_ghosts(int rank) const { return mssim::with_ghosts(columns_of(rank), ghosts_, columns_); }
+  std::vector<NodeRun> runs_of(ColumnRange columns) const;
+  /// The nodes that this rank has, at the scene's start state.
+  System nodes_at_start() const;
+  /// The part of a window that a rank owns.
+  GridWindow part_of_window(int rank, const GridWindow& window) const;
+  /// That this rank needs for so many steps between two messages.
+  std::uint64_t memory_bytes(std::size_t steps) const;
+
+  SceneSpec scene_;
+  int ranks_;
+  int rank_;
+  std::size_t columns_;  ///< of the scene
+  std::size_t ghosts_ = 0;
+  const Integrator* integrator_;
+  StepKernel<BandGrid> kernel_;
+  std::optional<BandGrid> bands_;
+  std::optional<NeighbourMessages> messages_;
+};
 
 void ClothPiece::make(const Session& session, const RankJob& job, std::size_t steps) {
   messages_.reset();
@@ -126,14 +171,6 @@ double ClothPiece::trial_seconds(const Session& session) {
   return least;
 }
 
-ColumnRange ClothPiece::columns_of(int rank) const {
-  return part_of({0, columns_}, static_cast<std::size_t>(rank), static_cast<std::size_t>(ranks_));
-}
-
-ColumnRange ClothPiece::with_ghosts(int rank) const {
-  return mssim::with_ghosts(columns_of(rank), ghosts_, columns_);
-}
-
 std::vector<NodeRun> ClothPiece::runs_of(ColumnRange columns) const {
   std::vector<NodeRun> runs;
   for (std::size_t row = 0; row < bands_->layout.rows; ++row)
@@ -186,9 +223,20 @@ State ClothPiece::state(const GridWindow& window) const {
   return bands_->state(part);
 }
 
-std::string ClothPiece::note() const {
-  return std::string(kernel_.instruction_set) + ", " + pluralize(bands_->steps_per_pass, "step") +
-         " an exchange";
+}  // namespace
+
+void require_columns(std::size_t columns, const Integrator& integrator, int ranks) {
+  const std::size_t least = ghost_columns(integrator, 1);
+  if (ranks > 1 && columns / static_cast<std::size_t>(ranks) < least)
+    throw Unsupported(pluralize(columns, "column") + " cannot be cut for " +
+                      pluralize(static_cast<std::uint64_t>(ranks), "rank") + ": a step of " +
+                      std::string(integrator.name) + " needs " + std::to_string(least) +
+                      " columns in each, so give at most --ranks " +
+                      std::to_string(std::max<std::size_t>(1, columns / least)));
+}
+
+std::unique_ptr<Piece> make_cloth_piece(const Session& session, const RankJob& job) {
+  return std::make_unique<ClothPiece>(session, job);
 }
 
 }  // namespace mssim

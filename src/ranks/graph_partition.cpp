@@ -1,5 +1,3 @@
-#include "ranks/graph_partition.h"
-
 #include <metis.h>
 
 #include <algorithm>

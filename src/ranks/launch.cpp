@@ -1,5 +1,3 @@
-#include "ranks/launch.h"
-
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -27,6 +25,7 @@
 #include "platform/machine.h"
 #include "platform/process.h"
 #include "ranks/piece.h"
+#include "ranks/programs.h"
 #include "ranks/requests.h"
 #include "scene/scene_file.h"
 #include "text/text.h"

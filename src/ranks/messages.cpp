@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstddef>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -13,12 +11,9 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <sstream>
-#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "backends/interface/backend.h"
 #include "platform/machine.h"
@@ -26,7 +21,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -44,6 +38,79 @@ bool all_complete(std::span<MPI_Request> requests) {
             "waiting for messages");
   return complete != 0;
 }
+
+/// Numbers of a node in a message.
+constexpr std::size_t node_floats = 6;
+/// Where a record has the velocity (backends/layouts/node_arrays.h).
+constexpr std::size_t velocity = 4;
+
+constexpr int link_tag = 3;
+constexpr std::size_t few_bytes = 8;
+/// As large as the columns beside a part of a large cloth.
+constexpr std::size_t many_bytes = std::size_t{1} << 16;
+constexpr int trials = 100;
+
+/// Messages to another rank and from there. Of all trials the shortest counts: other programs only ever add
+/// to a time.
+class Partner {
+ public:
+  Partner(const Session& session, int rank) : session_(session), rank_(rank) {}
+
+  /// Half of there and back: one sends when the other has received.
+  double one_way_s() {
+    std::array<char, few_bytes> bytes{};
+    return least_seconds([&] {
+             if (session_.rank() < rank_) send(bytes);
+             receive(bytes);
+             if (session_.rank() > rank_) send(bytes);
+           }) /
+           2;
+  }
+
+  /// Both send at the same time.
+  double both_ways_s() {
+    std::vector<char> sent(many_bytes), received(many_bytes);
+    return least_seconds([&] {
+      std::array<MPI_Request, 2> requests{MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+      check_mpi(MPI_Irecv(received.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
+                          MPI_COMM_WORLD, &requests[0]),
+                "measuring a link");
+      check_mpi(MPI_Isend(sent.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
+                          MPI_COMM_WORLD, &requests[1]),
+                "measuring a link");
+      session_.wait(requests, std::array{rank_});
+    });
+  }
+
+ private:
+  template <class Exchange>
+  double least_seconds(const Exchange& exchange) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int trial = 0; trial < trials; ++trial) {
+      const auto begin = std::chrono::steady_clock::now();
+      exchange();
+      least =
+          std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return least;
+  }
+
+  void send(std::array<char, few_bytes>& bytes) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    check_mpi(MPI_Isend(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
+              "measuring a link");
+    session_.wait({&request, 1}, std::array{rank_});
+  }
+  void receive(std::array<char, few_bytes>& bytes) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    check_mpi(MPI_Irecv(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
+              "measuring a link");
+    session_.wait({&request, 1}, std::array{rank_});
+  }
+
+  const Session& session_;
+  int rank_;
+};
 
 }  // namespace
 
@@ -232,15 +299,6 @@ NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : 
     messages_.add(session.rank() + 1, columns(last, own.end() - ghosts), columns(last, own.end()));
 }
 
-namespace {
-
-/// Numbers of a node in a message.
-constexpr std::size_t node_floats = 6;
-/// Where a record has the velocity (backends/layouts/node_arrays.h).
-constexpr std::size_t velocity = 4;
-
-}  // namespace
-
 GhostMessages::GhostMessages(const Session& session, const BodiesPart& part, const SlicedBodies& bodies)
     : first_ghost_slot_(bodies.slices() * bodies.lanes), messages_(session) {
   for (const BodiesPart::Neighbour& neighbour : part.neighbours)
@@ -301,78 +359,6 @@ void require_memory(const Session& session, std::uint64_t bytes) {
   for (const std::string& other : session.gather(sentence))
     if (!other.empty()) throw Unavailable(other);
 }
-
-namespace {
-
-constexpr int link_tag = 3;
-constexpr std::size_t few_bytes = 8;
-/// As large as the columns beside a part of a large cloth.
-constexpr std::size_t many_bytes = std::size_t{1} << 16;
-constexpr int trials = 100;
-
-/// Messages to another rank and from there. Of all trials the shortest counts: other programs only ever add
-/// to a time.
-class Partner {
- public:
-  Partner(const Session& session, int rank) : session_(session), rank_(rank) {}
-
-  /// Half of there and back: one sends when the other has received.
-  double one_way_s() {
-    std::array<char, few_bytes> bytes{};
-    return least_seconds([&] {
-             if (session_.rank() < rank_) send(bytes);
-             receive(bytes);
-             if (session_.rank() > rank_) send(bytes);
-           }) /
-           2;
-  }
-
-  /// Both send at the same time.
-  double both_ways_s() {
-    std::vector<char> sent(many_bytes), received(many_bytes);
-    return least_seconds([&] {
-      std::array<MPI_Request, 2> requests{MPI_REQUEST_NULL, MPI_REQUEST_NULL};
-      check_mpi(MPI_Irecv(received.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
-                          MPI_COMM_WORLD, &requests[0]),
-                "measuring a link");
-      check_mpi(MPI_Isend(sent.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
-                          MPI_COMM_WORLD, &requests[1]),
-                "measuring a link");
-      session_.wait(requests, std::array{rank_});
-    });
-  }
-
- private:
-  template <class Exchange>
-  double least_seconds(const Exchange& exchange) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int trial = 0; trial < trials; ++trial) {
-      const auto begin = std::chrono::steady_clock::now();
-      exchange();
-      least =
-          std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    }
-    return least;
-  }
-
-  void send(std::array<char, few_bytes>& bytes) {
-    MPI_Request request = MPI_REQUEST_NULL;
-    check_mpi(MPI_Isend(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
-              "measuring a link");
-    session_.wait({&request, 1}, std::array{rank_});
-  }
-  void receive(std::array<char, few_bytes>& bytes) {
-    MPI_Request request = MPI_REQUEST_NULL;
-    check_mpi(MPI_Irecv(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
-              "measuring a link");
-    session_.wait({&request, 1}, std::array{rank_});
-  }
-
-  const Session& session_;
-  int rank_;
-};
-
-}  // namespace
 
 LinkSpeed measure_links(const Session& session) {
   if (session.ranks() == 1) return {};

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -11,21 +10,15 @@
 #include <cstring>
 #include <optional>
 #include <sstream>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "backends/openmp/openmp.h"
 #include "model/system.h"
 #include "platform/process.h"
-#include "ranks/bodies_piece.h"
-#include "ranks/cloth_piece.h"
-#include "ranks/messages.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// The whole scene, on every rank once more, stepped as openmp steps it: what the ranks of a machine take
@@ -33,17 +26,35 @@ namespace {
 /// of mssim; the others must have the same.
 class CopiesPiece final : public Piece {
  public:
-  CopiesPiece(const Session& session, const RankJob& job);
+  CopiesPiece(const Session& session, const RankJob& job) : session_(session) {
+    // Its start with masses, springs, and what openmp makes of them while it is made.
+    constexpr std::uint64_t node_bytes = 200, spring_bytes = 70;
+    const SceneCounts counts = counts_of(job.scene);
+    require_memory(session, node_bytes * counts.nodes + spring_bytes * counts.springs_unique);
+    system_ = build_system(job.scene);
+    round_start_to_single(system_);
+    backend_ = make_openmp(system_, *job.integrator, job.dt_s, {.threads = job.threads, .roots = job.roots});
+  }
 
   std::vector<NodeRun> taken_by(int /*rank*/) const override { return {{0, scene_nodes()}}; }
-  std::vector<NodeRun> owned_by(int rank) const override;
+  std::vector<NodeRun> owned_by(int rank) const override {
+    return rank == 0 ? taken_by(rank) : std::vector<NodeRun>();
+  }
   std::size_t scene_nodes() const override { return system_.nodes(); }
   void set_state(const State& state) override { backend_->set_state(state); }
   /// Throws RankFailure where the states of the ranks differ.
-  State state() const override;
+  State state() const override {
+    State state = backend_->state();
+    const std::vector<std::string> hashes = session_.gather(std::to_string(state_hash(state)));
+    for (int rank = 1; rank < session_.ranks(); ++rank)
+      if (hashes[static_cast<std::size_t>(rank)] != hashes.front())
+        throw RankFailure("the copy of " + session_.name_of(rank) + " has another state than that of " +
+                          session_.name_of(0));
+    return state;
+  }
   void step(int count) override { backend_->step(count); }
   int threads() const override { return backend_->threads(); }
-  std::string note() const override;
+  std::string note() const override { return backend_->device() + ", a copy of the scene each"; }
 
  private:
   const Session& session_;
@@ -52,56 +63,6 @@ class CopiesPiece final : public Piece {
 };
 
 [[noreturn]] void refuse_windows() { throw RankFailure("mssim asks for windows of what is no cloth"); }
-
-}  // namespace
-
-void Piece::restart(double) { refuse_windows(); }
-std::vector<NodeRun> Piece::owned_by(int, const GridWindow&) const { refuse_windows(); }
-State Piece::state(const GridWindow&) const { refuse_windows(); }
-
-void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks) {
-  if (const auto* cloth = std::get_if<ClothSpec>(&scene.content))
-    require_columns(cloth->columns, integrator, ranks);
-  else if (std::holds_alternative<BodiesSpec>(scene.content))
-    require_shares(scene, ranks);
-}
-
-std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job) {
-  const bool is_cloth = std::holds_alternative<ClothSpec>(job.scene.content);
-  const bool has_bodies = std::holds_alternative<BodiesSpec>(job.scene.content);
-  if (!is_cloth && !has_bodies) throw Unsupported("it steps cloths and bodies");
-  if (job.copies) return std::make_unique<CopiesPiece>(session, job);
-  if (is_cloth) return std::make_unique<ClothPiece>(session, job);
-  return std::make_unique<BodiesPiece>(session, job);
-}
-
-CopiesPiece::CopiesPiece(const Session& session, const RankJob& job) : session_(session) {
-  // Its start with masses, springs, and what openmp makes of them while it is made.
-  constexpr std::uint64_t node_bytes = 200, spring_bytes = 70;
-  const SceneCounts counts = counts_of(job.scene);
-  require_memory(session, node_bytes * counts.nodes + spring_bytes * counts.springs_unique);
-  system_ = build_system(job.scene);
-  round_start_to_single(system_);
-  backend_ = make_openmp(system_, *job.integrator, job.dt_s, {.threads = job.threads, .roots = job.roots});
-}
-
-std::vector<NodeRun> CopiesPiece::owned_by(int rank) const {
-  return rank == 0 ? taken_by(rank) : std::vector<NodeRun>();
-}
-
-State CopiesPiece::state() const {
-  State state = backend_->state();
-  const std::vector<std::string> hashes = session_.gather(std::to_string(state_hash(state)));
-  for (int rank = 1; rank < session_.ranks(); ++rank)
-    if (hashes[static_cast<std::size_t>(rank)] != hashes.front())
-      throw RankFailure("the copy of " + session_.name_of(rank) + " has another state than that of " +
-                        session_.name_of(0));
-  return state;
-}
-
-std::string CopiesPiece::note() const { return backend_->device() + ", a copy of the scene each"; }
-
-namespace {
 
 /// Nodes that a message holds at most.
 constexpr std::size_t nodes_at_once = std::size_t{1} << 18;
@@ -236,7 +197,31 @@ void gather(const Session& session, const std::filesystem::path& file, std::size
   });
 }
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 }  // namespace
+
+void Piece::restart(double) { refuse_windows(); }
+std::vector<NodeRun> Piece::owned_by(int, const GridWindow&) const { refuse_windows(); }
+State Piece::state(const GridWindow&) const { refuse_windows(); }
+
+void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks) {
+  if (const auto* cloth = std::get_if<ClothSpec>(&scene.content))
+    require_columns(cloth->columns, integrator, ranks);
+  else if (std::holds_alternative<BodiesSpec>(scene.content))
+    require_shares(scene, ranks);
+}
+
+std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job) {
+  const bool is_cloth = std::holds_alternative<ClothSpec>(job.scene.content);
+  const bool has_bodies = std::holds_alternative<BodiesSpec>(job.scene.content);
+  if (!is_cloth && !has_bodies) throw Unsupported("it steps cloths and bodies");
+  if (job.copies) return std::make_unique<CopiesPiece>(session, job);
+  if (is_cloth) return make_cloth_piece(session, job);
+  return make_bodies_piece(session, job);
+}
 
 void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece) {
   State own;
@@ -274,14 +259,6 @@ void gather_window(const Session& session, const std::filesystem::path& file, co
       session, file, window.nodes(), [&](int rank) { return piece.owned_by(rank, window); },
       piece.state(window));
 }
-
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-}  // namespace
 
 void StepCosts::step(const Session& session, Piece& piece, int count) {
   const auto begin = std::chrono::steady_clock::now();

@@ -1,13 +1,17 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "backends/interface/backend.h"
+#include "backends/vectors/step_kernels.h"
 #include "ranks/messages.h"
+#include "ranks/requests.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
@@ -70,6 +74,40 @@ std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job);
 /// Throws Unsupported where the scene cannot be cut for so many ranks, as make_piece does in each of them: to
 /// be asked before any are started.
 void require_cut(const SceneSpec& scene, const Integrator& integrator, int ranks);
+
+/// What make_piece makes of a cloth, with ghost columns beside its own, and of bodies, whole ones and parts
+/// of divided ones. They also throw Unsupported where the processors of the ranks cannot give the same bits,
+/// and the second Unavailable where the ranks have not the same meshes; on all ranks alike.
+std::unique_ptr<Piece> make_cloth_piece(const Session& session, const RankJob& job);
+std::unique_ptr<Piece> make_bodies_piece(const Session& session, const RankJob& job);
+/// What require_cut asks of so many columns of a cloth, and of the bodies of a scene.
+void require_columns(std::size_t columns, const Integrator& integrator, int ranks);
+void require_shares(const SceneSpec& scene, int ranks);
+
+/// A kernel with which all ranks give the same bits: the best of each where that is the same one, and else
+/// the best that finds roots exactly. `kernels`: those of this processor, the best first; of these the
+/// variable MSSIM_INSTRUCTION_SET names the best that counts, by which different processors can be tried on
+/// one machine. Throws Unsupported, on all ranks, where their bits would differ.
+template <class Data>
+StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Data>> kernels, Roots roots) {
+  using Kernel = StepKernel<Data>;
+  const std::string name = variable("MSSIM_INSTRUCTION_SET");
+  const auto first = std::ranges::find_if(
+      kernels, [&](const Kernel& kernel) { return kernel.instruction_set == std::string_view(name); });
+  if (first != kernels.end()) kernels.erase(kernels.begin(), first);
+  const Kernel best = best_kernel(kernels, roots);
+  const std::vector<std::string> sets = session.gather(best.instruction_set);
+  if (std::ranges::count(sets, sets.front()) == std::ssize(sets)) return best;
+  const Kernel exact = best_kernel(kernels, Roots::exact);
+  const std::vector<std::string> roundings = session.gather(exact.fuses ? "once" : "twice");
+  const auto other = std::ranges::find_if(
+      roundings, [&](const std::string& rounding) { return rounding != roundings.front(); });
+  if (other == roundings.end()) return exact;
+  const auto rank = static_cast<std::size_t>(other - roundings.begin());
+  throw Unsupported(session.name_of(0) + " has " + sets.front() + " and " +
+                    session.name_of(static_cast<int>(rank)) + " " + sets[rank] +
+                    ", which round differently: take machines of one kind");
+}
 
 /// States between mssim and the pieces: rank 0 has the file of a state (docs/own-backends.md), and each rank
 /// its part. No rank holds more than its part and a message. All ranks call these together; they throw

@@ -1,5 +1,3 @@
-#include "ranks/rank_program.h"
-
 #include <sched.h>
 
 #include <algorithm>
@@ -21,6 +19,7 @@
 #include "platform/machine.h"
 #include "ranks/messages.h"
 #include "ranks/piece.h"
+#include "ranks/programs.h"
 #include "ranks/requests.h"
 #include "scene/scene_file.h"
 #include "text/text.h"

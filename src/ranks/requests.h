@@ -16,8 +16,8 @@ inline std::string variable(const char* name, const char* otherwise = "") {
   return value && *value ? value : otherwise;
 }
 
-// What the process that starts the launcher (launch.h) and the ranks say to each other: the ranks among all
-// that they print.
+// What the process that starts the launcher (launch_ranks) and the ranks say to each other: the ranks among
+// all that they print.
 
 /// The argument of mssim-mpi, and of its ranks, by which each steps the whole scene.
 inline constexpr std::string_view copies_word = "copies";

@@ -1,14 +1,10 @@
 #include "ranks/shares.h"
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace mssim {
-
 namespace {
 
 using Shares = std::vector<std::vector<BodyShare>>;
@@ -90,6 +86,16 @@ class Filling {
   }
 };
 
+/// A node and the rank that it matters to.
+using RankAndNode = std::pair<int, std::uint32_t>;
+
+/// Sorted, each once.
+std::vector<RankAndNode> in_order(std::vector<RankAndNode> nodes) {
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
 }  // namespace
 
 std::optional<Shares> body_shares(const std::vector<std::size_t>& nodes, int ranks) {
@@ -122,20 +128,6 @@ int most_ranks(const std::vector<std::size_t>& nodes, int ranks) {
   while (ranks > 1 && !body_shares(nodes, ranks)) --ranks;
   return ranks;
 }
-
-namespace {
-
-/// A node and the rank that it matters to.
-using RankAndNode = std::pair<int, std::uint32_t>;
-
-/// Sorted, each once.
-std::vector<RankAndNode> in_order(std::vector<RankAndNode> nodes) {
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
-}
-
-}  // namespace
 
 BodiesPart part_of_bodies(const System& bodies, std::span<const std::uint32_t> place,
                           std::span<const int> owner, int rank) {

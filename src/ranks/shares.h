@@ -61,6 +61,14 @@ std::optional<std::vector<std::vector<BodyShare>>> body_shares(const std::vector
 /// The largest number of ranks, at most `ranks`, that these bodies can be given to.
 int most_ranks(const std::vector<std::size_t>& nodes, int ranks);
 
+/// Cuts nodes that springs join into parts, along few springs (METIS's k-way partition; G. Karypis and V.
+/// Kumar, 1998). `shares`: [parts] how much of the nodes each is to have, in any unit; there must be as many
+/// nodes as parts. The parts differ from that by a few per cent. A node counts as much as stepping it costs.
+/// [nodes] the part of each; no part is empty. The same graph always gives the same parts. Throws RankFailure
+/// where METIS fails.
+std::vector<std::uint32_t> graph_partition(std::size_t nodes, std::span<const Spring> springs,
+                                           std::span<const std::size_t> shares);
+
 /// The nodes of bodies that one rank steps, and those of other ranks that springs join to them: its ghosts.
 struct BodiesPart {
   /// Another rank that has neighbours of nodes of this one.

@@ -1,18 +1,14 @@
 #include "render/draw.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <system_error>
 #include <utility>
-#include <vector>
 
-#include "geometry/surface.h"
 #include "platform/machine.h"
 
 namespace mssim {
@@ -30,17 +26,6 @@ std::uint8_t channel_of(float light) {
   return codes[static_cast<std::size_t>(std::clamp(light, 0.0F, 1.0F) * (entries - 1) + 0.5F)];
 }
 
-}  // namespace
-
-Light light_of(const Rgb& colour) {
-  const auto light = [](std::uint8_t code) { return static_cast<float>(srgb_light(code / 255.0)); };
-  return {light(colour.red), light(colour.green), light(colour.blue)};
-}
-
-Rgb colour_of(const Light& light) { return {channel_of(light.x), channel_of(light.y), channel_of(light.z)}; }
-
-namespace {
-
 constexpr auto views = std::to_array<NamedView>({
     {"front", {0, 8}},
     {"side", {90, 8}},
@@ -54,43 +39,6 @@ std::optional<double> degrees(std::string_view text) {
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
-
-}  // namespace
-
-std::vector<NamedView> named_views() { return {views.begin(), views.end()}; }
-
-std::optional<ViewDirection> view_direction(std::string_view text) {
-  if (const auto* row = std::ranges::find(views, text, &NamedView::name); row != views.end())
-    return row->direction;
-  const std::size_t comma = text.find(',');
-  if (comma == std::string_view::npos) return std::nullopt;
-  const auto azimuth = degrees(text.substr(0, comma)), elevation = degrees(text.substr(comma + 1));
-  if (!azimuth || !elevation || std::abs(*azimuth) > 360 || std::abs(*elevation) > 90) return std::nullopt;
-  return ViewDirection{*azimuth, *elevation};
-}
-
-Camera::Camera(const ViewDirection& direction) {
-  const double around = direction.azimuth * std::numbers::pi / 180;
-  const double above = direction.elevation * std::numbers::pi / 180;
-  right_ = {std::cos(around), 0, -std::sin(around)};
-  near_ = {std::sin(around) * std::cos(above), std::sin(above), std::cos(around) * std::cos(above)};
-  up_ = cross(near_, right_);
-}
-
-PixelGrid grid_around(const Box<double>& seen, std::uint32_t columns, std::uint32_t rows, double margin) {
-  constexpr double smallest = 1e-9;  // m, of a picture of one point
-  const double inside = 1 - 2 * margin;
-  const Vec3d size = seen.size(), middle = seen.middle();
-  PixelGrid grid;
-  grid.pixel = std::max({size.x / (columns * inside), size.y / (rows * inside), smallest});
-  grid.columns = columns;
-  grid.rows = rows;
-  grid.left = middle.x - 0.5 * columns * grid.pixel;
-  grid.bottom = middle.y - 0.5 * rows * grid.pixel;
-  return grid;
-}
-
-namespace {
 
 /// The largest of 1, 2 and 5 times a power of ten up to `length`.
 double round_length(double length) {
@@ -109,41 +57,6 @@ double covered(double at, double width, double line) {
 constexpr double lines_across = 8;   // what stands on the ground
 constexpr double line_pixels = 1.2;  // width of a line
 constexpr float line_darkness = 0.22F, shadow_darkness = 0.45F;
-
-}  // namespace
-
-Ground::Ground(const Box<double>& box, double height) : height_(height), middle_(box.middle()) {
-  const Vec3d size = box.size();
-  const double across = std::max({size.x, size.z, 0.25 * size.y, 1e-6});
-  spacing_ = round_length(across / lines_across);
-  radius_ = 0.75 * std::hypot(across, across);
-}
-
-std::optional<Vec3d> Ground::met_by(const Camera& camera, double x, double y) const {
-  constexpr double least_slope = 0.01;
-  if (camera.near().y < least_slope) return std::nullopt;
-  const double z = (height_ - y * camera.up().y) / camera.near().y;  // the camera's right is level
-  return x * camera.right() + y * camera.up() + z * camera.near();
-}
-
-Light Ground::colour_at(const Vec3d& point, const Light& background, float light, const Camera& camera,
-                        double pixel) const {
-  const double far = std::hypot(point.x - middle_.x, point.z - middle_.z) / radius_;
-  const auto fade = static_cast<float>(std::clamp(2 - far, 0.0, 1.0));  // 1 near by, 0 from two radii on
-  if (fade == 0) return background;
-  // How far a pixel reaches on the ground: it is stretched where the camera looks along it.
-  const Vec3d down = camera.up() - (camera.up().y / camera.near().y) * camera.near();
-  const auto line_at = [&](double at, double right, double up) {
-    return covered(at - spacing_ * std::round(at / spacing_), pixel * (std::abs(right) + std::abs(up)),
-                   line_pixels * pixel);
-  };
-  const double lines =
-      std::max(line_at(point.x, camera.right().x, down.x), line_at(point.z, camera.right().z, down.z));
-  const float darkness = std::max(line_darkness * static_cast<float>(lines), shadow_darkness * (1 - light));
-  return (1 - fade * darkness) * background;
-}
-
-namespace {
 
 constexpr float key_strength = 0.6F, fill_strength = 0.22F, sky_strength = 0.42F, ground_strength = 0.26F;
 constexpr std::uint32_t shadow_pixels = 1024;
@@ -325,6 +238,77 @@ Light mean_light(const Stage& stage, const PixelFragments& pixel) {
 }
 
 }  // namespace
+
+Light light_of(const Rgb& colour) {
+  const auto light = [](std::uint8_t code) { return static_cast<float>(srgb_light(code / 255.0)); };
+  return {light(colour.red), light(colour.green), light(colour.blue)};
+}
+
+Rgb colour_of(const Light& light) { return {channel_of(light.x), channel_of(light.y), channel_of(light.z)}; }
+
+std::vector<NamedView> named_views() { return {views.begin(), views.end()}; }
+
+std::optional<ViewDirection> view_direction(std::string_view text) {
+  if (const auto* row = std::ranges::find(views, text, &NamedView::name); row != views.end())
+    return row->direction;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  const auto azimuth = degrees(text.substr(0, comma)), elevation = degrees(text.substr(comma + 1));
+  if (!azimuth || !elevation || std::abs(*azimuth) > 360 || std::abs(*elevation) > 90) return std::nullopt;
+  return ViewDirection{*azimuth, *elevation};
+}
+
+Camera::Camera(const ViewDirection& direction) {
+  const double around = direction.azimuth * std::numbers::pi / 180;
+  const double above = direction.elevation * std::numbers::pi / 180;
+  right_ = {std::cos(around), 0, -std::sin(around)};
+  near_ = {std::sin(around) * std::cos(above), std::sin(above), std::cos(around) * std::cos(above)};
+  up_ = cross(near_, right_);
+}
+
+PixelGrid grid_around(const Box<double>& seen, std::uint32_t columns, std::uint32_t rows, double margin) {
+  constexpr double smallest = 1e-9;  // m, of a picture of one point
+  const double inside = 1 - 2 * margin;
+  const Vec3d size = seen.size(), middle = seen.middle();
+  PixelGrid grid;
+  grid.pixel = std::max({size.x / (columns * inside), size.y / (rows * inside), smallest});
+  grid.columns = columns;
+  grid.rows = rows;
+  grid.left = middle.x - 0.5 * columns * grid.pixel;
+  grid.bottom = middle.y - 0.5 * rows * grid.pixel;
+  return grid;
+}
+
+Ground::Ground(const Box<double>& box, double height) : height_(height), middle_(box.middle()) {
+  const Vec3d size = box.size();
+  const double across = std::max({size.x, size.z, 0.25 * size.y, 1e-6});
+  spacing_ = round_length(across / lines_across);
+  radius_ = 0.75 * std::hypot(across, across);
+}
+
+std::optional<Vec3d> Ground::met_by(const Camera& camera, double x, double y) const {
+  constexpr double least_slope = 0.01;
+  if (camera.near().y < least_slope) return std::nullopt;
+  const double z = (height_ - y * camera.up().y) / camera.near().y;  // the camera's right is level
+  return x * camera.right() + y * camera.up() + z * camera.near();
+}
+
+Light Ground::colour_at(const Vec3d& point, const Light& background, float light, const Camera& camera,
+                        double pixel) const {
+  const double far = std::hypot(point.x - middle_.x, point.z - middle_.z) / radius_;
+  const auto fade = static_cast<float>(std::clamp(2 - far, 0.0, 1.0));  // 1 near by, 0 from two radii on
+  if (fade == 0) return background;
+  // How far a pixel reaches on the ground: it is stretched where the camera looks along it.
+  const Vec3d down = camera.up() - (camera.up().y / camera.near().y) * camera.near();
+  const auto line_at = [&](double at, double right, double up) {
+    return covered(at - spacing_ * std::round(at / spacing_), pixel * (std::abs(right) + std::abs(up)),
+                   line_pixels * pixel);
+  };
+  const double lines =
+      std::max(line_at(point.x, camera.right().x, down.x), line_at(point.z, camera.right().z, down.z));
+  const float darkness = std::max(line_darkness * static_cast<float>(lines), shadow_darkness * (1 - light));
+  return (1 - fade * darkness) * background;
+}
 
 Box<double> seen_box(const Camera& camera, const std::vector<Vec3d>& points) {
   const Vec3d first = camera.seen(points.front());

@@ -2,7 +2,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "garment/output/garment_csv.h"
+#include "garment/output/garment_tables.h"
 #include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
 #include "output/tables/results.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "bench/roofline/step_cost.h"
+#include "bench/roofline/roofline.h"
 #include "integrators/all_integrators.h"
 #include "report/report_internal.h"
 #include "text/text.h"

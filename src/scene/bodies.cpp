@@ -1,5 +1,3 @@
-#include "scene/bodies.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
 #include "platform/machine.h"
+#include "scene/builders.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/spec/scene_spec.h"
@@ -23,7 +22,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 constexpr std::uint32_t most_nodes = 100'000'000;
@@ -177,33 +175,6 @@ struct LeastCounter {
   SceneCounts operator()(const SurfaceFile& /*surface*/) const { return {}; }
   SceneCounts operator()(const ShapeOfScene& shape) const { throw_not_own(shape); }
 };
-
-}  // namespace
-
-void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
-  std::vector<Section> sections;
-  for (const ShapeKind& kind : shape_kinds)
-    sections.push_back({kind.section, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
-  fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
-}
-
-OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
-  const auto* other = std::get_if<ShapeOfScene>(&shape);
-  if (other == nullptr) return {shape, folder, std::nullopt};
-  const SceneSpec scene = scene_of(*other, folder);
-  const BodySpec& body = first_body(*other, scene);
-  return {body.shape, scene.file.parent_path(), body.expected};
-}
-
-std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape) {
-  return std::holds_alternative<ShapeOfScene>(body.shape) ? shape.stated_by_other : body.expected;
-}
-
-SceneCounts least_counts(const OwnShape& shape) { return std::visit(LeastCounter{}, shape.shape); }
-
-TetMesh mesh_of(const OwnShape& shape) { return std::visit(Mesher{shape.folder}, shape.shape); }
-
-namespace {
 
 constexpr std::size_t most_bodies = 10'000;
 
@@ -418,6 +389,29 @@ System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
 }
 
 }  // namespace
+
+void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
+  std::vector<Section> sections;
+  for (const ShapeKind& kind : shape_kinds)
+    sections.push_back({kind.section, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
+  fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
+}
+
+OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
+  const auto* other = std::get_if<ShapeOfScene>(&shape);
+  if (other == nullptr) return {shape, folder, std::nullopt};
+  const SceneSpec scene = scene_of(*other, folder);
+  const BodySpec& body = first_body(*other, scene);
+  return {body.shape, scene.file.parent_path(), body.expected};
+}
+
+std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape) {
+  return std::holds_alternative<ShapeOfScene>(body.shape) ? shape.stated_by_other : body.expected;
+}
+
+SceneCounts least_counts(const OwnShape& shape) { return std::visit(LeastCounter{}, shape.shape); }
+
+TetMesh mesh_of(const OwnShape& shape) { return std::visit(Mesher{shape.folder}, shape.shape); }
 
 void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
   BodiesSpec& bodies = spec.content.emplace<BodiesSpec>();

@@ -1,5 +1,3 @@
-#include "scene/cloth.h"
-
 #include <array>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/builders.h"
 #include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 

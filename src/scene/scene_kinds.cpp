@@ -5,9 +5,7 @@
 #include <variant>
 
 #include "garment/scene/garment_scene.h"
-#include "scene/bodies.h"
-#include "scene/cloth.h"
-#include "scene/spec/scene_spec.h"
+#include "scene/builders.h"
 
 namespace mssim {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
-#include "model/energy.h"
+#include "model/system.h"
 #include "tests/support/backend_checks.h"
 
 namespace mssim {

@@ -14,8 +14,7 @@
 #include <vector>
 
 #include "backends/backends.h"
-#include "bench/job/combination.h"
-#include "bench/job/scene_job.h"
+#include "bench/job/job.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/systems.h"

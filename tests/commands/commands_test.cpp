@@ -9,7 +9,7 @@
 #include "commands/arguments/arguments.h"
 #include "commands/command.h"
 #include "commands/options.h"
-#include "garment/scene/garment_body.h"
+#include "garment/scene/garment_scene.h"
 #include "mesh/tetgen.h"
 #include "scene/scene_file.h"
 #include "tests/support/files_fixture.h"

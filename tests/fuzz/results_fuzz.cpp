@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fuzz_checks.h"
-#include "garment/output/garment_csv.h"
+#include "garment/output/garment_tables.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"
 #include "output/tables/table.h"

@@ -16,7 +16,7 @@
 #include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
 #include "output/traces/h5md_trace.h"
-#include "output/traces/trace_content.h"
+#include "output/traces/trace_reader.h"
 #include "platform/files.h"
 #include "tests/support/trace_systems.h"
 

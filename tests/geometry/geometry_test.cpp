@@ -9,7 +9,7 @@
 #include <string>
 
 #include "geometry/depth_raster.h"
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/sentence_of.h"
 

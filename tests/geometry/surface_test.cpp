@@ -11,7 +11,6 @@
 
 #include "garment/body/mannequin.h"
 #include "mesh/meshing.h"
-#include "mesh/shapes.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

@@ -7,7 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "guide/cloth_sizes.h"
 #include "guide/limits.h"
 #include "guide/work_precision.h"
 #include "integrators/all_integrators.h"

@@ -10,9 +10,8 @@
 #include "bench/verification/verification.h"
 #include "guide/guide.h"
 #include "guide/limits.h"
-#include "guide/trusted_state.h"
 #include "integrators/all_integrators.h"
-#include "model/spectrum.h"
+#include "model/system.h"
 #include "tests/support/systems.h"
 
 namespace mssim {

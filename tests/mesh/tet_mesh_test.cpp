@@ -1,5 +1,3 @@
-#include "mesh/tet_mesh.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -10,11 +10,8 @@
 #include <utility>
 
 #include "geometry/surface.h"
-#include "model/energy.h"
 #include "model/node_surface.h"
-#include "model/spectrum.h"
 #include "model/system.h"
-#include "model/topology.h"
 #include "tests/support/systems.h"
 #include "text/text.h"
 

@@ -40,7 +40,7 @@ backends/vectors      laws integrators backends/interface
 backends/threads
 backends/layouts      integrators model backends/interface backends/vectors backends/threads
 backends/devices      text platform integrators backends/interface
-backends/spring_list  platform integrators model backends/interface
+backends/spring_list  platform laws integrators model backends/interface
 backends/implicit/nodes        geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts
 backends/implicit/newton       text geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
 backends/implicit/local_global platform geometry laws integrators model backends/interface backends/vectors backends/threads backends/layouts backends/implicit/nodes
@@ -61,7 +61,7 @@ ranks                 text platform integrators model scene/spec scene backends/
 bench/machine         mssim text platform
 bench/results         text statistics bench/machine
 bench/roofline        platform integrators model
-bench/verification    text statistics integrators model backends/interface backends
+bench/verification    text statistics laws integrators model backends/interface backends
 bench/windows         text platform integrators model backends/interface backends/layouts backends bench/verification
 bench/job             text statistics integrators backends/interface backends garment/fitting bench/results bench/verification bench/windows
 garment/bench         text statistics integrators model backends/interface garment/stepping bench/verification bench/job
@@ -98,20 +98,23 @@ picture               picture legend movie
 render                draw
 hdf5                  hdf5 hdf5_table
 laws                  host_laws laws-inl
+garment               garment
 garment/contact       body_maps solid
 garment/body          body_profile mannequin stance
 garment/pattern       garment_build jeans
 garment/spec          garment_spec
-garment/scene         garment_scene garment_body
-garment/bench         garment_verification dressing_record
+garment/scene         garment_scene
+garment/bench         garment_bench
 garment/fitting       fitting
+garment/layers        cloth_contacts cloth_cloth
+garment/output        garment_tables h5md_garment
 garment/stepping      dressing_backend
 platform              files process supervised_process machine
-mesh                  meshing shapes surface_file tet_mesh tetgen
-model                 system topology energy spectrum node_surface
+mesh                  meshing surface_file tetgen
+model                 system node_surface
 scene/fields          fields
 scene/spec            scene_spec
-scene                 scene_file scene_kinds cloth
+scene                 scene_file scene_kinds builders
 backends              backends
 backends/interface    backend
 backends/vectors      step_kernels instruction_sets lanes-inl
@@ -122,19 +125,20 @@ backends/opencl       opencl
 backends/hybrid       hybrid
 backends/process      process_backend
 backends/described    backend_description
-ranks                 launch rank_program requests
-bench/machine         provenance build_info
+ranks                 programs requests
+bench/machine         provenance
 bench/results         result comparison
-bench/roofline        machine_peak step_cost
+bench/roofline        roofline
+bench/verification    verification
 bench/windows         windows
-bench/job             scene_job combination
+bench/job             job
 bench                 bench_scene estimates
-guide                 guide cloth_sizes
-output/guide          guide_page guide_table
+guide                 guide
+output/guide          guide_tables
 output/pictures       painter
 output/tables         table results suite_tables
-output/traces         trace_content h5md_trace trace_reader energy_curve xdmf
-output/exports        exports vtkhdf_export
+output/traces         h5md_trace trace_reader energy_curve
+output/exports        exports
 output/folders        result_folder provenance_file
 report                report
 application           prepared_scene choices console outputs run guide_run

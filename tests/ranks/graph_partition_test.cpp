@@ -1,5 +1,3 @@
-#include "ranks/graph_partition.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <random>
 #include <string>
 
+#include "ranks/shares.h"
 #include "tests/support/systems.h"
 
 namespace mssim {

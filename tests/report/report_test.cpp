@@ -8,7 +8,7 @@
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
-#include "output/guide/guide_table.h"
+#include "output/guide/guide_tables.h"
 #include "output/tables/results.h"
 #include "output/tables/table.h"
 #include "report/report_internal.h"

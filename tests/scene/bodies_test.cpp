@@ -1,6 +1,4 @@
 // Scenes of tetrahedral bodies: the committed ones are the paper's, and files of others are read or refused.
-#include "scene/bodies.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,10 +10,11 @@
 #include <vector>
 
 #include "geometry/geometry.h"
-#include "mesh/tet_mesh.h"
+#include "mesh/meshing.h"
 #include "mesh/tetgen.h"
 #include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
+#include "scene/builders.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"

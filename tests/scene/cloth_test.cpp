@@ -1,5 +1,3 @@
-#include "scene/cloth.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -17,6 +15,7 @@
 #include <vector>
 
 #include "platform/files.h"
+#include "scene/builders.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"

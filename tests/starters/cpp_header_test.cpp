@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "backends/backends.h"
-#include "integrators/host_stages.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
+#include "laws/host_laws.h"
 #include "src/starters/cpp/mssim_backend.h"
 #include "tests/support/systems.h"
 

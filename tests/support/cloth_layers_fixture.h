@@ -13,7 +13,6 @@
 #include "garment/garment.h"
 #include "garment/layers/cloth_cloth.h"
 #include "garment/layers/cloth_contacts.h"
-#include "garment/layers/cloth_crossings.h"
 #include "geometry/vec3.h"
 
 namespace mssim {

@@ -9,7 +9,7 @@
 
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_backend.h"
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "tests/support/garment_system.h"
 #include "tests/support/systems.h"
 

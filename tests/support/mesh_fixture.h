@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
 #include "text/error.h"

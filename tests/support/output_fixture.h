@@ -9,7 +9,6 @@
 #include <string>
 
 #include "model/system.h"
-#include "model/topology.h"
 #include "tests/support/files_fixture.h"
 
 namespace mssim {

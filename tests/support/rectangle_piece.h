@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "garment/pattern/panel_mesh.h"
+#include "garment/pattern/garment_build.h"
 
 namespace mssim {
 

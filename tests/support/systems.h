@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/verification/second_stretch.h"
+#include "bench/verification/verification.h"
 #include "geometry/vec3.h"
 #include "integrators/integrator.h"
 #include "model/system.h"

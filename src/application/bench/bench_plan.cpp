@@ -18,7 +18,7 @@
 #include "integrators/stability.h"
 #include "output/traces/energy_curve.h"
 #include "platform/machine.h"
-#include "scene/cloth.h"
+#include "scene/builders.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
 #include "text/error.h"

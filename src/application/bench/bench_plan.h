@@ -9,7 +9,7 @@
 #include "application/prepared_scene.h"
 #include "backends/interface/backend.h"
 #include "bench/estimates.h"
-#include "bench/job/scene_job.h"
+#include "bench/job/job.h"
 #include "bench/machine/provenance.h"
 #include "output/tables/results.h"
 #include "output/tables/suite_tables.h"

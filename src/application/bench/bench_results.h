@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "application/bench/bench_plan.h"
-#include "bench/job/scene_job.h"
+#include "bench/job/job.h"
 #include "bench/machine/provenance.h"
 #include "bench/results/result.h"
 #include "output/folders/result_folder.h"

@@ -8,7 +8,7 @@
 #include "application/guide_run.h"
 #include "backends/accumulation/accumulation_methods.h"
 #include "backends/backends.h"
-#include "garment/output/garment_table.h"
+#include "garment/output/garment_tables.h"
 #include "integrators/all_integrators.h"
 #include "output/tables/suite_tables.h"
 #include "platform/machine.h"

@@ -16,7 +16,6 @@
 #include "integrators/integrator.h"
 #include "kernels/parameters.h"
 #include "model/system.h"
-#include "model/topology.h"
 #include "text/error.h"
 
 namespace mssim {

@@ -14,7 +14,7 @@
 #include "backends/layouts/node_arrays.h"
 #include "backends/threads/team_gain.h"
 #include "backends/threads/thread_progress.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "model/system.h"
 
 namespace mssim {

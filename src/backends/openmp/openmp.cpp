@@ -3,7 +3,7 @@
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/bodies.h"
 #include "backends/vectors/step_kernels.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 
 namespace mssim {
 

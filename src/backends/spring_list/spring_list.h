@@ -4,13 +4,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "integrators/coefficients.h"
-#include "integrators/host_stages.h"
+#include "laws/host_laws.h"
 #include "model/system.h"
 
 namespace mssim {
+
+#define MSSIM_INLINE [[gnu::always_inline]] inline
+#define MSSIM_INLINE_LAMBDA __attribute__((always_inline))
+#include "integrators/stage_update-inl.h"
+#undef MSSIM_INLINE
+#undef MSSIM_INLINE_LAMBDA
 
 /// A mass-spring system as a straightforward program holds it: an array of nodes and a list of springs, each
 /// spring adding its force to both ends. The parts of a step are member functions over ranges, so that one

@@ -1,5 +1,4 @@
-#include "bench/machine/build_info.h"
-
+#include "bench/machine/provenance.h"
 #include "mssim/commit.h"
 #include "mssim/version.h"
 

@@ -1,22 +1,183 @@
 #include "bench/machine/provenance.h"
 
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
+
+constexpr std::string_view amd = "AuthenticAMD", intel = "GenuineIntel", arm = "0x41";
+
+struct Generation {
+  std::string_view maker;
+  int family;
+  int first_model, last_model;
+  std::string_view name;
+};
+
+/// The numbers are those that the kernel tells processors apart by (arch/x86/kernel/cpu/amd.c and
+/// asm/intel-family.h) and Arm's main ID registers.
+constexpr Generation generations[]{
+    {amd, 0x17, 0x00, 0x2f, "Zen"},           {amd, 0x17, 0x50, 0x5f, "Zen"},
+    {amd, 0x17, 0x30, 0x4f, "Zen 2"},         {amd, 0x17, 0x60, 0x7f, "Zen 2"},
+    {amd, 0x17, 0x90, 0xaf, "Zen 2"},         {amd, 0x19, 0x00, 0x0f, "Zen 3"},
+    {amd, 0x19, 0x20, 0x5f, "Zen 3"},         {amd, 0x19, 0x10, 0x1f, "Zen 4"},
+    {amd, 0x19, 0x60, 0xaf, "Zen 4"},         {amd, 0x1a, 0x00, 0x4f, "Zen 5"},
+    {amd, 0x1a, 0x60, 0x7f, "Zen 5"},         {intel, 6, 0x3f, 0x3f, "Haswell"},
+    {intel, 6, 0x4f, 0x4f, "Broadwell"},      {intel, 6, 0x55, 0x55, "Skylake or Cascade Lake"},
+    {intel, 6, 0x6a, 0x6a, "Ice Lake"},       {intel, 6, 0x6c, 0x6c, "Ice Lake"},
+    {intel, 6, 0x8c, 0x8d, "Tiger Lake"},     {intel, 6, 0x8f, 0x8f, "Sapphire Rapids"},
+    {intel, 6, 0x97, 0x97, "Alder Lake"},     {intel, 6, 0x9a, 0x9a, "Alder Lake"},
+    {intel, 6, 0xad, 0xae, "Granite Rapids"}, {intel, 6, 0xb7, 0xb7, "Raptor Lake"},
+    {intel, 6, 0xcf, 0xcf, "Emerald Rapids"}, {arm, 0, 0xd0c, 0xd0c, "Neoverse N1"},
+    {arm, 0, 0xd40, 0xd40, "Neoverse V1"},    {arm, 0, 0xd49, 0xd49, "Neoverse N2"},
+    {arm, 0, 0xd4f, 0xd4f, "Neoverse V2"},
+};
+
+namespace fs = std::filesystem;
+
+/// First line of a file, empty when it cannot be read.
+std::string first_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\"";
+  const std::size_t first = text.find_first_not_of(blank);
+  return first == std::string_view::npos ? std::string_view{}
+                                         : text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// The value behind the first "key<separator>value" line of a file, without blanks and quotes.
+std::string value_of(const fs::path& file, std::string_view key, char separator) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const std::string_view view = line;
+    const std::size_t at = view.find(separator);
+    if (at != std::string_view::npos && trimmed(view.substr(0, at)) == key)
+      return std::string(trimmed(view.substr(at + 1)));
+  }
+  return {};
+}
+
+/// The number that the text starts with, 0 when there is none.
+template <class Number>
+Number leading_number(std::string_view text) {
+  Number number{};
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+/// The number that a text such as "0xd0c" stands for, 0 when it is none.
+int hexadecimal_number(std::string_view text) {
+  int number = 0;
+  if (text.starts_with("0x")) std::from_chars(text.data() + 2, text.data() + text.size(), number, 16);
+  return number;
+}
+
+/// Logical CPUs in a list of the kernel such as "0-3,8".
+int count_cpus(const std::string& list) {
+  int count = 0;
+  std::istringstream ranges(list);
+  for (std::string range; std::getline(ranges, range, ',');) {
+    const std::size_t dash = range.find('-');
+    const int first = leading_number<int>(range);
+    count += dash == std::string::npos ? 1 : leading_number<int>(range.substr(dash + 1)) - first + 1;
+  }
+  return count;
+}
+
+/// "48K", "1024K", "32M" as the kernel writes the size of a cache.
+std::uint64_t bytes_of(const std::string& size) {
+  const auto number = leading_number<std::uint64_t>(size);
+  switch (size.empty() ? ' ' : size.back()) {
+    case 'K':
+      return number << 10;
+    case 'M':
+      return number << 20;
+    case 'G':
+      return number << 30;
+    default:
+      return number;
+  }
+}
+
+std::vector<Cache> read_caches(const fs::path& cpus) {
+  std::vector<Cache> caches;
+  std::set<std::tuple<std::string, std::string, std::string>> seen;  // level, type, the CPUs that share it
+  std::error_code ignored;
+  for (const auto& cpu : fs::directory_iterator(cpus, ignored)) {
+    for (const auto& entry : fs::directory_iterator(cpu.path() / "cache", ignored)) {
+      const std::string level = first_line(entry.path() / "level"), type = first_line(entry.path() / "type");
+      const std::string shared = first_line(entry.path() / "shared_cpu_list");
+      if (level.empty() || !seen.emplace(level, type, shared).second) continue;
+      const Cache cache{leading_number<int>(level), type, bytes_of(first_line(entry.path() / "size")), 1,
+                        count_cpus(shared)};
+      const auto same = std::find_if(caches.begin(), caches.end(), [&](const Cache& other) {
+        return std::tie(other.level, other.type, other.bytes, other.sharing) ==
+               std::tie(cache.level, cache.type, cache.bytes, cache.sharing);
+      });
+      if (same == caches.end())
+        caches.push_back(cache);
+      else
+        ++same->count;
+    }
+  }
+  std::sort(caches.begin(), caches.end(), [](const Cache& a, const Cache& b) {
+    return std::tie(a.level, a.type, a.bytes) < std::tie(b.level, b.type, b.bytes);
+  });
+  return caches;
+}
+
+/// Drivers say it in one of two ways: whether boost is on, or whether turbo is off.
+std::optional<bool> read_turbo(const fs::path& cpus) {
+  if (const std::string boost = first_line(cpus / "cpufreq/boost"); !boost.empty()) return boost == "1";
+  if (const std::string off = first_line(cpus / "intel_pstate/no_turbo"); !off.empty()) return off == "0";
+  return std::nullopt;
+}
+
+std::vector<double> read_load(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<double> averages;
+  for (double average = 0; averages.size() < 3 && in >> average;) averages.push_back(average);
+  return averages;
+}
+
+std::string kernel_name() {
+  utsname name{};
+  return uname(&name) == 0 ? std::string(name.sysname) + ' ' + name.release + ' ' + name.machine
+                           : std::string();
+}
+
+/// The design of the first processor in a file such as /proc/cpuinfo.
+std::string read_generation(const fs::path& file) {
+  const std::string vendor = value_of(file, "vendor_id", ':');
+  if (!vendor.empty())
+    return std::string(cpu_generation({vendor, leading_number<int>(value_of(file, "cpu family", ':')),
+                                       leading_number<int>(value_of(file, "model", ':'))}));
+  const std::string implementer = value_of(file, "CPU implementer", ':');
+  const std::string part = value_of(file, "CPU part", ':');  // "0xd0c"
+  return std::string(cpu_generation({implementer, 0, hexadecimal_number(part)}));
+}
 
 std::vector<std::pair<std::string, std::string>> thread_environment() {
   std::vector<std::pair<std::string, std::string>> variables;
@@ -66,7 +227,59 @@ std::string now_utc() {
   return text.data();
 }
 
+/// Programs that compute beside the bench, on the average of the last minute, before they are worth a word.
+constexpr double least_load = 0.25;
+
+bool binds_threads(const Provenance& provenance) {
+  return std::ranges::any_of(provenance.thread_environment, [](const auto& variable) {
+    const auto& [name, value] = variable;
+    return name == "GOMP_CPU_AFFINITY" || name == "OMP_PLACES" ||
+           (name == "OMP_PROC_BIND" && value != "false" && value != "FALSE");
+  });
+}
+
+std::string one_decimal(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", value);
+  return text.data();
+}
+
 }  // namespace
+
+std::string_view cpu_generation(const CpuIdentification& cpu) {
+  const auto found = std::ranges::find_if(generations, [&](const Generation& generation) {
+    return generation.maker == cpu.maker && generation.family == cpu.family &&
+           cpu.model >= generation.first_model && cpu.model <= generation.last_model;
+  });
+  return found == std::end(generations) ? std::string_view() : found->name;
+}
+
+Machine read_machine(const fs::path& root) {
+  const fs::path cpus = root / "sys/devices/system/cpu";
+  Machine machine;
+  machine.cpu_model = value_of(root / "proc/cpuinfo", "model name", ':');
+  // On Arm the kernel gives numbers instead of a name.
+  if (machine.cpu_model.empty())
+    if (const std::string part = value_of(root / "proc/cpuinfo", "CPU part", ':'); !part.empty())
+      machine.cpu_model =
+          "implementer " + value_of(root / "proc/cpuinfo", "CPU implementer", ':') + " part " + part;
+  machine.cpu_generation = read_generation(root / "proc/cpuinfo");
+  machine.logical_cpus = count_cpus(first_line(cpus / "online"));
+  machine.cpu_mhz = leading_number<double>(value_of(root / "proc/cpuinfo", "cpu MHz", ':'));
+  machine.caches = read_caches(cpus);
+  if (std::string governor = first_line(cpus / "cpu0/cpufreq/scaling_governor"); !governor.empty())
+    machine.governor = std::move(governor);
+  machine.turbo = read_turbo(cpus);
+  machine.load_average = read_load(root / "proc/loadavg");
+  machine.memory_bytes = leading_number<std::uint64_t>(value_of(root / "proc/meminfo", "MemTotal", ':'))
+                         << 10;
+  const ContainerLimits limits = container_limits(root);
+  machine.cpu_quota = limits.processors;
+  machine.memory_limit_bytes = limits.memory_bytes;
+  machine.operating_system = value_of(root / "etc/os-release", "PRETTY_NAME", '=');
+  machine.kernel = kernel_name();
+  return machine;
+}
 
 Provenance gather_provenance(const std::vector<std::string>& arguments, int threads) {
   Provenance provenance;
@@ -109,27 +322,6 @@ void add_program(Provenance& provenance, BackendProgramRecord record, const std:
 void add_scene(Provenance& provenance, std::string_view name, std::string_view file_text) {
   provenance.scenes.push_back({std::string(name), fnv1a_64(file_text)});
 }
-
-namespace {
-
-/// Programs that compute beside the bench, on the average of the last minute, before they are worth a word.
-constexpr double least_load = 0.25;
-
-bool binds_threads(const Provenance& provenance) {
-  return std::ranges::any_of(provenance.thread_environment, [](const auto& variable) {
-    const auto& [name, value] = variable;
-    return name == "GOMP_CPU_AFFINITY" || name == "OMP_PLACES" ||
-           (name == "OMP_PROC_BIND" && value != "false" && value != "FALSE");
-  });
-}
-
-std::string one_decimal(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
-
-}  // namespace
 
 std::vector<std::string> noise_of(const Provenance& provenance) {
   const Machine& machine = provenance.machine;

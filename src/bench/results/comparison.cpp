@@ -4,11 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "statistics/statistics.h"
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// Adds "WHAT was BEFORE and is NOW" where they differ, each sentence once.
@@ -29,37 +27,6 @@ std::string size_of(const ResultRow& row) {
   return "one of " + std::to_string(row.nodes) + " nodes and " + std::to_string(row.springs_unique) +
          " springs";
 }
-
-}  // namespace
-
-std::vector<std::string> differences(const Provenance& before, const Provenance& now) {
-  std::vector<std::string> sentences;
-  const bool generations = !before.machine.cpu_generation.empty() && !now.machine.cpu_generation.empty();
-  add(sentences, "the CPU", cpu_of(before.machine, generations), cpu_of(now.machine, generations));
-  add(sentences, "the compiler", before.build.compiler, now.build.compiler);
-  add(sentences, "the build type", before.build.build_type, now.build.build_type);
-  add(sentences, "the compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
-  add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
-  for (const SceneHash& scene : before.scenes)
-    if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);
-        same != now.scenes.end())
-      add(sentences, "the hash of scene " + scene.name, to_hex(scene.fnv1a_64), to_hex(same->fnv1a_64));
-  return sentences;
-}
-
-std::vector<std::string> differences(std::span<const ResultRow> before, std::span<const ResultRow> now) {
-  std::vector<std::string> sentences;
-  for (const ResultRow& row : before) {
-    const auto same = std::ranges::find_if(
-        now, [&](const ResultRow& candidate) { return same_combination(candidate, row); });
-    if (same == now.end() || !row.ms_per_step || !same->ms_per_step) continue;
-    add(sentences, "the device of " + row.backend, row.device, same->device);
-    add(sentences, "scene " + row.scene, size_of(row), size_of(*same));
-  }
-  return sentences;
-}
-
-namespace {
 
 /// With so few samples a side even times that do not overlap are not significant.
 constexpr std::size_t fewest_samples = 5;
@@ -90,7 +57,38 @@ ComparedRow compare_rows(const ResultRow& base, const ResultRow& next, double th
   return row;
 }
 
+RatioEstimate ratio_at_look(const PairedTimes& times) {
+  return paired_ratio(times.base_ms, times.new_ms, look_at(times.base_ms.size()).fraction);
+}
+
 }  // namespace
+
+std::vector<std::string> differences(const Provenance& before, const Provenance& now) {
+  std::vector<std::string> sentences;
+  const bool generations = !before.machine.cpu_generation.empty() && !now.machine.cpu_generation.empty();
+  add(sentences, "the CPU", cpu_of(before.machine, generations), cpu_of(now.machine, generations));
+  add(sentences, "the compiler", before.build.compiler, now.build.compiler);
+  add(sentences, "the build type", before.build.build_type, now.build.build_type);
+  add(sentences, "the compiler flags", '"' + before.build.flags + '"', '"' + now.build.flags + '"');
+  add(sentences, "the number of threads", std::to_string(before.threads), std::to_string(now.threads));
+  for (const SceneHash& scene : before.scenes)
+    if (const auto same = std::ranges::find(now.scenes, scene.name, &SceneHash::name);
+        same != now.scenes.end())
+      add(sentences, "the hash of scene " + scene.name, to_hex(scene.fnv1a_64), to_hex(same->fnv1a_64));
+  return sentences;
+}
+
+std::vector<std::string> differences(std::span<const ResultRow> before, std::span<const ResultRow> now) {
+  std::vector<std::string> sentences;
+  for (const ResultRow& row : before) {
+    const auto same = std::ranges::find_if(
+        now, [&](const ResultRow& candidate) { return same_combination(candidate, row); });
+    if (same == now.end() || !row.ms_per_step || !same->ms_per_step) continue;
+    add(sentences, "the device of " + row.backend, row.device, same->device);
+    add(sentences, "scene " + row.scene, size_of(row), size_of(*same));
+  }
+  return sentences;
+}
 
 std::string_view name_of(Verdict verdict) {
   constexpr std::array<std::string_view, 5> names{"same", "faster", "slower", "undecided", "lost"};
@@ -158,14 +156,6 @@ bool has_regression(const RunComparison& comparison) {
     return row.verdict == Verdict::slower || row.verdict == Verdict::lost;
   });
 }
-
-namespace {
-
-RatioEstimate ratio_at_look(const PairedTimes& times) {
-  return paired_ratio(times.base_ms, times.new_ms, look_at(times.base_ms.size()).fraction);
-}
-
-}  // namespace
 
 bool is_settled(const PairedTimes& times, double threshold) {
   if (!times.lost.empty()) return true;

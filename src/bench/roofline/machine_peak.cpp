@@ -1,5 +1,4 @@
-#include "bench/roofline/machine_peak.h"
-
+#include "bench/roofline/roofline.h"
 #include "platform/machine.h"
 
 // Highway compiles the text up to HWY_AFTER_NAMESPACE once for every instruction set, each time into a

@@ -1,6 +1,6 @@
-#include "bench/roofline/step_cost.h"
-
 #include <algorithm>
+
+#include "bench/roofline/roofline.h"
 
 namespace mssim {
 namespace {

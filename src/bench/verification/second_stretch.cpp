@@ -1,5 +1,3 @@
-#include "bench/verification/second_stretch.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +10,7 @@
 
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
-#include "model/spectrum.h"
+#include "model/system.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -139,7 +137,6 @@ SecondStretch follow(System system, const Integrator& integrator, double dt_s, i
     falling->set_state(state);
     falling->step(1);
     reference->step(1);
-    rounded->step(1);
     const State before_floor = falling->state();
     const double tolerance = position_tolerance(small, integrator, steps);
     const double clear = tolerance / 4 * unit;
@@ -152,9 +149,7 @@ SecondStretch follow(System system, const Integrator& integrator, double dt_s, i
       if (above < 0) has_landed[i] = 1;
     }
     state = reference->state();
-    State other = rounded->state();
-    round_to_single(other);
-    rounded->set_state(other);
+    const State other = step_rounded(*rounded, 1);
     if (!decided || first_bad_node(state)) break;
     // A right backend was seen at 1.8 times it (cloths, semi-euler).
     constexpr double margin = 4;

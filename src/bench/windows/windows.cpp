@@ -1,6 +1,5 @@
 #include "bench/windows/windows.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <future>
@@ -10,13 +9,10 @@
 
 #include "backends/backends.h"
 #include "backends/layouts/band_grid.h"
-#include "bench/verification/verification.h"
-#include "model/energy.h"
 #include "platform/machine.h"
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// Rows and columns of a window where the cloth is large. What the reference computes around it costs more.
@@ -38,6 +34,33 @@ double spread(std::size_t i, double step) {
 
 // Powers of the root of x^3 = x + 1, whose multiples fill a square evenly.
 constexpr double row_step = 0.7548776662466927, column_step = 0.5698402909980532;
+
+constexpr int leg = 20;  ///< steps after which the domain is cut to what is still right
+static_assert(std::ranges::find(window_looks, leg) != window_looks.end() && verification_steps % leg == 0);
+
+GridWindow domain_for(const GridWindow& window, int steps, const Integrator& integrator,
+                      const GridPatch& grid) {
+  return domain_of(window, ghost_columns(integrator, static_cast<std::size_t>(steps)), grid);
+}
+
+/// What a state of a window says of another one in it.
+State cut(const State& state, const GridWindow& from, const GridWindow& to) {
+  State part;
+  for (std::uint32_t row = to.row; row < to.row + to.rows; ++row) {
+    const std::size_t first = std::size_t{row - from.row} * from.columns + (to.column - from.column);
+    const auto copy = [&](const std::vector<Vec3d>& all, std::vector<Vec3d>& some) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+      some.insert(some.end(), begin, begin + to.columns);
+    };
+    copy(state.position, part.position);
+    copy(state.velocity, part.velocity);
+  }
+  return part;
+}
+
+bool is_in_the_air(const State& state, const Floor& floor) {
+  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > floor.height; });
+}
 
 }  // namespace
 
@@ -76,37 +99,6 @@ std::vector<GridWindow> choose_windows(const GridPatch& grid, std::size_t parts,
     place(row_at(i), static_cast<std::uint32_t>(spread(i, column_step) * (last_column + 1.0)));
   return chosen;
 }
-
-namespace {
-
-constexpr int leg = 20;  ///< steps after which the domain is cut to what is still right
-static_assert(std::ranges::find(window_looks, leg) != window_looks.end() && verification_steps % leg == 0);
-
-GridWindow domain_for(const GridWindow& window, int steps, const Integrator& integrator,
-                      const GridPatch& grid) {
-  return domain_of(window, ghost_columns(integrator, static_cast<std::size_t>(steps)), grid);
-}
-
-/// What a state of a window says of another one in it.
-State cut(const State& state, const GridWindow& from, const GridWindow& to) {
-  State part;
-  for (std::uint32_t row = to.row; row < to.row + to.rows; ++row) {
-    const std::size_t first = std::size_t{row - from.row} * from.columns + (to.column - from.column);
-    const auto copy = [&](const std::vector<Vec3d>& all, std::vector<Vec3d>& some) {
-      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-      some.insert(some.end(), begin, begin + to.columns);
-    };
-    copy(state.position, part.position);
-    copy(state.velocity, part.velocity);
-  }
-  return part;
-}
-
-bool is_in_the_air(const State& state, const Floor& floor) {
-  return std::ranges::all_of(state.position, [&](const Vec3d& x) { return x.y > floor.height; });
-}
-
-}  // namespace
 
 GridWindow domain_of(const GridWindow& window, std::size_t reach, const GridPatch& grid) {
   const ColumnRange rows = with_ghosts({window.row, window.rows}, reach, grid.rows);

@@ -13,7 +13,6 @@
 #include "bench/verification/verification.h"
 #include "integrators/integrator.h"
 #include "model/system.h"
-#include "model/topology.h"
 
 namespace mssim {
 

@@ -6,13 +6,10 @@
 #include <cstddef>
 #include <functional>
 #include <utility>
-#include <vector>
 
-#include "geometry/geometry.h"
 #include "text/error.h"
 
 namespace mssim {
-
 namespace {
 
 /// A triangle's part of a horizontal section.
@@ -55,6 +52,66 @@ class Half {
   PlanPoint least_{HUGE_VAL, HUGE_VAL}, most_{-HUGE_VAL, -HUGE_VAL};
   double covered_ = 0;
 };
+
+using Corners = std::array<Vec3d, 3>;
+
+/// Calls `visit` with each corner of a triangle in the plane where `coordinate` is `value`, and with each
+/// point in which one of its edges passes through that plane.
+template <class Visit>
+void cut(const Corners& corners, double Vec3d::*coordinate, double value, const Visit& visit) {
+  const auto [low, high] =
+      std::minmax({corners[0].*coordinate, corners[1].*coordinate, corners[2].*coordinate});
+  if (low > value || high < value) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d& from = corners[i];
+    const Vec3d& to = corners[(i + 1) % 3];
+    const double before = from.*coordinate - value;
+    const double behind = to.*coordinate - value;
+    if (before == 0) visit(from);
+    if ((before < 0 && behind > 0) || (before > 0 && behind < 0))
+      visit(from + before / (before - behind) * (to - from));
+  }
+}
+
+Corners corners_of(const Surface& surface, std::size_t triangle) {
+  const auto& [a, b, c] = surface.triangles[triangle];
+  return {surface.points[a], surface.points[b], surface.points[c]};
+}
+
+TrunkAndLegs checked_body(const Surface& surface, const std::string& name) {
+  validate_surface(surface, name);
+  return trunk_and_legs(surface);
+}
+
+bool nearer_the_back(const PlanPoint& a, const PlanPoint& b) { return a.z < b.z; }
+
+/// Where a landmark is looked for and where it is if the body does not show it, in heights of the crotch:
+/// what is between the two on grown people and children alike, and where the reference body has it.
+struct Search {
+  double low, high, usual;
+};
+constexpr Search waist_search{1.16, 1.52, 1.35}, hip_search{1.05, 1.25, 1.12}, knee_search{0.46, 0.75, 0.60},
+    ankle_search{0.06, 0.25, 0.12};
+
+using Girth = std::function<std::optional<double>(double)>;
+
+/// The height within the range at which the girth is least, or for a negative `sign` greatest. Where that is
+/// at an end of the range, it is on the way to something else, and the usual height counts.
+Landmark extreme(const Girth& girth, const Search& search, double crotch, double sign) {
+  constexpr int steps = 100;
+  int best = -1;
+  double least = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const double y = crotch * (search.low + (search.high - search.low) * i / steps);
+    const std::optional<double> there = girth(y);
+    if (!there || (best >= 0 && sign * *there >= least)) continue;
+    best = i;
+    least = sign * *there;
+  }
+  const bool shows = best > 0 && best < steps;
+  const double fraction = shows ? search.low + (search.high - search.low) * best / steps : search.usual;
+  return {crotch * fraction, girth(crotch * fraction), !shows};
+}
 
 }  // namespace
 
@@ -110,42 +167,6 @@ double between_legs(const std::vector<LegGap>& gaps) {
   }
   return (low + high) / 2;
 }
-
-namespace {
-
-using Corners = std::array<Vec3d, 3>;
-
-/// Calls `visit` with each corner of a triangle in the plane where `coordinate` is `value`, and with each
-/// point in which one of its edges passes through that plane.
-template <class Visit>
-void cut(const Corners& corners, double Vec3d::*coordinate, double value, const Visit& visit) {
-  const auto [low, high] =
-      std::minmax({corners[0].*coordinate, corners[1].*coordinate, corners[2].*coordinate});
-  if (low > value || high < value) return;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3d& from = corners[i];
-    const Vec3d& to = corners[(i + 1) % 3];
-    const double before = from.*coordinate - value;
-    const double behind = to.*coordinate - value;
-    if (before == 0) visit(from);
-    if ((before < 0 && behind > 0) || (before > 0 && behind < 0))
-      visit(from + before / (before - behind) * (to - from));
-  }
-}
-
-Corners corners_of(const Surface& surface, std::size_t triangle) {
-  const auto& [a, b, c] = surface.triangles[triangle];
-  return {surface.points[a], surface.points[b], surface.points[c]};
-}
-
-TrunkAndLegs checked_body(const Surface& surface, const std::string& name) {
-  validate_surface(surface, name);
-  return trunk_and_legs(surface);
-}
-
-bool nearer_the_back(const PlanPoint& a, const PlanPoint& b) { return a.z < b.z; }
-
-}  // namespace
 
 BodyProfile::BodyProfile(const Surface& surface, std::string name)
     : name_(std::move(name)), body_(checked_body(surface, name_)) {
@@ -321,38 +342,6 @@ double BodyProfile::half_width(double y) const {
   for (const PlanPoint& point : section(y)) widest = std::max(widest, std::abs(point.x));
   return widest;
 }
-
-namespace {
-
-/// Where a landmark is looked for and where it is if the body does not show it, in heights of the crotch:
-/// what is between the two on grown people and children alike, and where the reference body has it.
-struct Search {
-  double low, high, usual;
-};
-constexpr Search waist_search{1.16, 1.52, 1.35}, hip_search{1.05, 1.25, 1.12}, knee_search{0.46, 0.75, 0.60},
-    ankle_search{0.06, 0.25, 0.12};
-
-using Girth = std::function<std::optional<double>(double)>;
-
-/// The height within the range at which the girth is least, or for a negative `sign` greatest. Where that is
-/// at an end of the range, it is on the way to something else, and the usual height counts.
-Landmark extreme(const Girth& girth, const Search& search, double crotch, double sign) {
-  constexpr int steps = 100;
-  int best = -1;
-  double least = 0;
-  for (int i = 0; i <= steps; ++i) {
-    const double y = crotch * (search.low + (search.high - search.low) * i / steps);
-    const std::optional<double> there = girth(y);
-    if (!there || (best >= 0 && sign * *there >= least)) continue;
-    best = i;
-    least = sign * *there;
-  }
-  const bool shows = best > 0 && best < steps;
-  const double fraction = shows ? search.low + (search.high - search.low) * best / steps : search.usual;
-  return {crotch * fraction, girth(crotch * fraction), !shows};
-}
-
-}  // namespace
 
 std::optional<double> thicker_leg(const BodyProfile& profile, double y) {
   try {

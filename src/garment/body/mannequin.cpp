@@ -12,7 +12,6 @@
 #include "text/error.h"
 
 namespace mssim {
-
 namespace {
 
 struct NamedGirth {
@@ -63,26 +62,6 @@ void require_thighs_below_hip(const BodyMeasures& m) {
              " m; give a thigh girth of at most " + shown(std::floor(most * 1000) / 1000) +
              " m or a larger hip girth");
 }
-
-}  // namespace
-
-void check_measures(const BodyMeasures& m) {
-  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
-                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
-                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
-  for (const NamedGirth& girth : girths) {
-    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
-    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
-  }
-  require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
-  require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
-  require_between("thigh gap", m.thigh_gap, " m", 0.004, 0.04);
-  require_between("stance", m.stance, " m", 0.02, 1);
-  require_heights_in_order(m);
-  require_thighs_below_hip(m);
-}
-
-namespace {
 
 class Tube {
  public:
@@ -192,28 +171,6 @@ class Tube {
   const TubeCells cells_;
   std::vector<Vec3d> directions_;  ///< of a ring's points
 };
-
-}  // namespace
-
-double ellipse_perimeter(double half_axis, double other_half_axis) {
-  const double sum = half_axis + other_half_axis;
-  const double difference = half_axis - other_half_axis;
-  const double h = difference * difference / (sum * sum);
-  return std::numbers::pi * sum * (1 + 3 * h / (10 + std::sqrt(4 - 3 * h)));
-}
-
-EllipseSection section_of_girth(double height, double girth, double aspect, double x, double z) {
-  const double half_width = girth / ellipse_perimeter(1, aspect);
-  const double half_depth = half_width * aspect;
-  return {height, x - half_width, x + half_width, z - half_depth, z + half_depth};
-}
-
-void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells) {
-  assert(sections.size() >= 2 && cells.around >= 4 && cells.around % 4 == 0 && cells.height > 0);
-  Tube(surface, sections, cells).add();
-}
-
-namespace {
 
 double between(double from, double to, double fraction) { return from + (to - from) * fraction; }
 
@@ -365,6 +322,40 @@ std::vector<EllipseSection> mirrored(std::vector<EllipseSection> sections) {
 }
 
 }  // namespace
+
+void check_measures(const BodyMeasures& m) {
+  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
+                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
+                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
+  for (const NamedGirth& girth : girths) {
+    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
+    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
+  }
+  require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
+  require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
+  require_between("thigh gap", m.thigh_gap, " m", 0.004, 0.04);
+  require_between("stance", m.stance, " m", 0.02, 1);
+  require_heights_in_order(m);
+  require_thighs_below_hip(m);
+}
+
+double ellipse_perimeter(double half_axis, double other_half_axis) {
+  const double sum = half_axis + other_half_axis;
+  const double difference = half_axis - other_half_axis;
+  const double h = difference * difference / (sum * sum);
+  return std::numbers::pi * sum * (1 + 3 * h / (10 + std::sqrt(4 - 3 * h)));
+}
+
+EllipseSection section_of_girth(double height, double girth, double aspect, double x, double z) {
+  const double half_width = girth / ellipse_perimeter(1, aspect);
+  const double half_depth = half_width * aspect;
+  return {height, x - half_width, x + half_width, z - half_depth, z + half_depth};
+}
+
+void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells) {
+  assert(sections.size() >= 2 && cells.around >= 4 && cells.around % 4 == 0 && cells.height > 0);
+  Tube(surface, sections, cells).add();
+}
 
 Surface mannequin(const BodyMeasures& measures, const MannequinResolution& resolution) {
   const std::uint32_t around = resolution.cells_around;

@@ -1,5 +1,3 @@
-#include "garment/body/sections.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,8 +5,9 @@
 #include <unordered_map>
 #include <utility>
 
-namespace mssim {
+#include "garment/body/trunk_and_legs.h"
 
+namespace mssim {
 namespace {
 
 /// A triangle that the plane cuts, and the two edges in which it does.
@@ -95,55 +94,6 @@ std::vector<Side> sides_within(const SectionLoop& loop, const PlanPoint& low, co
   }
   return sides;
 }
-
-}  // namespace
-
-std::vector<SectionLoop> section_loops(const Surface& surface, std::span<const std::uint32_t> triangles,
-                                       double y) {
-  std::vector<CutTriangle> cuts = cut_triangles(surface, triangles, y);
-  std::unordered_map<std::uint64_t, std::size_t> entered_by;
-  entered_by.reserve(cuts.size());
-  for (std::size_t i = 0; i < cuts.size(); ++i) entered_by.emplace(cuts[i].in, i);
-  std::vector<SectionLoop> loops;
-  for (std::size_t first = 0; first < cuts.size(); ++first) {
-    if (cuts[first].done) continue;
-    std::vector<PlanPoint> points;
-    std::vector<std::uint32_t> through;
-    for (std::size_t i = first; !cuts[i].done; i = entered_by.at(cuts[i].out)) {
-      cuts[i].done = true;
-      points.push_back(cuts[i].at);
-      through.push_back(cuts[i].triangle);
-    }
-    loops.push_back(loop_of(std::move(points), std::move(through)));
-  }
-  return loops;
-}
-
-SectionLoop loop_of(std::vector<PlanPoint> points, std::vector<std::uint32_t> triangles) {
-  SectionLoop loop;
-  loop.area = 0.5 * std::abs(twice_area(points));
-  loop.low = loop.high = points.front();
-  for (const PlanPoint& point : points) {
-    loop.low = {std::min(loop.low.x, point.x), std::min(loop.low.z, point.z)};
-    loop.high = {std::max(loop.high.x, point.x), std::max(loop.high.z, point.z)};
-  }
-  loop.points = std::move(points);
-  loop.triangles = std::move(triangles);
-  return loop;
-}
-
-bool overlap(const SectionLoop& a, const SectionLoop& b) {
-  const PlanPoint low{std::max(a.low.x, b.low.x), std::max(a.low.z, b.low.z)};
-  const PlanPoint high{std::min(a.high.x, b.high.x), std::min(a.high.z, b.high.z)};
-  if (low.x > high.x || low.z > high.z) return false;
-  if (contains(a, b.points.front()) || contains(b, a.points.front())) return true;
-  const std::vector<Side> of_a = sides_within(a, low, high), of_b = sides_within(b, low, high);
-  return std::ranges::any_of(of_a, [&](const Side& side) {
-    return std::ranges::any_of(of_b, [&](const Side& other) { return cross_each_other(side, other); });
-  });
-}
-
-namespace {
 
 constexpr double narrow = 0.6;          // chord over outline
 constexpr double small_part = 0.25;     // of the area
@@ -234,6 +184,51 @@ SectionLoop cut_out(const SectionLoop& loop, const Stretch& stretch) {
 }
 
 }  // namespace
+
+std::vector<SectionLoop> section_loops(const Surface& surface, std::span<const std::uint32_t> triangles,
+                                       double y) {
+  std::vector<CutTriangle> cuts = cut_triangles(surface, triangles, y);
+  std::unordered_map<std::uint64_t, std::size_t> entered_by;
+  entered_by.reserve(cuts.size());
+  for (std::size_t i = 0; i < cuts.size(); ++i) entered_by.emplace(cuts[i].in, i);
+  std::vector<SectionLoop> loops;
+  for (std::size_t first = 0; first < cuts.size(); ++first) {
+    if (cuts[first].done) continue;
+    std::vector<PlanPoint> points;
+    std::vector<std::uint32_t> through;
+    for (std::size_t i = first; !cuts[i].done; i = entered_by.at(cuts[i].out)) {
+      cuts[i].done = true;
+      points.push_back(cuts[i].at);
+      through.push_back(cuts[i].triangle);
+    }
+    loops.push_back(loop_of(std::move(points), std::move(through)));
+  }
+  return loops;
+}
+
+SectionLoop loop_of(std::vector<PlanPoint> points, std::vector<std::uint32_t> triangles) {
+  SectionLoop loop;
+  loop.area = 0.5 * std::abs(twice_area(points));
+  loop.low = loop.high = points.front();
+  for (const PlanPoint& point : points) {
+    loop.low = {std::min(loop.low.x, point.x), std::min(loop.low.z, point.z)};
+    loop.high = {std::max(loop.high.x, point.x), std::max(loop.high.z, point.z)};
+  }
+  loop.points = std::move(points);
+  loop.triangles = std::move(triangles);
+  return loop;
+}
+
+bool overlap(const SectionLoop& a, const SectionLoop& b) {
+  const PlanPoint low{std::max(a.low.x, b.low.x), std::max(a.low.z, b.low.z)};
+  const PlanPoint high{std::min(a.high.x, b.high.x), std::min(a.high.z, b.high.z)};
+  if (low.x > high.x || low.z > high.z) return false;
+  if (contains(a, b.points.front()) || contains(b, a.points.front())) return true;
+  const std::vector<Side> of_a = sides_within(a, low, high), of_b = sides_within(b, low, high);
+  return std::ranges::any_of(of_a, [&](const Side& side) {
+    return std::ranges::any_of(of_b, [&](const Side& other) { return cross_each_other(side, other); });
+  });
+}
 
 std::vector<SectionLoop> cut_at_necks(SectionLoop loop) {
   constexpr int most = 4;

@@ -1,7 +1,6 @@
 #include "garment/body/stance.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -11,7 +10,6 @@
 #include "text/error.h"
 
 namespace mssim {
-
 namespace {
 
 constexpr std::array<LengthUnit, 6> table{
@@ -20,53 +18,7 @@ constexpr std::array<LengthUnit, 6> table{
 /// How many times too small or too large a person of this height, m, would be; 1 for a person.
 double misfit(double height) { return std::max({1.0, shortest_person / height, height / tallest_person}); }
 
-}  // namespace
-
-std::span<const LengthUnit> length_units() { return table; }
-
-std::string unit_names() {
-  std::string names;
-  for (const LengthUnit& unit : table) names += std::string(unit.name) + ", ";
-  return names;
-}
-
-std::optional<UnitGuess> guess_unit(double height) {
-  constexpr double largest_misfit = 1.5;
-  const auto misfit_in = [&](const LengthUnit& unit) { return misfit(height * unit.metres); };
-  const LengthUnit& best = *std::ranges::min_element(table, {}, misfit_in);
-  if (!(height > 0) || misfit_in(best) > largest_misfit) return std::nullopt;
-  return UnitGuess{best, misfit_in(best) == 1};
-}
-
-namespace {
-
 constexpr std::array<Vec3d, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-}  // namespace
-
-Vec3d direction_of(UpAxis up) { return up == UpAxis::y ? axes[1] : axes[2]; }
-
-Vec3d direction_of(Facing facing) {
-  const auto number = static_cast<std::size_t>(facing);
-  return (number % 2 == 0 ? 1.0 : -1.0) * axes.at(number / 2);
-}
-
-bool is_level(Facing facing, UpAxis up) { return dot(direction_of(facing), direction_of(up)) == 0; }
-
-Surface stood_up(Surface body, const BodyStance& stance) {
-  const Vec3d up = direction_of(stance.up), ahead = direction_of(stance.facing), left = cross(up, ahead);
-  // Without a turn these are 1 and 0, which change no bit.
-  const double turn = stance.turn_deg * std::numbers::pi / 180, cosine = std::cos(turn),
-               sine = std::sin(turn);
-  for (Vec3d& point : body.points) {
-    const double x = dot(point, left), z = dot(point, ahead);
-    const Vec3d turned{cosine * x + sine * z, dot(point, up), cosine * z - sine * x};
-    point = stance.unit_m * turned + stance.move;
-  }
-  return body;
-}
-
-namespace {
 
 /// The smallest box that holds the surface.
 Box<double> box_of(const Surface& surface) {
@@ -227,6 +179,44 @@ double unit_of(double height, const GivenStance& given, std::vector<std::string>
 double to_tenths(double metres) { return std::round(1e4 * metres) / 1e4 + 0.0; }
 
 }  // namespace
+
+std::span<const LengthUnit> length_units() { return table; }
+
+std::string unit_names() {
+  std::string names;
+  for (const LengthUnit& unit : table) names += std::string(unit.name) + ", ";
+  return names;
+}
+
+std::optional<UnitGuess> guess_unit(double height) {
+  constexpr double largest_misfit = 1.5;
+  const auto misfit_in = [&](const LengthUnit& unit) { return misfit(height * unit.metres); };
+  const LengthUnit& best = *std::ranges::min_element(table, {}, misfit_in);
+  if (!(height > 0) || misfit_in(best) > largest_misfit) return std::nullopt;
+  return UnitGuess{best, misfit_in(best) == 1};
+}
+
+Vec3d direction_of(UpAxis up) { return up == UpAxis::y ? axes[1] : axes[2]; }
+
+Vec3d direction_of(Facing facing) {
+  const auto number = static_cast<std::size_t>(facing);
+  return (number % 2 == 0 ? 1.0 : -1.0) * axes.at(number / 2);
+}
+
+bool is_level(Facing facing, UpAxis up) { return dot(direction_of(facing), direction_of(up)) == 0; }
+
+Surface stood_up(Surface body, const BodyStance& stance) {
+  const Vec3d up = direction_of(stance.up), ahead = direction_of(stance.facing), left = cross(up, ahead);
+  // Without a turn these are 1 and 0, which change no bit.
+  const double turn = stance.turn_deg * std::numbers::pi / 180, cosine = std::cos(turn),
+               sine = std::sin(turn);
+  for (Vec3d& point : body.points) {
+    const double x = dot(point, left), z = dot(point, ahead);
+    const Vec3d turned{cosine * x + sine * z, dot(point, up), cosine * z - sine * x};
+    point = stance.unit_m * turned + stance.move;
+  }
+  return body;
+}
 
 StanceGuess guess_stance(const Surface& body, const GivenStance& given) {
   std::vector<Candidate> all = candidates(body, given);

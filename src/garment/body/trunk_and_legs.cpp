@@ -4,20 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <utility>
-#include <vector>
 
-#include "garment/body/sections.h"
-#include "geometry/surface.h"
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 constexpr double rim = 0.03;  // m; 2 cm leave thorns, 4 cm join the hip's opening with the armpit's
@@ -54,10 +48,6 @@ void leave_out_rim(const Surface& surface, std::vector<bool>& stays) {
     stays[t] = stays[t] && std::ranges::none_of(surface.triangles[t],
                                                 [&](std::uint32_t corner) { return is_near[corner]; });
 }
-
-}  // namespace
-
-namespace {
 
 /// Loops of one section that overlap.
 struct Group {

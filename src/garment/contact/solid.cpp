@@ -10,11 +10,9 @@
 #include <numbers>
 #include <optional>
 
-#include "geometry/surface.h"
 #include "platform/machine.h"
 
 namespace mssim {
-
 namespace {
 
 constexpr double anywhere = std::numeric_limits<double>::infinity();
@@ -32,6 +30,21 @@ bool is_inside(const TriangleTree& part, const Vec3d& point) {
     if (const std::optional<int> winding = part.winding_by_ray(point + clearance * move))
       return *winding != 0;
   return part.winding_by_angles(point) != 0;
+}
+
+/// The corners of the triangles within the band, and where their edges leave it.
+std::vector<Vec3d> points_of_band(const Surface& body, double lowest, double highest) {
+  std::vector<Vec3d> points;
+  for (const Vec3d& point : body.points)
+    if (point.y >= lowest && point.y <= highest) points.push_back(point);
+  for (const auto& triangle : body.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d &from = body.points[triangle[i]], &to = body.points[triangle[(i + 1) % 3]];
+      for (const double height : {lowest, highest})
+        if (from.y < height && to.y > height)
+          points.push_back(from + (height - from.y) / (to.y - from.y) * (to - from));
+    }
+  return points;
 }
 
 }  // namespace
@@ -62,25 +75,6 @@ double Solid::distance(const Vec3d& point) const {
   for (const TriangleTree& part : parts_) least = part.distance(point, least);
   return least;
 }
-
-namespace {
-
-/// The corners of the triangles within the band, and where their edges leave it.
-std::vector<Vec3d> points_of_band(const Surface& body, double lowest, double highest) {
-  std::vector<Vec3d> points;
-  for (const Vec3d& point : body.points)
-    if (point.y >= lowest && point.y <= highest) points.push_back(point);
-  for (const auto& triangle : body.triangles)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3d &from = body.points[triangle[i]], &to = body.points[triangle[(i + 1) % 3]];
-      for (const double height : {lowest, highest})
-        if (from.y < height && to.y > height)
-          points.push_back(from + (height - from.y) / (to.y - from.y) * (to - from));
-    }
-  return points;
-}
-
-}  // namespace
 
 BandHull::BandHull(const Surface& body, double lowest, double highest) {
   const std::vector<Vec3d> points = points_of_band(body, lowest, highest);

@@ -9,15 +9,12 @@
 #include <sstream>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "garment/layers/cloth_contacts.h"
-#include "garment/layers/cloth_crossings.h"
 #include "laws/host_laws.h"
 #include "statistics/statistics.h"
 
 namespace mssim {
-
 namespace {
 
 /// Distance that a share of the nodes has moved less than, m.
@@ -58,39 +55,6 @@ void step_through(DressingBackend& backend, std::int64_t done, std::int64_t end,
   }
   backend.step(static_cast<int>(end - done));
 }
-
-}  // namespace
-
-DressingResult dress(DressingBackend& backend, const System& system, double dt_s, const SettlingRule& rule,
-                     const OnWindow& on_window, const DressingFrames& frames) {
-  const int window = std::max(1, static_cast<int>(std::lround(rule.window_s / dt_s)));
-  const auto longest = static_cast<std::int64_t>(std::llround(rule.longest_s / dt_s));
-  backend.set_state(system.start);
-  DressingResult result;
-  result.state = system.start;
-  FrameDelivery delivery(frames);
-  delivery.deliver(result.state, 0);
-  bool goes_on = longest > 0;
-  while (goes_on) {
-    const bool was_draping = backend.progress().draping;
-    const std::int64_t end = std::min(result.iterations + window, longest);
-    const bool whole_window = end - result.iterations == window;
-    step_through(backend, result.iterations, end, delivery);
-    result.iterations = end;
-    State state = backend.state();
-    if (backend.progress().draping) result.seamed_at = backend.progress().seamed_at;
-    // A window that began with open seams, or that was cut short, says nothing about how a sewn garment
-    // rests.
-    result.settled = was_draping && whole_window && moved(result.state, state, rule.fraction) < rule.distance;
-    result.state = std::move(state);
-    goes_on = on_window(result.state, result.iterations) && !result.settled && result.iterations < longest;
-    if (!goes_on || delivery.due() == result.iterations) delivery.deliver(result.state, result.iterations);
-  }
-  result.simulated_s = static_cast<double>(result.iterations) * dt_s;
-  return result;
-}
-
-namespace {
 
 double largest_gap(const Garment& garment, const std::vector<Vec3d>& position) {
   double largest = 0;
@@ -215,59 +179,6 @@ int turns_around(const std::vector<std::uint32_t>& loop, const std::vector<Vec3d
   }
   return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
-
-}  // namespace
-
-std::vector<Vec3d> face_samples(const GarmentPanel& panel, const std::vector<Vec3d>& position) {
-  constexpr int per_side = 5;
-  std::vector<Vec3d> samples;
-  for (std::uint32_t row = 0; row + 1 < panel.rows; ++row)
-    for (std::uint32_t column = 0; column + 1 < panel.columns; ++column) {
-      const Vec3d &corner = position[panel.node(row, column)], &right = position[panel.node(row, column + 1)],
-                  &up = position[panel.node(row + 1, column)],
-                  &far = position[panel.node(row + 1, column + 1)];
-      for (int i = 0; i < per_side; ++i)
-        for (int j = 0; j < per_side; ++j) {
-          const double u = i / (per_side - 1.0), v = j / (per_side - 1.0);
-          samples.push_back(u + v <= 1 ? corner + u * (right - corner) + v * (up - corner)
-                                       : far + (1 - u) * (up - far) + (1 - v) * (right - far));
-        }
-    }
-  return samples;
-}
-
-Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBody& body) {
-  const auto& garment = std::get<Garment>(system.topology);
-  Fit fit;
-  fit.largest_gap = largest_gap(garment, position);
-  for (const double depth : body.depths(position)) {
-    fit.nodes_inside += depth > 0 ? 1U : 0U;
-    fit.deepest_node = std::max(fit.deepest_node, depth);
-  }
-  for (const GarmentPanel& panel : garment.panels) {
-    const std::vector<double> depths = body.depths(face_samples(panel, position));
-    fit.deepest_face_sample = std::max(fit.deepest_face_sample, std::ranges::max(depths));
-  }
-  measure_side_distance(garment.close, position, body, fit);
-  fit.upper_edge_rise = upper_edge_rise(garment, position);
-  if (const auto meeting = where_seams_meet(garment); !meeting.empty())
-    fit.meeting_rise = mean_rise(garment, position, meeting);
-  for (const std::vector<std::uint32_t>& loop : sewn_rows(garment)) {
-    Vec3d middle;
-    for (const std::uint32_t node : loop) middle += 1 / static_cast<double>(loop.size()) * position[node];
-    ++fit.rows;
-    fit.rows_astray += std::abs(turns_around(loop, position, body.limb_middle(middle))) == 1 ? 0U : 1U;
-  }
-  const std::vector<double> longer = elongations(system, garment, position);
-  fit.elongation_50 = quantile(longer, 0.5);
-  fit.elongation_99 = quantile(longer, 0.99);
-  fit.elongation_999 = quantile(longer, 0.999);
-  fit.elongation_max = quantile(longer, 1);
-  fit.crossings = count_crossings(garment, {layer_pairs(garment), {}}, position);
-  return fit;
-}
-
-namespace {
 
 /// What led to a number beyond its bound, as far as that can be told, and what may help. The keys are those
 /// of scene files.
@@ -399,6 +310,84 @@ const Diagnosis& diagnosis_of(const FitNumber& number, const Fit& fit) {
 }
 
 }  // namespace
+
+DressingResult dress(DressingBackend& backend, const System& system, double dt_s, const SettlingRule& rule,
+                     const OnWindow& on_window, const DressingFrames& frames) {
+  const int window = std::max(1, static_cast<int>(std::lround(rule.window_s / dt_s)));
+  const auto longest = static_cast<std::int64_t>(std::llround(rule.longest_s / dt_s));
+  backend.set_state(system.start);
+  DressingResult result;
+  result.state = system.start;
+  FrameDelivery delivery(frames);
+  delivery.deliver(result.state, 0);
+  bool goes_on = longest > 0;
+  while (goes_on) {
+    const bool was_draping = backend.progress().draping;
+    const std::int64_t end = std::min(result.iterations + window, longest);
+    const bool whole_window = end - result.iterations == window;
+    step_through(backend, result.iterations, end, delivery);
+    result.iterations = end;
+    State state = backend.state();
+    if (backend.progress().draping) result.seamed_at = backend.progress().seamed_at;
+    // A window that began with open seams, or that was cut short, says nothing about how a sewn garment
+    // rests.
+    result.settled = was_draping && whole_window && moved(result.state, state, rule.fraction) < rule.distance;
+    result.state = std::move(state);
+    goes_on = on_window(result.state, result.iterations) && !result.settled && result.iterations < longest;
+    if (!goes_on || delivery.due() == result.iterations) delivery.deliver(result.state, result.iterations);
+  }
+  result.simulated_s = static_cast<double>(result.iterations) * dt_s;
+  return result;
+}
+
+std::vector<Vec3d> face_samples(const GarmentPanel& panel, const std::vector<Vec3d>& position) {
+  constexpr int per_side = 5;
+  std::vector<Vec3d> samples;
+  for (std::uint32_t row = 0; row + 1 < panel.rows; ++row)
+    for (std::uint32_t column = 0; column + 1 < panel.columns; ++column) {
+      const Vec3d &corner = position[panel.node(row, column)], &right = position[panel.node(row, column + 1)],
+                  &up = position[panel.node(row + 1, column)],
+                  &far = position[panel.node(row + 1, column + 1)];
+      for (int i = 0; i < per_side; ++i)
+        for (int j = 0; j < per_side; ++j) {
+          const double u = i / (per_side - 1.0), v = j / (per_side - 1.0);
+          samples.push_back(u + v <= 1 ? corner + u * (right - corner) + v * (up - corner)
+                                       : far + (1 - u) * (up - far) + (1 - v) * (right - far));
+        }
+    }
+  return samples;
+}
+
+Fit fit_of(const System& system, const std::vector<Vec3d>& position, const FitBody& body) {
+  const auto& garment = std::get<Garment>(system.topology);
+  Fit fit;
+  fit.largest_gap = largest_gap(garment, position);
+  for (const double depth : body.depths(position)) {
+    fit.nodes_inside += depth > 0 ? 1U : 0U;
+    fit.deepest_node = std::max(fit.deepest_node, depth);
+  }
+  for (const GarmentPanel& panel : garment.panels) {
+    const std::vector<double> depths = body.depths(face_samples(panel, position));
+    fit.deepest_face_sample = std::max(fit.deepest_face_sample, std::ranges::max(depths));
+  }
+  measure_side_distance(garment.close, position, body, fit);
+  fit.upper_edge_rise = upper_edge_rise(garment, position);
+  if (const auto meeting = where_seams_meet(garment); !meeting.empty())
+    fit.meeting_rise = mean_rise(garment, position, meeting);
+  for (const std::vector<std::uint32_t>& loop : sewn_rows(garment)) {
+    Vec3d middle;
+    for (const std::uint32_t node : loop) middle += 1 / static_cast<double>(loop.size()) * position[node];
+    ++fit.rows;
+    fit.rows_astray += std::abs(turns_around(loop, position, body.limb_middle(middle))) == 1 ? 0U : 1U;
+  }
+  const std::vector<double> longer = elongations(system, garment, position);
+  fit.elongation_50 = quantile(longer, 0.5);
+  fit.elongation_99 = quantile(longer, 0.99);
+  fit.elongation_999 = quantile(longer, 0.999);
+  fit.elongation_max = quantile(longer, 1);
+  fit.crossings = count_crossings(garment, {layer_pairs(garment), {}}, position);
+  return fit;
+}
 
 std::vector<FitCheck> fit_checks(const Fit& fit, const FitBounds& bounds) {
   std::vector<FitCheck> checks;

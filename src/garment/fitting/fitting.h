@@ -66,7 +66,7 @@ struct Fit {
   /// Elongation over rest length of structural and shear springs: the median, what 99 % and 99.9 % are below,
   /// and the largest.
   double elongation_50 = 0, elongation_99 = 0, elongation_999 = 0, elongation_max = 0;
-  /// Edges of cells that run through a face of another layer (garment/layers/cloth_crossings.h), whether the
+  /// Edges of cells that run through a face of another layer (count_crossings), whether the
   /// layers touch each other in the simulation or not.
   std::size_t crossings = 0;
 };

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "garment/cloth_layers.h"
 #include "garment/garment.h"
 #include "garment/layers/cloth_contacts.h"
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <set>
@@ -16,7 +15,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 std::uint32_t panel_of(const Garment& garment, std::uint32_t node) {
@@ -43,6 +41,89 @@ void validate_panel(std::uint32_t index, const Garment& garment, std::size_t nod
     throw std::invalid_argument("cloth layers: panel " + quoted(panel) + " ends at node " +
                                 std::to_string(end) + ", but there are only " + std::to_string(nodes) +
                                 " nodes, each of which needs a mass");
+}
+
+/// Two sub-patches with fewer cells than this together are searched by the task that met them: searching them
+/// takes microseconds, as making a task does.
+constexpr std::uint32_t least_cells_of_task = 1024;
+
+/// Boxes are searched a little farther than distances are compared, whatever rounding says about either.
+constexpr float box_reach = 1.01F;
+
+constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
+
+/// The nodes of a cell's half, 0 or 1.
+std::array<std::uint32_t, 3> nodes_of(const GarmentPanel& panel, std::uint32_t row, std::uint32_t column,
+                                      std::uint32_t half) {
+  const std::uint32_t low_left = panel.node(row, column);
+  const std::uint32_t high_right = low_left + panel.columns + 1;
+  if (half == 0) return {low_left, low_left + 1, high_right};
+  return {low_left, high_right, high_right - 1};
+}
+
+NearestPoint nearest_on(const std::array<std::uint32_t, 3>& triangle, const Vec3<float>& point,
+                        const Coordinates& position) {
+  return nearest_point(point, point_of(position, triangle[0]), point_of(position, triangle[1]),
+                       point_of(position, triangle[2]));
+}
+
+/// The panel's normal at a node, as long as the area of the cells around it is large.
+Vec3<float> normal_at(const GarmentPanel& panel, std::uint32_t node, const Coordinates& position) {
+  const std::uint32_t row = (node - panel.first_node) / panel.columns;
+  const std::uint32_t column = (node - panel.first_node) % panel.columns;
+  const auto at = [&](std::uint32_t r, std::uint32_t c) { return point_of(position, panel.node(r, c)); };
+  const Vec3<float> along_row =
+      at(row, std::min(column + 1, panel.columns - 1)) - at(row, column > 0 ? column - 1 : 0);
+  const Vec3<float> along_column =
+      at(std::min(row + 1, panel.rows - 1), column) - at(row > 0 ? row - 1 : 0, column);
+  return cross(along_row, along_column);
+}
+
+/// Does a point of a triangle lie on the border of its panel?
+bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& triangle,
+               const std::array<float, 3>& weight) {
+  bool lowest = true, highest = true, leftmost = true, rightmost = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (weight[i] <= 0) continue;
+    const std::uint32_t row = (triangle[i] - panel.first_node) / panel.columns;
+    const std::uint32_t column = (triangle[i] - panel.first_node) % panel.columns;
+    lowest = lowest && row == 0;
+    highest = highest && row == panel.rows - 1;
+    leftmost = leftmost && column == 0;
+    rightmost = rightmost && column == panel.columns - 1;
+  }
+  return lowest || highest || leftmost || rightmost;
+}
+
+/// The contact of a node with its nearest triangle, if it is one. outward: 1 where the node belongs to the
+/// side of the panel's normal, else -1.
+std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t node, std::uint32_t nearest,
+                                       float outward, const Coordinates& position) {
+  const std::uint32_t cell = nearest / 2, row_length = panel.columns - 1;
+  ClothContact contact{.node = node,
+                       .triangle = nodes_of(panel, cell / row_length, cell % row_length, nearest % 2)};
+  const NearestPoint point = nearest_on(contact.triangle, point_of(position, node), position);
+  contact.weight = point.weight;
+  const Vec3<float> first = point_of(position, contact.triangle[0]);
+  Vec3<float> face =
+      cross(point_of(position, contact.triangle[1]) - first, point_of(position, contact.triangle[2]) - first);
+  if (std::ranges::any_of(point.weight, [](float weight) { return weight <= 0; })) {
+    face = {};
+    for (std::size_t i = 0; i < 3; ++i)
+      face += point.weight[i] * normal_at(panel, contact.triangle[i], position);
+  }
+  face = outward * face;
+  const bool right_side = dot(point.offset, face) >= 0;
+  if (!right_side && on_border(panel, contact.triangle, point.weight)) return std::nullopt;
+  const float distance = std::sqrt(point.distance_squared());
+  contact.gap = right_side ? distance : -distance;
+  // Nearer than that, rounding decides where the offset points.
+  constexpr float least_distance = 1e-6F;
+  contact.normal =
+      distance > least_distance ? (1 / contact.gap) * point.offset : (1 / std::sqrt(dot(face, face))) * face;
+  // NaN or infinite where the cloth has no normal there, because it has no area.
+  if (!std::isfinite(dot(contact.normal, contact.normal))) return std::nullopt;
+  return contact;
 }
 
 }  // namespace
@@ -139,93 +220,6 @@ void PanelBoxes::refit_rest() {
       boxes_[block] = united(boxes_[block], boxes_[parent.first_child + i]);
   }
 }
-
-namespace {
-
-/// Two sub-patches with fewer cells than this together are searched by the task that met them: searching them
-/// takes microseconds, as making a task does.
-constexpr std::uint32_t least_cells_of_task = 1024;
-
-/// Boxes are searched a little farther than distances are compared, whatever rounding says about either.
-constexpr float box_reach = 1.01F;
-
-constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
-
-/// The nodes of a cell's half, 0 or 1.
-std::array<std::uint32_t, 3> nodes_of(const GarmentPanel& panel, std::uint32_t row, std::uint32_t column,
-                                      std::uint32_t half) {
-  const std::uint32_t low_left = panel.node(row, column);
-  const std::uint32_t high_right = low_left + panel.columns + 1;
-  if (half == 0) return {low_left, low_left + 1, high_right};
-  return {low_left, high_right, high_right - 1};
-}
-
-NearestPoint nearest_on(const std::array<std::uint32_t, 3>& triangle, const Vec3<float>& point,
-                        const Coordinates& position) {
-  return nearest_point(point, point_of(position, triangle[0]), point_of(position, triangle[1]),
-                       point_of(position, triangle[2]));
-}
-
-/// The panel's normal at a node, as long as the area of the cells around it is large.
-Vec3<float> normal_at(const GarmentPanel& panel, std::uint32_t node, const Coordinates& position) {
-  const std::uint32_t row = (node - panel.first_node) / panel.columns;
-  const std::uint32_t column = (node - panel.first_node) % panel.columns;
-  const auto at = [&](std::uint32_t r, std::uint32_t c) { return point_of(position, panel.node(r, c)); };
-  const Vec3<float> along_row =
-      at(row, std::min(column + 1, panel.columns - 1)) - at(row, column > 0 ? column - 1 : 0);
-  const Vec3<float> along_column =
-      at(std::min(row + 1, panel.rows - 1), column) - at(row > 0 ? row - 1 : 0, column);
-  return cross(along_row, along_column);
-}
-
-/// Does a point of a triangle lie on the border of its panel?
-bool on_border(const GarmentPanel& panel, const std::array<std::uint32_t, 3>& triangle,
-               const std::array<float, 3>& weight) {
-  bool lowest = true, highest = true, leftmost = true, rightmost = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (weight[i] <= 0) continue;
-    const std::uint32_t row = (triangle[i] - panel.first_node) / panel.columns;
-    const std::uint32_t column = (triangle[i] - panel.first_node) % panel.columns;
-    lowest = lowest && row == 0;
-    highest = highest && row == panel.rows - 1;
-    leftmost = leftmost && column == 0;
-    rightmost = rightmost && column == panel.columns - 1;
-  }
-  return lowest || highest || leftmost || rightmost;
-}
-
-/// The contact of a node with its nearest triangle, if it is one. outward: 1 where the node belongs to the
-/// side of the panel's normal, else -1.
-std::optional<ClothContact> contact_of(const GarmentPanel& panel, std::uint32_t node, std::uint32_t nearest,
-                                       float outward, const Coordinates& position) {
-  const std::uint32_t cell = nearest / 2, row_length = panel.columns - 1;
-  ClothContact contact{.node = node,
-                       .triangle = nodes_of(panel, cell / row_length, cell % row_length, nearest % 2)};
-  const NearestPoint point = nearest_on(contact.triangle, point_of(position, node), position);
-  contact.weight = point.weight;
-  const Vec3<float> first = point_of(position, contact.triangle[0]);
-  Vec3<float> face =
-      cross(point_of(position, contact.triangle[1]) - first, point_of(position, contact.triangle[2]) - first);
-  if (std::ranges::any_of(point.weight, [](float weight) { return weight <= 0; })) {
-    face = {};
-    for (std::size_t i = 0; i < 3; ++i)
-      face += point.weight[i] * normal_at(panel, contact.triangle[i], position);
-  }
-  face = outward * face;
-  const bool right_side = dot(point.offset, face) >= 0;
-  if (!right_side && on_border(panel, contact.triangle, point.weight)) return std::nullopt;
-  const float distance = std::sqrt(point.distance_squared());
-  contact.gap = right_side ? distance : -distance;
-  // Nearer than that, rounding decides where the offset points.
-  constexpr float least_distance = 1e-6F;
-  contact.normal =
-      distance > least_distance ? (1 / contact.gap) * point.offset : (1 / std::sqrt(dot(face, face))) * face;
-  // NaN or infinite where the cloth has no normal there, because it has no area.
-  if (!std::isfinite(dot(contact.normal, contact.normal))) return std::nullopt;
-  return contact;
-}
-
-}  // namespace
 
 ClothContactSearch::ClothContactSearch(const Garment& garment, const ClothLayers& layers, std::size_t nodes,
                                        double reach, int threads)

@@ -1,9 +1,9 @@
-#include "garment/layers/cloth_crossings.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
+
+#include "garment/layers/cloth_contacts.h"
 
 namespace mssim {
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,7 +13,6 @@
 #include "hdf5/hdf5_table.h"
 
 namespace mssim {
-
 namespace {
 
 /// A list of numbers, one for each of `items`.
@@ -25,6 +23,38 @@ void write_numbers(hid_t file, const std::string& path, const std::vector<Item>&
   numbers.reserve(items.size());
   for (const Item& item : items) numbers.push_back(item.*member);
   write_array(file, path, file_type, memory_type, std::array<hsize_t, 1>{numbers.size()}, numbers.data());
+}
+
+void read_panels(hid_t file, Garment& garment) {
+  const std::string path = "/parameters/panels";
+  for (std::string& name : read_texts(file, path + "/name")) garment.panels.push_back({std::move(name)});
+  for (const auto& [name, member] :
+       {std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
+        std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}}) {
+    const std::vector<std::uint32_t> numbers = read_numbers(file, path + name, {garment.panels.size()});
+    for (std::size_t i = 0; i < numbers.size(); ++i) garment.panels[i].*member = numbers[i];
+  }
+}
+
+void read_joints(hid_t file, Garment& garment) {
+  const std::string joints = "/connectivity/joints", path = "/parameters/joints";
+  if (!exists(file, joints)) return;
+  garment.seams = read_texts(file, "/parameters/seams");
+  const std::vector<std::uint32_t> nodes = read_numbers(file, joints, {Hdf5Table::any, 3});
+  const std::size_t count = nodes.size() / 3;
+  const std::vector<double> edge_share = read_doubles(file, path + "/edge_share", {count});
+  const std::vector<std::uint32_t> seam = read_numbers(file, path + "/seam", {count});
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(edge_share[i] >= 0 && edge_share[i] <= 1))
+      throw Hdf5ContentError(path + "/edge_share has a number that is not between 0 and 1");
+    Joint joint;
+    joint.node = nodes[3 * i];
+    joint.edge_first = nodes[3 * i + 1];
+    joint.edge_second = nodes[3 * i + 2];
+    joint.edge_share = edge_share[i];
+    joint.seam = seam[i];
+    garment.joints.push_back(joint);
+  }
 }
 
 }  // namespace
@@ -75,42 +105,6 @@ void write_joints(hid_t file, const std::string& particles, const Garment& garme
     tuples.push_back({joint.node, joint.edge_first, joint.edge_second});
   write_tuples<3>(file, "/connectivity/joints", particles, tuples);
 }
-
-namespace {
-
-void read_panels(hid_t file, Garment& garment) {
-  const std::string path = "/parameters/panels";
-  for (std::string& name : read_texts(file, path + "/name")) garment.panels.push_back({std::move(name)});
-  for (const auto& [name, member] :
-       {std::pair{"/rows", &GarmentPanel::rows}, std::pair{"/columns", &GarmentPanel::columns},
-        std::pair{"/first_node", &GarmentPanel::first_node}, std::pair{"/layer", &GarmentPanel::layer}}) {
-    const std::vector<std::uint32_t> numbers = read_numbers(file, path + name, {garment.panels.size()});
-    for (std::size_t i = 0; i < numbers.size(); ++i) garment.panels[i].*member = numbers[i];
-  }
-}
-
-void read_joints(hid_t file, Garment& garment) {
-  const std::string joints = "/connectivity/joints", path = "/parameters/joints";
-  if (!exists(file, joints)) return;
-  garment.seams = read_texts(file, "/parameters/seams");
-  const std::vector<std::uint32_t> nodes = read_numbers(file, joints, {Hdf5Table::any, 3});
-  const std::size_t count = nodes.size() / 3;
-  const std::vector<double> edge_share = read_doubles(file, path + "/edge_share", {count});
-  const std::vector<std::uint32_t> seam = read_numbers(file, path + "/seam", {count});
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(edge_share[i] >= 0 && edge_share[i] <= 1))
-      throw Hdf5ContentError(path + "/edge_share has a number that is not between 0 and 1");
-    Joint joint;
-    joint.node = nodes[3 * i];
-    joint.edge_first = nodes[3 * i + 1];
-    joint.edge_second = nodes[3 * i + 2];
-    joint.edge_share = edge_share[i];
-    joint.seam = seam[i];
-    garment.joints.push_back(joint);
-  }
-}
-
-}  // namespace
 
 Garment read_garment(hid_t file, std::size_t nodes) {
   Garment garment;

@@ -5,11 +5,210 @@
 #include <set>
 
 #include "geometry/geometry.h"
-#include "model/topology.h"
-#include "text/error.h"
 #include "text/text.h"
 
 namespace mssim {
+namespace {
+
+/// m^2, of the cell whose lower left corner is `node`
+double cell_area(const PanelMesh& mesh, std::size_t node) {
+  const Vec3d rising = mesh.nodes[node + mesh.columns + 1] - mesh.nodes[node];
+  const Vec3d falling = mesh.nodes[node + mesh.columns] - mesh.nodes[node + 1];
+  return 0.5 * cross(rising, falling).z;
+}
+
+/// Calls visit(lower left node) for each cell.
+template <class Visit>
+void for_each_cell(const PanelMesh& mesh, Visit visit) {
+  for (std::size_t row = 0; row + 1 < mesh.rows; ++row)
+    for (std::size_t column = 0; column + 1 < mesh.columns; ++column) visit(mesh.node(row, column));
+}
+
+/// How far the body stands out at the heights of a panel, m. Not less than the body itself anywhere, and
+/// even: the largest within 5 cm up and down, then its mean over as much.
+class Profile {
+ public:
+  Profile(const std::string& panel, const std::function<double(double)>& depth, double sign, double lowest,
+          double highest)
+      : start_(lowest - 2 * window * step) {
+    const auto count = static_cast<std::size_t>(std::ceil((highest - start_) / step)) + 2 * window + 2;
+    std::vector<double> raw(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double height = std::clamp(start_ + static_cast<double>(i) * step, lowest, highest);
+      raw[i] = sign * depth(height);
+      if (!std::isfinite(raw[i]))
+        throw InputError(panel + ": the body has the depth " + shown(raw[i]) + " m at the height " +
+                         shown(height) + " m; give a body that reaches along the whole panel");
+    }
+    std::vector<double> widest(count);
+    over_windows(raw,
+                 [&](std::size_t i, auto begin, auto end) { widest[i] = *std::max_element(begin, end); });
+    values_.resize(count);
+    over_windows(widest, [&](std::size_t i, auto begin, auto end) {
+      double sum = 0;
+      for (auto value = begin; value != end; ++value) sum += *value;
+      values_[i] = sum / static_cast<double>(end - begin);
+    });
+  }
+
+  double at(double height) const {
+    const double place = (height - start_) / step;
+    const auto i = static_cast<std::size_t>(place);
+    return values_[i] + (place - static_cast<double>(i)) * (values_[i + 1] - values_[i]);
+  }
+
+ private:
+  static constexpr double step = 0.0025;     // m
+  static constexpr std::size_t window = 20;  // steps to each side
+
+  template <class Visit>
+  static void over_windows(const std::vector<double>& values, Visit visit) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      visit(i, values.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, window)),
+            values.begin() + static_cast<std::ptrdiff_t>(std::min(i + window + 1, values.size())));
+  }
+
+  double start_;
+  std::vector<double> values_;
+};
+
+/// A point of the bent panel relative to its axis.
+struct BentPoint {
+  double sideways;  ///< m
+  double back;      ///< m, towards the body
+};
+
+/// Where the bend takes a point that is `along` from the axis on the flat panel. Where it has come
+/// `most_back` towards the body, the panel runs straight on.
+BentPoint bent(double along, double radius, double most_back) {
+  const double steepest = std::acos(std::max(-1.0, 1 - most_back / radius));
+  const double angle = std::clamp(along / radius, -steepest, steepest);
+  return {radius * std::sin(angle) + (along - radius * angle), radius * (1 - std::cos(angle))};
+}
+
+/// The nodes of a stretch in the order of the seam.
+struct StretchNodes {
+  std::vector<std::uint32_t> nodes;
+  std::vector<double> arcs;  ///< m, from the stretch's first node to each
+  double drawn_length = 0;   ///< m, between its ends as they were drawn
+};
+
+std::string text_of(const SeamStretch& stretch) {
+  return "the " + name_of(stretch.edge) + " boundary of " + stretch.panel + " from " + shown(stretch.from) +
+         " to " + shown(stretch.to);
+}
+
+std::size_t panel_named(const std::string& where, const std::string& name,
+                        std::span<const GarmentPanel> panels) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    if (panels[i].name == name) return i;
+    names.push_back(panels[i].name);
+  }
+  throw InputError(where + "there is no panel " + name + "; use one of " + join(names, ", "));
+}
+
+std::size_t nearest(const std::vector<double>& arcs, double arc) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < arcs.size(); ++i)
+    if (std::abs(arcs[i] - arc) < std::abs(arcs[best] - arc)) best = i;
+  return best;
+}
+
+StretchNodes nodes_of(const std::string& where, const SeamStretch& stretch,
+                      std::span<const GarmentPanel> panels, std::span<const PanelMesh> meshes) {
+  const std::size_t p = panel_named(where, stretch.panel, panels);
+  const auto is_fraction = [](double x) { return x >= 0 && x <= 1; };
+  if (!is_fraction(stretch.from) || !is_fraction(stretch.to) || stretch.from == stretch.to)
+    throw InputError(where + text_of(stretch) +
+                     " is not a valid stretch; give two different fractions from 0 to 1");
+  const std::vector<double>& arcs = meshes[p].arcs_on(stretch.edge);
+  const std::size_t begin = nearest(arcs, stretch.from * arcs.back());
+  const std::size_t end = nearest(arcs, stretch.to * arcs.back());
+  if (begin == end)
+    throw InputError(where + text_of(stretch) +
+                     " has fewer than two nodes; lengthen it or give the panel more nodes");
+  const std::vector<std::size_t> on_edge = meshes[p].edge_nodes(stretch.edge);
+  StretchNodes found;
+  found.drawn_length = std::abs(stretch.to - stretch.from) * arcs.back();
+  for (std::size_t i = begin;; begin < end ? ++i : --i) {
+    found.nodes.push_back(panels[p].first_node + static_cast<std::uint32_t>(on_edge[i]));
+    found.arcs.push_back(std::abs(arcs[i] - arcs[begin]));
+    if (i == end) return found;
+  }
+}
+
+/// Where a seam's fraction lies on its coarser side: nodes that a joint may have as its edge.
+Joint place_at(const StretchNodes& coarser, double fraction) {
+  constexpr double near_a_node = 0.05;  // of an edge: less than the seam's own unevenness
+  const double arc = fraction * coarser.arcs.back();
+  const auto after = std::upper_bound(coarser.arcs.begin() + 1, coarser.arcs.end() - 1, arc);
+  const auto second = static_cast<std::size_t>(after - coarser.arcs.begin()), first = second - 1;
+  const double on_edge = (arc - coarser.arcs[first]) / (coarser.arcs[second] - coarser.arcs[first]);
+  Joint joint;
+  joint.edge_first = coarser.nodes[on_edge < 1 - near_a_node ? first : second];
+  joint.edge_second = coarser.nodes[on_edge > near_a_node ? second : first];
+  joint.edge_share = joint.edge_first == joint.edge_second ? 0 : on_edge;
+  return joint;
+}
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// The factor of the seams' force on each node.
+std::vector<double> seam_factors(const PanelMesh& mesh, const Waistband& waistband) {
+  std::vector<double> factors(mesh.nodes.size(), 1);
+  for (std::size_t node = mesh.node(mesh.rows - waistband_rows(mesh, waistband), 0); node < factors.size();
+       ++node)
+    factors[node] = waistband.seam_factor;
+  return factors;
+}
+
+/// What building a garment knows beside the result.
+struct Workshop {
+  std::vector<PanelMesh> meshes;  ///< [panels]
+  std::vector<double> strengths;  ///< [nodes] factors of the seams' force
+};
+
+void add_panel(const PatternPanel& panel, const BodyDepth& body, Workshop& workshop, GarmentBuild& build) {
+  Garment& garment = build.garment;
+  const std::string& name = panel.piece.name;
+  for (const GarmentPanel& other : garment.panels)
+    if (other.name == name) throw InputError(name + ": two panels have this name; rename one of them");
+  require_cloth(name, panel.cloth);
+  const PanelMesh& mesh = workshop.meshes.emplace_back(mesh_panel(panel.piece, panel.grid));
+  garment.panels.push_back(
+      {name, mesh.rows, mesh.columns, static_cast<std::uint32_t>(garment.flat.size()), panel.layer});
+  append(garment.flat, mesh.nodes);
+  append(build.placed, place_panel(name, mesh, panel.placement, body));
+  append(build.node_mass, node_masses(mesh, panel.cloth));
+  append(workshop.strengths, seam_factors(mesh, panel.cloth.waistband));
+  append_springs(garment.panels.back(), mesh, panel.cloth, build.springs, build.materials);
+}
+
+void add_seam(const Seam& seam, const Workshop& workshop, Garment& garment) {
+  std::vector<Joint> joints =
+      join_seam(seam, garment.panels, workshop.meshes, static_cast<std::uint32_t>(garment.seams.size()));
+  for (Joint& joint : joints) joint.strength = workshop.strengths[joint.node];
+  garment.seams.push_back(seam.name);
+  append(garment.joints, joints);
+}
+
+/// Calls `add` with each part, and says of which one it does not take.
+template <class Parts, class Add>
+void add_each(const Parts& parts, PatternError::Part kind, const Add& add) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    try {
+      add(parts[i]);
+    } catch (const InputError& error) {
+      throw PatternError(error, kind, i);
+    }
+  }
+}
+
+}  // namespace
 
 CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
   std::set<std::uint32_t> nodes;
@@ -27,24 +226,6 @@ CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
   }
   return {{nodes.begin(), nodes.end()}, close.lowest, close.highest};
 }
-
-namespace {
-
-/// m^2, of the cell whose lower left corner is `node`
-double cell_area(const PanelMesh& mesh, std::size_t node) {
-  const Vec3d rising = mesh.nodes[node + mesh.columns + 1] - mesh.nodes[node];
-  const Vec3d falling = mesh.nodes[node + mesh.columns] - mesh.nodes[node + 1];
-  return 0.5 * cross(rising, falling).z;
-}
-
-/// Calls visit(lower left node) for each cell.
-template <class Visit>
-void for_each_cell(const PanelMesh& mesh, Visit visit) {
-  for (std::size_t row = 0; row + 1 < mesh.rows; ++row)
-    for (std::size_t column = 0; column + 1 < mesh.columns; ++column) visit(mesh.node(row, column));
-}
-
-}  // namespace
 
 void require_cloth(const std::string& panel, const PanelMaterial& cloth) {
   const auto require = [&](double value, bool zero_too, const char* what) {
@@ -124,72 +305,6 @@ double area_of(const PanelMesh& mesh) {
   return area;
 }
 
-namespace {
-
-/// How far the body stands out at the heights of a panel, m. Not less than the body itself anywhere, and
-/// even: the largest within 5 cm up and down, then its mean over as much.
-class Profile {
- public:
-  Profile(const std::string& panel, const std::function<double(double)>& depth, double sign, double lowest,
-          double highest)
-      : start_(lowest - 2 * window * step) {
-    const auto count = static_cast<std::size_t>(std::ceil((highest - start_) / step)) + 2 * window + 2;
-    std::vector<double> raw(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double height = std::clamp(start_ + static_cast<double>(i) * step, lowest, highest);
-      raw[i] = sign * depth(height);
-      if (!std::isfinite(raw[i]))
-        throw InputError(panel + ": the body has the depth " + shown(raw[i]) + " m at the height " +
-                         shown(height) + " m; give a body that reaches along the whole panel");
-    }
-    std::vector<double> widest(count);
-    over_windows(raw,
-                 [&](std::size_t i, auto begin, auto end) { widest[i] = *std::max_element(begin, end); });
-    values_.resize(count);
-    over_windows(widest, [&](std::size_t i, auto begin, auto end) {
-      double sum = 0;
-      for (auto value = begin; value != end; ++value) sum += *value;
-      values_[i] = sum / static_cast<double>(end - begin);
-    });
-  }
-
-  double at(double height) const {
-    const double place = (height - start_) / step;
-    const auto i = static_cast<std::size_t>(place);
-    return values_[i] + (place - static_cast<double>(i)) * (values_[i + 1] - values_[i]);
-  }
-
- private:
-  static constexpr double step = 0.0025;     // m
-  static constexpr std::size_t window = 20;  // steps to each side
-
-  template <class Visit>
-  static void over_windows(const std::vector<double>& values, Visit visit) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      visit(i, values.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, window)),
-            values.begin() + static_cast<std::ptrdiff_t>(std::min(i + window + 1, values.size())));
-  }
-
-  double start_;
-  std::vector<double> values_;
-};
-
-/// A point of the bent panel relative to its axis.
-struct BentPoint {
-  double sideways;  ///< m
-  double back;      ///< m, towards the body
-};
-
-/// Where the bend takes a point that is `along` from the axis on the flat panel. Where it has come
-/// `most_back` towards the body, the panel runs straight on.
-BentPoint bent(double along, double radius, double most_back) {
-  const double steepest = std::acos(std::max(-1.0, 1 - most_back / radius));
-  const double angle = std::clamp(along / radius, -steepest, steepest);
-  return {radius * std::sin(angle) + (along - radius * angle), radius * (1 - std::cos(angle))};
-}
-
-}  // namespace
-
 std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
                                const PanelPlacement& placement, const BodyDepth& body) {
   if (!(placement.distance > 0 && placement.radius > 0))
@@ -215,76 +330,6 @@ std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
   }
   return placed;
 }
-
-namespace {
-
-/// The nodes of a stretch in the order of the seam.
-struct StretchNodes {
-  std::vector<std::uint32_t> nodes;
-  std::vector<double> arcs;  ///< m, from the stretch's first node to each
-  double drawn_length = 0;   ///< m, between its ends as they were drawn
-};
-
-std::string text_of(const SeamStretch& stretch) {
-  return "the " + name_of(stretch.edge) + " boundary of " + stretch.panel + " from " + shown(stretch.from) +
-         " to " + shown(stretch.to);
-}
-
-std::size_t panel_named(const std::string& where, const std::string& name,
-                        std::span<const GarmentPanel> panels) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    if (panels[i].name == name) return i;
-    names.push_back(panels[i].name);
-  }
-  throw InputError(where + "there is no panel " + name + "; use one of " + join(names, ", "));
-}
-
-std::size_t nearest(const std::vector<double>& arcs, double arc) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < arcs.size(); ++i)
-    if (std::abs(arcs[i] - arc) < std::abs(arcs[best] - arc)) best = i;
-  return best;
-}
-
-StretchNodes nodes_of(const std::string& where, const SeamStretch& stretch,
-                      std::span<const GarmentPanel> panels, std::span<const PanelMesh> meshes) {
-  const std::size_t p = panel_named(where, stretch.panel, panels);
-  const auto is_fraction = [](double x) { return x >= 0 && x <= 1; };
-  if (!is_fraction(stretch.from) || !is_fraction(stretch.to) || stretch.from == stretch.to)
-    throw InputError(where + text_of(stretch) +
-                     " is not a valid stretch; give two different fractions from 0 to 1");
-  const std::vector<double>& arcs = meshes[p].arcs_on(stretch.edge);
-  const std::size_t begin = nearest(arcs, stretch.from * arcs.back());
-  const std::size_t end = nearest(arcs, stretch.to * arcs.back());
-  if (begin == end)
-    throw InputError(where + text_of(stretch) +
-                     " has fewer than two nodes; lengthen it or give the panel more nodes");
-  const std::vector<std::size_t> on_edge = meshes[p].edge_nodes(stretch.edge);
-  StretchNodes found;
-  found.drawn_length = std::abs(stretch.to - stretch.from) * arcs.back();
-  for (std::size_t i = begin;; begin < end ? ++i : --i) {
-    found.nodes.push_back(panels[p].first_node + static_cast<std::uint32_t>(on_edge[i]));
-    found.arcs.push_back(std::abs(arcs[i] - arcs[begin]));
-    if (i == end) return found;
-  }
-}
-
-/// Where a seam's fraction lies on its coarser side: nodes that a joint may have as its edge.
-Joint place_at(const StretchNodes& coarser, double fraction) {
-  constexpr double near_a_node = 0.05;  // of an edge: less than the seam's own unevenness
-  const double arc = fraction * coarser.arcs.back();
-  const auto after = std::upper_bound(coarser.arcs.begin() + 1, coarser.arcs.end() - 1, arc);
-  const auto second = static_cast<std::size_t>(after - coarser.arcs.begin()), first = second - 1;
-  const double on_edge = (arc - coarser.arcs[first]) / (coarser.arcs[second] - coarser.arcs[first]);
-  Joint joint;
-  joint.edge_first = coarser.nodes[on_edge < 1 - near_a_node ? first : second];
-  joint.edge_second = coarser.nodes[on_edge > near_a_node ? second : first];
-  joint.edge_share = joint.edge_first == joint.edge_second ? 0 : on_edge;
-  return joint;
-}
-
-}  // namespace
 
 std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> panels,
                              std::span<const PanelMesh> meshes, std::uint32_t seam_index) {
@@ -314,66 +359,6 @@ std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> pan
   }
   return joints;
 }
-
-namespace {
-
-template <class T>
-void append(std::vector<T>& all, const std::vector<T>& more) {
-  all.insert(all.end(), more.begin(), more.end());
-}
-
-/// The factor of the seams' force on each node.
-std::vector<double> seam_factors(const PanelMesh& mesh, const Waistband& waistband) {
-  std::vector<double> factors(mesh.nodes.size(), 1);
-  for (std::size_t node = mesh.node(mesh.rows - waistband_rows(mesh, waistband), 0); node < factors.size();
-       ++node)
-    factors[node] = waistband.seam_factor;
-  return factors;
-}
-
-/// What building a garment knows beside the result.
-struct Workshop {
-  std::vector<PanelMesh> meshes;  ///< [panels]
-  std::vector<double> strengths;  ///< [nodes] factors of the seams' force
-};
-
-void add_panel(const PatternPanel& panel, const BodyDepth& body, Workshop& workshop, GarmentBuild& build) {
-  Garment& garment = build.garment;
-  const std::string& name = panel.piece.name;
-  for (const GarmentPanel& other : garment.panels)
-    if (other.name == name) throw InputError(name + ": two panels have this name; rename one of them");
-  require_cloth(name, panel.cloth);
-  const PanelMesh& mesh = workshop.meshes.emplace_back(mesh_panel(panel.piece, panel.grid));
-  garment.panels.push_back(
-      {name, mesh.rows, mesh.columns, static_cast<std::uint32_t>(garment.flat.size()), panel.layer});
-  append(garment.flat, mesh.nodes);
-  append(build.placed, place_panel(name, mesh, panel.placement, body));
-  append(build.node_mass, node_masses(mesh, panel.cloth));
-  append(workshop.strengths, seam_factors(mesh, panel.cloth.waistband));
-  append_springs(garment.panels.back(), mesh, panel.cloth, build.springs, build.materials);
-}
-
-void add_seam(const Seam& seam, const Workshop& workshop, Garment& garment) {
-  std::vector<Joint> joints =
-      join_seam(seam, garment.panels, workshop.meshes, static_cast<std::uint32_t>(garment.seams.size()));
-  for (Joint& joint : joints) joint.strength = workshop.strengths[joint.node];
-  garment.seams.push_back(seam.name);
-  append(garment.joints, joints);
-}
-
-/// Calls `add` with each part, and says of which one it does not take.
-template <class Parts, class Add>
-void add_each(const Parts& parts, PatternError::Part kind, const Add& add) {
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    try {
-      add(parts[i]);
-    } catch (const InputError& error) {
-      throw PatternError(error, kind, i);
-    }
-  }
-}
-
-}  // namespace
 
 GarmentBuild build_garment(const GarmentPattern& pattern, const BodyDepth& body) {
   GarmentBuild build;

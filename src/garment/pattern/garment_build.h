@@ -1,17 +1,119 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "garment/garment.h"
-#include "garment/pattern/panel_mesh.h"
+#include "geometry/vec3.h"
 #include "model/system.h"
 #include "text/error.h"
 
 namespace mssim {
+
+/// A curve in the plane of a pattern (z = 0; m): a polyline, whose points are found by their arc length.
+class Curve {
+ public:
+  /// Chords of one Bezier segment. One that turns by a right angle comes out shorter by 6e-6 of its length.
+  static constexpr std::size_t chords = 128;
+
+  /// Throws InputError unless there are two points or more, all finite, with z = 0, each apart from the next.
+  explicit Curve(std::vector<Vec3d> points);
+
+  /// A chain of cubic Bezier segments: end point, two control points, end point, two control points, ..., end
+  /// point, as a polyline of `chords` chords each. Throws InputError unless there are 3 n + 1 points with n >
+  /// 0.
+  static Curve bezier(std::span<const Vec3d> points);
+
+  /// m
+  double length() const { return arcs_.back(); }
+  const Vec3d& first() const { return points_.front(); }
+  const Vec3d& last() const { return points_.back(); }
+  const std::vector<Vec3d>& points() const { return points_; }
+
+  /// The point at this fraction of the arc length; exactly the ends for 0 and 1, and for what lies beyond.
+  Vec3d at(double fraction) const;
+
+  /// Cut in two at this fraction of the arc length, which lies between 0 and 1, both excluded.
+  std::pair<Curve, Curve> split(double fraction) const;
+
+  /// This curve and then that one, which begins where this one ends.
+  Curve followed_by(const Curve& next) const;
+
+  /// The curve with x negated: a left panel's boundary becomes a right one's.
+  Curve mirrored() const;
+
+ private:
+  /// The first point beyond `arc`, counted so that it has a point before it.
+  std::size_t point_after(double arc) const;
+
+  std::vector<Vec3d> points_;
+  std::vector<double> arcs_;  ///< m, from the first point to each
+};
+
+/// The four boundaries of a pattern piece. The numbers index panel_edge_names.
+enum class PanelEdge : std::uint32_t { bottom, top, left, right };
+inline constexpr std::array<std::string_view, 4> panel_edge_names{"bottom", "top", "left", "right"};
+
+inline std::string name_of(PanelEdge edge) {
+  return std::string(panel_edge_names.at(static_cast<std::size_t>(edge)));
+}
+
+/// A pattern piece, drawn as it is seen from outside when it is worn. Its boundaries meet at four corners, to
+/// a tenth of a millimetre.
+struct PatternPiece {
+  std::string name;
+  Curve bottom, top;  ///< from left to right
+  Curve left, right;  ///< from bottom to top
+};
+
+/// A grid line that must end at given places: a row on the left and right boundary, or a column on the bottom
+/// and top one.
+struct GridLine {
+  std::uint32_t index = 0;  ///< of the row or column, neither the first nor the last
+  double first = 0;         ///< fraction of the left (bottom) boundary's arc length
+  double second = 0;        ///< fraction of the right (top) boundary's
+};
+
+/// How a piece is cut into cells. Between the lines that are given the others are spread evenly.
+struct PanelGrid {
+  std::uint32_t rows = 0;  ///< of nodes
+  std::uint32_t columns = 0;
+  std::vector<GridLine> row_lines{};     ///< ascending
+  std::vector<GridLine> column_lines{};  ///< ascending
+};
+
+/// A pattern piece as nodes in its plane.
+struct PanelMesh {
+  std::uint32_t rows = 0;
+  std::uint32_t columns = 0;
+  /// m, z = 0; row-major, row 0 at the bottom, column 0 at the left; rounded to micrometres
+  std::vector<Vec3d> nodes;
+  /// m, by PanelEdge: how far along its boundary each node of an edge lies
+  std::array<std::vector<double>, 4> arcs;
+
+  const std::vector<double>& arcs_on(PanelEdge edge) const { return arcs.at(static_cast<std::size_t>(edge)); }
+  std::size_t node(std::size_t row, std::size_t column) const { return row * columns + column; }
+  /// The nodes of an edge in the order of its boundary.
+  std::vector<std::size_t> edge_nodes(PanelEdge edge) const;
+};
+
+/// Thrown for boundaries that leave a piece no room for its cells.
+struct FoldedPiece : InputError {
+  using InputError::InputError;
+};
+
+/// The bilinearly blended patch of Coons ("Surfaces for computer-aided design of space forms", MIT MAC-TR-41,
+/// 1967) between the four boundaries. Cells are convex and go round counter-clockwise. Throws InputError,
+/// which begins with the panel's name, for fewer than two rows or columns, corners that do not meet and grid
+/// lines that are out of order, and as FoldedPiece for boundaries that cross and cells that fold over.
+PanelMesh mesh_panel(const PatternPiece& piece, const PanelGrid& grid);
 
 /// What of a pattern is to lie close to the body: cloth beside these seams.
 struct CloseSeams {

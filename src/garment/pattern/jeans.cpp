@@ -12,7 +12,6 @@
 #include "text/error.h"
 
 namespace mssim {
-
 namespace {
 
 /// How front and back differ. Proportions are those of trouser drafts as they are taught (Aldrich, "Metric
@@ -255,15 +254,6 @@ double fork_factor(const JeansMeasures& measures) {
   return 0.5 * (least + most);
 }
 
-}  // namespace
-
-JeansDraft draft_jeans(const JeansMeasures& measures) {
-  require_measures(measures);
-  return draft_with(measures, fork_factor(measures));
-}
-
-namespace {
-
 double inner_length(const JeansOutline& outline) { return outline.inseam.length() + outline.centre.length(); }
 
 /// The mean height of an outline's rows, m, over and under the crotch point's row.
@@ -315,7 +305,37 @@ PatternPiece piece_of(const std::string& name, const JeansOutline& outline, bool
   return {name, turned(outline.hem), turned(outline.waist), inner.mirrored(), outline.outer.mirrored()};
 }
 
+double in_millimetres(double metres) { return std::round(1000 * metres) / 1000; }
+
+/// What the jeans are wider than the body at their upper edge, m. Where the body hardly widens from there to
+/// the hip, they hold by being narrower.
+double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
+  constexpr double usual = 0.01, least = -0.03;  // m
+  constexpr double steep = 0.7;                  // m of girth per m of height: usual from there on
+  constexpr double narrower = 0.1;               // m, by as much less for each m per m below
+  const double widening = (profile.hull_girth(jeans.hip_height) - profile.hull_girth(jeans.waist_height)) /
+                          (jeans.waist_height - jeans.hip_height);
+  return std::clamp(usual + narrower * (widening - steep), least, usual);
+}
+
+/// How much the leg, straight from hem to knee, would have to be wider to go round the body's with some air.
+double lack_of_width(const BodyProfile& profile, const JeansMeasures& jeans) {
+  constexpr double air = 0.03, step = 0.01;  // m
+  double lack = 0;
+  for (double y = jeans.hem_height; y <= jeans.knee_height; y += step) {
+    const double fraction = (y - jeans.hem_height) / (jeans.knee_height - jeans.hem_height);
+    const double width = (1 - fraction) * jeans.hem + fraction * jeans.knee;
+    lack = std::max(lack, thicker_leg(profile, y).value_or(0) + air - width);
+  }
+  return lack;
+}
+
 }  // namespace
+
+JeansDraft draft_jeans(const JeansMeasures& measures) {
+  require_measures(measures);
+  return draft_with(measures, fork_factor(measures));
+}
 
 JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes) {
   if (nodes < 300 || nodes > 10'000'000)
@@ -385,35 +405,6 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
                    measures.hip_height};
   return pattern;
 }
-
-namespace {
-
-double in_millimetres(double metres) { return std::round(1000 * metres) / 1000; }
-
-/// What the jeans are wider than the body at their upper edge, m. Where the body hardly widens from there to
-/// the hip, they hold by being narrower.
-double ease_at_waist(const BodyProfile& profile, const JeansMeasures& jeans) {
-  constexpr double usual = 0.01, least = -0.03;  // m
-  constexpr double steep = 0.7;                  // m of girth per m of height: usual from there on
-  constexpr double narrower = 0.1;               // m, by as much less for each m per m below
-  const double widening = (profile.hull_girth(jeans.hip_height) - profile.hull_girth(jeans.waist_height)) /
-                          (jeans.waist_height - jeans.hip_height);
-  return std::clamp(usual + narrower * (widening - steep), least, usual);
-}
-
-/// How much the leg, straight from hem to knee, would have to be wider to go round the body's with some air.
-double lack_of_width(const BodyProfile& profile, const JeansMeasures& jeans) {
-  constexpr double air = 0.03, step = 0.01;  // m
-  double lack = 0;
-  for (double y = jeans.hem_height; y <= jeans.knee_height; y += step) {
-    const double fraction = (y - jeans.hem_height) / (jeans.knee_height - jeans.hem_height);
-    const double width = (1 - fraction) * jeans.hem + fraction * jeans.knee;
-    lack = std::max(lack, thicker_leg(profile, y).value_or(0) + air - width);
-  }
-  return lack;
-}
-
-}  // namespace
 
 JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& body) {
   constexpr double edge = 0.8;                           // of the way from the hip to the waist

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "garment/body/body_profile.h"
-#include "garment/pattern/curve.h"
 #include "garment/pattern/garment_build.h"
 
 namespace mssim {

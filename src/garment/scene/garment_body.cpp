@@ -1,5 +1,3 @@
-#include "garment/scene/garment_body.h"
-
 #include <array>
 #include <optional>
 #include <string>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "garment/body/stance.h"
+#include "garment/scene/garment_scene.h"
 #include "geometry/geometry.h"
 #include "geometry/surface.h"
 #include "mesh/surface_file.h"

@@ -8,7 +8,7 @@
 #include "garment/contact/body_maps.h"
 #include "garment/stepping/dressing_rules.h"
 #include "garment/stepping/garment_grid.h"
-#include "integrators/host_stages.h"
+#include "laws/host_laws.h"
 
 namespace mssim {
 namespace {

@@ -8,10 +8,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <vector>
 
 #include "backends/layouts/records-inl.h"
 #include "backends/threads/spin_barrier.h"

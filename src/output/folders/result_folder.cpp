@@ -7,15 +7,12 @@
 #include <cerrno>
 #include <iterator>
 #include <set>
-#include <string>
 #include <system_error>
 #include <utility>
 
-#include "garment/output/garment_csv.h"
+#include "garment/output/garment_tables.h"
 #include "output/folders/provenance_file.h"
-#include "output/tables/results.h"
 #include "output/tables/table.h"
-#include "platform/files.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <map>
 #include <numbers>
-#include <string>
 #include <system_error>
 #include <utility>
 
 #include "geometry/geometry.h"
-#include "output/traces/trace_content.h"
 #include "picture/legend.h"
 #include "scene/fields/fields.h"
 
@@ -68,16 +65,6 @@ void divide_at_creases(Skin& skin, const std::vector<Vec3d>& start) {
   skin.part = std::move(part);
 }
 
-}  // namespace
-
-Skin skin_of(const Topology& topology, const std::vector<Vec3d>& start) {
-  Skin skin = surface_of(topology, start.size());
-  if (std::holds_alternative<TetrahedralMesh>(topology)) divide_at_creases(skin, start);
-  return skin;
-}
-
-namespace {
-
 constexpr Rgb skin_tone{201, 188, 178}, denim{58, 88, 140};
 
 /// Colour of the side that is turned away: paler.
@@ -109,7 +96,19 @@ double usual_most(std::vector<double> strain) {
   return *place;
 }
 
+std::string picture_name(std::size_t number) {
+  constexpr std::size_t digits = 6;  // so that listings have them in order
+  const std::string text = std::to_string(number);
+  return "frame-" + std::string(text.size() < digits ? digits - text.size() : 0, '0') + text + ".png";
+}
+
 }  // namespace
+
+Skin skin_of(const Topology& topology, const std::vector<Vec3d>& start) {
+  Skin skin = surface_of(topology, start.size());
+  if (std::holds_alternative<TetrahedralMesh>(topology)) divide_at_creases(skin, start);
+  return skin;
+}
 
 Painter::Painter(const TraceContent& content, const std::vector<Vec3d>& start, const PictureOptions& options)
     : content_(content),
@@ -187,16 +186,6 @@ Picture Painter::picture_of(const std::vector<Vec3d>& positions) const {
   write_legend(picture);
   return picture;
 }
-
-namespace {
-
-std::string picture_name(std::size_t number) {
-  constexpr std::size_t digits = 6;  // so that listings have them in order
-  const std::string text = std::to_string(number);
-  return "frame-" + std::string(text.size() < digits ? digits - text.size() : 0, '0') + text + ".png";
-}
-
-}  // namespace
 
 PictureFolder::PictureFolder(std::filesystem::path folder, TraceContent content,
                              const PictureOptions& options)

@@ -4,8 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "text/text.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "model/energy.h"
+#include "model/system.h"
 #include "platform/files.h"
 
 namespace mssim {

@@ -2,19 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <stdexcept>
-#include <string_view>
-#include <vector>
 
 #include "garment/output/h5md_garment.h"
-#include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
-#include "output/traces/xdmf.h"
-#include "platform/files.h"
 
 namespace mssim {
-
 namespace {
 
 struct UnitInfo {
@@ -130,37 +123,6 @@ void write_static_body(hid_t file, const Surface& body) {
               std::array<hsize_t, 2>{body.triangles.size(), 3}, body.triangles.data());
 }
 
-}  // namespace
-
-void require_fitting_topology(const Topology& topology, std::size_t nodes) {
-  if (nodes == 0) throw std::invalid_argument("a trace needs nodes");
-  if (const auto* grid = std::get_if<GridPatch>(&topology)) {
-    if (std::uint64_t{grid->rows} * grid->columns != nodes)
-      throw std::invalid_argument("a trace needs a grid of all nodes");
-    return;
-  }
-  if (const auto* garment = std::get_if<Garment>(&topology)) return require_fitting_garment(*garment, nodes);
-  const auto& tetrahedra = std::get<TetrahedralMesh>(topology).tetrahedra;
-  const bool fits = std::ranges::all_of(tetrahedra, [&](const Tetrahedron& corners) {
-    return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });
-  });
-  if (tetrahedra.empty() || !fits)
-    throw std::invalid_argument("a trace of bodies needs tetrahedra between its nodes");
-}
-
-void require_fitting_body(const Topology& topology, const Surface& body) {
-  if (body.points.empty() && body.triangles.empty()) return;
-  if (!std::holds_alternative<Garment>(topology))
-    throw std::invalid_argument("only a garment's trace has a body that does not move");
-  const bool fits = std::ranges::all_of(body.triangles, [&](const auto& corners) {
-    return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < body.points.size(); });
-  });
-  if (body.triangles.empty() || !fits)
-    throw std::invalid_argument("a trace's body needs triangles between its points");
-}
-
-namespace {
-
 constexpr std::size_t dimensions = 3;
 /// What HDF5 itself adds to a file at a time, at most: a few index nodes and chunks of numbers.
 constexpr std::size_t room_for_metadata = 65536;
@@ -215,6 +177,33 @@ std::size_t count_frames(const std::filesystem::path& trace) {
 }
 
 }  // namespace
+
+void require_fitting_topology(const Topology& topology, std::size_t nodes) {
+  if (nodes == 0) throw std::invalid_argument("a trace needs nodes");
+  if (const auto* grid = std::get_if<GridPatch>(&topology)) {
+    if (std::uint64_t{grid->rows} * grid->columns != nodes)
+      throw std::invalid_argument("a trace needs a grid of all nodes");
+    return;
+  }
+  if (const auto* garment = std::get_if<Garment>(&topology)) return require_fitting_garment(*garment, nodes);
+  const auto& tetrahedra = std::get<TetrahedralMesh>(topology).tetrahedra;
+  const bool fits = std::ranges::all_of(tetrahedra, [&](const Tetrahedron& corners) {
+    return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });
+  });
+  if (tetrahedra.empty() || !fits)
+    throw std::invalid_argument("a trace of bodies needs tetrahedra between its nodes");
+}
+
+void require_fitting_body(const Topology& topology, const Surface& body) {
+  if (body.points.empty() && body.triangles.empty()) return;
+  if (!std::holds_alternative<Garment>(topology))
+    throw std::invalid_argument("only a garment's trace has a body that does not move");
+  const bool fits = std::ranges::all_of(body.triangles, [&](const auto& corners) {
+    return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < body.points.size(); });
+  });
+  if (body.triangles.empty() || !fits)
+    throw std::invalid_argument("a trace's body needs triangles between its points");
+}
 
 H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header,
                      const Surface& body)

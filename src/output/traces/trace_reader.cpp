@@ -2,17 +2,102 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
-#include "hdf5/hdf5.h"
+#include "garment/output/h5md_garment.h"
 #include "platform/files.h"
 #include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
+
+std::string read_particles(hid_t file) {
+  for (const char* name : {"cloth", "bodies", "garment"})
+    if (exists(file, std::string("/particles/") + name)) return name;
+  throw Hdf5ContentError("there is none of /particles/cloth, /particles/bodies and /particles/garment");
+}
+
+/// Steps and times, of which the shorter list counts: a run may have been ended between the two. So may a
+/// frame's positions be there and its step not.
+void read_series(hid_t file, TraceContent& content) {
+  const std::string position = particles_group(content) + "/position",
+                    velocity = particles_group(content) + "/velocity";
+  const Hdf5Table step(file, position + "/step", {Hdf5Table::any}),
+      time(file, position + "/time", {Hdf5Table::any}),
+      positions(file, position + "/value", {Hdf5Table::any, Hdf5Table::any, 3});
+  const Hdf5Table velocities(file, velocity + "/value", {Hdf5Table::any, positions.extent(1), 3});
+  const auto [fewest, most] = std::minmax({step.rows(), time.rows(), positions.rows(), velocities.rows()});
+  if (most - fewest > 1)
+    throw Hdf5ContentError("steps, times, positions and velocities are of unlike numbers of frames, " +
+                           std::to_string(fewest) + " to " + std::to_string(most));
+  if (fewest == 0) throw Hdf5ContentError("it has no frames");
+  if (positions.extent(1) > std::numeric_limits<std::uint32_t>::max())
+    throw Hdf5ContentError(position + "/value has more nodes than mssim can number");
+  content.in_double = positions.bytes_per_number() == sizeof(double);
+  content.nodes = positions.extent(1);
+  content.step = step.integers(0, fewest);
+  content.time_s = time.doubles(0, fewest);
+  const bool finite =
+      std::ranges::all_of(content.time_s, [](double time_s) { return std::isfinite(time_s); });
+  if (!finite || std::ranges::adjacent_find(content.step, std::greater_equal<>()) != content.step.end() ||
+      std::ranges::adjacent_find(content.time_s, std::greater_equal<>()) != content.time_s.end())
+    throw Hdf5ContentError("its steps and times do not increase");
+}
+
+/// Tuples of nodes; an empty list has no dataset.
+template <std::size_t size>
+std::vector<std::array<std::uint32_t, size>> read_tuples(hid_t file, const std::string& path) {
+  std::vector<std::array<std::uint32_t, size>> tuples;
+  if (!exists(file, path)) return tuples;
+  const std::vector<std::uint32_t> numbers = read_numbers(file, path, {Hdf5Table::any, size});
+  tuples.resize(numbers.size() / size);
+  for (std::size_t i = 0; i < numbers.size(); ++i) tuples[i / size][i % size] = numbers[i];
+  return tuples;
+}
+
+std::uint32_t read_extent(hid_t file, const std::string& name) {
+  const std::int64_t extent = read_integer_attribute(file, "/parameters", name);
+  if (extent < 1 || extent > std::numeric_limits<std::uint32_t>::max())
+    throw Hdf5ContentError("attribute " + name + " of /parameters is " + std::to_string(extent));
+  return static_cast<std::uint32_t>(extent);
+}
+
+Topology read_topology(hid_t file, const TraceContent& content) {
+  if (content.particles == "cloth") return GridPatch{read_extent(file, "rows"), read_extent(file, "columns")};
+  if (content.particles == "bodies") return TetrahedralMesh{read_tuples<4>(file, tetrahedra_dataset)};
+  return read_garment(file, content.nodes);
+}
+
+void read_springs(hid_t file, TraceContent& content) {
+  const std::string springs = "/connectivity/springs", rest_length = "/parameters/springs/rest_length";
+  content.springs = read_tuples<2>(file, springs);
+  for (const auto& [first, second] : content.springs)
+    if (std::max(first, second) >= content.nodes || first == second)
+      throw Hdf5ContentError(springs + " has a spring between the nodes " + std::to_string(first) + " and " +
+                             std::to_string(second) + " of " + std::to_string(content.nodes));
+  if (content.springs.empty() || !exists(file, rest_length)) return;
+  content.rest_length = read_doubles(file, rest_length, {content.springs.size()});
+  for (const double length : content.rest_length)
+    if (!(length > 0 && std::isfinite(length)))
+      throw Hdf5ContentError(rest_length + " has a length that is not above 0");
+}
+
+Surface read_static_body(hid_t file) {
+  Surface body;
+  if (!exists(file, "/body")) return body;
+  const std::vector<double> numbers = read_doubles(file, body_points_dataset, {Hdf5Table::any, 3});
+  for (std::size_t i = 0; i < numbers.size(); i += 3) {
+    body.points.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+    if (!is_finite(body.points.back()))
+      throw Hdf5ContentError(std::string(body_points_dataset) + " has a number that is not finite");
+  }
+  body.triangles = read_tuples<3>(file, body_triangles_dataset);
+  return body;
+}
 
 namespace fs = std::filesystem;
 
@@ -56,6 +141,63 @@ void require_file(const fs::path& file) {
 }
 
 }  // namespace
+
+TraceContent read_trace_content(hid_t file) {
+  if (!exists(file, "/h5md")) throw Hdf5ContentError("it is an HDF5 file, but no H5MD trace");
+  TraceContent content;
+  content.particles = read_particles(file);
+  read_series(file, content);
+  content.topology = read_topology(file, content);
+  require_fitting_topology(content.topology, content.nodes);
+  read_springs(file, content);
+  content.body = read_static_body(file);
+  require_fitting_body(content.topology, content.body);
+  content.scene_json = read_text(file, "/parameters/scene");
+  content.backend = read_text_attribute(file, "/parameters", "backend");
+  content.integrator = read_text_attribute(file, "/parameters", "integrator");
+  content.dt_s = read_double_attribute(file, "/parameters", "dt_s");
+  if (!(content.dt_s > 0 && std::isfinite(content.dt_s)))
+    throw Hdf5ContentError("attribute dt_s of /parameters is not above 0");
+  return content;
+}
+
+TraceContent trace_content_of(const System& system, const TraceHeader& header, const Surface& body) {
+  TraceContent content;
+  content.particles = xdmf_mesh_of(system, body).particles;
+  content.topology = system.topology;
+  for (const Spring& spring : system.springs) {
+    content.springs.push_back({spring.first, spring.second});
+    content.rest_length.push_back(spring.rest_length);
+  }
+  content.body = body;
+  content.scene_json = header.scene_json;
+  content.backend = header.backend;
+  content.integrator = header.integrator;
+  content.dt_s = header.dt_s;
+  content.in_double = header.in_double;
+  content.nodes = system.nodes();
+  return content;
+}
+
+std::string particles_group(const TraceContent& content) { return "/particles/" + content.particles; }
+
+std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions) {
+  std::vector<double> strain(content.nodes);
+  std::vector<std::uint32_t> springs(content.nodes);
+  for (std::size_t i = 0; i < content.rest_length.size(); ++i) {
+    const auto& [first, second] = content.springs[i];
+    const double rest = content.rest_length[i];
+    if (rest <= 0) continue;
+    const double stretched = length(positions[second] - positions[first]) / rest - 1;
+    for (const std::uint32_t node : {first, second}) {
+      strain[node] += stretched;
+      ++springs[node];
+    }
+  }
+  for (std::size_t node = 0; node < strain.size(); ++node)
+    if (springs[node] > 0) strain[node] /= springs[node];
+  return strain;
+}
 
 TraceReader::TraceReader(fs::path file) : name_(std::move(file)) {
   require_file(name_);

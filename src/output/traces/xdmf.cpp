@@ -1,10 +1,9 @@
-#include "output/traces/xdmf.h"
-
 #include <array>
 #include <functional>
 #include <numeric>
 
 #include "hdf5/hdf5.h"
+#include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "text/text.h"
 

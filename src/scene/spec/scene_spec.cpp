@@ -1,7 +1,5 @@
 #include "scene/spec/scene_spec.h"
 
-#include <string>
-
 #include "platform/machine.h"
 #include "scene/fields/fields.h"
 

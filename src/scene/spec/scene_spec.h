@@ -15,7 +15,6 @@
 #include "garment/spec/garment_spec.h"
 #include "geometry/vec3.h"
 #include "mesh/meshing.h"
-#include "mesh/shapes.h"
 #include "model/system.h"
 
 namespace mssim {
@@ -56,7 +55,7 @@ struct ShapeOfScene {
   bool operator==(const ShapeOfScene&) const = default;
 };
 
-/// One alternative a kind of shape, in the order of their table (scene/bodies.h).
+/// One alternative a kind of shape, in the order of their table (scene/builders.h).
 using BodyShape = std::variant<GeneratedShape<BoxShape>, GeneratedShape<SphereShape>,
                                GeneratedShape<TorusShape>, MeshFiles, SurfaceFile, ShapeOfScene>;
 

@@ -17,7 +17,7 @@
 #include "backends/backends.h"
 #include "backends/spring_list/list_backends.h"
 #include "bench/verification/verification.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
 
 namespace mssim {

@@ -22,7 +22,7 @@
 #include "backends/backends.h"
 #include "backends/devices/driver_environment.h"
 #include "backends/devices/drivers.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "platform/machine.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/garment_system.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "backends/layouts/node_arrays.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "tests/support/systems.h"
 

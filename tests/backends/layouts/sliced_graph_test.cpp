@@ -19,7 +19,6 @@
 #include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
 #include "integrators/all_integrators.h"
-#include "integrators/integrators.h"
 #include "tests/support/expect_coloured.h"
 #include "tests/support/sentence_of.h"
 #include "tests/support/systems.h"

@@ -14,9 +14,7 @@
 #include "backends/devices/device_queue.h"
 #include "backends/opencl/programs.h"
 #include "integrators/all_integrators.h"
-#include "integrators/integrators.h"
 #include "model/system.h"
-#include "model/topology.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/opencl_variants.h"
 

@@ -16,7 +16,7 @@
 #include "backends/openmp/openmp.h"
 #include "backends/vectors/step_kernels.h"
 #include "bench/verification/verification.h"
-#include "integrators/integrators.h"
+#include "integrators/all_integrators.h"
 #include "tests/support/backend_checks.h"
 
 namespace mssim {

@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/machine/build_info.h"
-#include "bench/machine/machine.h"
 #include "output/folders/provenance_file.h"
 #include "tests/support/files_fixture.h"
 

@@ -1,3 +1,5 @@
+#include "bench/roofline/roofline.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,8 +9,6 @@
 #include <limits>
 #include <vector>
 
-#include "bench/roofline/machine_peak.h"
-#include "bench/roofline/step_cost.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/systems.h"
 

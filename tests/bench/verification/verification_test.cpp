@@ -14,7 +14,6 @@
 
 #include "backends/openmp/openmp.h"
 #include "backends/spring_list/list_backends.h"
-#include "bench/verification/second_stretch.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 #include "scene/scene_file.h"

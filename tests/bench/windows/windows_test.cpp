@@ -15,7 +15,7 @@
 #include "backends/layouts/band_grid.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
-#include "scene/cloth.h"
+#include "scene/builders.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/backend_checks.h"
 

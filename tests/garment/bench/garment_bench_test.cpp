@@ -1,4 +1,6 @@
 // How bench_scene measures a garment: two squares, sewn together in free space.
+#include "garment/bench/garment_bench.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +15,6 @@
 
 #include "backends/backends.h"
 #include "bench/bench_scene.h"
-#include "garment/bench/garment_verification.h"
 #include "garment/contact/body_maps.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"

@@ -9,7 +9,7 @@
 
 #include "garment/body/mannequin.h"
 #include "garment/pattern/jeans.h"
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "mesh/surface_file.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/mesh_fixture.h"

@@ -1,6 +1,4 @@
 // The closed lines in which a horizontal plane meets a surface, and whether they overlap.
-#include "garment/body/sections.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +10,7 @@
 #include "garment/body/body_profile.h"
 #include "garment/body/mannequin.h"
 #include "garment/body/trunk_and_legs.h"
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "tests/support/body_with_arms.h"
 #include "tests/support/mesh_fixture.h"
 

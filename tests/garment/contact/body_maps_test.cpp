@@ -16,7 +16,7 @@
 #include "garment/body/mannequin.h"
 #include "garment/contact/solid.h"
 #include "geometry/surface.h"
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "mesh/surface_file.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"

@@ -11,7 +11,7 @@
 
 #include "garment/body/mannequin.h"
 #include "geometry/surface.h"
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
 

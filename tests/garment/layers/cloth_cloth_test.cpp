@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "model/topology.h"
+#include "model/system.h"
 #include "tests/support/cloth_layers_fixture.h"
 #include "tests/support/sentence_of.h"
 

@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "garment/layers/cloth_crossings.h"
 #include "geometry/triangle_tree.h"
 #include "tests/support/cloth_layers_fixture.h"
 #include "tests/support/sentence_of.h"

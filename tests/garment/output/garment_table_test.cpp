@@ -1,12 +1,10 @@
-#include "garment/output/garment_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "garment/output/garment_csv.h"
+#include "garment/output/garment_tables.h"
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/sentence_of.h"

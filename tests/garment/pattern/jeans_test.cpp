@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/topology.h"
+#include "model/system.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {

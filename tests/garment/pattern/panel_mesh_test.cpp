@@ -1,5 +1,3 @@
-#include "garment/pattern/panel_mesh.h"
-
 #include <gmock/gmock.h>
 
 #include <array>
@@ -7,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "garment/pattern/curve.h"
+#include "garment/pattern/garment_build.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
 

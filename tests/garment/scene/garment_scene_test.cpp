@@ -1,5 +1,7 @@
 // Jeans for a person with arms: they are cut whatever the heights that the scene gives, and fit on every
 // backend.
+#include "garment/scene/garment_scene.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,8 +15,6 @@
 
 #include "application/prepared_scene.h"
 #include "commands/command.h"
-#include "garment/scene/garment_body.h"
-#include "garment/scene/garment_cut.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/body_with_arms.h"

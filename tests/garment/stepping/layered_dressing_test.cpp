@@ -7,10 +7,9 @@
 
 #include "garment/contact/body_maps.h"
 #include "garment/layers/cloth_contacts.h"
-#include "garment/layers/cloth_crossings.h"
 #include "garment/stepping/dressing_backend.h"
 #include "garment/stepping/dressing_rules.h"
-#include "mesh/shapes.h"
+#include "mesh/meshing.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/garment_system.h"
 

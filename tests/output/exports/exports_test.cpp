@@ -5,7 +5,6 @@
 #include <cstring>
 #include <sstream>
 
-#include "output/exports/vtkhdf_export.h"
 #include "tests/support/systems.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"

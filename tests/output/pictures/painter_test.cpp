@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "geometry/surface.h"
-#include "output/traces/trace_content.h"
+#include "output/traces/trace_reader.h"
 #include "picture/picture.h"
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "output/traces/xdmf.h"
+#include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "tests/support/trace_fixture.h"
 #include "tests/support/trace_systems.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "output/traces/energy_curve.h"
-#include "output/traces/xdmf.h"
+#include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "tests/support/systems.h"
 #include "tests/support/trace_fixture.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrators/host_stages.h"
+#include "laws/host_laws.h"
 #include "model/system.h"
 
 namespace mssim {

@@ -18,7 +18,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
-#include "model/energy.h"
+#include "model/system.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/expect_coloured.h"
 

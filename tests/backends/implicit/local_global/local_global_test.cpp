@@ -16,7 +16,7 @@
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "integrators/stability.h"
-#include "model/energy.h"
+#include "model/system.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/backward_euler.h"
 #include "tests/support/dense_solve.h"

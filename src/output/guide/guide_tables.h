@@ -18,4 +18,7 @@ Table guide_summary(const SceneGuide& guide);
 /// rate, and "guide-crossovers" the sizes at which two backends take the same time.
 std::vector<ResultTable> guide_tables(std::span<const SceneGuide> guides, const Provenance& provenance);
 
+/// What errors were measured against, in sentences with their full stops.
+std::vector<std::string> about_trusted_state(const TrustedState& trusted);
+
 }  // namespace mssim

@@ -1,18 +1,12 @@
-#include "bench/job/combination.h"
+#include "bench/job/job.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <sstream>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "bench/job/scene_job.h"
-#include "bench/verification/verification.h"
-#include "bench/windows/windows.h"
 #include "integrators/all_integrators.h"
 #include "statistics/statistics.h"
 #include "text/text.h"
@@ -69,7 +63,77 @@ std::string subject_of(const ResultRow& row) {
   return text.str();
 }
 
+void find_sample_steps(Combination& combination, const SceneJob& job) {
+  static const double resolution_s = clock_resolution_s();
+  const auto time_steps = [&](int steps) { return time_sample(combination, steps).wall_s; };
+  int steps = 1;
+  for (;;) {
+    combination.step_seconds = time_steps(steps) / steps;
+    if (combination.step_seconds < least_step_s)
+      return fail(combination, "failed: its steps are not done when it says so: " +
+                                   pluralize(static_cast<std::uint64_t>(steps), "step") +
+                                   " take less than 10 ns each");
+    const int fit =
+        sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
+    if (fit <= (job.verified ? 10 : 2) * steps) {
+      steps = fit;
+      break;
+    }
+    steps = std::min(fit, 10 * steps);
+  }
+  if (job.verified) {
+    combination.steps = steps;
+    return;
+  }
+  // Part of a sample each, because a warm backend needs three of them to show it.
+  const int trial_steps = std::max(1, steps / 4);
+  std::vector<double> trials;
+  while (trials.size() < most_warm_up_trials && !is_warm(trials)) trials.push_back(time_steps(trial_steps));
+  combination.row.warm_up_trials = static_cast<int>(trials.size());
+  combination.step_seconds = median(trials) / trial_steps;
+  combination.steps =
+      sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
+}
+
+/// What reading a state that has just come to be takes, the shortest of some times.
+double reading_seconds_after_a_step(Combination& combination) {
+  double shortest = std::numeric_limits<double>::max();
+  for (int time = 0; time < 3; ++time) {
+    restart(combination);
+    combination.backend->step(1);
+    shortest = std::min(shortest, seconds_of([&] { combination.backend->state(); }));
+  }
+  return shortest;
+}
+
 }  // namespace
+
+double clock_resolution_s() {
+  using Clock = std::chrono::steady_clock;
+  Clock::duration smallest = Clock::duration::max();
+  for (int i = 0; i < 1000; ++i) {
+    const auto before = Clock::now();
+    auto after = Clock::now();
+    while (after == before) after = Clock::now();
+    smallest = std::min(smallest, after - before);
+  }
+  return std::chrono::duration<double>(smallest).count();
+}
+
+int sample_steps(double step_seconds, double sample_seconds, double clock_resolution_seconds, int most) {
+  const double seconds = std::max(step_seconds, 1e-12);
+  const double enough_for_clock = std::ceil(least_clock_steps * clock_resolution_seconds / seconds);
+  const double limit = std::max<double>(most, enough_for_clock);
+  return static_cast<int>(std::clamp(sample_seconds / seconds, 1.0, std::min(limit, 1e9)));
+}
+
+bool is_warm(std::span<const double> trial_seconds) {
+  if (trial_seconds.size() < 3) return false;
+  constexpr double faster = 0.98;
+  const auto last_two = trial_seconds.last(2);
+  const double fastest = *std::min_element(trial_seconds.begin(), trial_seconds.end() - 2);
+  return *std::min_element(last_two.begin(), last_two.end()) >= faster * fastest;
+}
 
 void end(Combination& combination) {
   if (!combination.backend) return;
@@ -173,53 +237,6 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   row.verified = true;
   append_sentence(row.note, "verified by an earlier process");
 }
-
-namespace {
-
-void find_sample_steps(Combination& combination, const SceneJob& job) {
-  static const double resolution_s = clock_resolution_s();
-  const auto time_steps = [&](int steps) { return time_sample(combination, steps).wall_s; };
-  int steps = 1;
-  for (;;) {
-    combination.step_seconds = time_steps(steps) / steps;
-    if (combination.step_seconds < least_step_s)
-      return fail(combination, "failed: its steps are not done when it says so: " +
-                                   pluralize(static_cast<std::uint64_t>(steps), "step") +
-                                   " take less than 10 ns each");
-    const int fit =
-        sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
-    if (fit <= (job.verified ? 10 : 2) * steps) {
-      steps = fit;
-      break;
-    }
-    steps = std::min(fit, 10 * steps);
-  }
-  if (job.verified) {
-    combination.steps = steps;
-    return;
-  }
-  // Part of a sample each, because a warm backend needs three of them to show it.
-  const int trial_steps = std::max(1, steps / 4);
-  std::vector<double> trials;
-  while (trials.size() < most_warm_up_trials && !is_warm(trials)) trials.push_back(time_steps(trial_steps));
-  combination.row.warm_up_trials = static_cast<int>(trials.size());
-  combination.step_seconds = median(trials) / trial_steps;
-  combination.steps =
-      sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
-}
-
-/// What reading a state that has just come to be takes, the shortest of some times.
-double reading_seconds_after_a_step(Combination& combination) {
-  double shortest = std::numeric_limits<double>::max();
-  for (int time = 0; time < 3; ++time) {
-    restart(combination);
-    combination.backend->step(1);
-    shortest = std::min(shortest, seconds_of([&] { combination.backend->state(); }));
-  }
-  return shortest;
-}
-
-}  // namespace
 
 void calibrate(Combination& combination, const SceneJob& job) {
   attempt(combination, [&] {

@@ -1,6 +1,5 @@
-#include "garment/spec/garment_pieces.h"
+#include "garment/spec/garment_spec.h"
 
-#include "scene/fields/fields.h"
 #include "text/error.h"
 #include "text/text.h"
 

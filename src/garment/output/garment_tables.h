@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "bench/results/result.h"
+#include "output/tables/results.h"
 #include "output/tables/table.h"
 
 namespace mssim {
@@ -18,5 +21,11 @@ std::string garment_csv(std::span<const ResultRow> rows);
 /// Reads the dressings of a garment.csv into those of `rows` that it has; others stay as they are. Throws
 /// CsvError.
 void read_dressings(const CsvTable& table, std::span<ResultRow> rows);
+
+/// Makes the table `figure6` of the scenes that are garments, laid out as Figure 6 of Vassilev: milliseconds
+/// an iteration against vertices, without parallelisation (`serial`) and with (the other backends), and what
+/// the figure does not show: the speed-up, the time of an iteration and vertex, and how long the whole
+/// dressing took. None where nothing was dressed.
+TableMaker garment_tables();
 
 }  // namespace mssim

@@ -1,0 +1,294 @@
+#include "garment/output/garment_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+using Rows = std::vector<const ResultRow*>;
+
+/// Those of all scenes that any backend has dressed, in their order.
+Rows rows_of_dressed_scenes(std::span<const ResultRow> rows) {
+  std::set<std::string_view> scenes;
+  for (const ResultRow& row : rows)
+    if (row.dressing) scenes.insert(row.scene);
+  Rows found;
+  for (const ResultRow& row : rows)
+    if (scenes.contains(row.scene)) found.push_back(&row);
+  return found;
+}
+
+/// Milliseconds an iteration, over a whole dressing; none where there was no iteration.
+std::optional<double> ms_per_iteration(const DressingRecord& dressing) {
+  if (dressing.iterations == 0) return std::nullopt;
+  return 1e3 * dressing.wall_s / static_cast<double>(dressing.iterations);
+}
+
+/// A line of a table: a backend with an integrator.
+using Line = std::pair<std::string, std::string>;
+
+/// The rows laid out: scenes are columns, by their number of vertices, and combinations that have a time or a
+/// dressing anywhere are lines.
+class Layout {
+ public:
+  explicit Layout(Rows rows) : rows_(std::move(rows)) {
+    for (const ResultRow* row : rows_) {
+      if (std::ranges::find(scenes_, row->scene, &ResultRow::scene) == scenes_.end()) scenes_.push_back(row);
+      const Line line(row->backend, row->integrator);
+      if (row->dressing && std::ranges::find(lines_, line) == lines_.end()) lines_.push_back(line);
+    }
+    std::ranges::stable_sort(scenes_, {}, &ResultRow::nodes);
+  }
+
+  const Rows& rows() const { return rows_; }
+  const Rows& scenes() const { return scenes_; }
+  const std::vector<Line>& lines() const { return lines_; }
+  const ResultRow* find(const ResultRow& scene, const Line& line) const {
+    return find_row(rows_, scene.scene, line.first, line.second);
+  }
+
+ private:
+  Rows rows_;
+  Rows scenes_;  ///< the first row of each
+  std::vector<Line> lines_;
+};
+
+bool is_baseline(const Line& line) { return line.first == baseline_name; }
+
+/// A cell of the table of times.
+Cell time_cell(RowPointers rows, const ResultRow& row) {
+  const std::optional<double> ms = counted_ms(row);
+  Cell cell = measured_cell(&row, ms);
+  if (ms && row.speedup_vs_serial && row.backend != baseline_name)
+    cell.suffix.append(in_brackets(*row.speedup_vs_serial)).append(mark_of_speedup(rows, row));
+  return cell;
+}
+
+Cell vertex_cell(RowPointers /*rows*/, const ResultRow& row) { return ns_per_node(row, row.ms_per_step); }
+
+Cell dressing_cell(RowPointers /*rows*/, const ResultRow& row) {
+  if (!row.dressing) return {};
+  return three_digits(row.dressing->wall_s) + " s\n" + grouped(row.dressing->iterations);
+}
+
+using MakeCell = Cell (*)(RowPointers rows, const ResultRow& row);
+
+Table table_of(const Layout& layout, const Provenance& provenance, const std::string& title, MakeCell make) {
+  Table table{{{title}}, {}};
+  for (const ResultRow* scene : layout.scenes()) table.columns.push_back(scene_column(*scene));
+  for (const Line& line : layout.lines()) {
+    std::vector<Cell>& cells = table.rows.emplace_back();
+    cells.emplace_back((is_baseline(line) ? "without: " : "with: ") +
+                       backend_label(layout.rows(), line.first, provenance));
+    for (const ResultRow* scene : layout.scenes()) {
+      const ResultRow* row = layout.find(*scene, line);
+      Cell& cell = cells.emplace_back(row ? make(layout.rows(), *row) : Cell());
+      if (row) cell.suffix += mark_of_excess(*row, provenance);
+    }
+  }
+  return table;
+}
+
+Document page_of(const Layout& layout, const Provenance& provenance) {
+  Document page{
+      Heading{1, "Figure 6 of Vassilev: milliseconds an iteration against vertices of jeans"},
+      measured_on(layout.rows(), provenance),
+      Paragraph{
+          "One iteration of Algorithm 1, medians, of jeans that hang draped on the body: springs, joints, "
+          "collision with the body and the correction of velocities are at work. In brackets how many "
+          "times as fast as without parallelisation. The paper shows its own times as curves, without "
+          "numbers, from other machines."},
+      table_of(layout, provenance, "milliseconds an iteration", time_cell),
+      Paragraph{"Nanoseconds an iteration and vertex, of the same samples:"},
+      table_of(layout, provenance, "nanoseconds", vertex_cell),
+      Paragraph{
+          "The whole dressing, once: seconds and iterations from flat panels to jeans that hang settled. "
+          "`garment.csv` says how each fits."},
+      table_of(layout, provenance, "dressing", dressing_cell)};
+  add_sentence(page, legend_of_ratios(page));
+  add_sentence(page, legend_of_excess(layout.rows(), provenance));
+  add_sentence(page, reason_without_speedups(layout.rows()));
+  add_rows_without_a_time(page, layout.rows());
+  return page;
+}
+
+Table data_of(const Layout& layout) {
+  Table table{{{"backend"}, {"integrator"}, {"parallel"}, {"quantity"}}, {}};
+  std::vector<Cell>& vertices = table.rows.emplace_back();
+  vertices = {{}, {}, {}, "vertices"};
+  for (const ResultRow* scene : layout.scenes()) {
+    table.columns.push_back({scene->scene});
+    vertices.emplace_back(scene->nodes);
+  }
+  for (const Line& line : layout.lines()) {
+    const auto add = [&](std::string_view quantity, auto&& value) {
+      std::vector<Cell>& cells = table.rows.emplace_back();
+      cells = {line.first, line.second, is_baseline(line) ? "without" : "with", quantity};
+      for (const ResultRow* scene : layout.scenes()) {
+        const ResultRow* row = layout.find(*scene, line);
+        cells.push_back(row ? Cell(value(*row)) : Cell());
+      }
+    };
+    using Number = std::optional<double>;
+    add("ms_per_iteration", counted_ms);
+    add("speedup_vs_serial",
+        [](const ResultRow& row) { return counts(row) ? row.speedup_vs_serial : Number(); });
+    add("ns_per_iteration_and_vertex",
+        [](const ResultRow& row) { return ns_per_node(row, row.ms_per_step); });
+    add("dressing_s",
+        [](const ResultRow& row) { return row.dressing ? Number(row.dressing->wall_s) : Number(); });
+    add("dressing_iterations",
+        [](const ResultRow& row) { return row.dressing ? Cell(row.dressing->iterations) : Cell(); });
+  }
+  return table;
+}
+
+/// A column of garment.csv that every row has.
+struct GarmentColumn {
+  std::string_view name;
+  Cell (*write)(const ResultRow& row);
+  /// Reads what only this file has; null for what timings.csv has, too.
+  void (*read)(DressingRecord& record, const CsvTable& table, std::size_t line, std::size_t column) = nullptr;
+};
+
+/// A value of the row's dressing; nothing where it has none.
+template <class Value>
+Cell of_dressing(const ResultRow& row, Value DressingRecord::*value) {
+  return row.dressing ? Cell((*row.dressing).*value) : Cell();
+}
+
+/// The TABLE of columns, in their order; the numbers of the fit follow.
+constexpr std::size_t iterations_column = 12;
+constexpr auto columns = std::to_array<GarmentColumn>({
+    {"scene", [](const ResultRow& row) { return Cell(row.scene); }},
+    {"nodes", [](const ResultRow& row) { return Cell(row.nodes); }},
+    {"backend", [](const ResultRow& row) { return Cell(row.backend); }},
+    {"device", [](const ResultRow& row) { return Cell(row.device); }},
+    {"threads", [](const ResultRow& row) { return Cell(row.threads); }},
+    {"integrator", [](const ResultRow& row) { return Cell(row.integrator); }},
+    {"dt_s", [](const ResultRow& row) { return Cell(row.dt_s); }},
+    {"ms_per_iteration", [](const ResultRow& row) { return Cell(row.ms_per_step); }},
+    {"ms_per_iteration_low", [](const ResultRow& row) { return Cell(row.ms_per_step_low); }},
+    {"ms_per_iteration_high", [](const ResultRow& row) { return Cell(row.ms_per_step_high); }},
+    {"ns_per_iteration_and_vertex",
+     [](const ResultRow& row) { return Cell(ns_per_node(row, row.ms_per_step)); }},
+    {"speedup_vs_serial", [](const ResultRow& row) { return Cell(row.speedup_vs_serial); }},
+    {"dressing_iterations",
+     [](const ResultRow& row) { return of_dressing(row, &DressingRecord::iterations); },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.iterations = table.count(l, c);
+     }},
+    {"seamed_at", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::seamed_at); },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       if (!table.text(l, c).empty()) d.seamed_at = table.count(l, c);
+     }},
+    {"settled", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::settled); },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.settled = table.truth(l, c);
+     }},
+    {"simulated_s", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::simulated_s); },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.simulated_s = table.number(l, c);
+     }},
+    {"dressing_s", [](const ResultRow& row) { return of_dressing(row, &DressingRecord::wall_s); },
+     [](DressingRecord& d, const CsvTable& table, std::size_t l, std::size_t c) {
+       d.wall_s = table.number(l, c);
+     }},
+    {"dressing_ms_per_iteration",
+     [](const ResultRow& row) { return row.dressing ? Cell(ms_per_iteration(*row.dressing)) : Cell(); }},
+    {"verified", [](const ResultRow& row) { return Cell(row.verified); }},
+    {"status", [](const ResultRow& row) { return Cell(row.status); }},
+});
+static_assert(columns[iterations_column].name == "dressing_iterations");
+
+constexpr std::string_view within_suffix = "_within";
+
+/// The numbers of all fits: a garment that has fewer has none that the one with the most lacks.
+std::vector<FitNumberRecord> most_of_a_fit(std::span<const ResultRow* const> rows) {
+  std::vector<FitNumberRecord> most;
+  for (const ResultRow* row : rows)
+    if (row->dressing && row->dressing->fit.size() > most.size()) most = row->dressing->fit;
+  return most;
+}
+
+void add_fit(const std::vector<FitNumberRecord>& known, const ResultRow& row, std::vector<Cell>& cells) {
+  for (const FitNumberRecord& number : known) {
+    const FitNumberRecord* found = nullptr;
+    if (row.dressing)
+      for (const FitNumberRecord& candidate : row.dressing->fit)
+        if (candidate.name == number.name) found = &candidate;
+    cells.push_back(found ? Cell(found->value) : Cell());
+    if (number.within) cells.push_back(found ? Cell(found->within) : Cell());
+  }
+}
+
+std::vector<FitNumberRecord> read_fit(const CsvTable& table, std::size_t line) {
+  std::vector<FitNumberRecord> fit;
+  for (std::size_t column = columns.size(); column < table.header().size(); ++column) {
+    const std::string& name = table.header()[column];
+    if (!fit.empty() && name == fit.back().name + std::string(within_suffix)) {
+      if (!table.text(line, column).empty()) fit.back().within = table.truth(line, column);
+    } else {
+      fit.push_back({name, table.optional_number(line, column), std::nullopt});
+    }
+  }
+  std::erase_if(fit, [](const FitNumberRecord& number) { return !number.value && !number.within; });
+  return fit;
+}
+
+}  // namespace
+
+TableMaker garment_tables() {
+  return [](std::span<const ResultRow> rows, const Provenance& provenance) {
+    std::vector<ResultTable> tables;
+    Rows dressed = rows_of_dressed_scenes(rows);
+    if (dressed.empty()) return tables;
+    const Layout layout(std::move(dressed));
+    tables.push_back({"figure6", data_of(layout), page_of(layout, provenance)});
+    return tables;
+  };
+}
+
+std::string garment_csv(std::span<const ResultRow> rows) {
+  const Rows dressed = rows_of_dressed_scenes(rows);
+  if (dressed.empty()) return "";
+  Table table;
+  const std::vector<FitNumberRecord> fit = most_of_a_fit(dressed);
+  for (const GarmentColumn& column : columns) table.columns.push_back({std::string(column.name)});
+  for (const FitNumberRecord& number : fit) {
+    table.columns.push_back({number.name});
+    if (number.within) table.columns.push_back({number.name + std::string(within_suffix)});
+  }
+  for (const ResultRow* row : dressed) {
+    std::vector<Cell>& cells = table.rows.emplace_back();
+    for (const GarmentColumn& column : columns) cells.push_back(column.write(*row));
+    add_fit(fit, *row, cells);
+  }
+  return table_csv(table);
+}
+
+void read_dressings(const CsvTable& table, std::span<ResultRow> rows) {
+  std::vector<std::string_view> names;
+  for (const GarmentColumn& column : columns) names.push_back(column.name);
+  table.require_columns(names);
+  for (std::size_t line = 0; line < table.size(); ++line) {
+    if (table.text(line, iterations_column).empty()) continue;
+    for (ResultRow& row : rows) {
+      if (row.scene != table.text(line, 0) || row.backend != table.text(line, 2) ||
+          row.integrator != table.text(line, 5))
+        continue;
+      DressingRecord& record = row.dressing.emplace();
+      for (std::size_t column = 0; column < columns.size(); ++column)
+        if (columns.at(column).read != nullptr) columns.at(column).read(record, table, line, column);
+      record.fit = read_fit(table, line);
+    }
+  }
+}
+
+}  // namespace mssim

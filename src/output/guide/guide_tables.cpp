@@ -1,0 +1,455 @@
+#include "output/guide/guide_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "text/text.h"
+
+namespace mssim {
+namespace {
+
+/// Small numbers as text with two digits, which three decimals would show as 0.
+void show_small_numbers(Table& table) {
+  for (std::vector<Cell>& row : table.rows)
+    for (Cell& cell : row)
+      if (const double* number = std::get_if<double>(&cell.value); number && std::abs(*number) < 0.1)
+        cell = Cell(two_digits(*number));
+  for (Column& column : table.columns)
+    if (column.name.ends_with("_s") || column.name.ends_with("_error")) column.align = Align::right;
+}
+
+/// The rows of a scene, without the first column, which names it.
+Table of_scene(const Table& all, const std::string& scene) {
+  Table table;
+  if (all.columns.empty()) return table;
+  table.columns.assign(all.columns.begin() + 1, all.columns.end());
+  for (const std::vector<Cell>& row : all.rows)
+    if (std::get<std::string>(row.front().value) == scene)
+      table.rows.emplace_back(row.begin() + 1, row.end());
+  show_small_numbers(table);
+  return table;
+}
+
+const Table& table_named(const std::vector<ResultTable>& tables, std::string_view name) {
+  const auto is_it = [&](const ResultTable& table) { return std::string_view(table.name) == name; };
+  return std::ranges::find_if(tables, is_it)->data;
+}
+
+Table front_table(const SceneGuide& guide) {
+  std::vector<const WorkPoint*> front;
+  for (const WorkPoint& point : guide.points)
+    if (point.on_front) front.push_back(&point);
+  std::ranges::sort(front, {}, [](const WorkPoint* point) { return point->seconds_a_second(); });
+  Table table;
+  for (const WorkPoint* point : front)
+    table.add({{"integrator", point->integrator->name},
+               {"backend", point->backend},
+               {"dt_s", point->dt_s},
+               {"wall_s_per_s", point->seconds_a_second()},
+               {"position_error", point->position_error}});
+  show_small_numbers(table);
+  return table;
+}
+
+void add_table(Document& page, const std::string& heading, const std::string& text, Table table) {
+  if (table.rows.empty()) return;
+  page.insert(page.end(), {Heading{3, heading}, Paragraph{text}, std::move(table)});
+}
+
+Cell worded(const std::string& text) { return text.empty() ? Cell() : Cell(text); }
+
+/// A row a method, a column a frame rate.
+Table cloths_at_rates(const SceneGuide& guide) {
+  Table table;
+  table.columns = {{"integrator"}, {"backend"}, {"dt_s", Align::right}, {"keeps_error"}};
+  for (const double rate : frame_rates) table.columns.push_back({decimal(rate) + " a second", Align::right});
+  table.columns.push_back({"remark"});
+  for (const SizeCurve& curve : guide.sizes) {
+    if (curve.samples.empty()) continue;  // the summary says why
+    std::vector<Cell> row{curve.integrator->name, curve.backend->name, two_digits(curve.dt_s),
+                          curve.keeps_error};
+    for (const double rate : frame_rates) {
+      const SizeCurve::Largest largest = *curve.largest(rate);
+      const auto nodes = static_cast<std::uint64_t>(std::llround(largest.nodes));
+      row.emplace_back((largest.at_least ? "≥ "
+                        : nodes == 0     ? "< "
+                                         : "") +
+                       grouped(nodes == 0 ? curve.samples.front().nodes : nodes));
+    }
+    row.push_back(worded(curve.status));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+void add_cloths(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
+  add_table(
+      page, "Largest cloths of the family",
+      "In nodes, as squares with springs, masses and spacing of this scene, at frames a second; the step is "
+      "that of the cheapest point above that keeps the error, or where none does of the cheapest stable one. "
+      "Between two sizes that were measured the logarithm of the time is taken as linear in that of the "
+      "nodes.",
+      cloths_at_rates(guide));
+  Table crossovers = of_scene(table_named(tables, "guide-crossovers"), guide.scene);
+  std::erase_if(crossovers.rows, [](const std::vector<Cell>& row) {
+    return std::holds_alternative<std::monostate>(row.back().value);
+  });
+  add_table(page, "Where backends change places",
+            "Nodes from which `other` is the faster one. Of pairs that are not here one is faster at all "
+            "sizes that "
+            "both have.",
+            std::move(crossovers));
+}
+
+/// The limits without what only programs ask for.
+Table limits_table(const SceneGuide& guide) {
+  Table table;
+  const auto step = [](double seconds) {
+    return seconds > 0 && std::isfinite(seconds) ? Cell(two_digits(seconds)) : Cell();
+  };
+  for (const StepLimit& limit : guide.limits) {
+    std::string remark = limit.status.empty() ? limit.why : limit.status;
+    if (!limit.measured.finished && limit.measured.stable_s > 0)
+      remark = "between these two, time was short" + (remark.empty() ? "" : "; " + remark);
+    table.add({{"integrator", limit.integrator->name},
+               {"stable_dt_s", step(limit.measured.stable_s)},
+               {"unstable_dt_s", step(limit.measured.unstable_s)},
+               {"theory_dt_s", step(limit.theory.shortest_s())},
+               {"gershgorin_dt_s", step(limit.theory.bound_s)},
+               {"remark", worded(remark)}});
+  }
+  for (Column& column : table.columns)
+    if (column.name.ends_with("_s")) column.align = Align::right;
+  return table;
+}
+
+/// A row a method, a column an error; the cheapest at the wished error first.
+Table costs_at_errors(const SceneGuide& guide) {
+  const auto errors = errors_around(guide.wish);
+  Table table;
+  table.columns = {{"integrator"}, {"backend"}};
+  for (const double error : errors) table.columns.push_back({two_digits(error), Align::right});
+  std::vector<std::pair<double, std::vector<Cell>>> rows;
+  for (const GuidedMethod& method : guide.methods) {
+    std::vector<Cell> row{method.integrator->name, method.backend->name};
+    double at_wish = std::numeric_limits<double>::infinity();
+    bool any = false;
+    for (const double error : errors) {
+      const auto cost = cost_at_error(guide.points, method, error);
+      row.push_back(cost ? Cell(three_digits(cost->seconds_a_second) + (cost->at_longest_step ? " ‡" : ""))
+                         : Cell());
+      if (cost && error == guide.wish.error) at_wish = cost->seconds_a_second;
+      any = any || cost;
+    }
+    if (any) rows.emplace_back(at_wish, std::move(row));
+  }
+  std::ranges::stable_sort(rows, {}, &std::pair<double, std::vector<Cell>>::first);
+  for (auto& [cost, row] : rows) table.rows.push_back(std::move(row));
+  return table;
+}
+
+void add_costs(Document& page, const SceneGuide& guide) {
+  add_table(
+      page, "At equal error",
+      "Seconds that a simulated second takes where the error may be as large as the column says, by a line "
+      "through the logarithms of two points. ‡: the longest step that was stable is more accurate than that.",
+      costs_at_errors(guide));
+  const std::vector<std::string> sentences = beside_the_paper(guide);
+  if (sentences.empty()) return;
+  page.emplace_back(Paragraph{"Beside milliseconds a step, which Hong et al. compare:"});
+  for (const std::string& sentence : sentences) page.emplace_back(Paragraph{sentence});
+}
+
+void add_scene(Document& page, const SceneGuide& guide, const std::vector<ResultTable>& tables) {
+  page.emplace_back(Heading{
+      2, guide.scene + ": " + pluralize(guide.nodes, "node") + ", " + pluralize(guide.springs, "spring")});
+  if (!guide.trusted.failure.empty()) {
+    add_sentence(page, "No errors were measured: " + guide.trusted.failure);
+  } else {
+    std::string recommendation;
+    for (const std::string& sentence : guide.recommendation.sentences)
+      recommendation += (recommendation.empty() ? "" : " ") + sentence;
+    page.emplace_back(Paragraph{recommendation});
+    Table summary = guide_summary(guide);
+    show_small_numbers(summary);
+    page.emplace_back(std::move(summary));
+    std::string trusted;
+    for (const std::string& sentence : about_trusted_state(guide.trusted))
+      trusted += (trusted.empty() ? "" : " ") + sentence;
+    page.emplace_back(Paragraph{trusted});
+    add_table(page, "The front",
+              "No other point that was measured is both as fast and as accurate as one of these.",
+              front_table(guide));
+    add_costs(page, guide);
+  }
+  add_table(
+      page, "Largest stable steps",
+      "Measured by real runs whose energy may not grow, beside linear theory with the spectrum of the "
+      "scene at its start and on the way. Gershgorin's bound, which `mssim check` shows, takes all springs "
+      "of a node for parallel and all its neighbours for moving against it, and is on the safe side.",
+      limits_table(guide));
+  add_cloths(page, guide, tables);
+}
+
+Cell finite(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
+
+/// Nothing where a search found none.
+Cell found(double value) { return value > 0 ? Cell(value) : Cell(); }
+
+std::string_view state_of(const WorkPoint& point) {
+  if (point.diverged) return "diverged";
+  if (!point.within_limit) return "longer than the largest stable step";
+  return point.beyond_trust ? "within the reference's error" : "ok";
+}
+
+void add_point(Table& table, const SceneGuide& guide, const WorkPoint& point) {
+  const std::optional<double> evaluations =
+      point.evaluations ? std::optional(*point.evaluations / point.dt_s) : std::nullopt;
+  table.add({{"scene", guide.scene},
+             {"nodes", guide.nodes},
+             {"springs_unique", guide.springs},
+             {"integrator", point.integrator->name},
+             {"backend", point.backend},
+             {"dt_s", point.dt_s},
+             {"steps", point.steps},
+             {"horizon_s", guide.trusted.horizon_s},
+             {"position_error", point.position_error},
+             {"energy_error", point.energy_error},
+             {"solver_error", point.solver_error},
+             {"step_error", point.step_error},
+             {"reference_error", guide.trusted.error()},
+             {"ms_per_step", 1000 * point.seconds_a_step},
+             {"wall_s_per_s", point.seconds_a_second()},
+             {"force_evaluations_per_s", evaluations},
+             {"samples", point.samples},
+             {"diverged", point.diverged},
+             {"on_front", point.on_front},
+             {"status", state_of(point)},
+             {"note", point.note}});
+}
+
+/// A method without points says why in a row of its own.
+void add_reason(Table& table, const SceneGuide& guide, const GuidedMethod& method) {
+  table.add({{"scene", guide.scene},
+             {"nodes", guide.nodes},
+             {"springs_unique", guide.springs},
+             {"integrator", method.integrator->name},
+             {"backend", method.backend->name},
+             {"dt_s", {}},
+             {"steps", {}},
+             {"horizon_s", guide.trusted.horizon_s},
+             {"position_error", {}},
+             {"energy_error", {}},
+             {"solver_error", {}},
+             {"step_error", {}},
+             {"reference_error", {}},
+             {"ms_per_step", {}},
+             {"wall_s_per_s", {}},
+             {"force_evaluations_per_s", {}},
+             {"samples", {}},
+             {"diverged", {}},
+             {"on_front", {}},
+             {"status", method.status},
+             {"note", {}}});
+}
+
+Table points_table(std::span<const SceneGuide> guides) {
+  Table table;
+  for (const SceneGuide& guide : guides)
+    for (const GuidedMethod& method : guide.methods) {
+      bool any = false;
+      for (const WorkPoint& point : guide.points)
+        if (is_of(point, method)) {
+          add_point(table, guide, point);
+          any = true;
+        }
+      if (!any) add_reason(table, guide, method);
+    }
+  return table;
+}
+
+Table steps_table(std::span<const SceneGuide> guides) {
+  Table table;
+  for (const SceneGuide& guide : guides)
+    for (const StepLimit& limit : guide.limits)
+      table.add({{"scene", guide.scene},
+                 {"integrator", limit.integrator->name},
+                 {"backend", limit.backend},
+                 {"stable_dt_s", found(limit.measured.stable_s)},
+                 {"unstable_dt_s", found(limit.measured.unstable_s)},
+                 {"theory_dt_s", finite(limit.theory.shortest_s())},
+                 {"theory_at_start_dt_s", finite(limit.theory.at_start_s)},
+                 {"theory_on_the_way_dt_s", finite(limit.theory.on_the_way_s)},
+                 {"gershgorin_dt_s", finite(limit.theory.bound_s)},
+                 {"runs", limit.measured.runs},
+                 {"span_s", limit.measured.span_s},
+                 {"finished", limit.measured.finished},
+                 {"why", limit.why},
+                 {"status", limit.status}});
+  return table;
+}
+
+Table errors_table(std::span<const SceneGuide> guides) {
+  Table table;
+  for (const SceneGuide& guide : guides)
+    for (const GuidedMethod& method : guide.methods)
+      for (const double error : errors_around(guide.wish))
+        if (const auto cost = cost_at_error(guide.points, method, error))
+          table.add({{"scene", guide.scene},
+                     {"integrator", method.integrator->name},
+                     {"backend", method.backend->name},
+                     {"position_error", error},
+                     {"wall_s_per_s", cost->seconds_a_second},
+                     {"at_longest_step", cost->at_longest_step}});
+  return table;
+}
+
+Table sizes_table(std::span<const SceneGuide> guides) {
+  Table table;
+  for (const SceneGuide& guide : guides)
+    for (const SizeCurve& curve : guide.sizes)
+      for (const SizeCurve::Sample& sample : curve.samples)
+        table.add({{"scene", guide.scene},
+                   {"integrator", curve.integrator->name},
+                   {"backend", curve.backend->name},
+                   {"dt_s", curve.dt_s},
+                   {"nodes", sample.nodes},
+                   {"ms_per_step", 1000 * sample.seconds_a_step}});
+  return table;
+}
+
+Table frames_table(std::span<const SceneGuide> guides) {
+  Table table;
+  for (const SceneGuide& guide : guides)
+    for (const SizeCurve& curve : guide.sizes)
+      for (const double rate : frame_rates) {
+        const auto largest = curve.largest(rate);
+        table.add({{"scene", guide.scene},
+                   {"integrator", curve.integrator->name},
+                   {"backend", curve.backend->name},
+                   {"dt_s", found(curve.dt_s)},
+                   {"frames_per_second", rate},
+                   {"steps_per_frame", curve.dt_s > 0 ? Cell(steps_a_frame(curve.dt_s, rate)) : Cell()},
+                   {"keeps_error", curve.dt_s > 0 ? Cell(curve.keeps_error) : Cell()},
+                   {"largest_nodes", largest ? Cell(std::llround(largest->nodes)) : Cell()},
+                   {"or_more", largest ? Cell(largest->at_least) : Cell()},
+                   {"status", curve.status}});
+      }
+  return table;
+}
+
+Table crossovers_table(std::span<const SceneGuide> guides) {
+  Table table;
+  for (const SceneGuide& guide : guides)
+    for (std::size_t i = 0; i < guide.sizes.size(); ++i)
+      for (std::size_t j = i + 1; j < guide.sizes.size(); ++j) {
+        const SizeCurve &a = guide.sizes[i], &b = guide.sizes[j];
+        if (a.integrator != b.integrator || a.samples.empty() || b.samples.empty()) continue;
+        const auto nodes = crossover(a, b);
+        const bool first_faster = a.samples.front().seconds_a_step <= b.samples.front().seconds_a_step;
+        table.add({{"scene", guide.scene},
+                   {"integrator", a.integrator->name},
+                   {"faster_when_small", (first_faster ? a : b).backend->name},
+                   {"other", (first_faster ? b : a).backend->name},
+                   {"crossover_nodes", nodes ? Cell(std::llround(*nodes)) : Cell()}});
+      }
+  return table;
+}
+
+/// The cheapest point that keeps the error, else the most accurate one; null where none counts.
+const WorkPoint* point_to_show(const SceneGuide& guide, const GuidedMethod& method) {
+  const WorkPoint *cheapest = nullptr, *nearest = nullptr;
+  for (const WorkPoint& point : guide.points) {
+    if (!is_of(point, method) || !point.counts()) continue;
+    if (*point.position_error <= guide.wish.error &&
+        (cheapest == nullptr || point.seconds_a_second() < cheapest->seconds_a_second()))
+      cheapest = &point;
+    if (nearest == nullptr || *point.position_error < *nearest->position_error) nearest = &point;
+  }
+  return cheapest ? cheapest : nearest;
+}
+
+/// Scene by scene: the recommendation, the methods, the trusted state, the front, the largest stable steps
+/// with why they differ from theory, and the largest cloths. `tables`: guide_tables'.
+Document guide_page(std::span<const SceneGuide> guides, const std::vector<ResultTable>& tables,
+                    const Provenance& provenance) {
+  Document page{
+      Heading{1, "Which integrator, which backend, which step"}, measured_on({}, provenance),
+      Paragraph{"*wall_s_per_s* is what a simulated second takes. *position_error* is the largest distance "
+                "of a node from where it should be, in mean rest lengths, and *energy_error* that of the "
+                "total energy over what is kinetic and elastic. How each number is found: docs/guide.md."}};
+  for (const SceneGuide& guide : guides) add_scene(page, guide, tables);
+  return page;
+}
+
+}  // namespace
+
+std::vector<std::string> about_trusted_state(const TrustedState& trusted) {
+  std::vector<std::string> sentences;
+  sentences.push_back("Errors are those " + two_digits(trusted.horizon_s) + " s after the start (" +
+                      trusted.why_there + "; a neighbouring trajectory is then " +
+                      two_digits(trusted.parting) + " times as far away as at the start).");
+  std::string reference = "The reference is rk4 in double precision with a step of " +
+                          two_digits(trusted.dt_s) + " s, whose own error is " +
+                          two_digits(trusted.own_error) + " of a mean rest length";
+  if (trusted.confirmed)
+    reference += "; another solver (Bulirsch-Stoer) ends " + two_digits(*trusted.confirmed) + " from it";
+  else
+    reference += "; there was no time to confirm it by another solver";
+  sentences.push_back(reference + ".");
+  sentences.push_back("Points whose error is below " + two_digits(trusted_margin * trusted.error()) + ", " +
+                      two_digits(trusted_margin) + " times that, are marked and not compared.");
+  return sentences;
+}
+
+Table guide_summary(const SceneGuide& guide) {
+  struct Line {
+    const GuidedMethod* method;
+    const WorkPoint* point;
+  };
+  std::vector<Line> lines;
+  for (const GuidedMethod& method : guide.methods) lines.push_back({&method, point_to_show(guide, method)});
+  // Those that keep the error by their cost, then the others by their error.
+  std::ranges::stable_sort(lines, {}, [&](const Line& line) {
+    if (line.point == nullptr) return std::pair(2, 0.0);
+    return *line.point->position_error <= guide.wish.error ? std::pair(0, line.point->seconds_a_second())
+                                                           : std::pair(1, *line.point->position_error);
+  });
+  Table table;
+  for (const Line& line : lines) {
+    const auto limit = std::ranges::find(guide.limits, line.method->integrator, &StepLimit::integrator);
+    const WorkPoint* point = line.point;
+    const double rate = guide.wish.frames_per_second;
+    std::string_view accurate;
+    if (point != nullptr) accurate = *point->position_error <= guide.wish.error ? "yes" : "no";
+    table.add({{"integrator", line.method->integrator->name},
+               {"backend", line.method->backend->name},
+               {"stable_dt_s", found(limit->measured.stable_s)},
+               {"dt_s", point ? Cell(point->dt_s) : Cell()},
+               {"steps_per_frame", point ? Cell(steps_a_frame(point->dt_s, rate)) : Cell()},
+               {"wall_s_per_s", point ? Cell(point->seconds_a_second()) : Cell()},
+               {"position_error", point ? Cell(point->position_error) : Cell()},
+               {"energy_error", point ? Cell(point->energy_error) : Cell()},
+               {"accurate", point ? Cell(accurate) : Cell()},
+               {"on_front", point ? Cell(point->on_front) : Cell()},
+               {"remark", line.method->status.empty() ? Cell() : Cell(line.method->status)}});
+  }
+  return table;
+}
+
+std::vector<ResultTable> guide_tables(std::span<const SceneGuide> guides, const Provenance& provenance) {
+  std::vector<ResultTable> tables{
+      {"guide", points_table(guides), {}},        {"guide-steps", steps_table(guides), {}},
+      {"guide-errors", errors_table(guides), {}}, {"guide-sizes", sizes_table(guides), {}},
+      {"guide-frames", frames_table(guides), {}}, {"guide-crossovers", crossovers_table(guides), {}}};
+  tables.front().page = guide_page(guides, tables, provenance);
+  std::erase_if(tables, [](const ResultTable& table) { return table.data.rows.empty(); });
+  return tables;
+}
+
+}  // namespace mssim
