@@ -1,5 +1,7 @@
 #include "geometry/geometry.h"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <cassert>
 #include <charconv>
@@ -16,7 +18,7 @@ std::string shown(double computed) {
 }
 
 std::string place(const Vec3d& point) {
-  return "(" + shown(point.x) + ", " + shown(point.y) + ", " + shown(point.z) + ")";
+  return fmt::format("({}, {}, {})", shown(point.x), shown(point.y), shown(point.z));
 }
 
 namespace {

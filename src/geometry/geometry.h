@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "geometry/vec3.h"
-#include "text/text.h"
 
 namespace mssim {
 

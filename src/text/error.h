@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fmt/core.h>
+
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace mssim {
 
@@ -22,10 +25,14 @@ struct Error : std::runtime_error {
   ExitCode exit_code;
 };
 
-/// An Error whose type decides its exit code.
+/// An Error whose type decides its exit code. Of a sentence and values it is what fmt::format() makes of
+/// them.
 template <ExitCode code>
 struct ErrorWith : Error {
   explicit ErrorWith(const std::string& sentence) : Error(code, sentence) {}
+  template <class First, class... Values>
+  explicit ErrorWith(fmt::format_string<First, Values...> sentence, First&& first, Values&&... values)
+      : Error(code, fmt::format(sentence, std::forward<First>(first), std::forward<Values>(values)...)) {}
 };
 
 /// Something of the user's that cannot be used: a file, a mesh, a surface, a pattern, a measure.

@@ -1,5 +1,7 @@
 #include "text/text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -61,7 +63,7 @@ bool is_control(std::string_view text) {
 std::string escape_of(unsigned char code) {
   constexpr std::string_view named = "\b\t\n\f\r", names = "btnfr";
   const std::size_t at = named.find(static_cast<char>(code));
-  return at == std::string_view::npos ? "\\u00" + to_hex(code).substr(14) : std::string("\\") + names[at];
+  return at == std::string_view::npos ? fmt::format("\\u{:04x}", code) : fmt::format("\\{}", names[at]);
 }
 
 /// Bytes of the character of valid UTF-8 (RFC 3629) that the text begins with; 0 where it begins with none.
@@ -95,25 +97,14 @@ std::string decimal(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-std::string fixed_decimal(double value, int digits) {
-  // The largest number has 309 digits before the point.
-  std::array<char, 400> buffer{};
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, digits)
-          .ptr;
-  return {buffer.data(), end};
-}
+std::string fixed_decimal(double value, int digits) { return fmt::format("{:.{}f}", value, digits); }
 
 std::string three_digits(double value) {
   const int before_point = value > 0 ? static_cast<int>(std::floor(std::log10(value))) + 1 : 1;
   return fixed_decimal(value, std::max(0, 3 - before_point));
 }
 
-std::string two_digits(double value) {
-  std::array<char, 32> text;
-  return {text.data(),
-          std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 2).ptr};
-}
+std::string two_digits(double value) { return fmt::format("{:.2g}", value); }
 
 std::string grouped(std::uint64_t number) {
   std::string text = std::to_string(number);
@@ -121,12 +112,7 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
-std::string to_hex(std::uint64_t value) {
-  std::string text(16, '0');
-  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, value >>= 4)
-    *digit = "0123456789abcdef"[value & 15];
-  return text;
-}
+std::string to_hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
 std::optional<std::uint64_t> from_hex(std::string_view text) {
   std::uint64_t value = 0;
@@ -136,18 +122,11 @@ std::optional<std::uint64_t> from_hex(std::string_view text) {
 }
 
 std::string pluralize(std::uint64_t number, std::string_view noun) {
-  std::string text = std::to_string(number) + ' ';
-  text += noun;
-  return number == 1 ? text : text + 's';
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
 std::string join(std::span<const std::string> texts, std::string_view separator) {
-  std::string all;
-  for (const std::string& text : texts) {
-    if (&text != &texts.front()) all += separator;
-    all += text;
-  }
-  return all;
+  return fmt::format("{}", fmt::join(texts, separator));
 }
 
 void append_sentence(std::string& note, std::string_view sentence) {
@@ -179,7 +158,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
 std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates,
                          std::span<const OtherName> others) {
   const std::vector<std::string_view> likely = likely_names(name, candidates, others);
-  return likely.empty() ? "" : " (did you mean " + listed(likely, "or") + "?)";
+  return likely.empty() ? "" : fmt::format(" (did you mean {}?)", listed(likely, "or"));
 }
 
 std::string listed(std::span<const std::string_view> names, std::string_view last_word) {
@@ -198,8 +177,8 @@ std::string listed(const std::vector<std::string>& names, std::string_view last_
 
 std::string unknown_name(std::string_view what, std::string_view name,
                          std::span<const std::string_view> known, std::span<const OtherName> others) {
-  return "unknown " + std::string(what) + " \"" + printable(name) + '"' + did_you_mean(name, known, others) +
-         ": known are " + listed(known);
+  return fmt::format("unknown {} \"{}\"{}: known are {}", what, printable(name),
+                     did_you_mean(name, known, others), listed(known));
 }
 
 std::string printable(std::string_view text, std::size_t length) {
@@ -231,7 +210,7 @@ std::string escaped(std::string_view text) {
     const bool plain = length > 0 && !is_control(text);
     const std::size_t taken = std::max<std::size_t>(length, 1);
     for (const char c : text.substr(0, taken))
-      result += plain ? std::string(1, c) : "\\x" + to_hex(static_cast<unsigned char>(c)).substr(14);
+      result += plain ? std::string(1, c) : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
     text.remove_prefix(taken);
   }
   return result;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/core.h>
+
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +14,8 @@
 
 namespace mssim {
 
-/// Numbers and names as texts, for messages, tables and files; no file is read or written here.
+/// Numbers and names as texts, for messages, tables and files; no file is read or written here. Sentences are
+/// put together by fmt::format(), which comes with this header.
 
 /// The shortest decimal text that reads back as the same number, in every locale.
 std::string decimal(double value);
