@@ -63,11 +63,10 @@ void require_few_threads(int threads) {
   constexpr int most_a_processor = 8;
   const int processors = omp_get_num_procs();
   if (threads > most_a_processor * processors)
-    throw UsageError("--threads " + std::to_string(threads) + " is too many for the " +
-                     pluralize(static_cast<std::uint64_t>(processors), "processor") +
-                     " that this process may use; ask for at most " +
-                     std::to_string(most_a_processor * processors) + ", " + std::to_string(most_a_processor) +
-                     " for each");
+    throw UsageError(
+        "--threads {} is too many for the {} that this process may use; ask for at most {}, {} for each",
+        threads, pluralize(static_cast<std::uint64_t>(processors), "processor"),
+        most_a_processor * processors, most_a_processor);
 }
 
 ExecutionOptions complete(ExecutionOptions options) {
@@ -76,9 +75,8 @@ ExecutionOptions complete(ExecutionOptions options) {
   if (!options.threads_given) options.threads = std::min(usable_processors(), limit);
   if (options.launcher.empty()) require_few_threads(options.threads);  // a launcher's hosts may have more
   if (options.threads > limit)
-    throw UsageError("--threads " + std::to_string(options.threads) +
-                     " is more than OMP_THREAD_LIMIT allows, " + std::to_string(limit) +
-                     "; ask for fewer, or unset it");
+    throw UsageError("--threads {} is more than OMP_THREAD_LIMIT allows, {}; ask for fewer, or unset it",
+                     options.threads, limit);
   omp_set_dynamic(0);
   return options;
 }
@@ -149,7 +147,7 @@ BackendChoice::BackendChoice(std::vector<const BackendInfo*> known, const OwnBac
   for (const std::string& folder : options.folders) {
     std::error_code error;
     if (!fs::is_directory(folder, error))
-      throw UsageError("--backend-folder " + escaped(folder) + " is no folder");
+      throw UsageError("--backend-folder {} is no folder", escaped(folder));
     folders_.emplace_back(folder);
   }
   if (const auto folder = user_folder()) folders_.push_back(*folder);
@@ -172,8 +170,8 @@ const BackendInfo& BackendChoice::require(const std::string& name) {
   for (const BackendInfo* info : described()) names.push_back(info->name);
   for (const BackendInfo* info : shipped()) names.push_back(info->name);
   if (is_file(name))
-    throw UsageError("unknown backend \"" + printable(name) +
-                     "\": a program of your own is a path with a slash, ./" + printable(name));
+    throw UsageError("unknown backend \"{0}\": a program of your own is a path with a slash, ./{0}",
+                     printable(name));
   constexpr std::array<OtherName, 2> others{{{"gpu", "opencl"}, {"cuda", "opencl"}}};
   throw UsageError(unknown_name("backend", name, names, others));
 }
@@ -187,14 +185,14 @@ std::optional<BackendProgram> BackendChoice::in_ranks_of(const std::string& name
   if (row == known_.end() && !file) return std::nullopt;
   BackendProgram program = file ? read_description(*file) : BackendProgram{};
   if (!program.in_ranks)
-    throw UsageError(printable(name) + " says a number of ranks, and " + its_name +
-                     " runs in one process: leave \":" + printable(count) + "\" out");
+    throw UsageError("{} says a number of ranks, and {} runs in one process: leave \":{}\" out",
+                     printable(name), its_name, printable(count));
   const std::optional<int> ranks = number_in<int>(count);
   if (!ranks || *ranks < 1 || *ranks > most_ranks)
-    throw UsageError(printable(name) + " says a number of ranks that cannot be: give one from 1 to " +
-                     std::to_string(most_ranks) + ", as in " + its_name + ":4");
+    throw UsageError("{} says a number of ranks that cannot be: give one from 1 to {}, as in {}:4",
+                     printable(name), most_ranks, its_name);
   program.ranks = *ranks;
-  program.name = its_name + ':' + std::to_string(*ranks);
+  program.name = fmt::format("{}:{}", its_name, *ranks);
   return program;
 }
 
@@ -241,13 +239,13 @@ std::optional<fs::path> BackendChoice::description_of(const std::string& name) c
   };
   std::ranges::for_each(folders_, look);
   if (in_table && !found.empty())
-    throw UsageError(shown(found.front()) + " is called like the backend " + name + " of mssim; rename it");
+    throw UsageError("{} is called like the backend {} of mssim; rename it", shown(found.front()), name);
   // A scene may be called as anything.
   if (!in_table) std::ranges::for_each(scene_folders_, look);
   look(shipped_folder());
   if (found.size() > 1)
-    throw UsageError("there are two backends called " + escaped(name) + ", " + shown(found[0]) + " and " +
-                     shown(found[1]) + "; rename one of them");
+    throw UsageError("there are two backends called {}, {} and {}; rename one of them", escaped(name),
+                     shown(found[0]), shown(found[1]));
   return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
@@ -255,18 +253,18 @@ const BackendInfo& BackendChoice::add_file(const fs::path& file) { return add(re
 
 const BackendInfo& BackendChoice::add(BackendProgram program) {
   if (escaped(program.name) != program.name)
-    throw UsageError("a backend cannot be called " + escaped(program.name) +
-                     ": its name has characters that cannot be shown; rename it");
+    throw UsageError("a backend cannot be called {}: its name has characters that cannot be shown; rename it",
+                     escaped(program.name));
   if (std::ranges::find(known_, program.name, &BackendInfo::name) != known_.end())
-    throw UsageError(shown(program.program) + " is called like the backend " + program.name +
-                     " of mssim; rename it");
+    throw UsageError("{} is called like the backend {} of mssim; rename it", shown(program.program),
+                     program.name);
   for (const std::unique_ptr<Row>& row : rows_) {
     if (row->program.name != program.name) continue;
     if (row->program.program == program.program && row->program.command == program.command &&
         row->program.folder == program.folder)
       return row->info;
-    throw UsageError("there are two backends called " + program.name + ", " + shown(row->program.program) +
-                     " and " + shown(program.program) + "; rename one of them");
+    throw UsageError("there are two backends called {}, {} and {}; rename one of them", program.name,
+                     shown(row->program.program), shown(program.program));
   }
   if (limit_s_) program.time_limit_s = *limit_s_;
   return rows_.emplace_back(std::make_unique<Row>(std::move(program)))->info;

@@ -40,8 +40,7 @@ std::string time_left(const Progress& progress) {
 std::string progress_text(const Progress& progress, int width, bool utf8) {
   constexpr std::size_t shortest_bar = 10, longest_bar = 24, around = 54;  // time left, and most activities
   std::string text = progress.scene;
-  if (progress.scenes > 1)
-    text += " (" + std::to_string(progress.number) + " of " + std::to_string(progress.scenes) + ")";
+  if (progress.scenes > 1) text += fmt::format(" ({} of {})", progress.number, progress.scenes);
   text += "  ";
   // A terminal may break the line behind a character in its last column.
   const auto columns = static_cast<std::size_t>(std::max(1, width - 1));
@@ -50,7 +49,7 @@ std::string progress_text(const Progress& progress, int width, bool utf8) {
     const std::string filled = bar(progress.fraction, length, utf8);
     text += '[' + filled + std::string(length - width_of(filled), ' ') + ']';
   } else {
-    const std::string percent = std::to_string(static_cast<int>(100 * progress.fraction)) + " %";
+    const std::string percent = fmt::format("{} %", static_cast<int>(100 * progress.fraction));
     text.append(4 - std::min<std::size_t>(4, percent.size()), ' ').append(percent);
   }
   return std::string(clipped(text + time_left(progress) + "  " + progress.activity, columns));

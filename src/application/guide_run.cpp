@@ -51,7 +51,7 @@ ClothMaker cloth_family(const SceneSpec& spec) {
   if (cloth == nullptr || cloth->rows < 2) return {};
   return [spec, folder = std::make_shared<TemporaryFolder>()](std::uint32_t side) {
     const SceneSpec one = with_side(spec, side);
-    FamilyCloth made{build_system(one), folder->path() / (std::to_string(side) + ".json")};
+    FamilyCloth made{build_system(one), folder->path() / fmt::format("{}.json", side)};
     write_file_atomically(made.file, one.source);
     return made;
   };
@@ -111,7 +111,7 @@ void require_available(const GuideOptions& options, const std::vector<const Back
   if (options.backends.empty()) return;
   for (const BackendInfo* info : backends)
     if (const std::string reason = unavailable_reason(*info, execution); !reason.empty())
-      throw Unavailable(std::string(info->name) + ": " + reason);
+      throw Unavailable("{}: {}", info->name, reason);
 }
 
 void print(const SceneGuide& guide) {
@@ -172,13 +172,13 @@ std::vector<std::string> failures(const std::vector<SceneGuide>& guides, double 
     const auto ran_out = [](const std::string& status) { return status.starts_with("no time"); };
     if (ran_out(guide.trusted.failure) ||
         (guide.points.empty() && std::ranges::any_of(guide.methods, ran_out, &GuidedMethod::status)))
-      sentences.push_back(guide.scene + ": nothing was measured in " + two_digits(share_s) +
-                          " s: give --time-budget " + two_digits(std::max(usual_guide_s, 2 * share_s)) +
-                          " or more for each scene");
+      sentences.push_back(
+          fmt::format("{}: nothing was measured in {} s: give --time-budget {} or more for each scene",
+                      guide.scene, two_digits(share_s), two_digits(std::max(usual_guide_s, 2 * share_s))));
     for (const GuidedMethod& method : guide.methods)
       if (method.status.starts_with("failed"))
-        sentences.push_back(guide.scene + ", " + std::string(method.backend->name) + ", " +
-                            std::string(method.integrator->name) + ": " + method.status);
+        sentences.push_back(fmt::format("{}, {}, {}: {}", guide.scene, method.backend->name,
+                                        method.integrator->name, method.status));
   }
   return sentences;
 }

@@ -39,8 +39,8 @@ bool is_same(const fs::path& a, const fs::path& b) {
 
 void require_other(const NamedFile& a, const NamedFile& b) {
   if (is_same(a.path, b.path))
-    throw UsageError(a.role + " and " + b.role + " are the same file, " + printable(a.path.string()) +
-                     "; give them different names");
+    throw UsageError("{} and {} are the same file, {}; give them different names", a.role, b.role,
+                     printable(a.path.string()));
 }
 
 }  // namespace
@@ -49,9 +49,9 @@ void require_extension(const NamedFile& file, const std::string& content,
                        const std::vector<std::string_view>& extensions) {
   const std::string extension = file.path.extension().string();
   if (extension.empty() || std::ranges::find(extensions, to_lower(extension)) != extensions.end()) return;
-  throw UsageError(file.role + " is " + printable(file.path.string(), 1000) + ", but what is written is " +
-                   content + ": give " + printable(file.path.stem().string(), 1000) +
-                   std::string(extensions.front()));
+  throw UsageError("{} is {}, but what is written is {}: give {}{}", file.role,
+                   printable(file.path.string(), 1000), content, printable(file.path.stem().string(), 1000),
+                   extensions.front());
 }
 
 void require_distinct(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read) {
@@ -81,12 +81,12 @@ Provenance run_provenance(int threads, bool uses_device) {
   if (uses_device) {
     const OpenclOffer& offer = opencl_offer();
     for (const OpenclDevice& device : offer.devices)
-      provenance.opencl_devices.push_back(device.platform + ": " + device.name + ", driver " +
-                                          device.driver_version);
+      provenance.opencl_devices.push_back(
+          fmt::format("{}: {}, driver {}", device.platform, device.name, device.driver_version));
     std::ranges::copy(offer.troubles, std::back_inserter(provenance.opencl_devices));
   }
   if (const auto tetgen = find_tetgen())
-    provenance.tetgen = tetgen->version + ", fnv1a_64 " + to_hex(tetgen->fnv1a_64);
+    provenance.tetgen = fmt::format("{}, fnv1a_64 {}", tetgen->version, to_hex(tetgen->fnv1a_64));
   return provenance;
 }
 

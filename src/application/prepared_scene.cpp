@@ -22,12 +22,11 @@ std::string difference(const SceneSpec& spec, const SceneCounts& counts,
                        const std::optional<SceneCounts>& stated) {
   if (!stated || (stated->nodes == counts.nodes && stated->springs_unique == counts.springs_unique))
     return "";
-  return "the mesh has " + std::to_string(counts.nodes) + " nodes and " +
-         std::to_string(counts.springs_unique) + " springs where the scene states " +
-         std::to_string(stated->nodes) + " and " + std::to_string(stated->springs_unique) +
-         (std::holds_alternative<GarmentSpec>(spec.content)
-              ? ": another body, or another pattern, makes other panels; state what they have"
-              : ": another TetGen, or another file, makes another mesh");
+  return fmt::format("the mesh has {} nodes and {} springs where the scene states {} and {}: another {}",
+                     counts.nodes, counts.springs_unique, stated->nodes, stated->springs_unique,
+                     std::holds_alternative<GarmentSpec>(spec.content)
+                         ? "body, or another pattern, makes other panels; state what they have"
+                         : "TetGen, or another file, makes another mesh");
 }
 
 }  // namespace

@@ -155,11 +155,11 @@ void RunRecorder::finish() {
   const auto tell = [](const std::string& what) { std::cerr << "mssim: wrote " << what << '\n'; };
   if (curve_) tell(printable(curve_->name().string(), 1000));
   if (trace_)
-    tell(printable(trace_->name().string(), 1000) + " and " +
-         printable(xdmf_of(trace_->name()).string(), 1000));
+    tell(fmt::format("{} and {}", printable(trace_->name().string(), 1000),
+                     printable(xdmf_of(trace_->name()).string(), 1000)));
   if (pictures_)
-    tell(pluralize(pictures_->pictures(), "picture") + " into " +
-         printable(pictures_->name().string(), 1000));
+    tell(fmt::format("{} into {}", pluralize(pictures_->pictures(), "picture"),
+                     printable(pictures_->name().string(), 1000)));
 }
 
 std::string RunRecorder::kept() {
@@ -181,8 +181,7 @@ int run_dressing(const PreparedScene& scene, DressingBackend& backend, const std
                  bool silent) {
   const auto require_finite = [](const State& state, std::int64_t iterations) {
     if (const auto node = first_bad_node(state))
-      throw NotVerified("the simulation blew up before step " + std::to_string(iterations) + ": node " +
-                        std::to_string(*node) + " is not finite");
+      throw NotVerified("the simulation blew up before step {}: node {} is not finite", iterations, *node);
   };
   const auto record = [&](const State& state, std::int64_t iterations) {
     require_finite(state, iterations);
@@ -266,9 +265,9 @@ auto chosen_backend(const RunOptions& options, const BackendInfo& info, const Pr
   }
   if (info.role != BackendRole::baseline)
     throw UsageError(
-        "--precision double needs --backend " + std::string(baseline_backend().name) + ", not \"" +
-        options.backend +
-        "\": the other backends of mssim compute in single precision only, and a program in its own");
+        "--precision double needs --backend {}, not \"{}\": the other backends of mssim compute in single "
+        "precision only, and a program in its own",
+        baseline_backend().name, options.backend);
   return in_double(scene.system, integrator, scene.dt_s);
 }
 
@@ -360,7 +359,7 @@ int run_simulation(const RunOptions& options, const BackendInfo& info, const Pre
                 stop.throw_if_requested();
               },
               [&](std::int64_t done, std::int64_t all) {
-                progress.update_often("step " + std::to_string(done) + " of " + std::to_string(all),
+                progress.update_often(fmt::format("step {} of {}", done, all),
                                       static_cast<double>(done) / static_cast<double>(all));
                 stop.throw_if_requested();
               }});

@@ -53,11 +53,11 @@ std::string xml_text(std::string_view shown) {
 
 /// " NAME="VALUE"", or nothing for an empty value.
 std::string attribute(std::string_view name, std::string_view value) {
-  return value.empty() ? "" : ' ' + std::string(name) + "=\"" + std::string(value) + '"';
+  return value.empty() ? "" : fmt::format(" {}=\"{}\"", name, value);
 }
 
 std::string path(const std::string& d, const std::string& attributes) {
-  return d.empty() ? "" : "<path d=\"" + d + '"' + attributes + "/>\n";
+  return d.empty() ? "" : fmt::format("<path d=\"{}\"{}/>\n", d, attributes);
 }
 
 class Drawing {
@@ -81,18 +81,16 @@ class Drawing {
     constexpr std::size_t most = 4000;
     std::vector<std::string> names;
     for (const Series& one : chart_.series) names.push_back(one.name);
-    std::string description = "Along: " + words_of(chart_.x) + ". Upwards: " + words_of(chart_.y) +
-                              ". Series: " + join(names, ", ") + '.';
+    std::string description = fmt::format("Along: {}. Upwards: {}. Series: {}.", words_of(chart_.x),
+                                          words_of(chart_.y), join(names, ", "));
     for (const std::string& note : notes) description += ' ' + note + '.';
-    const std::string& id = chart_.id;
-    svg_ = "<svg id=\"" + id + "\" class=\"chart\" viewBox=\"0 0 " + number(chart_width) + ' ' +
-           number(layout_.height) +
-           "\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-labelledby=\"" + id +
-           "-title\" aria-describedby=\"" + id +
-           "-description\" font-family=\"system-ui, sans-serif\" font-size=\"" + number(font_size) +
-           "\" fill=\"currentColor\"><title id=\"" + id + "-title\">" +
-           xml_text(shown_text(chart_.title, most)) + "</title><desc id=\"" + id + "-description\">" +
-           xml_text(shown_text(description, most)) + "</desc>\n";
+    svg_ = fmt::format(
+        R"(<svg id="{0}" class="chart" viewBox="0 0 {1} {2}" xmlns="http://www.w3.org/2000/svg" role="img" )"
+        R"(aria-labelledby="{0}-title" aria-describedby="{0}-description" )"
+        R"(font-family="system-ui, sans-serif" font-size="{3}" fill="currentColor"><title id="{0}-title">)"
+        "{4}</title><desc id=\"{0}-description\">{5}</desc>\n",
+        chart_.id, number(chart_width), number(layout_.height), number(font_size),
+        xml_text(shown_text(chart_.title, most)), xml_text(shown_text(description, most)));
   }
 
   static std::string words_of(const Axis& axis) {
@@ -110,8 +108,8 @@ class Drawing {
 
   /// `middle` is half the height of its capitals above where it stands.
   void text(const std::string& shown, double x, double middle, const std::string& attributes = "") {
-    svg_ += "<text x=\"" + number(x) + "\" y=\"" + number(middle + 0.35 * font_size) + '"' + attributes +
-            '>' + xml_text(shown) + "</text>\n";
+    svg_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", number(x), number(middle + 0.35 * font_size),
+                        attributes, xml_text(shown));
   }
 
   void grid_and_axes() {
@@ -144,9 +142,9 @@ class Drawing {
     for (std::size_t group = 0; group < layout_.groups.size(); ++group) {
       const double x = across(static_cast<double>(group));
       text(layout_.groups[group], x, layout_.tick_labels,
-           layout_.groups_tilted
-               ? end + " transform=\"rotate(-35 " + number(x) + ' ' + number(layout_.tick_labels) + ")\""
-               : middle);
+           layout_.groups_tilted ? fmt::format("{} transform=\"rotate(-35 {} {})\"", end, number(x),
+                                               number(layout_.tick_labels))
+                                 : middle);
     }
     text(layout_.x_label, (layout_.left + layout_.right) / 2, layout_.x_label_middle, middle);
   }
@@ -189,11 +187,11 @@ class Drawing {
                                     : published ? published_dashes[repeat % published_dashes.size()]
                                                 : measured_dashes[repeat % measured_dashes.size()];
     svg_ +=
-        "<g fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"" + (reference ? "1.5" : "2") + "\">\n";
+        fmt::format("<g fill=\"none\" stroke=\"{}\" stroke-width=\"{}\">\n", colour, reference ? "1.5" : "2");
     if (reference ? !marks : chart_.form == ChartForm::lines)
       svg_ += path(line, attribute("stroke-dasharray", dashes));
     svg_ += path(intervals(s), attribute("stroke-width", "1.5"));
-    svg_ += path(points, reference || published ? "" : " fill=\"" + colour + "\" stroke=\"none\"");
+    svg_ += path(points, reference || published ? "" : fmt::format(R"( fill="{}" stroke="none")", colour));
     svg_ += "</g>\n";
   }
 
@@ -214,13 +212,13 @@ class Drawing {
     const bool published = chart_.series[s].origin == Origin::published;
     const std::string colour(series_colours[looks_[s] % series_colours.size()]);
     const std::string_view lines = bar_patterns[looks_[s] % bar_patterns.size()];
-    const std::string fill = chart_.id + "-fill-" + std::to_string(s);
-    svg_ += "<pattern id=\"" + fill + R"(" width="6" height="6" patternUnits="userSpaceOnUse">)";
+    const std::string fill = fmt::format("{}-fill-{}", chart_.id, s);
+    svg_ += fmt::format(R"(<pattern id="{}" width="6" height="6" patternUnits="userSpaceOnUse">)", fill);
     if (!published)
-      svg_ += R"(<rect width="6" height="6" fill=")" + colour + '"' +
-              attribute("fill-opacity", lines.empty() ? "" : "0.3") + "/>";
-    svg_ += path(std::string(lines), R"( fill="none" stroke=")" + colour + "\" stroke-width=\"" +
-                                         (published ? "0.8" : "1.5") + '"') +
+      svg_ += fmt::format(R"(<rect width="6" height="6" fill="{}"{}/>)", colour,
+                          attribute("fill-opacity", lines.empty() ? "" : "0.3"));
+    svg_ += path(std::string(lines), fmt::format(R"( fill="none" stroke="{}" stroke-width="{}")", colour,
+                                                 published ? "0.8" : "1.5")) +
             "</pattern>\n";
     const auto rectangle = [](double left, double right, double top, double bottom) {
       return 'M' + at(left, top) + 'H' + number(right) + 'V' + number(bottom) + 'H' + number(left) + 'z';
@@ -231,7 +229,7 @@ class Drawing {
       d += rectangle(across(ends.low), across(ends.high), down(point.y),
                      down(chart_.y.logarithmic ? layout_.y.low : 0));
     }
-    svg_ += path(d, " fill=\"url(#" + fill + ")\" stroke=\"" + colour + "\" stroke-width=\"1.5\"");
+    svg_ += path(d, fmt::format(R"x( fill="url(#{})" stroke="{}" stroke-width="1.5")x", fill, colour));
     svg_ += path(intervals(s), R"( fill="none" stroke="currentColor" stroke-width="1.5")");
   }
 
@@ -258,8 +256,8 @@ void require_id(const std::string& id) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto is_more = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-'; };
   if (id.empty() || !is_letter(id.front()) || !std::ranges::all_of(id, is_more))
-    throw std::invalid_argument("the id \"" + printable(id) +
-                                "\" of a chart is not letters, digits and hyphens");
+    throw std::invalid_argument(
+        fmt::format("the id \"{}\" of a chart is not letters, digits and hyphens", printable(id)));
 }
 
 }  // namespace

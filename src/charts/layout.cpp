@@ -21,8 +21,8 @@ void require_matching_sizes(const Chart& chart, const Series& series) {
   const bool intervals = !series.low.empty() || !series.high.empty();
   if ((bars ? chart.groups.size() != values : series.x.size() != values) ||
       (intervals && (series.low.size() != values || series.high.size() != values)))
-    throw std::invalid_argument("the series \"" + printable(series.name) +
-                                "\" of a chart has not as many values everywhere");
+    throw std::invalid_argument(fmt::format("the series \"{}\" of a chart has not as many values everywhere",
+                                            printable(series.name)));
 }
 
 std::optional<ChartRange> range_of(const PlottedValues& values) {
@@ -70,11 +70,11 @@ PlottedValues plotted_values(const Chart& chart) {
     const std::string name = '"' + printable(series.name) + '"';
     const auto say = [&](std::size_t some, std::size_t all, std::string_view what) {
       if (some > 0)
-        values.notes.push_back(
-            std::to_string(some) + " of " + pluralize(all, what) + " of " + name +
-            (chart.x.logarithmic || chart.y.logarithmic
-                 ? " cannot be drawn on a logarithmic axis, which has positive numbers only"
-                 : " cannot be drawn: not finite numbers"));
+        values.notes.push_back(fmt::format("{} of {} of {} cannot be drawn{}", some, pluralize(all, what),
+                                           name,
+                                           chart.x.logarithmic || chart.y.logarithmic
+                                               ? " on a logarithmic axis, which has positive numbers only"
+                                               : ": not finite numbers"));
     };
     if (series.y.empty()) values.notes.push_back(name + " has no values");
     say(series.y.size() - points.size(), series.y.size(), "value");
@@ -157,7 +157,7 @@ std::string tick_label(int digit, int exponent, bool is_short) {
   if (is_short && exponent < 0) return fixed_decimal(digit * std::pow(10, exponent), -exponent);
   if (is_short) return grouped(static_cast<std::uint64_t>(std::llround(digit * std::pow(10, exponent))));
   constexpr const char* superscripts[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = digit == 1 ? "10" : std::to_string(digit) + "·10";
+  std::string text = digit == 1 ? "10" : fmt::format("{}·10", digit);
   if (exponent < 0) text += "⁻";
   for (const char figure : std::to_string(std::abs(exponent))) text += superscripts[figure - '0'];
   return text;

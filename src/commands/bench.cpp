@@ -58,7 +58,7 @@ std::vector<std::string> devices_of(RowPointers rows) {
   }
   std::vector<std::string> sentences;
   for (const auto& [device, names] : backends)
-    sentences.push_back((join(names, ", ") + " ran on ").append(device));
+    sentences.push_back(fmt::format("{} ran on {}", join(names, ", "), device));
   return sentences;
 }
 
@@ -195,7 +195,7 @@ std::vector<std::string> asked_backends(const BenchOptions& options, const Bench
 /// The suite whose scenes are measured by guides, which take no samples of a step.
 int run_guide_suite(const BenchRequest& options) {
   const auto refuse = [&](bool given, const std::string& name) {
-    if (given) throw UsageError(name + " cannot be used with --suite " + options.suite + ": leave it out");
+    if (given) throw UsageError("{} cannot be used with --suite {}: leave it out", name, options.suite);
   };
   refuse(options.output.resume, "--resume");
   refuse(options.output.trace, "--trace");

@@ -44,9 +44,8 @@ std::string name_of(ExportFormat format) {
 /// fall.obj -> fall-000012.obj, numbered as in the trace.
 fs::path numbered(const fs::path& file, std::size_t frame) {
   constexpr std::size_t digits = 6;  // so that names sort like frames
-  std::string number = std::to_string(frame);
-  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
-  return file.parent_path() / (file.stem().string() + '-' + number + file.extension().string());
+  return file.parent_path() /
+         fmt::format("{}-{:0{}}{}", file.stem().string(), frame, digits, file.extension().string());
 }
 
 /// The frames asked for, each once and in the order of time; the last one where none are.

@@ -89,9 +89,9 @@ void BodyListing::add_stance(const BodyStance& stance, const std::string& how) {
 
 void BodyListing::add_openings(std::span<const Opening> openings, const std::string& what) {
   for (std::size_t i = 0; i < openings.size(); ++i)
-    add("opening_" + std::to_string(i + 1), to_tenths(openings[i].size), "m",
-        std::to_string(openings[i].edges()) + " edges around " + place(to_tenths(openings[i].centre)) + ", " +
-            what);
+    add(fmt::format("opening_{}", i + 1), to_tenths(openings[i].size), "m",
+        fmt::format("{} edges around {}, {}", openings[i].edges(), place(to_tenths(openings[i].centre)),
+                    what));
 }
 
 void BodyListing::add_landmark(const std::string& name, const Landmark& landmark) {
@@ -174,9 +174,9 @@ std::string jeans_scene(const std::filesystem::path& file, const MeasuredJeans& 
     parse_scene(file, text);
     return text;
   } catch (const ordered_json::exception& error) {
-    throw SceneError(printable(file.string(), 1000) + ": the body's file " +
-                     printable(jeans.body.file, 1000) + " cannot be named in a scene file (" +
-                     printable(error.what(), 200) + "): give it a name in UTF-8");
+    throw SceneError("{}: the body's file {} cannot be named in a scene file ({}): give it a name in UTF-8",
+                     printable(file.string(), 1000), printable(jeans.body.file, 1000),
+                     printable(error.what(), 200));
   }
 }
 
@@ -201,16 +201,16 @@ std::optional<double> unit_given(const std::string& text) {
   for (const LengthUnit& unit : length_units())
     if (unit.name == text) return unit.metres;
   if (const auto metres = number_in<double>(text); metres && *metres > 0 && *metres <= 1e6) return metres;
-  throw UsageError("--unit is \"" + printable(text, 100) + "\": give " + unit_names() +
-                   "or the metres in one unit of the file");
+  throw UsageError("--unit is \"{}\": give {}or the metres in one unit of the file", printable(text, 100),
+                   unit_names());
 }
 
 /// A scene is not replaced unasked, and a body never.
 void require_free(const MeasureOptions& options) {
   const fs::path scene = options.scene;
   if (scene.extension() != ".json")
-    throw UsageError("--scene is " + printable(options.scene, 1000) +
-                     ": give a file that ends in .json, as mssim run requires");
+    throw UsageError("--scene is {}: give a file that ends in .json, as mssim run requires",
+                     printable(options.scene, 1000));
   if (escaped(options.body) != options.body)
     throw UsageError(printable(options.body, 1000) +
                      " has characters that a scene file cannot hold: give the file another name");

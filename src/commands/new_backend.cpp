@@ -71,7 +71,7 @@ void require_usable(const std::string& name) {
                      "\" cannot be a backend's name: give at most 64 letters, digits, _ and -, the first a "
                      "letter, without .py or .cpp");
   if (find_backend(name) != nullptr)
-    throw UsageError("mssim has a backend " + name + " already (mssim list backends): give another name");
+    throw UsageError("mssim has a backend {} already (mssim list backends): give another name", name);
   if (std::ranges::find(needed_modules, name) != needed_modules.end())
     throw UsageError(name + " is the name of a module that backends need: give another name");
 }
@@ -104,8 +104,8 @@ Starter starter_of(const std::string& name, StarterLanguage language, const fs::
   const std::string file = name + ".cpp", header = "mssim_backend.h";
   return {
       {{file, example_for(name, ".cpp")}, {header, read_file(data_folder() / "cpp" / header), false, true}},
-      {"c++ -std=c++17 -O3 " + shell_word((folder / file).string()) +
-           " $(pkg-config --cflags --libs hdf5) -o " + shell_word(program.string()),
+      {fmt::format("c++ -std=c++17 -O3 {} $(pkg-config --cflags --libs hdf5) -o {}",
+                   shell_word((folder / file).string()), shell_word(program.string())),
        bench_command(program)}};
 }
 

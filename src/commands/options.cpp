@@ -21,11 +21,10 @@ std::size_t frame_number(const std::string& word, std::size_t frames) {
   if (word == "last") return frames - 1;
   const auto number = number_in<std::int64_t>(word);
   if (!number || *number < 0)
-    throw UsageError("--frames: \"" + printable(word) +
-                     "\" is no frame; give numbers from 0 on, ranges like 10-20, last, or all");
+    throw UsageError("--frames: \"{}\" is no frame; give numbers from 0 on, ranges like 10-20, last, or all",
+                     printable(word));
   if (static_cast<std::uint64_t>(*number) >= frames)
-    throw UsageError("--frames: there is no frame " + std::to_string(*number) + "; the last one is " +
-                     std::to_string(frames - 1));
+    throw UsageError("--frames: there is no frame {}; the last one is {}", *number, frames - 1);
   return static_cast<std::size_t>(*number);
 }
 
@@ -62,7 +61,7 @@ std::vector<std::size_t> listed_frames(const std::vector<std::string>& words, st
     const std::size_t dash = word.find('-', 1);
     const std::size_t first = frame_number(word.substr(0, dash), frames);
     const std::size_t last = dash == std::string::npos ? first : frame_number(word.substr(dash + 1), frames);
-    if (last < first) throw UsageError("--frames: \"" + printable(word) + "\" ends before it begins");
+    if (last < first) throw UsageError("--frames: \"{}\" ends before it begins", printable(word));
     for (std::size_t frame = first; frame <= last; ++frame) list.push_back(frame);
   }
   return list;
@@ -73,8 +72,8 @@ std::size_t frame_at(double time_s, const std::vector<double>& times_s) {
       times_s, {}, [&](double frame_time_s) { return std::abs(frame_time_s - time_s); });
   const double spacing = times_s.size() < 2 ? 0 : times_s.back() - times_s[times_s.size() - 2];
   if (time_s > times_s.back() + spacing)
-    throw UsageError("--time: " + decimal(time_s) + " s is after the last frame, at " +
-                     decimal(times_s.back()) + " s");
+    throw UsageError("--time: {} s is after the last frame, at {} s", decimal(time_s),
+                     decimal(times_s.back()));
   return static_cast<std::size_t>(nearest - times_s.begin());
 }
 
@@ -113,8 +112,8 @@ PictureOptions picture_options(const PictureChoice& choice, const std::string& u
                      "\" is no view; give front, side, back, three-quarter, or AZIMUTH,ELEVATION in degrees");
   const auto size = two_numbers(choice.size.empty() ? usual_size : choice.size, most_picture_pixels);
   if (!size)
-    throw UsageError("--size: \"" + printable(choice.size) + "\" is no size; give WIDTHxHEIGHT, up to " +
-                     std::to_string(most_picture_pixels) + " pixels each");
+    throw UsageError("--size: \"{}\" is no size; give WIDTHxHEIGHT, up to {} pixels each",
+                     printable(choice.size), most_picture_pixels);
   if (choice.colour != ColourBy::object) require_font();  // of their legends
   return {*view, size->first, size->second, choice.colour, threads};
 }

@@ -47,8 +47,8 @@ using Size = std::pair<std::uint32_t, std::uint32_t>;
 std::optional<Size> sheet_size(const RenderOptions& options) {
   const auto sheet = two_numbers(options.sheet_size, most_on_a_sheet);
   if (!sheet && !options.sheet_size.empty())
-    throw UsageError("--sheet: \"" + printable(options.sheet_size) + "\" is no number of pictures; give " +
-                     "COLUMNSxROWS, up to " + std::to_string(most_on_a_sheet) + " each");
+    throw UsageError("--sheet: \"{}\" is no number of pictures; give COLUMNSxROWS, up to {} each",
+                     printable(options.sheet_size), most_on_a_sheet);
   return sheet;
 }
 
@@ -102,12 +102,12 @@ std::string drawn_file(const RenderOptions& options, const PictureOptions& pictu
   std::vector<CaptionedPicture> pictures;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     Picture drawn = painter.picture_of(trace.positions(frames[i]));
-    progress.update_often("picture " + std::to_string(i + 1) + " of " + std::to_string(frames.size()),
+    progress.update_often(fmt::format("picture {} of {}", i + 1, frames.size()),
                           static_cast<double>(i + 1) / static_cast<double>(frames.size()));
     if (movie)
       movie->add(drawn);
     else
-      pictures.push_back({std::move(drawn), "t = " + fixed_decimal(content.time_s[frames[i]], 2) + " s"});
+      pictures.push_back({std::move(drawn), fmt::format("t = {:.2f} s", content.time_s[frames[i]])});
   }
   if (movie) return movie->take_bytes();
   if (const auto sheet = sheet_size(options)) return png_of(sheet_of(pictures, sheet->first));
@@ -133,17 +133,16 @@ int render(const RenderOptions& options) {
   if (options.movie && options.run.fps && (*options.run.fps < 0.1 || *options.run.fps > 1000))
     throw UsageError("--fps: a movie has 0.1 to 1000 frames a second, not " + decimal(*options.run.fps));
   if (options.movie && !options.movie->empty() && !options.out.empty())
-    throw UsageError("--movie and --out both name the file: \"" + printable(*options.movie) + "\" and \"" +
-                     printable(options.out) + "\"; leave one of them out");
+    throw UsageError("--movie and --out both name the file: \"{}\" and \"{}\"; leave one of them out",
+                     printable(*options.movie), printable(options.out));
   if (options.trace.empty() == options.run.scene.empty())
     throw UsageError(options.movie && fs::path(*options.movie).extension() == ".h5"
-                         ? "--movie took \"" + printable(*options.movie) +
-                               "\" for the file to write; put the trace before it"
-                         : std::string("give either a trace or --scene"));
+                         ? fmt::format("--movie took \"{}\" for the file to write; put the trace before it",
+                                       printable(*options.movie))
+                         : "give either a trace or --scene");
   fs::path trace = options.trace;
   if (is_scene(options.trace) && (trace.extension() == ".json" || !fs::exists(trace)))
-    throw UsageError('"' + printable(options.trace) + "\" is a scene, not a trace: did you mean --scene " +
-                     printable(options.trace) + '?');
+    throw UsageError("\"{0}\" is a scene, not a trace: did you mean --scene {0}?", printable(options.trace));
   const fs::path out = target_of(output_of(options));
   require_extension({options.movie && !options.movie->empty() ? "--movie" : "--out", out},
                     options.movie ? "an animated WebP" : "PNG",

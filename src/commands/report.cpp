@@ -95,8 +95,8 @@ FoundPicture drawn(const ResultRow& row) {
   options.height = 480;
   Painter painter(trace.content(), trace.positions(0), options);
   painter.make_room_for(positions);
-  return {row.scene + ", " + grouped(row.nodes) + " nodes, after " +
-              fixed_decimal(trace.content().time_s.back(), 2) + " s",
+  return {fmt::format("{}, {} nodes, after {:.2f} s", row.scene, grouped(row.nodes),
+                      trace.content().time_s.back()),
           png_of(painter.picture_of(positions))};
 }
 
@@ -128,7 +128,7 @@ void for_each_sitter(const std::map<ContentKind, Sitter>& sitters, std::vector<s
       else
         simulate(*sitter.row);
     } catch (const std::exception& error) {
-      problems.push_back("the scene " + name + " cannot be simulated: " + error.what());
+      problems.push_back(fmt::format("the scene {} cannot be simulated: {}", name, error.what()));
     }
   }
 }
@@ -176,10 +176,9 @@ std::vector<fs::path> folders_of(const ReportOptions& options) {
   for (const std::string& given : options.folders) {
     std::error_code error;
     if (!fs::is_directory(given, error))
-      throw UsageError("there is no folder " + printable(given) +
-                       ": give folders that mssim bench --out wrote");
+      throw UsageError("there is no folder {}: give folders that mssim bench --out wrote", printable(given));
     std::vector<fs::path> found = result_folders(given);
-    if (found.empty()) throw UsageError(printable(given) + " has no results: give " + below(given));
+    if (found.empty()) throw UsageError("{} has no results: give {}", printable(given), below(given));
     std::ranges::move(found, std::back_inserter(folders));
   }
   return folders;

@@ -40,16 +40,15 @@ std::int64_t end_centre(std::int64_t high) { return (high + subpixels / 2) / sub
 
 void check(const PixelGrid& grid) {
   if (!(grid.pixel > 0 && std::isfinite(grid.pixel)))
-    throw std::invalid_argument("a picture has pixels of " + decimal(grid.pixel) +
-                                " m; give a positive size");
+    throw std::invalid_argument(
+        fmt::format("a picture has pixels of {} m; give a positive size", decimal(grid.pixel)));
   if (!std::isfinite(grid.left) || !std::isfinite(grid.bottom))
-    throw std::invalid_argument("a picture begins at x = " + decimal(grid.left) +
-                                " m, y = " + decimal(grid.bottom) + " m; give finite numbers");
+    throw std::invalid_argument(fmt::format("a picture begins at x = {} m, y = {} m; give finite numbers",
+                                            decimal(grid.left), decimal(grid.bottom)));
   if (grid.columns == 0 || grid.rows == 0 || grid.columns > most_pixels_a_side ||
       grid.rows > most_pixels_a_side)
-    throw std::invalid_argument("a picture has " + std::to_string(grid.columns) + " x " +
-                                std::to_string(grid.rows) + " pixels; give 1 to " +
-                                std::to_string(most_pixels_a_side) + " each way");
+    throw std::invalid_argument(fmt::format("a picture has {} x {} pixels; give 1 to {} each way",
+                                            grid.columns, grid.rows, most_pixels_a_side));
 }
 
 class Raster {

@@ -66,22 +66,20 @@ class Check {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(std::string(name_) + ": " + what);
-  }
+  [[noreturn]] void fail(const std::string& what) const { throw InputError("{}: {}", name_, what); }
 
   /// Files number points and triangles in their own ways, so messages give coordinates.
   std::string at(std::uint32_t point) const { return place(surface_.points[point]); }
   std::string corners(std::size_t triangle) const {
     const auto& [a, b, c] = surface_.triangles[triangle];
-    return "the triangle " + at(a) + ", " + at(b) + ", " + at(c);
+    return fmt::format("the triangle {}, {}, {}", at(a), at(b), at(c));
   }
 
   void points() const {
     for (std::size_t p = 0; p < surface_.points.size(); ++p)
       if (!is_finite(surface_.points[p]))
-        fail("point " + std::to_string(p) + " (from 0) has the coordinates " + place(surface_.points[p]) +
-             "; give finite numbers");
+        fail(fmt::format("point {} (from 0) has the coordinates {}; give finite numbers", p,
+                         place(surface_.points[p])));
   }
 
   void triangles() const {
@@ -90,8 +88,8 @@ class Check {
       const auto& triangle = surface_.triangles[t];
       for (const std::uint32_t point : triangle) {
         if (point >= surface_.points.size())
-          fail("triangle " + std::to_string(t) + " (from 0) names point " + std::to_string(point) +
-               " but there are only " + pluralize(surface_.points.size(), "point") + ", counted from 0");
+          fail(fmt::format("triangle {} (from 0) names point {} but there are only {}, counted from 0", t,
+                           point, pluralize(surface_.points.size(), "point")));
         used[point] = true;
       }
       const Vec3d& a = surface_.points[triangle[0]];
@@ -102,8 +100,8 @@ class Check {
     }
     const auto unused = std::find(used.begin(), used.end(), false);
     if (unused != used.end())
-      fail("the point " + at(static_cast<std::uint32_t>(unused - used.begin())) +
-           " belongs to no triangle; remove it");
+      fail(fmt::format("the point {} belongs to no triangle; remove it",
+                       at(static_cast<std::uint32_t>(unused - used.begin()))));
   }
 
   void sides() const {
@@ -116,14 +114,14 @@ class Check {
     for (std::size_t first = 0; first < sides.size();) {
       const std::span<const SurfaceSide> of_edge = sides_of_edge(sides, first);
       const SurfaceSide& side = of_edge.front();
-      const auto edge = [&] { return "the edge from " + at(side.low) + " to " + at(side.high); };
+      const auto edge = [&] { return fmt::format("the edge from {} to {}", at(side.low), at(side.high)); };
       if (of_edge.size() == 1) fail(edge() + " belongs to one triangle only; close the hole there");
       if (of_edge.size() > 2)
         fail(edge() + " belongs to " + std::to_string(of_edge.size()) +
              " triangles; an edge of a closed surface joins two, so separate the parts that meet there");
       if (side.upwards == of_edge.back().upwards)
-        fail(corners(side.triangle) + " and " + corners(of_edge.back().triangle) + " both run along " +
-             edge() + " in the same direction; turn one of them round");
+        fail(fmt::format("{} and {} both run along {} in the same direction; turn one of them round",
+                         corners(side.triangle), corners(of_edge.back().triangle), edge()));
       first += of_edge.size();
     }
   }
@@ -314,8 +312,7 @@ void span(Surface& surface, Opening opening, Edges& edges) {
 }
 
 [[noreturn]] void refuse(const Opening& opening, const std::string& problem) {
-  throw InputError("the opening of " + std::to_string(opening.edges()) + " edges around " +
-                   place(opening.centre) + problem);
+  throw InputError("the opening of {} edges around {}{}", opening.edges(), place(opening.centre), problem);
 }
 
 }  // namespace
@@ -419,9 +416,9 @@ void require_joined(const Surface& surface) {
   const std::size_t edges = (3 * surface.triangles.size() + free) / 2;
   if (surface.triangles.size() > 1 && 2 * free > edges)
     throw InputError(
-        "its triangles do not join: " + std::to_string(free) + " of " + std::to_string(edges) +
-        " edges belong to one triangle only; merge the points of corners that lie beside each other "
-        "where the surface was made");
+        "its triangles do not join: {} of {} edges belong to one triangle only; merge the points of corners "
+        "that lie beside each other where the surface was made",
+        free, edges);
 }
 
 std::vector<Opening> close_openings(Surface& surface, double largest) {

@@ -1,5 +1,7 @@
 #include "hdf5/hdf5.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -192,7 +194,7 @@ void reserve_room(hid_t file, const std::filesystem::path& name, std::size_t byt
   checked(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), "asking for the file descriptor");
   const int error_number = reserve_space(*static_cast<const int*>(descriptor), bytes);
   if (error_number != 0)
-    throw WriteError(write_failure(name, "reserving " + std::to_string(bytes) + " bytes", error_number));
+    throw WriteError(write_failure(name, fmt::format("reserving {} bytes", bytes), error_number));
 }
 
 Hdf5Group create_group(hid_t parent, const std::string& path) {

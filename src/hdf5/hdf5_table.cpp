@@ -1,5 +1,6 @@
 #include "hdf5/hdf5_table.h"
 
+#include <fmt/core.h>
 #include <zlib.h>
 
 #include <optional>
@@ -61,9 +62,8 @@ Hdf5Table::Hdf5Table(hid_t file, std::string path, const std::vector<hsize_t>& e
   const bool fits = std::ranges::equal(
       extents_, extents, [](hsize_t is, hsize_t wanted) { return wanted == any || is == wanted; });
   if (!fits)
-    throw Hdf5ContentError(path_ + " has the extents " +
-                           (extents_.empty() ? "of one number" : shown(extents_)) + " instead of " +
-                           shown(extents));
+    throw Hdf5ContentError(fmt::format("{} has the extents {} instead of {}", path_,
+                                       extents_.empty() ? "of one number" : shown(extents_), shown(extents)));
   const Hdf5Type type(H5Dget_type(dataset_.get()), action);
   bytes_per_number_ = H5Tget_size(type.get());
   filters_ = filters_of(dataset_);
@@ -180,7 +180,7 @@ std::vector<std::uint32_t> read_numbers(hid_t file, const std::string& path,
   std::vector<std::uint32_t> numbers;
   for (const std::int64_t number : table.integers(0, table.rows())) {
     if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
-      throw Hdf5ContentError(path + " has the number " + std::to_string(number) + ", which it cannot be");
+      throw Hdf5ContentError(fmt::format("{} has the number {}, which it cannot be", path, number));
     numbers.push_back(static_cast<std::uint32_t>(number));
   }
   return numbers;

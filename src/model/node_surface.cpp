@@ -1,5 +1,7 @@
 #include "model/node_surface.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -62,7 +64,7 @@ NodeSurface surface_of_bodies(const std::vector<Tetrahedron>& tetrahedra, std::s
   const std::vector<std::uint32_t> body = bodies_of(tetrahedra, nodes);
   for (const std::uint32_t node : surface.node) surface.part.push_back(body[node]);
   for (std::uint32_t i = 0; i < 1 + std::ranges::max(body); ++i)
-    surface.parts.push_back("body " + std::to_string(i + 1));
+    surface.parts.push_back(fmt::format("body {}", i + 1));
   return surface;
 }
 

@@ -219,7 +219,7 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries, Corner 
   std::vector<std::string> names;
   for (const LegendEntry& entry : entries.first(shown))
     names.push_back(shortened(entry.name, sizes.most_width - names_from, letters));
-  if (shown < entries.size()) names.push_back("and " + std::to_string(entries.size() - shown) + " more");
+  if (shown < entries.size()) names.push_back(fmt::format("and {} more", entries.size() - shown));
 
   int widest = 0;
   for (const std::string_view name : names) widest = std::max(widest, text_width(name, letters));

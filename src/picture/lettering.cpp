@@ -40,8 +40,7 @@ struct GlyphMask {
 };
 
 void require_success(FT_Error error, const char* what) {
-  if (error)
-    throw std::runtime_error("FreeType failed at " + std::string(what) + ": error " + std::to_string(error));
+  if (error) throw std::runtime_error(fmt::format("FreeType failed at {}: error {}", what, error));
 }
 
 /// The font, with the characters that were drawn before.

@@ -1,5 +1,6 @@
 #include "picture/movie.h"
 
+#include <fmt/core.h>
 #include <webp/encode.h>
 #include <webp/mux.h>
 
@@ -31,8 +32,8 @@ struct WebpPicture {
     picture.height = static_cast<int>(pixels.height);
     if (!made || pixels.pixels.empty() ||
         !WebPPictureImportRGB(&picture, &pixels.pixels.front().red, 3 * picture.width))
-      throw std::runtime_error("a picture of " + std::to_string(pixels.width) + " x " +
-                               std::to_string(pixels.height) + " pixels cannot be written as WebP");
+      throw std::runtime_error(
+          fmt::format("a picture of {} x {} pixels cannot be written as WebP", pixels.width, pixels.height));
   }
   WebpPicture(const WebpPicture&) = delete;
   WebpPicture& operator=(const WebpPicture&) = delete;

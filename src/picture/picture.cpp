@@ -1,5 +1,6 @@
 #include "picture/picture.h"
 
+#include <fmt/core.h>
 #include <png.h>
 #include <zlib.h>
 
@@ -130,9 +131,8 @@ std::string png_of(const Picture& picture) {
   std::string bytes;
   png_set_write_fn(writer.png, &bytes, append_bytes, flush_nothing);
   if (!write_png(writer.png, writer.info, picture))
-    throw std::runtime_error("a picture of " + std::to_string(picture.width) + " x " +
-                             std::to_string(picture.height) +
-                             " pixels cannot be written as PNG: " + writer.message.data());
+    throw std::runtime_error(fmt::format("a picture of {} x {} pixels cannot be written as PNG: {}",
+                                         picture.width, picture.height, writer.message.data()));
   return bytes;
 }
 

@@ -30,16 +30,16 @@ namespace fs = std::filesystem;
 using Cause = ReadError::Cause;
 
 [[noreturn]] void fail(const std::string& what, const std::error_code& error, const std::string& remedy) {
-  throw ReadError(Cause::other, what + " (" + error.message() + "): " + remedy);
+  throw ReadError(Cause::other, fmt::format("{} ({}): {}", what, error.message(), remedy));
 }
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
 [[noreturn]] void refuse_size(std::size_t most_bytes) {
   constexpr std::size_t mebibyte = std::size_t{1} << 20;
-  throw ReadError(Cause::too_large,
-                  "is longer than " + (most_bytes < mebibyte ? std::to_string(most_bytes >> 10) + " KiB"
-                                                             : std::to_string(most_bytes >> 20) + " MiB"));
+  throw ReadError(Cause::too_large, most_bytes < mebibyte
+                                        ? fmt::format("is longer than {} KiB", most_bytes >> 10)
+                                        : fmt::format("is longer than {} MiB", most_bytes >> 20));
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ const char* remedy(int error_number) {
 std::string write_failure(const fs::path& file, const std::string& action, int error_number,
                           const std::string& reason) {
   const std::string why = !reason.empty() ? reason : std::generic_category().message(error_number);
-  return "cannot write " + file.string() + ": " + action + " failed: " + why + "; " + remedy(error_number);
+  return fmt::format("cannot write {}: {} failed: {}; {}", file.string(), action, why, remedy(error_number));
 }
 
 namespace {
@@ -118,7 +118,7 @@ namespace {
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& why, const char* or_do = "") {
-  throw WriteError("cannot write " + file.string() + ": " + why + "; " + or_do + "choose another file name");
+  throw WriteError("cannot write {}: {}; {}choose another file name", file.string(), why, or_do);
 }
 
 /// What lies below these is not made of files. Shared memory is.
@@ -130,7 +130,7 @@ void require_ordinary_folder(const fs::path& file) {
   };
   for (const char* system : {"/dev", "/proc", "/sys"})
     if (begins_with(system) && !begins_with("/dev/shm"))
-      refuse(file, std::string("it lies in ") + system + ", which belongs to the system");
+      refuse(file, fmt::format("it lies in {}, which belongs to the system", system));
 }
 
 /// Opens the temporary of `file` and locks it, before a byte of it changes. Follows no link, which could lead
@@ -150,8 +150,8 @@ Descriptor open_locked(const fs::path& file) {
     }
     if (!part.is_open()) fail(file, "creating " + temporary.string());
     if (!part.lock())
-      throw WriteError("another mssim is writing " + file.string() +
-                       "; wait until it has ended, or choose another file name");
+      throw WriteError("another mssim is writing {}; wait until it has ended, or choose another file name",
+                       file.string());
     struct stat opened {};
     struct stat named {};
     if (::fstat(part.get(), &opened) != 0) fail(file, "looking at " + temporary.string());
@@ -186,8 +186,7 @@ fs::path temporary_of(const fs::path& file) {
 
 std::string kept_in_part(const fs::path& file, std::string_view what, std::size_t count) {
   if (count == 0) return "";
-  return "; " + temporary_of(file).string() + " keeps the " + std::string(what) +
-         " written before: " + std::to_string(count);
+  return fmt::format("; {} keeps the {} written before: {}", temporary_of(file).string(), what, count);
 }
 
 fs::path target_of(const fs::path& file) {
@@ -288,8 +287,8 @@ FolderLock::FolderLock(const fs::path& folder)
     : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (!folder_.is_open()) throw WriteError(write_failure(folder, "opening the folder", errno));
   if (!folder_.lock())
-    throw WriteError("another mssim is writing into " + folder.string() +
-                     "; wait until it has ended, or choose another folder");
+    throw WriteError("another mssim is writing into {}; wait until it has ended, or choose another folder",
+                     folder.string());
 }
 
 namespace {
@@ -403,7 +402,7 @@ std::optional<fs::path> find_program(const std::string& name) {
 bool names_interpreter_with_return(const fs::path& file) { return first_line(file).ends_with('\r'); }
 
 std::string why_not_executed(const fs::path& file, int error) {
-  const std::string reason = " (" + std::string(std::strerror(error)) + ")";
+  const std::string reason = fmt::format(" ({})", std::strerror(error));
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) return "it is a folder";
   if (names_interpreter_with_return(file))

@@ -10,7 +10,6 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
@@ -208,9 +207,7 @@ std::uint64_t limit_available() {
 }
 
 std::string in_gigabytes(std::uint64_t bytes, int digits) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f GB", digits, static_cast<double>(bytes) * 1e-9);
-  return text;
+  return fmt::format("{:.{}f} GB", static_cast<double>(bytes) * 1e-9, digits);
 }
 
 }  // namespace
@@ -225,8 +222,8 @@ std::optional<std::string> memory_shortage(std::uint64_t needed, std::uint64_t a
   constexpr int single_bytes = 9;
   int digits = 2;
   while (digits < single_bytes && in_gigabytes(needed, digits) == in_gigabytes(available, digits)) ++digits;
-  return "needs at least " + in_gigabytes(needed, digits) + " of memory, but " +
-         in_gigabytes(available, digits) + " are available";
+  return fmt::format("needs at least {} of memory, but {} are available", in_gigabytes(needed, digits),
+                     in_gigabytes(available, digits));
 }
 
 std::optional<std::string> memory_shortage(std::uint64_t needed) {
@@ -270,7 +267,7 @@ struct Waiter {
   /// The system counts a thread for a moment longer than until others can see that it has ended.
   void end_and_leave() const {
     pthread_join(handle, nullptr);
-    const std::string folder = "/proc/self/task/" + std::to_string(number);
+    const std::string folder = fmt::format("/proc/self/task/{}", number);
     const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (access(folder.c_str(), F_OK) == 0 && std::chrono::steady_clock::now() < latest)
       std::this_thread::yield();
@@ -341,12 +338,12 @@ std::optional<std::string> thread_shortage(int threads, ThreadStack stack) {
   const Trial trial = try_threads(threads, stack);
   if (trial.made >= threads) return std::nullopt;
   const char* size = std::getenv("OMP_STACKSIZE");
-  return pluralize(static_cast<std::uint64_t>(threads), "thread") + " were asked for; the system makes " +
-         std::to_string(trial.made) + " (" + std::generic_category().message(trial.error) +
-         "): ask for fewer with --threads, raise the limit of processes (ulimit -u, or pids.max of a "
-         "container)" +
-         (stack == ThreadStack::openmp && size ? ", or lower OMP_STACKSIZE, which is " + std::string(size)
-                                               : "");
+  return fmt::format(
+      "{} were asked for; the system makes {} ({}): ask for fewer with --threads, raise the limit of "
+      "processes (ulimit -u, or pids.max of a container){}",
+      pluralize(static_cast<std::uint64_t>(threads), "thread"), trial.made,
+      std::generic_category().message(trial.error),
+      stack == ThreadStack::openmp && size ? fmt::format(", or lower OMP_STACKSIZE, which is {}", size) : "");
 }
 
 int openmp_team(int wanted) {

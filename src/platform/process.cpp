@@ -28,11 +28,11 @@ namespace mssim {
 namespace {
 
 [[noreturn]] void fail(const ChildProcess& child, const std::string& why) {
-  throw std::runtime_error("cannot run " + child.program.string() + ": " + why);
+  throw std::runtime_error(fmt::format("cannot run {}: {}", child.program.string(), why));
 }
 
 [[noreturn]] void fail(const ChildProcess& child, const std::string& action, int error) {
-  fail(child, action + " failed (" + std::strerror(error) + ")");
+  fail(child, fmt::format("{} failed ({})", action, std::strerror(error)));
 }
 
 /// The two ends of a pipe; the child inherits neither but as stdout and stderr.
@@ -250,10 +250,9 @@ std::string failed_end(const ChildResult& result, const std::string& doing) {
     cause = ": " + line;
     if (to_lower(line).find("error") != std::string::npos) break;
   }
-  return "ended with " +
-         (result.signal != 0 ? "signal " + std::to_string(result.signal)
-                             : "exit code " + std::to_string(result.exit_code)) +
-         " when " + doing + cause;
+  return result.signal != 0
+             ? fmt::format("ended with signal {} when {}{}", result.signal, doing, cause)
+             : fmt::format("ended with exit code {} when {}{}", result.exit_code, doing, cause);
 }
 
 ChildResult run(const ChildProcess& child) { return run_together({&child, 1}).front(); }

@@ -1,6 +1,7 @@
 #include "platform/supervised_process.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>
@@ -25,10 +26,10 @@ namespace {
 /// How long the supervisor may take for what takes it a millisecond, and to end what SIGKILL ends.
 constexpr std::chrono::seconds supervisor_patience{30};
 
-std::string reason(int error) { return " (" + std::string(std::strerror(error)) + ")"; }
+std::string reason(int error) { return fmt::format(" ({})", std::strerror(error)); }
 
 [[noreturn]] void fail(const SupervisedProgram& program, const std::string& why) {
-  throw std::runtime_error("cannot run " + program.program.string() + ": " + why);
+  throw std::runtime_error(fmt::format("cannot run {}: {}", program.program.string(), why));
 }
 
 std::filesystem::path file_of(const SupervisedProgram& program) { return program.folder / program.program; }
@@ -36,7 +37,7 @@ std::filesystem::path file_of(const SupervisedProgram& program) { return program
 std::string why_not_started(const SupervisedProgram& program, const SupervisorAnswer& answer) {
   switch (answer.word) {
     case SupervisorWord::no_folder:
-      return "its folder " + program.folder.string() + " cannot be entered" + reason(answer.value);
+      return fmt::format("its folder {} cannot be entered{}", program.folder.string(), reason(answer.value));
     case SupervisorWord::no_processors:
       return "it cannot be bound to its processors" + reason(answer.value);
     case SupervisorWord::no_program:
@@ -53,7 +54,7 @@ pid_t start_supervisor(const SupervisedProgram& program, int channel) {
   if (::access("/dev/null", R_OK | W_OK) != 0) fail(program, "/dev/null cannot be opened" + reason(errno));
   const std::string supervisor = helper_program("supervise").string();
   std::string cpus;
-  for (const int cpu : program.cpus) cpus += std::to_string(cpu) + ',';
+  for (const int cpu : program.cpus) cpus += fmt::format("{},", cpu);
   std::vector<std::string> words{supervisor, std::to_string(program.removed.size())};
   words.insert(words.end(), program.removed.begin(), program.removed.end());
   words.insert(words.end(), {program.folder.string(), cpus, std::to_string(program.environment.size())});
@@ -119,10 +120,10 @@ bool receive(int descriptor, void* bytes, std::size_t count) {
 
 std::string describe(const ProgramEnd& end) {
   if (!end.trouble.empty()) return end.trouble;
-  if (end.signal == 0) return "ended with exit code " + std::to_string(end.exit_code);
+  if (end.signal == 0) return fmt::format("ended with exit code {}", end.exit_code);
   const char* name = ::sigdescr_np(end.signal);
-  return "was ended by signal " + std::to_string(end.signal) +
-         (name != nullptr ? " (" + std::string(name) + ")" : "");
+  return name != nullptr ? fmt::format("was ended by signal {} ({})", end.signal, name)
+                         : fmt::format("was ended by signal {}", end.signal);
 }
 
 SupervisedProcess::SupervisedProcess(const SupervisedProgram& program) {

@@ -109,7 +109,7 @@ Outcome outcome_of(std::uint64_t all, std::uint64_t as_published, std::uint64_t 
 }
 
 std::string row_name(const ResultRow& row) {
-  return "`" + row.backend + "` on `" + row.scene + "`, " + row.integrator;
+  return fmt::format("`{}` on `{}`, {}", row.backend, row.scene, row.integrator);
 }
 
 // Orders
@@ -126,7 +126,7 @@ std::string crossover(const std::vector<int>& sides, const std::vector<std::uint
 }
 
 std::string crossovers(const std::vector<std::string>& list) {
-  return list.empty() ? "" : " It becomes faster from " + join(list, ", ") + " on.";
+  return list.empty() ? "" : fmt::format(" It becomes faster from {} on.", join(list, ", "));
 }
 
 /// Over sizes and integrators; none where nothing can be compared.
@@ -162,14 +162,13 @@ std::optional<Finding> order_finding(const PaperScenes& scenes, const PaperConfi
       measured_crossovers.push_back(std::move(text));
   }
   if (all == 0) return std::nullopt;
-  return Finding{outcome_of(all, as_published, contrary),
-                 scenes.label() + ": " + std::string(second.caption) + " is faster than " +
-                     std::string(first.caption) + " in " + std::to_string(published_faster) + " of " +
-                     pluralize(all, "combination") + " of size and integrator." +
-                     crossovers(published_crossovers) + " Measured: `" + second_backend +
-                     "` is faster than `" + first_backend + "` in " + std::to_string(faster) +
-                     ", slower in " + std::to_string(slower) + ", and cannot be told apart in " +
-                     std::to_string(all - faster - slower) + "." + crossovers(measured_crossovers)};
+  return Finding{
+      outcome_of(all, as_published, contrary),
+      fmt::format("{}: {} is faster than {} in {} of {} of size and integrator.{} Measured: `{}` is "
+                  "faster than `{}` in {}, slower in {}, and cannot be told apart in {}.{}",
+                  scenes.label(), second.caption, first.caption, published_faster,
+                  pluralize(all, "combination"), crossovers(published_crossovers), second_backend,
+                  first_backend, faster, slower, all - faster - slower, crossovers(measured_crossovers))};
 }
 
 }  // namespace
@@ -241,24 +240,24 @@ Finding trend_finding(const PaperScenes& scenes, const std::vector<SizeStep>& st
     if (!deepest || step.published_to / step.published_from < deepest->published_to / deepest->published_from)
       deepest = &step;
   }
-  const std::string about = scenes.label() + ": the speed-up of " + std::string(caption);
+  const std::string about = fmt::format("{}: the speed-up of {}", scenes.label(), caption);
   const std::string of_steps = " of " + pluralize(steps.size(), "step");
   if (!deepest)
     return {any_falls == 0 ? Outcome::reproduced : Outcome::not_reproduced,
-            about + " never falls from one size to the next. Measured: that of `" + backend + "` falls in " +
-                std::to_string(any_falls) + of_steps + "."};
+            fmt::format("{} never falls from one size to the next. Measured: that of `{}` falls in {}{}.",
+                        about, backend, any_falls, of_steps)};
   const std::string what = deepest->measured_falls()   ? "falls, too"
                            : deepest->measured_rises() ? "rises"
                                                        : "does not certainly change";
-  return {outcome_of(falls, also_falls, rises),
-          about + " falls in " + std::to_string(falls) + of_steps + " from one size to the next, most from " +
-              grouped(deepest->from.nodes) + " to " + grouped(deepest->to.nodes) + " nodes with " +
-              deepest->integrator + " (" + from_to(deepest->published_from, deepest->published_to) +
-              "). There the measured one of `" + backend + "` " + what + " (" +
-              from_to(deepest->measured_from.ratio, deepest->measured_to.ratio) +
-              "). Of all the published falls it follows " + std::to_string(also_falls) + ", rises in " +
-              std::to_string(rises) + ", and is undecided in " + std::to_string(falls - also_falls - rises) +
-              "."};
+  return {
+      outcome_of(falls, also_falls, rises),
+      fmt::format("{} falls in {}{} from one size to the next, most from {} to {} nodes with {} ({}). There "
+                  "the measured one of `{}` {} ({}). Of all the published falls it follows {}, rises in {}, "
+                  "and is undecided in {}.",
+                  about, falls, of_steps, grouped(deepest->from.nodes), grouped(deepest->to.nodes),
+                  deepest->integrator, from_to(deepest->published_from, deepest->published_to), backend, what,
+                  from_to(deepest->measured_from.ratio, deepest->measured_to.ratio), also_falls, rises,
+                  falls - also_falls - rises)};
 }
 
 }  // namespace
@@ -305,11 +304,10 @@ std::vector<double> measured_costs(const PaperScenes& scenes, const std::string&
 /// "1.23 (0.98 to 1.5, below 1 at 1 of 6 sizes)": the geometric mean and the range.
 std::string mean_and_range(const std::vector<double>& ratios) {
   const auto below = std::ranges::count_if(ratios, [](double ratio) { return ratio < 1; });
-  return three_digits(geometric_mean(ratios)) + " (" + three_digits(std::ranges::min(ratios)) + " to " +
-         three_digits(std::ranges::max(ratios)) +
-         (below == 0 ? ""
-                     : ", below 1 at " + std::to_string(below) + " of " + pluralize(ratios.size(), "size")) +
-         ")";
+  return fmt::format(
+      "{} ({} to {}{})", three_digits(geometric_mean(ratios)), three_digits(std::ranges::min(ratios)),
+      three_digits(std::ranges::max(ratios)),
+      below == 0 ? "" : fmt::format(", below 1 at {} of {}", below, pluralize(ratios.size(), "size")));
 }
 
 std::string evaluations(int number) {
@@ -345,18 +343,18 @@ std::vector<Finding> cost_findings(const PaperScenes& scenes) {
       for (const std::string& backend : scenes.backends_of(configuration.name)) {
         const auto measured = measured_costs(scenes, integrator.name, cheapest, backend);
         if (measured.empty()) continue;
-        costs.push_back("`" + backend + "` " + mean_and_range(measured));
+        costs.push_back(fmt::format("`{}` {}", backend, mean_and_range(measured)));
         alike += std::abs(std::log(geometric_mean(measured) / mean)) <= std::log(cost_tolerance);
       }
       if (costs.empty()) continue;
-      findings.push_back({alike == costs.size() ? Outcome::reproduced
-                          : alike == 0          ? Outcome::not_reproduced
-                                                : Outcome::partly,
-                          scenes.label() + ": with " + std::string(configuration.caption) + " a step of " +
-                              integrator.paper_name + " costs " + mean_and_range(published) + " steps of " +
-                              cheapest + ", " + suggestion(mean, in_method) + ". Measured, `" +
-                              integrator.name + "` with " + evaluations(integrator.force_evaluations) + ": " +
-                              join(costs, ", ") + "."});
+      findings.push_back(
+          {alike == costs.size() ? Outcome::reproduced
+           : alike == 0          ? Outcome::not_reproduced
+                                 : Outcome::partly,
+           fmt::format("{}: with {} a step of {} costs {} steps of {}, {}. Measured, `{}` with {}: {}.",
+                       scenes.label(), configuration.caption, integrator.paper_name,
+                       mean_and_range(published), cheapest, suggestion(mean, in_method), integrator.name,
+                       evaluations(integrator.force_evaluations), join(costs, ", "))});
     }
   }
   return findings;
@@ -383,11 +381,11 @@ std::vector<Finding> garment_findings(std::span<const ResultRow> rows) {
       slower += ratio->side_of_one() == -1;
     }
     if (all > 0)
-      findings.push_back({outcome_of(all, faster, slower),
-                          "Figure 6 of Vassilev: an iteration takes less time with parallelisation than "
-                          "without. Measured: `" +
-                              backend + "` is faster than `serial` in " + std::to_string(faster) + " of " +
-                              pluralize(all, "size") + ", slower in " + std::to_string(slower) + "."});
+      findings.push_back(
+          {outcome_of(all, faster, slower),
+           fmt::format("Figure 6 of Vassilev: an iteration takes less time with parallelisation "
+                       "than without. Measured: `{}` is faster than `serial` in {} of {}, slower in {}.",
+                       backend, faster, pluralize(all, "size"), slower)});
     findings.push_back(
         {Outcome::fact, "Vassilev: dressing a body in jeans takes " + three_digits(published_dressing_s) +
                             " s on a smart phone. Measured: `" + backend + "` dresses `" + largest->scene +
@@ -428,8 +426,8 @@ Finding about_speedups(std::span<const ResultRow> rows) {
     if (!ratio) continue;
     ++all;
     if (ratio->side_of_one() == 0)
-      near_one.push_back(row_name(row) + " (" + three_digits(ratio->low) + " to " +
-                         three_digits(ratio->high) + ")");
+      near_one.push_back(
+          fmt::format("{} ({} to {})", row_name(row), three_digits(ratio->low), three_digits(ratio->high)));
   }
   if (all == 0)
     return {Outcome::fact, "There are no speed-ups: no row that counts stands beside one of `serial`."};

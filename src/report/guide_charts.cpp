@@ -127,7 +127,7 @@ void add_orders(Chart& steps) {
     if (const Integrator* integrator = find_integrator(series.family)) orders.insert(integrator->order);
   for (const int order : orders) {
     const double across = std::min(0.3 * decades_across, 0.4 * decades_up / order);
-    steps.series.push_back({.name = "order " + std::to_string(order),
+    steps.series.push_back({.name = fmt::format("order {}", order),
                             .origin = Origin::reference,
                             .x = {std::pow(10, from), std::pow(10, from + across)},
                             .y = {y.low, y.low * std::pow(10, across * order)}});
@@ -161,7 +161,7 @@ std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
   }
   std::vector<std::string> groups;
   for (const auto& [backends, names] : integrators)
-    groups.push_back(backends + " (" + join(names, ", ") + ")");
+    groups.push_back(fmt::format("{} ({})", backends, join(names, ", ")));
   return groups;
 }
 
@@ -195,9 +195,9 @@ void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene
   add_names(chart, "Diverged: ", crosses);
   add_names(chart, "Each point is that of the cheapest backend with its step: ", by_backends(lines));
   if (on_front > drawn_on_front)
-    chart.remarks.push_back(std::to_string(on_front - drawn_on_front) + " of " +
-                            pluralize(on_front, "point") +
-                            " on the front not drawn, as their backends take longer for the same step");
+    chart.remarks.push_back(
+        fmt::format("{} of {} on the front not drawn, as their backends take longer for the same step",
+                    on_front - drawn_on_front, pluralize(on_front, "point")));
   add_names(chart, "No points: ", without);
 }
 

@@ -33,7 +33,7 @@ struct HtmlBlock {
 
   std::string operator()(const Heading& heading) const {
     const int level = std::clamp(heading.level + shift, 1, 6);
-    return element("h" + std::to_string(level), html_prose(heading.text)) + '\n';
+    return element(fmt::format("h{}", level), html_prose(heading.text)) + '\n';
   }
   std::string operator()(const Paragraph& paragraph) const {
     return element("p", html_prose(paragraph.text)) + '\n';

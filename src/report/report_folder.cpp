@@ -77,8 +77,8 @@ std::vector<Record> records_of(const fs::path& file, const std::string& without,
         ++lost;
       }
     }
-    problems.push_back(std::string(error.what()) + "; " + pluralize(lost, "row") + " left out, " +
-                       std::to_string(records.size()) + " shown");
+    problems.push_back(
+        fmt::format("{}; {} left out, {} shown", error.what(), pluralize(lost, "row"), records.size()));
   }
   if (records.empty()) problems.push_back(file.string() + " has no row that can be shown");
   return records;

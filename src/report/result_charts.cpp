@@ -148,7 +148,7 @@ SizeLines size_lines(std::span<const ResultRow> rows, const PaperLegend& legend,
 }
 
 Series with_slope(Series series, std::optional<double> slope) {
-  if (slope) series.name += ", slope " + fixed_decimal(*slope, 2);
+  if (slope) series.name += fmt::format(", slope {:.2f}", *slope);
   return series;
 }
 
@@ -168,8 +168,8 @@ std::vector<Chart> scaling_charts(std::span<const ResultRow> rows, const PaperLe
   if (rows.empty()) return charts;
   const std::string integrator = rows.front().integrator;
   for (std::size_t kind = 0; kind < kind_names.size(); ++kind) {
-    Chart chart = chart_of(id + "-scaling-" + std::to_string(kind),
-                           "Time of a " + integrator + " step of " + std::string(kind_names[kind]),
+    Chart chart = chart_of(fmt::format("{}-scaling-{}", id, kind),
+                           fmt::format("Time of a {} step of {}", integrator, kind_names[kind]),
                            {"nodes", true}, {"time of a step (ms)", true});
     std::vector<std::string> shown;
     for (const std::string& backend : distinct(rows, &ResultRow::backend)) {

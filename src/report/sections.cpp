@@ -19,7 +19,7 @@ std::string of_each_folder(const ReportInput& input, const std::string& without,
   std::string text;
   for (std::size_t i = 0; i < input.folders.size(); ++i) {
     const ReportFolder& folder = input.folders[i];
-    const std::string part = content(folder, "f" + std::to_string(i + 1));
+    const std::string part = content(folder, fmt::format("f{}", i + 1));
     if (part.empty()) continue;
     if (input.folders.size() > 1) text += "<h3>" + html_text(folder.name) + "</h3>\n";
     text += part;
@@ -32,8 +32,8 @@ std::string of_each_folder(const ReportInput& input, const std::string& without,
 std::string caches_of(const Machine& machine) {
   std::vector<std::string> caches;
   for (const Cache& cache : machine.caches)
-    caches.push_back("L" + std::to_string(cache.level) + " " + cache.type + " " +
-                     std::to_string(cache.count) + " × " + grouped(cache.bytes / 1024) + " KiB");
+    caches.push_back(
+        fmt::format("L{} {} {} × {} KiB", cache.level, cache.type, cache.count, grouped(cache.bytes / 1024)));
   return join(caches, ", ");
 }
 
@@ -44,7 +44,7 @@ std::string rounds_of(const ReportFolder& folder) {
       least = least == 0 ? row.rounds : std::min(least, row.rounds);
       most = std::max(most, row.rounds);
     }
-  return least == most ? std::to_string(most) : std::to_string(least) + " to " + std::to_string(most);
+  return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
 /// What ran in which folder, and what is missing.
@@ -85,7 +85,7 @@ std::string provenance_of(const Provenance& provenance) {
   for (const auto& [name, value] : provenance.thread_environment) environment.push_back(name + "=" + value);
   for (const SceneHash& scene : provenance.scenes)
     scenes.push_back(scene.name + " " + to_hex(scene.fnv1a_64));
-  for (const double average : machine.load_average) load.push_back(fixed_decimal(average, 2));
+  for (const double average : machine.load_average) load.push_back(fmt::format("{:.2f}", average));
   const auto or_nothing = [](const std::string& text) { return text.empty() ? Cell() : Cell(text); };
   Table table{{{"what"}, {"value"}}, {}};
   const auto line = [&](const char* what, Cell value) { table.rows.push_back({what, std::move(value)}); };
@@ -141,11 +141,10 @@ std::string count_of(const std::vector<Finding>& findings) {
   };
   const auto published = std::ssize(findings) - number(Outcome::fact) - number(Outcome::warning);
   if (published == 0) return "<p>Nothing published stands beside these rows.</p>\n";
-  return "<p>Of " + pluralize(static_cast<std::uint64_t>(published), "published statement") + ", " +
-         std::to_string(number(Outcome::reproduced)) + " are reproduced, " +
-         std::to_string(number(Outcome::partly)) + " partly, " +
-         std::to_string(number(Outcome::not_reproduced)) + " are not, and " +
-         std::to_string(number(Outcome::undecided)) + " are undecided.</p>\n";
+  return fmt::format("<p>Of {}, {} are reproduced, {} partly, {} are not, and {} are undecided.</p>\n",
+                     pluralize(static_cast<std::uint64_t>(published), "published statement"),
+                     number(Outcome::reproduced), number(Outcome::partly), number(Outcome::not_reproduced),
+                     number(Outcome::undecided));
 }
 
 std::string verdict_section(const ReportInput& input) {
@@ -183,7 +182,7 @@ std::string changes_section(const ReportInput& input) {
   text += html_of(comparison_page(comparison), 3);
   const auto name = [&](const char* what, const std::vector<std::string>& combinations) {
     if (!combinations.empty())
-      text += "<p>" + std::string(what) + ": " + html_text(join(combinations, "; ")) + ".</p>\n";
+      text += fmt::format("<p>{}: {}.</p>\n", what, html_text(join(combinations, "; ")));
   };
   name("Only BASE has", comparison.only_base);
   name("Only NEW has", comparison.only_new);
@@ -348,7 +347,7 @@ std::string energies_of(const std::vector<FoundCurve>& curves, const std::vector
   std::vector<Chart> charts;
   std::vector<std::string> without;
   for (const FoundCurve& curve : curves) {
-    charts.push_back(energy_chart(curve, references, id + "-energy-" + std::to_string(charts.size())));
+    charts.push_back(energy_chart(curve, references, fmt::format("{}-energy-{}", id, charts.size())));
     if (charts.back().series.size() == 1) without.push_back(curve.name);
   }
   return figures_of(charts) +
@@ -442,7 +441,7 @@ std::string guide_of(const FoundGuide& guide, const std::string& id, int level) 
         std::ranges::find_if(scenes, [&](const std::string& name) { return is_about(parts[i], name); });
     std::vector<Chart> charts;
     if (scene != scenes.end())
-      charts = guide_charts(guide, *scene, id + "-guide-" + std::to_string(scene - scenes.begin() + 1));
+      charts = guide_charts(guide, *scene, fmt::format("{}-guide-{}", id, scene - scenes.begin() + 1));
     text += guide_of_scene(parts[i], charts, level);
   }
   return text;

@@ -131,11 +131,11 @@ SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folde
 const BodySpec& first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
   const auto* bodies = std::get_if<BodiesSpec>(&scene.content);
   if (bodies == nullptr)
-    throw SceneError("the scene \"" + printable(shape.name) +
-                     "\" has no bodies whose shape could be taken: name one that has");
+    throw SceneError("the scene \"{}\" has no bodies whose shape could be taken: name one that has",
+                     printable(shape.name));
   if (std::holds_alternative<ShapeOfScene>(bodies->list.front().shape))
-    throw SceneError("the first body of the scene \"" + printable(shape.name) +
-                     "\" takes its shape from another scene: name that one");
+    throw SceneError("the first body of the scene \"{}\" takes its shape from another scene: name that one",
+                     printable(shape.name));
   return bodies->list.front();
 }
 
@@ -204,7 +204,7 @@ void visit_body(FieldVisitor& fields, BodySpec& body) {
       body.swell_per_s, from(-100, 100));
 }
 
-std::string pointer_to(std::size_t body) { return "/bodies/list/" + std::to_string(body); }
+std::string pointer_to(std::size_t body) { return fmt::format("/bodies/list/{}", body); }
 
 /// A shape of bodies: a mesh and what follows from it.
 struct MeshedShape {

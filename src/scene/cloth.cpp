@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -126,13 +128,12 @@ void check_cloth(const SceneSpec& spec) {
   constexpr std::uint64_t largest = std::numeric_limits<std::uint32_t>::max();
   if (const std::uint64_t nodes = std::uint64_t{cloth.rows} * cloth.columns; nodes > largest)
     refuse(spec.file, "/cloth/rows",
-           "is " + std::to_string(cloth.rows) + ", which with " + std::to_string(cloth.columns) +
-               " columns makes " + std::to_string(nodes) + " nodes: keep the product at or below " +
-               std::to_string(largest));
+           fmt::format("is {}, which with {} columns makes {} nodes: keep the product at or below {}",
+                       cloth.rows, cloth.columns, nodes, largest));
   if (cloth.pins && cloth.pins->row >= cloth.rows)
     refuse(spec.file, "/cloth/pins/row",
-           "is " + std::to_string(cloth.pins->row) + ", but the rows are numbered from 0 to " +
-               std::to_string(cloth.rows - 1) + ": name one of them");
+           fmt::format("is {}, but the rows are numbered from 0 to {}: name one of them", cloth.pins->row,
+                       cloth.rows - 1));
   const double lowest_start = cloth.ceiling_height_m - cloth.ripple.height_m;
   if (!(lowest_start > spec.floor.height))
     refuse(spec.file, "/cloth/ceiling_height_m",

@@ -77,7 +77,7 @@ class AbProgram {
 AbProgram::AbProgram(const std::string& file, const AbOptions& options) : file_(file), options_(options) {
   std::error_code error;
   if (!fs::is_regular_file(file, error) || ::access(file.c_str(), X_OK) != 0)
-    throw MissingProgram("cannot run " + file + ": give the path of an mssim program");
+    throw MissingProgram("cannot run {}: give the path of an mssim program", file);
   child_.program = fs::absolute(file);
   child_.folder = fs::current_path();  // scenes may be files named from here
   // One that never ends shall not run for ever.
@@ -92,8 +92,8 @@ bool AbProgram::takes_verified() const {
   child.elapsed_seconds = whole_seconds(std::min(longest_help_s, options_.time_budget_s + spare_help_s));
   const ChildResult result = run(child);
   if (result.out_of_time)
-    throw UsageError(file_ + " bench --help has not ended within " + std::to_string(child.elapsed_seconds) +
-                     " s: give the path of an mssim program");
+    throw UsageError("{} bench --help has not ended within {} s: give the path of an mssim program", file_,
+                     child.elapsed_seconds);
   return result.signal == 0 && result.exit_code == exit_ok &&
          result.output.find("--verified") != std::string::npos;
 }
@@ -315,7 +315,7 @@ RunComparison compare_programs(const AbOptions& options) {
         if (!one.settled) add_round(one, times[0], times[1], options.threshold);
       ++rounds;
       longest_s = std::max(longest_s, round_watch.seconds());
-      progress.update("round " + std::to_string(rounds), watch.seconds() / options.time_budget_s);
+      progress.update(fmt::format("round {}", rounds), watch.seconds() / options.time_budget_s);
     }
   }
   std::cerr << "mssim: " << rounds << (rounds == 1 ? " round in " : " rounds in ")

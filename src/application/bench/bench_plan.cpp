@@ -64,8 +64,8 @@ PlannedScene planned_scene(UnbuiltScene scene, const BenchSettings& settings) {
     const std::size_t count =
         settings.windows ? static_cast<std::size_t>(*settings.windows) : usual_windows(ranks);
     if (count < fewest_windows(ranks))
-      throw UsageError("--windows " + std::to_string(count) + " leaves some of " + std::to_string(ranks) +
-                       " ranks without one: give at least " + std::to_string(fewest_windows(ranks)));
+      throw UsageError("--windows {} leaves some of {} ranks without one: give at least {}", count, ranks,
+                       fewest_windows(ranks));
     windows = choose_windows(
         grid, ranks, cloth.pins ? std::optional<std::uint32_t>(cloth.pins->row) : std::nullopt, count);
     memory_bytes = window_memory(settings, windows.front(), grid);
@@ -196,9 +196,9 @@ void require_distinct_names(const std::vector<SceneSpec>& scenes) {
   for (auto scene = scenes.begin(); scene != scenes.end(); ++scene)
     for (auto other = scenes.begin(); other != scene; ++other)
       if (other->name == scene->name)
-        throw UsageError("there are two scenes called " + printable(scene->name) + ", " +
-                         printable(other->file.string()) + " and " + printable(scene->file.string()) +
-                         "; name one of them, or rename a file");
+        throw UsageError("there are two scenes called {}, {} and {}; name one of them, or rename a file",
+                         printable(scene->name), printable(other->file.string()),
+                         printable(scene->file.string()));
 }
 
 void require_traceable(const SceneSpec& spec) {
@@ -259,8 +259,8 @@ BenchPlan plan_of(const BenchOptions& options) {
     const BenchSettings settings = settings_of_scene(plan.settings, comparison, spec.name);
     plan.timed.push_back(planned_scene({std::move(spec), std::move(parts)}, settings));
     if (options.output.trace && !plan.timed.back().windows.empty())
-      throw UsageError("--trace needs the whole of " + plan.timed.back().spec.name +
-                       ", which is verified in windows: leave it out");
+      throw UsageError("--trace needs the whole of {}, which is verified in windows: leave it out",
+                       plan.timed.back().spec.name);
   }
   return plan;
 }

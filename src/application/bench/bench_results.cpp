@@ -55,7 +55,7 @@ fs::path folder_of(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status))
-    throw UsageError("there is no " + path.string() + ": give a folder that mssim bench --out wrote");
+    throw UsageError("there is no {}: give a folder that mssim bench --out wrote", path.string());
   fs::path folder = fs::is_directory(status) ? path
                     : path.has_parent_path() ? path.parent_path()
                                              : fs::path(".");
@@ -106,8 +106,8 @@ std::string revision(const BuildInfo& build) {
 void require_same_origin(const Provenance& earlier, const Provenance& now, const std::string& folder) {
   std::vector<std::string> all = differences(earlier, now);
   if (revision(earlier.build) != revision(now.build))
-    all.push_back("the program was built from commit " + revision(earlier.build) + " and is now from " +
-                  revision(now.build));
+    all.push_back(fmt::format("the program was built from commit {} and is now from {}",
+                              revision(earlier.build), revision(now.build)));
   if (earlier.backend_programs != now.backend_programs)
     all.emplace_back("a program that is a backend is not the same");
   std::vector<std::string> left_out;
@@ -146,13 +146,13 @@ std::vector<std::string> doubts(const Provenance& then, const Provenance& now) {
   if (!then.program_fnv1a_64 || then.program_fnv1a_64 != now.program_fnv1a_64)
     all.emplace_back("it was written by another program");
   if (then.device_memory != now.device_memory)
-    all.push_back("--memory was " + then.device_memory + " and is " + now.device_memory);
+    all.push_back(fmt::format("--memory was {} and is {}", then.device_memory, now.device_memory));
   // None are named by a bench whose backends need none.
   if (!now.opencl_devices.empty() && then.opencl_devices != now.opencl_devices)
     all.emplace_back("the OpenCL devices are not the same");
   for (const BackendProgramRecord& program : now.backend_programs)
     if (std::ranges::find(then.backend_programs, program) == then.backend_programs.end())
-      all.push_back("the program " + program.name + " is not the same");
+      all.push_back(fmt::format("the program {} is not the same", program.name));
   if (then.tetgen != now.tetgen) all.emplace_back("TetGen is not the same");
   for (const SceneHash& scene : now.scenes)
     if (std::ranges::find(then.scenes, scene.name, &SceneHash::name) == then.scenes.end())
@@ -166,8 +166,8 @@ void require_row(const std::vector<ResultRow>& rows, const std::string& scene, c
     return row.scene == scene && row.backend == backend.name && row.integrator == integrator.name;
   });
   if (!found)
-    throw UsageError("--verified " + folder + " has no row of " + scene + ", " + std::string(backend.name) +
-                     ", " + std::string(integrator.name) + ": ask for what it has, or leave --verified out");
+    throw UsageError("--verified {} has no row of {}, {}, {}: ask for what it has, or leave --verified out",
+                     folder, scene, backend.name, integrator.name);
 }
 
 }  // namespace
@@ -176,8 +176,8 @@ std::vector<ResultRow> verified_rows(const std::string& folder, const Provenance
                                      const BenchSettings& settings, const std::vector<SceneSpec>& scenes) {
   MeasuredRun earlier = read_run(folder);
   if (const std::vector<std::string> all = doubts(earlier.provenance, now); !all.empty())
-    throw UsageError("--verified cannot rely on " + folder + ": " + join(all, "; ") +
-                     "; leave it out to verify anew");
+    throw UsageError("--verified cannot rely on {}: {}; leave it out to verify anew", folder,
+                     join(all, "; "));
   for (const SceneSpec& scene : scenes)
     for (const Integrator* integrator : settings.integrators)
       for (const BackendInfo* backend : settings.backends)

@@ -95,7 +95,7 @@ bool write_bench_traces(const SceneJob& job, const PreparedScene& scene, std::ve
       row.verified = false;
       failed = true;
     };
-    watch.progress("trace " + row.backend + " " + row.integrator, 1);
+    watch.progress(fmt::format("trace {} {}", row.backend, row.integrator), 1);
     try {
       write_trace(file, job, scene, row, provenance);
     } catch (const BackendFailure& failure) {

@@ -20,7 +20,7 @@ template <class Number, class Accepts>
 ValueRule number_that(std::string what, Accepts accepts) {
   return [what = std::move(what), accepts](const std::string& text) -> std::string {
     const std::optional<Number> number = number_in<Number>(text);
-    return number && accepts(*number) ? "" : "\"" + printable(text) + "\" is not " + what;
+    return number && accepts(*number) ? "" : fmt::format("\"{}\" is not {}", printable(text), what);
   };
 }
 
@@ -40,7 +40,7 @@ ValueRule number_between(double low, double high) {
 
 ValueRule whole_number(std::int64_t low, std::int64_t high) {
   return number_that<std::int64_t>(
-      "a whole number from " + std::to_string(low) + " to " + std::to_string(high),
+      fmt::format("a whole number from {} to {}", low, high),
       [low, high](std::int64_t number) { return number >= low && number <= high; });
 }
 

@@ -57,8 +57,8 @@ std::string unknown_option(const std::string& typed, const CLI::App& command) {
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   const std::string name = long_form(typed);
-  std::string sentence =
-      typed_name(command) + " has no option \"" + printable(typed.substr(0, typed.find('='))) + '"';
+  std::string sentence = fmt::format("{} has no option \"{}\"", typed_name(command),
+                                     printable(typed.substr(0, typed.find('='))));
   if (command.get_parent() && !command.get_option_no_throw(name))
     for (const CLI::App* other : command.get_parent()->get_subcommands({}))
       if (other->get_option_no_throw(name)) return sentence + ", which is one of " + typed_name(*other);
@@ -100,9 +100,8 @@ std::string missing(const std::string& name, const CLI::App& command) {
 std::string wrong_count(const std::string& name, const CLI::App& command) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr || option->get_expected_max() == 0) return name + " takes no value: leave it out";
-  if (option->count() > 1)
-    return name + " is given " + std::to_string(option->count()) + " times: give it once";
-  return name + " needs a value: give " + name + ' ' + option->get_type_name();
+  if (option->count() > 1) return fmt::format("{} is given {} times: give it once", name, option->count());
+  return fmt::format("{0} needs a value: give {0} {1}", name, option->get_type_name());
 }
 
 /// The first word of the message that looks like an option.
@@ -120,9 +119,9 @@ std::string problem(const CLI::ParseError& error, const CLI::App& command) {
   // What takes a value has a check of its own (ValueRule), so this is a flag.
   if (dynamic_cast<const CLI::ConversionError*>(&error)) return wrong_count(flag_in(message), command);
   if (dynamic_cast<const CLI::RequiresError*>(&error))
-    return subject + " needs " + other + ": add it, or leave out " + subject;
+    return fmt::format("{0} needs {1}: add it, or leave out {0}", subject, other);
   if (dynamic_cast<const CLI::ExcludesError*>(&error))
-    return subject + " and " + other + " exclude each other: leave out one of them";
+    return fmt::format("{} and {} exclude each other: leave out one of them", subject, other);
   return message;  // of the checks in ValueRule
 }
 
@@ -133,7 +132,7 @@ std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app, co
   const CLI::App& command = command_of(app);
   // A misspelt option also leaves the right one missing; it is the one to be told.
   const std::optional<std::string> surplus = leftover(command, option_of);
-  return surplus.value_or(problem(error, command)) + "; see " + typed_name(command) + " --help";
+  return fmt::format("{}; see {} --help", surplus.value_or(problem(error, command)), typed_name(command));
 }
 
 /// How --help looks: usage, commands or options with a word for their value.

@@ -199,8 +199,8 @@ bool dress_combination(Combination& combination, const SceneJob& job, const std:
   if (stopped) return false;
   row.dressing = record_of(result, std::chrono::duration<double>(Clock::now() - before).count());
   if (bad_node) {
-    fail(combination, "failed: the dressing blew up before step " + std::to_string(result.iterations) +
-                          ": node " + std::to_string(*bad_node) + " is not finite");
+    fail(combination, fmt::format("failed: the dressing blew up before step {}: node {} is not finite",
+                                  result.iterations, *bad_node));
     return true;
   }
   const Fit fit = fit_of(*job.system, result.state.position, job.garment->body);

@@ -246,8 +246,8 @@ double BodyProfile::crotch_height() const {
 
 std::vector<PlanPoint> BodyProfile::section(double y) const {
   if (!(y >= lowest_ && y <= highest_))
-    throw InputError(name_ + ": there is no section at the height " + shown(y) + " m; give a height from " +
-                     shown(lowest_) + " to " + shown(highest_) + " m");
+    throw InputError("{}: there is no section at the height {} m; give a height from {} to {} m", name_,
+                     shown(y), shown(lowest_), shown(highest_));
   std::vector<PlanPoint> points;
   for (const std::uint32_t t : slices_[slice_of(y)])
     cut(corners_of(body_.surface, t), &Vec3d::y, y, [&](const Vec3d& point) {
@@ -270,8 +270,8 @@ std::vector<PlanPoint> BodyProfile::leg_section(double y, int side) const {
   const double sign = side < 0 ? -1 : 1;
   std::erase_if(points, [&](const PlanPoint& point) { return sign * point.x <= 0; });
   if (points.empty())
-    throw InputError(name_ + ": there is no leg at x " + (side < 0 ? "< 0" : "> 0") + " at the height " +
-                     shown(y) + " m; give a height that this leg reaches");
+    throw InputError("{}: there is no leg at x {} 0 at the height {} m; give a height that this leg reaches",
+                     name_, side < 0 ? '<' : '>', shown(y));
   return points;
 }
 

@@ -21,7 +21,7 @@ struct NamedGirth {
 
 [[noreturn]] void fail(std::string_view measure, double value, std::string_view unit,
                        const std::string& rest) {
-  throw InputError("the body's " + std::string(measure) + " is " + shown(value) + std::string(unit) + rest);
+  throw InputError("the body's {} is {}{}{}", measure, shown(value), unit, rest);
 }
 
 void require_between(std::string_view measure, double value, std::string_view unit, double least,
@@ -29,7 +29,7 @@ void require_between(std::string_view measure, double value, std::string_view un
   // Written so that what is no number fails too.
   if (!(value >= least && value <= most))
     fail(measure, value, unit,
-         "; give a number from " + shown(least) + " to " + shown(most) + std::string(unit));
+         fmt::format("; give a number from {} to {}{}", shown(least), shown(most), unit));
 }
 
 /// Heights closer together than this leave no room for a smooth body between them.
@@ -37,8 +37,8 @@ void require_below(std::string_view measure, double height, std::string_view nex
                    double apart) {
   if (height > next_height - apart)
     fail(measure, height, " m",
-         " and the " + std::string(next) + " is " + shown(next_height) + " m; put it lower, at " +
-             shown(next_height - apart) + " m at most, or the other higher");
+         fmt::format(" and the {} is {} m; put it lower, at {} m at most, or the other higher", next,
+                     shown(next_height), shown(next_height - apart)));
 }
 
 void require_heights_in_order(const BodyMeasures& m) {
@@ -360,8 +360,7 @@ void add_tube(Surface& surface, const std::vector<EllipseSection>& sections, con
 Surface mannequin(const BodyMeasures& measures, const MannequinResolution& resolution) {
   const std::uint32_t around = resolution.cells_around;
   if (around < 16 || around > 512 || around % 4 != 0)
-    throw InputError("the points around a mannequin are " + std::to_string(around) +
-                     "; give a multiple of four from 16 to 512");
+    throw InputError("the points around a mannequin are {}; give a multiple of four from 16 to 512", around);
   const Figure figure(measures);
   const double cell = measures.hip.girth / around;
   const std::uint32_t around_leg = 4 * ((around + 3) / 6);

@@ -74,9 +74,8 @@ std::vector<Candidate> candidates(const Surface& body, const GivenStance& given)
   for (const UpAxis up : possible_axes(body, given)) {
     if (given.facing) {
       if (!is_level(*given.facing, up))
-        throw InputError("it cannot look along " +
-                         std::string(up_axis_names.at(static_cast<std::size_t>(up))) +
-                         ", which is its upright axis; give another facing");
+        throw InputError("it cannot look along {}, which is its upright axis; give another facing",
+                         up_axis_names.at(static_cast<std::size_t>(up)));
       all.emplace_back(body, up, *given.facing);
       continue;
     }
@@ -158,20 +157,18 @@ double unit_of(double height, const GivenStance& given, std::vector<std::string>
   if (given.unit_m) {
     const double person = height * *given.unit_m;
     if (person < shortest_person || person > tallest_person)
-      doubts.push_back("unit: the body is " + metres(*given.unit_m) +
-                       " high in the unit given, and people are " + shown(shortest_person) + " to " +
-                       shown(tallest_person) + " m");
+      doubts.push_back(fmt::format("unit: the body is {} high in the unit given, and people are {} to {} m",
+                                   metres(*given.unit_m), shown(shortest_person), shown(tallest_person)));
     return *given.unit_m;
   }
   const auto guess = guess_unit(height);
   if (!guess)
-    throw InputError("it is " + shown(height) + " high, which in no unit is a person of " +
-                     shown(shortest_person) + " to " + shown(tallest_person) +
-                     " m; give the unit with --unit");
+    throw InputError("it is {} high, which in no unit is a person of {} to {} m; give the unit with --unit",
+                     shown(height), shown(shortest_person), shown(tallest_person));
   if (!guess->certain)
-    doubts.push_back("unit: in " + std::string(guess->unit.name) + " the body is " +
-                     metres(guess->unit.metres) + " high, which is nearest to a person of " +
-                     shown(shortest_person) + " to " + shown(tallest_person) + " m; give it with --unit");
+    doubts.push_back(fmt::format(
+        "unit: in {} the body is {} high, which is nearest to a person of {} to {} m; give it with --unit",
+        guess->unit.name, metres(guess->unit.metres), shown(shortest_person), shown(tallest_person)));
   return guess->unit.metres;
 }
 

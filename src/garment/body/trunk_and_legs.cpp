@@ -259,7 +259,7 @@ void include(std::optional<HeightRange>& range, double y) {
 std::string shown(const HeightRange& range) {
   const auto millimetres = [](double y) { return decimal(std::round(y * 1e3) / 1e3); };
   const std::string low = millimetres(range.low), high = millimetres(range.high);
-  return low == high ? "at " + low + " m" : "from " + low + " to " + high + " m";
+  return low == high ? fmt::format("at {} m", low) : fmt::format("from {} to {} m", low, high);
 }
 
 /// The triangles that stay, with their points.

@@ -42,14 +42,14 @@ constexpr int most_dilation = 64;
 
 void check(const BodyMapSettings& settings) {
   if (!(settings.pixel > 0 && std::isfinite(settings.pixel)))
-    throw std::invalid_argument("the body's maps have pixels of " + decimal(settings.pixel) +
-                                " m; give a positive size");
+    throw std::invalid_argument(
+        fmt::format("the body's maps have pixels of {} m; give a positive size", decimal(settings.pixel)));
   if (!std::isfinite(settings.offset))
-    throw std::invalid_argument("the body's maps have an offset of " + decimal(settings.offset) +
-                                " m; give a finite length");
+    throw std::invalid_argument(fmt::format("the body's maps have an offset of {} m; give a finite length",
+                                            decimal(settings.offset)));
   if (settings.dilation < 0 || settings.dilation > most_dilation)
-    throw std::invalid_argument("the body's maps are dilated by " + std::to_string(settings.dilation) +
-                                " pixels; give 0 to " + std::to_string(most_dilation));
+    throw std::invalid_argument(fmt::format("the body's maps are dilated by {} pixels; give 0 to {}",
+                                            settings.dilation, most_dilation));
 }
 
 /// The surface's extent with room for offset and dilation, and a border of pixels that stay empty.
@@ -62,10 +62,9 @@ PixelGrid grid_of(const Surface& surface, const BodyMapSettings& settings) {
   const auto pixels_over = [&](double low, double high, const char* axis) {
     const double pixels = std::ceil((high - low + 2 * margin) / settings.pixel);
     if (!(pixels <= most_pixels_a_side))
-      throw std::invalid_argument("the body's maps would be " + decimal(pixels) + " pixels of " +
-                                  decimal(settings.pixel) + " m along " + axis +
-                                  "; give larger pixels, for " + std::to_string(most_pixels_a_side) +
-                                  " at most");
+      throw std::invalid_argument(fmt::format(
+          "the body's maps would be {} pixels of {} m along {}; give larger pixels, for {} at most",
+          decimal(pixels), decimal(settings.pixel), axis, most_pixels_a_side));
     return static_cast<std::uint32_t>(pixels);
   };
   // What a pixel covers is computed from the corner in single precision later on.

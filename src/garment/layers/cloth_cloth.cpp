@@ -12,8 +12,8 @@ namespace {
 
 void require(bool good, const char* what, double value, const char* wanted) {
   if (!good)
-    throw std::invalid_argument(std::string("cloth-cloth collision: ") + what + " is " + decimal(value) +
-                                ", give " + wanted);
+    throw std::invalid_argument(
+        fmt::format("cloth-cloth collision: {} is {}, give {}", what, decimal(value), wanted));
 }
 
 void validate(const ClothClothSettings& settings) {
@@ -56,9 +56,9 @@ void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
   for (const auto& arrays : {nodes.position, nodes.velocity}) {
     for (const std::span<float> array : arrays) {
       if (array.size() != inverse_mass_.size())
-        throw std::invalid_argument("cloth-cloth collision: an array has " + std::to_string(array.size()) +
-                                    " numbers for " + std::to_string(inverse_mass_.size()) +
-                                    " nodes, give one for each");
+        throw std::invalid_argument(
+            fmt::format("cloth-cloth collision: an array has {} numbers for {} nodes, give one for each",
+                        array.size(), inverse_mass_.size()));
     }
   }
   contacts_ = search_.find({nodes.position[0], nodes.position[1], nodes.position[2]});

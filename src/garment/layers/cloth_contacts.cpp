@@ -28,19 +28,19 @@ std::string quoted(const GarmentPanel& panel) { return '"' + printable(panel.nam
 
 void validate_panel(std::uint32_t index, const Garment& garment, std::size_t nodes) {
   if (index >= garment.panels.size())
-    throw std::invalid_argument("cloth layers: there is no panel " + std::to_string(index) +
-                                ", the garment has " + std::to_string(garment.panels.size()) +
-                                ", counted from 0");
+    throw std::invalid_argument(
+        fmt::format("cloth layers: there is no panel {}, the garment has {}, counted from 0", index,
+                    garment.panels.size()));
   const GarmentPanel& panel = garment.panels[index];
   if (panel.rows < 2 || panel.columns < 2)
-    throw std::invalid_argument("cloth layers: panel " + quoted(panel) + " has " +
-                                std::to_string(panel.rows) + " x " + std::to_string(panel.columns) +
-                                " nodes, give it at least 2 x 2");
+    throw std::invalid_argument(
+        fmt::format("cloth layers: panel {} has {} x {} nodes, give it at least 2 x 2", quoted(panel),
+                    panel.rows, panel.columns));
   const std::uint64_t end = panel.first_node + std::uint64_t{panel.rows} * panel.columns;
   if (end > nodes)
-    throw std::invalid_argument("cloth layers: panel " + quoted(panel) + " ends at node " +
-                                std::to_string(end) + ", but there are only " + std::to_string(nodes) +
-                                " nodes, each of which needs a mass");
+    throw std::invalid_argument(fmt::format(
+        "cloth layers: panel {} ends at node {}, but there are only {} nodes, each of which needs a mass",
+        quoted(panel), end, nodes));
 }
 
 /// Two sub-patches with fewer cells than this together are searched by the task that met them: searching them
@@ -228,8 +228,8 @@ ClothContactSearch::ClothContactSearch(const Garment& garment, const ClothLayers
     throw std::invalid_argument("cloth contacts: the distance within which layers touch is " +
                                 decimal(reach) + " m, give a positive one");
   if (threads < 1)
-    throw std::invalid_argument("cloth contacts: " + std::to_string(threads) +
-                                " threads cannot search, give at least 1");
+    throw std::invalid_argument(
+        fmt::format("cloth contacts: {} threads cannot search, give at least 1", threads));
   validate_layers(layers, garment, nodes);
   found_.resize(static_cast<std::size_t>(threads));
   std::uint32_t slots = 0;

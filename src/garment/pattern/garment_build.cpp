@@ -1,5 +1,7 @@
 #include "garment/pattern/garment_build.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -94,8 +96,8 @@ struct StretchNodes {
 };
 
 std::string text_of(const SeamStretch& stretch) {
-  return "the " + name_of(stretch.edge) + " boundary of " + stretch.panel + " from " + shown(stretch.from) +
-         " to " + shown(stretch.to);
+  return fmt::format("the {} boundary of {} from {} to {}", name_of(stretch.edge), stretch.panel,
+                     shown(stretch.from), shown(stretch.to));
 }
 
 std::size_t panel_named(const std::string& where, const std::string& name,
@@ -105,7 +107,7 @@ std::size_t panel_named(const std::string& where, const std::string& name,
     if (panels[i].name == name) return i;
     names.push_back(panels[i].name);
   }
-  throw InputError(where + "there is no panel " + name + "; use one of " + join(names, ", "));
+  throw InputError("{}there is no panel {}; use one of {}", where, name, join(names, ", "));
 }
 
 std::size_t nearest(const std::vector<double>& arcs, double arc) {
@@ -230,8 +232,8 @@ CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
 void require_cloth(const std::string& panel, const PanelMaterial& cloth) {
   const auto require = [&](double value, bool zero_too, const char* what) {
     if (!std::isfinite(value) || value < 0 || (value == 0 && !zero_too))
-      throw InputError(panel + ": " + what + " is " + shown(value) + "; give a number " +
-                       (zero_too ? "not below 0" : "above 0"));
+      throw InputError("{}: {} is {}; give a number {} 0", panel, what, shown(value),
+                       zero_too ? "not below" : "above");
   };
   const Waistband& band = cloth.waistband;
   require(cloth.area_density, false, "the cloth's area density");
@@ -308,9 +310,9 @@ double area_of(const PanelMesh& mesh) {
 std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
                                const PanelPlacement& placement, const BodyDepth& body) {
   if (!(placement.distance > 0 && placement.radius > 0))
-    throw InputError(panel + ": it cannot be placed " + shown(placement.distance) +
-                     " m from the body, bent with a radius of " + shown(placement.radius) +
-                     " m; give positive lengths");
+    throw InputError(
+        "{}: it cannot be placed {} m from the body, bent with a radius of {} m; give positive lengths",
+        panel, shown(placement.distance), shown(placement.radius));
   const auto [lowest, highest] = std::minmax_element(
       mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3d& a, const Vec3d& b) { return a.y < b.y; });
   // Seen from outside, a panel behind the body runs against x.
@@ -333,15 +335,15 @@ std::vector<Vec3d> place_panel(const std::string& panel, const PanelMesh& mesh,
 
 std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> panels,
                              std::span<const PanelMesh> meshes, std::uint32_t seam_index) {
-  const std::string where = "seam " + seam.name + ": ";
+  const std::string where = fmt::format("seam {}: ", seam.name);
   const StretchNodes first = nodes_of(where, seam.first, panels, meshes);
   const StretchNodes second = nodes_of(where, seam.second, panels, meshes);
   const double longer = std::max(first.drawn_length, second.drawn_length);
   if (!(std::abs(first.drawn_length - second.drawn_length) <= seam.tolerance * longer))
-    throw InputError(where + text_of(seam.first) + " is " + shown(first.drawn_length) + " m long and " +
-                     text_of(seam.second) + " " + shown(second.drawn_length) +
-                     " m; give them the same length or raise the seam's tolerance of " +
-                     shown(seam.tolerance));
+    throw InputError(
+        "{}{} is {} m long and {} {} m; give them the same length or raise the seam's tolerance of {}", where,
+        text_of(seam.first), shown(first.drawn_length), text_of(seam.second), shown(second.drawn_length),
+        shown(seam.tolerance));
   const bool first_is_finer = first.nodes.size() >= second.nodes.size();
   const StretchNodes &finer = first_is_finer ? first : second, &coarser = first_is_finer ? second : first;
   std::vector<Joint> joints;
@@ -353,8 +355,8 @@ std::vector<Joint> join_seam(const Seam& seam, std::span<const GarmentPanel> pan
     joint.length = 0.5 * (finer.arcs[std::min(i + 1, last)] - finer.arcs[i == 0 ? 0 : i - 1]);
     joint.seam = seam_index;
     if (joint.node == joint.edge_first || joint.node == joint.edge_second)
-      throw InputError(where + text_of(seam.first) + " and " + text_of(seam.second) + " share the node " +
-                       std::to_string(joint.node) + "; use two separate stretches");
+      throw InputError("{}{} and {} share the node {}; use two separate stretches", where,
+                       text_of(seam.first), text_of(seam.second), joint.node);
     joints.push_back(joint);
   }
   return joints;

@@ -195,8 +195,8 @@ class Drafting {
 
 void require_between(double value, double least, double most, const std::string& what) {
   if (!(value >= least && value <= most))
-    throw InputError("jeans: " + what + " is " + shown(value) + " m; give a length from " + shown(least) +
-                     " to " + shown(most) + " m");
+    throw InputError("jeans: {} is {} m; give a length from {} to {} m", what, shown(value), shown(least),
+                     shown(most));
 }
 
 void require_measures(const JeansMeasures& m) {
@@ -339,8 +339,7 @@ JeansDraft draft_jeans(const JeansMeasures& measures) {
 
 JeansGrid jeans_grid(const JeansDraft& draft, std::uint32_t nodes) {
   if (nodes < 300 || nodes > 10'000'000)
-    throw InputError("jeans: they cannot have " + std::to_string(nodes) +
-                     " nodes; give a number from 300 to 10000000");
+    throw InputError("jeans: they cannot have {} nodes; give a number from 300 to 10000000", nodes);
   const double height = 0.5 * (mean_height(draft.front) + mean_height(draft.back));
   const double front_width = area_of(draft.front) / height, back_width = area_of(draft.back) / height;
   const double inner_share = 0.5 * (crotch_fraction(draft.front) + facing_fraction(draft.front));

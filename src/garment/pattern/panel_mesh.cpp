@@ -24,9 +24,9 @@ struct Segment {
 void require_corner(const PatternPiece& piece, std::string_view corner, const Vec3d& a,
                     std::string_view edge_a, const Vec3d& b, std::string_view edge_b) {
   if (length(a - b) <= corner_tolerance) return;
-  throw InputError(piece.name + ": at the " + std::string(corner) + " corner the " + std::string(edge_a) +
-                   " boundary ends at " + place(a) + " and the " + std::string(edge_b) + " one at " +
-                   place(b) + "; make them meet within 0.1 mm");
+  throw InputError(
+      "{}: at the {} corner the {} boundary ends at {} and the {} one at {}; make them meet within 0.1 mm",
+      piece.name, corner, edge_a, place(a), edge_b, place(b));
 }
 
 /// The outline, counter-clockwise. At the corners, where the curves meet only nearly, it takes the first
@@ -71,8 +71,8 @@ bool intersect(const Segment& a, const Segment& b) {
 
 [[noreturn]] void refuse(const PatternPiece& piece, const Segment& a, const Segment& b) {
   const std::string name_a = name_of(a.edge), name_b = name_of(b.edge);
-  const std::string who = a.edge == b.edge ? "the " + name_a + " boundary meets itself"
-                                           : "the " + name_a + " and the " + name_b + " boundary meet";
+  const std::string who = a.edge == b.edge ? fmt::format("the {} boundary meets itself", name_a)
+                                           : fmt::format("the {} and the {} boundary meet", name_a, name_b);
   throw FoldedPiece(piece.name + ": " + who + " near " + place(rounded(0.5 * (a.from + a.to))) +
                     "; draw them so that they neither cross nor touch");
 }
@@ -104,8 +104,8 @@ constexpr std::uint32_t most_lines = 10'000;
 
 void require_lines(const PatternPiece& piece, std::uint32_t count, std::string_view what) {
   if (count < 2 || count > most_lines)
-    throw InputError(piece.name + ": it cannot have " + std::to_string(count) + " " + std::string(what) +
-                     " of nodes; give a number from 2 to " + std::to_string(most_lines));
+    throw InputError("{}: it cannot have {} {} of nodes; give a number from 2 to {}", piece.name, count, what,
+                     most_lines);
 }
 
 /// Where the grid lines of one direction end.
@@ -176,11 +176,10 @@ std::vector<Vec3d> points_at(const Curve& boundary, const std::vector<double>& f
 
 Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
   if (points_.size() < 2)
-    throw InputError("a boundary curve has " + pluralize(points_.size(), "point") +
-                     "; give two or more points");
+    throw InputError("a boundary curve has {}; give two or more points", pluralize(points_.size(), "point"));
   arcs_.reserve(points_.size());
   const auto point = [this](std::size_t i) {
-    return "point " + std::to_string(i) + " of a boundary curve, " + place(points_[i]) + ",";
+    return fmt::format("point {} of a boundary curve, {},", i, place(points_[i]));
   };
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!is_finite(points_[i]) || points_[i].z != 0)
@@ -194,8 +193,8 @@ Curve::Curve(std::vector<Vec3d> points) : points_(std::move(points)) {
 
 Curve Curve::bezier(std::span<const Vec3d> points) {
   if (points.size() < 4 || points.size() % 3 != 1)
-    throw InputError("a chain of cubic Bezier segments has " + pluralize(points.size(), "point") +
-                     "; give 4, 7, 10 or another 3 n + 1 points");
+    throw InputError("a chain of cubic Bezier segments has {}; give 4, 7, 10 or another 3 n + 1 points",
+                     pluralize(points.size(), "point"));
   std::vector<Vec3d> polyline{points.front()};
   polyline.reserve(points.size() / 3 * chords + 1);
   for (std::size_t p = 0; p + 3 < points.size(); p += 3)
@@ -223,8 +222,8 @@ Vec3d Curve::at(double fraction) const {
 
 std::pair<Curve, Curve> Curve::split(double fraction) const {
   if (!(fraction > 0 && fraction < 1))
-    throw InputError("a boundary curve cannot be split at " + shown(fraction) +
-                     " of its length; give a fraction between 0 and 1");
+    throw InputError("a boundary curve cannot be split at {} of its length; give a fraction between 0 and 1",
+                     shown(fraction));
   const Vec3d cut = at(fraction);
   const auto after = points_.begin() + static_cast<std::ptrdiff_t>(point_after(fraction * length()));
   std::vector<Vec3d> before(points_.begin(), after), rest(after, points_.end());

@@ -97,11 +97,10 @@ FileSurface body_from_file(const SceneSpec& spec, const BodyFile& body) {
     const Opening& largest = openings.front();
     refuse(
         spec.file, section + "/file",
-        "is not a closed body: it has " + std::to_string(openings.size()) +
-            (openings.size() == 1 ? " opening" : " openings, the largest") + " of " +
-            std::to_string(largest.edges()) + " edges around " + place(largest.centre) + ", " +
-            shown(largest.size) +
-            " m across; close the surface, or give \"close_holes_m\", the largest opening that mssim closes");
+        fmt::format("is not a closed body: it has {} opening{} of {} edges around {}, {} m across; close the "
+                    "surface, or give \"close_holes_m\", the largest opening that mssim closes",
+                    openings.size(), openings.size() == 1 ? "" : "s, the largest", largest.edges(),
+                    place(largest.centre), shown(largest.size)));
   }
   return read;
 }

@@ -87,7 +87,7 @@ void require_body_there(const SceneSpec& spec, const BodyProfile& profile) {
 std::string uncut_jeans(const JeansMeasures& jeans, const BodyProfile& profile) {
   const auto girth_at = [&](double height) {
     const double millimetres = std::round(1000 * profile.hull_girth(height));
-    return shown(millimetres / 1000) + " m around at the height " + shown(height);
+    return fmt::format("{} m around at the height {}", shown(millimetres / 1000), shown(height));
   };
   return "cannot be cut for this body: it measures " + girth_at(jeans.hip_height) + " (hip_height_m) and " +
          girth_at(jeans.waist_height) + " (waist_height_m), and parts into legs at " +
@@ -146,8 +146,8 @@ GarmentBuild cut_and_placed(const SceneSpec& spec, const GarmentPattern& pattern
              error.folded ? uncut_jeans(garment.jeans->measures, body.profile)
                           : "does not fit: " + printable(error.what(), 1500));
     refuse(spec.file,
-           pieces_pointer(garment) + (is_panel ? "/panels/" : "/seams/") +
-               std::to_string(error.index - of_jeans),
+           fmt::format("{}/{}/{}", pieces_pointer(garment), is_panel ? "panels" : "seams",
+                       error.index - of_jeans),
            "does not fit: " + printable(error.what(), 1500));
   }
 }

@@ -145,13 +145,13 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
   std::uint64_t nodes = 0;
   for (std::size_t i = 0; i < pieces.panels.size(); ++i) {
     const PieceSpec& piece = pieces.panels[i];
-    const std::string place = pointer + "/panels/" + std::to_string(i);
+    const std::string place = fmt::format("{}/panels/{}", pointer, i);
     if (piece.name.empty()) refuse(file, place + "/name", "is empty: give the panel a name");
     for (std::size_t edge = 0; edge < piece.boundaries.size(); ++edge) {
       try {
         curve_of(piece.boundaries[edge]);
       } catch (const InputError& error) {
-        refuse(file, place + "/" + std::string(panel_edge_names[edge]),
+        refuse(file, fmt::format("{}/{}", place, panel_edge_names[edge]),
                "is not a valid boundary: " + printable(error.what(), 1500));
       }
     }
@@ -159,8 +159,7 @@ void check_pieces(const std::filesystem::path& file, const std::string& pointer,
   }
   if (nodes > most_nodes)
     refuse(file, pointer + "/panels",
-           "have " + std::to_string(nodes) + " nodes in all: give panels with at most " +
-               std::to_string(most_nodes));
+           fmt::format("have {} nodes in all: give panels with at most {}", nodes, most_nodes));
 }
 
 void append_pieces(const PiecesSpec& pieces, const PanelMaterial& cloth, GarmentPattern& pattern) {

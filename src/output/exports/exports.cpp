@@ -1,5 +1,7 @@
 #include "output/exports/exports.h"
 
+#include <fmt/core.h>
+
 #include <bit>
 #include <charconv>
 #include <numeric>
@@ -33,8 +35,8 @@ std::string header(const ExportMesh& mesh, double time_s) {
   std::string text =
       "ply\nformat binary_little_endian 1.0\ncomment mssim, time " + decimal(time_s) + " s, SI units\n";
   for (std::size_t part = 0; part < mesh.parts.size(); ++part)
-    text += "comment part " + std::to_string(part) + ": " + printable(mesh.parts[part]) + '\n';
-  text += "element vertex " + std::to_string(mesh.node.size()) + '\n';
+    text += fmt::format("comment part {}: {}\n", part, printable(mesh.parts[part]));
+  text += fmt::format("element vertex {}\n", mesh.node.size());
   const std::string type = mesh.in_double ? "double" : "float";
   for (const char* name : {"x", "y", "z", "vx", "vy", "vz", "strain"})
     text += "property " + type + ' ' + name + '\n';
@@ -120,7 +122,7 @@ ExportFrame frame_of(const TraceReader& trace, const ExportMesh& mesh, std::size
 }
 
 std::string obj_of(const ExportMesh& mesh, const ExportFrame& frame) {
-  std::string text = "# mssim, time " + decimal(frame.time_s) + " s, lengths in m\n";
+  std::string text = fmt::format("# mssim, time {} s, lengths in m\n", decimal(frame.time_s));
   for (const Vec3d& point : frame.position) {
     text += 'v';
     for (const double number : {point.x, point.y, point.z}) append_number(text, number, mesh.in_double);

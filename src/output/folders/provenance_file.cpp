@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr int deepest_level = 32;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
-  throw ProvenanceError(file.string() + ": " + problem);
+  throw ProvenanceError("{}: {}", file.string(), problem);
 }
 
 json caches_json(const std::vector<Cache>& caches) {
@@ -68,7 +68,7 @@ class Place {
   Number count() const {
     // The library takes a whole number without a sign as unsigned.
     require(value_.is_number_unsigned() && std::in_range<Number>(value_.get<std::uint64_t>()),
-            "a whole number from 0 to " + std::to_string(std::numeric_limits<Number>::max()));
+            fmt::format("a whole number from 0 to {}", std::numeric_limits<Number>::max()));
     return value_.get<Number>();
   }
   /// 16 hexadecimal digits, as to_hex() writes them.
@@ -83,7 +83,7 @@ class Place {
     require(value_.is_array(), "a list");
     std::vector<decltype(read(*this))> elements;
     for (std::size_t i = 0; i < value_.size(); ++i)
-      elements.push_back(read(Place(file_, value_[i], pointer_ + '/' + std::to_string(i))));
+      elements.push_back(read(Place(file_, value_[i], fmt::format("{}/{}", pointer_, i))));
     return elements;
   }
   /// What `read` makes of each name and value of an object.
@@ -264,8 +264,8 @@ Provenance parse_provenance(const std::filesystem::path& file, std::string_view 
   try {
     document = json::parse(text, [&](int depth, json::parse_event_t /*event*/, const json& /*parsed*/) {
       if (depth > deepest_level)
-        fail(file, "is nested deeper than " + std::to_string(deepest_level) +
-                       " levels: give a provenance.json that mssim wrote");
+        fail(file, fmt::format("is nested deeper than {} levels: give a provenance.json that mssim wrote",
+                               deepest_level));
       return true;
     });
   } catch (const json::exception& error) {
@@ -274,7 +274,7 @@ Provenance parse_provenance(const std::filesystem::path& file, std::string_view 
     const std::size_t start = message.find("] ");
     const std::string problem =
         printable(message.substr(start == std::string_view::npos ? 0 : start + 2), 300);
-    fail(file, "malformed JSON, " + problem + ": give a provenance.json that mssim wrote");
+    fail(file, fmt::format("malformed JSON, {}: give a provenance.json that mssim wrote", problem));
   }
   return read_document({file, document});
 }

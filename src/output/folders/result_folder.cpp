@@ -161,8 +161,8 @@ void ResultFolder::write_files(std::vector<File> files, const std::vector<File>&
   written.reserve(files.size());
   for (const File& file : files) written.emplace_back(folder_ / file.name).append(file.text);
   if (!programs.empty() && fs::is_symlink(folder_ / programs_name))
-    throw WriteError("cannot write into " + (folder_ / programs_name).string() +
-                     ": it is a link; remove it or choose another folder");
+    throw WriteError("cannot write into {}: it is a link; remove it or choose another folder",
+                     (folder_ / programs_name).string());
   if (std::exchange(replaces_, false)) clear();
   if (!programs.empty()) make_folder(folder_ / programs_name);
   for (const File& output : programs) write_file_atomically(folder_ / output.name, output.text);

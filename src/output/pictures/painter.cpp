@@ -1,5 +1,7 @@
 #include "output/pictures/painter.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -98,8 +100,7 @@ double usual_most(std::vector<double> strain) {
 
 std::string picture_name(std::size_t number) {
   constexpr std::size_t digits = 6;  // so that listings have them in order
-  const std::string text = std::to_string(number);
-  return "frame-" + std::string(text.size() < digits ? digits - text.size() : 0, '0') + text + ".png";
+  return fmt::format("frame-{:0{}}.png", number, digits);
 }
 
 }  // namespace
@@ -195,8 +196,8 @@ PictureFolder::PictureFolder(std::filesystem::path folder, TraceContent content,
       options_(options) {
   std::error_code error;
   if (!std::filesystem::is_empty(folder_, error) || error)
-    throw WriteError("cannot put pictures into " + folder_.string() +
-                     ", which is not empty; empty it or choose another folder");
+    throw WriteError("cannot put pictures into {}, which is not empty; empty it or choose another folder",
+                     folder_.string());
 }
 
 void PictureFolder::draw(const std::vector<Vec3d>& positions) {

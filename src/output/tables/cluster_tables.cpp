@@ -201,10 +201,10 @@ std::vector<Cell> cells_of(const ClusterRows& rows, const ClusterRow& cluster_ro
   const ResultRow& row = *cluster_row.row;
   const std::optional<double> ms = counted_ms(row);
   const auto percent = [&](const std::optional<double>& share) {
-    return ms && share ? Cell(fixed_decimal(100 * *share, 1)) : Cell();
+    return ms && share ? Cell(fmt::format("{:.1f}", 100 * *share)) : Cell();
   };
   const auto ratio = [](const std::optional<double>& value) {
-    return value ? Cell(fixed_decimal(*value, 2)) : Cell();
+    return value ? Cell(fmt::format("{:.2f}", *value)) : Cell();
   };
   std::string label = "`" + row.backend + "`";
   if (cluster_row.scene.times > 1) label += " on `" + row.scene + "`";
@@ -244,8 +244,8 @@ std::string verdict_on_model(const ClusterRows& rows) {
     ++count;
   }
   if (count == 0) return "";
-  return "The model is within " + two_digits(100 * worst) + " % of the measured time in " +
-         (count == 1 ? "the row" : "all " + std::to_string(count) + " rows") + " that it is made for";
+  return fmt::format("The model is within {} % of the measured time in {} that it is made for",
+                     two_digits(100 * worst), count == 1 ? "the row" : fmt::format("all {} rows", count));
 }
 
 /// The latency and bandwidth that rows were measured with.
@@ -351,7 +351,7 @@ std::vector<Estimate> estimates_of(const ClusterRows::MachineRate& machine, int 
 }
 
 /// A text that is shown as 10^8.
-std::string power_of_ten(double nodes) { return "10^" + std::to_string(std::lround(std::log10(nodes))); }
+std::string power_of_ten(double nodes) { return fmt::format("10^{}", std::lround(std::log10(nodes))); }
 
 Cell efficiency_cell(const Estimate& estimate, const std::optional<CutTime>& cut) {
   return cut ? Cell(estimate.perfect_s / cut->step_s) : Cell();
@@ -429,9 +429,9 @@ Table table_of(const std::vector<Estimate>& estimates, const Network& network) {
     const auto steps = [](const std::optional<CutTime>& cut) {
       return cut ? Cell(cut->cut.steps_an_exchange) : Cell("-");
     };
-    const std::string cut = estimate.blocks ? std::to_string(estimate.blocks->cut.down) + " x " +
-                                                  std::to_string(estimate.blocks->cut.across)
-                                            : "-";
+    const std::string cut =
+        estimate.blocks ? fmt::format("{} x {}", estimate.blocks->cut.down, estimate.blocks->cut.across)
+                        : "-";
     table.rows.push_back({power_of_ten(estimate.side * estimate.side),
                           grouped(static_cast<std::uint64_t>(estimate.machines)), ms(estimate.columns),
                           steps(estimate.columns), percent(estimate, estimate.columns), ms(estimate.blocks),
@@ -478,7 +478,7 @@ ResultTable cluster_estimates(const ClusterRows& rows, const ClusterRows::Machin
 }  // namespace
 
 std::string name_in_ranks(std::string_view backend, int ranks) {
-  return std::string(backend) + ':' + std::to_string(ranks);
+  return fmt::format("{}:{}", backend, ranks);
 }
 
 WideScene wide_scene(std::string_view scene) {

@@ -11,7 +11,7 @@ namespace {
 Cell remark(const ComparedRow& row) {
   if (row.verdict == Verdict::lost) return row.reason;
   if (row.verdict != Verdict::undecided) return {};
-  return row.samples_needed ? std::to_string(*row.samples_needed) + " samples a side would decide"
+  return row.samples_needed ? fmt::format("{} samples a side would decide", *row.samples_needed)
                             : "many samples would be needed";
 }
 

@@ -48,16 +48,16 @@ CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(na
       }
     }
     if (in_quotes)
-      throw CsvError(name_ + ", line " + std::to_string(record.line) +
-                     ": a quoted field does not end; close it with a quotation mark");
+      throw CsvError("{}, line {}: a quoted field does not end; close it with a quotation mark", name_,
+                     record.line);
     if (header_.empty()) {
       header_ = std::move(record.fields);
       continue;
     }
     if (record.fields.size() != header_.size())
-      throw CsvError(name_ + ", line " + std::to_string(record.line) + ": has " +
-                     std::to_string(record.fields.size()) + " fields where the header has " +
-                     std::to_string(header_.size()) + "; write the missing ones, or remove the line");
+      throw CsvError(
+          "{}, line {}: has {} fields where the header has {}; write the missing ones, or remove the line",
+          name_, record.line, record.fields.size(), header_.size());
     records_.push_back(std::move(record));
   }
 }
@@ -73,8 +73,7 @@ void CsvTable::require_columns(const std::vector<std::string_view>& columns) con
 std::size_t CsvTable::column(std::string_view name) const {
   const auto found = std::ranges::find(header_, name);
   if (found == header_.end())
-    throw CsvError(name_ + ", line 1: there is no column " + std::string(name) +
-                   "; use a program that writes it");
+    throw CsvError("{}, line 1: there is no column {}; use a program that writes it", name_, name);
   return static_cast<std::size_t>(found - header_.begin());
 }
 

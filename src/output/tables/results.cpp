@@ -85,7 +85,7 @@ std::string_view opencl_device(const ResultRow& row) {
 }
 
 std::string backend_label(RowPointers rows, std::string_view backend, const Provenance& provenance) {
-  std::string label = "`" + std::string(backend) + "`";
+  std::string label = fmt::format("`{}`", backend);
   const auto row = std::ranges::find_if(rows, [&](const ResultRow* candidate) {
     return candidate->backend == backend && !opencl_device(*candidate).empty();
   });
@@ -135,9 +135,9 @@ std::string legend_of_excess(RowPointers rows, const Provenance& provenance) {
   std::set<std::string> backends;
   for (const ResultRow* row : rows)
     if (exceeds(*row, asked_processors(provenance, row->backend)))
-      backends.insert(row->backend + " (" + std::to_string(row->threads) + ")");
+      backends.insert(fmt::format("{} ({})", row->backend, row->threads));
   if (backends.empty()) return {};
-  std::string text = "(!) on more processors than the " + std::to_string(provenance.threads) + " asked for: ";
+  std::string text = fmt::format("(!) on more processors than the {} asked for: ", provenance.threads);
   for (const std::string& backend : backends) text += (backend == *backends.begin() ? "" : ", ") + backend;
   return text;
 }
@@ -160,7 +160,7 @@ void add_rows_without_a_time(Document& page, RowPointers rows) {
   std::vector<std::pair<std::string, std::string>> remarks;  // reason, scenes
   for (const ResultRow* row : rows) {
     if (counts(*row)) continue;
-    const std::string reason = "`" + row->backend + "`, `" + row->integrator + "`: " + status_of(*row);
+    const std::string reason = fmt::format("`{}`, `{}`: {}", row->backend, row->integrator, status_of(*row));
     auto known = std::ranges::find(remarks, reason, &std::pair<std::string, std::string>::first);
     if (known == remarks.end()) known = remarks.insert(remarks.end(), {reason, ""});
     known->second += (known->second.empty() ? "`" : ", `") + row->scene + "`";

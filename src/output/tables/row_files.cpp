@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 
 /// "scene/backend/integrator", as other programs name a benchmark.
 std::string benchmark_name(const ResultRow& row) {
-  return row.scene + '/' + row.backend + '/' + row.integrator;
+  return fmt::format("{}/{}/{}", row.scene, row.backend, row.integrator);
 }
 
 Cell cell_of(const ResultRow& row, const ResultColumn& column) {

@@ -167,9 +167,9 @@ std::string line_of(const RowCells& cells, const RowLayout& layout, bool colours
 /// "cloth2500: 2,500 nodes, 14,502 springs (29,004 as published)", the last of it where it fits.
 std::string scene_line(const ResultRow& row, const Terminal& terminal) {
   const std::string name = escaped(row.scene);
-  std::string sizes = ": " + grouped(row.nodes) + " nodes, " + grouped(row.springs_unique) + " springs";
+  std::string sizes = fmt::format(": {} nodes, {} springs", grouped(row.nodes), grouped(row.springs_unique));
   if (row.springs_published) {
-    const std::string published = " (" + grouped(*row.springs_published) + " as published)";
+    const std::string published = fmt::format(" ({} as published)", grouped(*row.springs_published));
     if (width_of(name + sizes + published) <= static_cast<std::size_t>(terminal.width.value_or(INT_MAX)))
       sizes += published;
   }

@@ -214,7 +214,7 @@ std::vector<RowColumn> peer_columns(RowPointers rows, const Provenance& provenan
            }},
           {{"processors", Align::right},
            [](const ResultRow& row) {
-             return counted_ms(row) && row.processors_used ? Cell(fixed_decimal(*row.processors_used, 2))
+             return counted_ms(row) && row.processors_used ? Cell(fmt::format("{:.2f}", *row.processors_used))
                                                            : Cell();
            }},
           {{"ms per step", Align::right},

@@ -34,7 +34,7 @@ struct TerminalSpelling : Spelling {
   using Spelling::operator();
   std::string operator()(std::monostate) const { return "-"; }
   std::string operator()(bool truth) const { return truth ? "yes" : "no"; }
-  std::string operator()(std::int64_t number) const { return std::to_string(number) + unit; }
+  std::string operator()(std::int64_t number) const { return fmt::format("{}{}", number, unit); }
   std::string operator()(double number) const {
     std::ostringstream text;
     text.precision(4);

@@ -32,8 +32,8 @@ void read_series(hid_t file, TraceContent& content) {
   const Hdf5Table velocities(file, velocity + "/value", {Hdf5Table::any, positions.extent(1), 3});
   const auto [fewest, most] = std::minmax({step.rows(), time.rows(), positions.rows(), velocities.rows()});
   if (most - fewest > 1)
-    throw Hdf5ContentError("steps, times, positions and velocities are of unlike numbers of frames, " +
-                           std::to_string(fewest) + " to " + std::to_string(most));
+    throw Hdf5ContentError(fmt::format(
+        "steps, times, positions and velocities are of unlike numbers of frames, {} to {}", fewest, most));
   if (fewest == 0) throw Hdf5ContentError("it has no frames");
   if (positions.extent(1) > std::numeric_limits<std::uint32_t>::max())
     throw Hdf5ContentError(position + "/value has more nodes than mssim can number");
@@ -62,7 +62,7 @@ std::vector<std::array<std::uint32_t, size>> read_tuples(hid_t file, const std::
 std::uint32_t read_extent(hid_t file, const std::string& name) {
   const std::int64_t extent = read_integer_attribute(file, "/parameters", name);
   if (extent < 1 || extent > std::numeric_limits<std::uint32_t>::max())
-    throw Hdf5ContentError("attribute " + name + " of /parameters is " + std::to_string(extent));
+    throw Hdf5ContentError(fmt::format("attribute {} of /parameters is {}", name, extent));
   return static_cast<std::uint32_t>(extent);
 }
 
@@ -77,8 +77,8 @@ void read_springs(hid_t file, TraceContent& content) {
   content.springs = read_tuples<2>(file, springs);
   for (const auto& [first, second] : content.springs)
     if (std::max(first, second) >= content.nodes || first == second)
-      throw Hdf5ContentError(springs + " has a spring between the nodes " + std::to_string(first) + " and " +
-                             std::to_string(second) + " of " + std::to_string(content.nodes));
+      throw Hdf5ContentError(fmt::format("{} has a spring between the nodes {} and {} of {}", springs, first,
+                                         second, content.nodes));
   if (content.springs.empty() || !exists(file, rest_length)) return;
   content.rest_length = read_doubles(file, rest_length, {content.springs.size()});
   for (const double length : content.rest_length)
@@ -104,7 +104,7 @@ namespace fs = std::filesystem;
 constexpr const char* remedy = "give a whole trace that mssim run --trace wrote";
 
 std::string sentence(const fs::path& file, const std::string& problem, const std::string& what_to_do) {
-  return printable(file.string(), 1000) + ": " + printable(problem, 500) + ": " + what_to_do;
+  return fmt::format("{}: {}: {}", printable(file.string(), 1000), printable(problem, 500), what_to_do);
 }
 
 /// Runs what reads, and says of every failure which file it is and what to do.
@@ -227,8 +227,7 @@ std::vector<Vec3d> TraceReader::vectors(const Hdf5Table& series, const std::stri
     for (std::size_t node = 0; node < vectors.size(); ++node) {
       vectors[node] = {numbers[3 * node], numbers[3 * node + 1], numbers[3 * node + 2]};
       if (!is_finite(vectors[node]))
-        throw Hdf5ContentError("the " + what + " of node " + std::to_string(node) + " in frame " +
-                               std::to_string(frame) + " is not finite");
+        throw Hdf5ContentError(fmt::format("the {} of node {} in frame {} is not finite", what, node, frame));
     }
     return vectors;
   });

@@ -43,31 +43,29 @@ std::string data_item(const std::string& trace, const std::string& dataset, cons
                       std::string_view number, std::size_t bytes = sizeof(float)) {
   std::string item = "<DataItem Dimensions=\"" + shape + "\" NumberType=\"";
   item += number;
-  return item + "\" Precision=\"" + std::to_string(bytes) + "\" Format=\"HDF\">" + trace + ":" + dataset +
-         "</DataItem>";
+  return fmt::format("{}\" Precision=\"{}\" Format=\"HDF\">{}:{}</DataItem>", item, bytes, trace, dataset);
 }
 
 /// Cells between the nodes, as `dataset` lists their corners.
 std::string cells(const std::string& trace, std::string_view type, hsize_t count, const char* dataset,
                   int corners) {
-  const std::string number = std::to_string(count);
-  return "<Topology TopologyType=\"" + std::string(type) + "\" NumberOfElements=\"" + number + "\">" +
-         data_item(trace, dataset, number + " " + std::to_string(corners), "UInt") + "</Topology>";
+  return fmt::format("<Topology TopologyType=\"{}\" NumberOfElements=\"{}\">{}</Topology>", type, count,
+                     data_item(trace, dataset, fmt::format("{} {}", count, corners), "UInt"));
 }
 
 std::string topology_element(const std::string& trace, const XdmfMesh& mesh, const XdmfPart& part) {
   if (mesh.tetrahedra > 0) return cells(trace, "Tetrahedron", mesh.tetrahedra, tetrahedra_dataset, 4);
-  return "<Topology TopologyType=\"3DSMesh\" Dimensions=\"" + dimensions_of(part.shape) + "\"/>";
+  return fmt::format("<Topology TopologyType=\"3DSMesh\" Dimensions=\"{}\"/>", dimensions_of(part.shape));
 }
 
 std::string geometry(const std::string& points) {
-  return "<Geometry GeometryType=\"XYZ\">" + points + "</Geometry>";
+  return fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>", points);
 }
 
 /// Values of the nodes; `type` is Scalar or Vector.
 std::string attribute(const std::string& name, const std::string& type, const std::string& values) {
-  return "<Attribute Name=\"" + name + "\" AttributeType=\"" + type + "\" Center=\"Node\">" + values +
-         "</Attribute>";
+  return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>", name, type,
+                     values);
 }
 
 /// One mesh of the elements given.
@@ -121,7 +119,7 @@ std::string frame_grids(const std::string& trace, const XdmfMesh& mesh, double t
 /// The group of a part's virtual datasets.
 std::string folder_of(std::string_view vector, const XdmfPart& part) {
   const std::string folder = "/xdmf/" + std::string(vector);
-  return part.panel ? folder + "/" + std::to_string(*part.panel) : folder;
+  return part.panel ? fmt::format("{}/{}", folder, *part.panel) : folder;
 }
 
 /// A dataset that holds one number everywhere.
@@ -160,13 +158,11 @@ XdmfMesh xdmf_mesh_of(const System& system, const Surface& body, bool in_double)
 
 std::string xdmf_dataset(std::string_view vector, const XdmfPart& part, std::size_t frame) {
   constexpr std::size_t digits = 6;  // so that viewers list the frames in order
-  std::string number = std::to_string(frame);
-  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
-  return folder_of(vector, part) + "/" + number;
+  return fmt::format("{}/{:0{}}", folder_of(vector, part), frame, digits);
 }
 
 std::string xdmf_panel_dataset(const XdmfPart& part) {
-  return "/xdmf/panel/" + std::to_string(part.panel.value());
+  return fmt::format("/xdmf/panel/{}", part.panel.value());
 }
 
 void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) {

@@ -9,7 +9,7 @@
 namespace mssim {
 
 void refuse(const std::filesystem::path& file, std::string_view pointer, const std::string& problem) {
-  throw SceneError(printable(file.string(), 1000) + ": " + printable(pointer, 200) + ' ' + problem);
+  throw SceneError("{}: {} {}", printable(file.string(), 1000), printable(pointer, 200), problem);
 }
 
 std::string shown_number(double number) {

@@ -34,7 +34,7 @@ std::string json_pointer(std::string_view pointer, std::string_view key) {
 }
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& problem) {
-  throw SceneError(printable(file.string(), 1000) + ": " + problem);
+  throw SceneError("{}: {}", printable(file.string(), 1000), problem);
 }
 
 /// The JSON library's account of a syntax error, "[json.exception.parse_error.101] parse error at line 1,
@@ -95,10 +95,10 @@ class Watcher final : public json::json_sax_t {
                    const json::exception& error) override {
     const std::string place = pointer();
     if (dynamic_cast<const json::out_of_range*>(&error) != nullptr)
-      fail(file_, printable(place) + " is " + quoted_part(error.what()) +
-                      ", which overflows to infinity: give a finite number");
-    fail(file_, "malformed JSON" + (place.empty() ? "" : " near " + printable(place)) + ", " +
-                    syntax_problem(error.what()) + ": correct the file there");
+      fail(file_, fmt::format("{} is {}, which overflows to infinity: give a finite number", printable(place),
+                              quoted_part(error.what())));
+    fail(file_, fmt::format("malformed JSON{}, {}: correct the file there",
+                            place.empty() ? "" : " near " + printable(place), syntax_problem(error.what())));
   }
 
  private:
@@ -149,8 +149,7 @@ json parse_json(const std::filesystem::path& file, const std::string& text) {
   if (text.empty()) fail(file, "is empty: give a scene file, or copy one from scenes/ and change it");
   // The JSON library takes it for the end.
   if (const std::size_t zero = text.find('\0'); zero != std::string::npos)
-    fail(file,
-         "malformed JSON, byte " + std::to_string(zero) + " (from 0) is zero, which no text has: remove it");
+    fail(file, fmt::format("malformed JSON, byte {} (from 0) is zero, which no text has: remove it", zero));
   Watcher watcher(file);
   json::sax_parse(text, &watcher);
   return json::parse(text);
@@ -163,7 +162,7 @@ std::string described(const json& value) {
     case json::value_t::array:
       return "a list";
     case json::value_t::string:
-      return "the text \"" + printable(value.get_ref<const std::string&>()) + '"';
+      return fmt::format("the text \"{}\"", printable(value.get_ref<const std::string&>()));
     default:
       return value.dump();
   }
@@ -192,7 +191,7 @@ class JsonReader final : public FieldVisitor {
       : file_(file), pointer_(std::move(pointer)), value_(value) {
     if (!value.is_object())
       fail(pointer_.empty() ? "the top level" : pointer_,
-           "is " + described(value) + ": give an object, { ... }");
+           fmt::format("is {}: give an object, {{ ... }}", described(value)));
   }
 
   void number(const Field& field, double& target, const Range& range) override {
@@ -208,7 +207,7 @@ class JsonReader final : public FieldVisitor {
   }
 
   void number_or_auto(const Field& field, std::optional<double>& target, const Range& range) override {
-    const std::string wanted = "a number " + described(range) + ", or \"auto\"";
+    const std::string wanted = fmt::format("a number {}, or \"auto\"", described(range));
     const json* value = find(field.key, Presence::required, wanted);
     if (value == nullptr) return;
     if (*value == "auto")
@@ -235,8 +234,7 @@ class JsonReader final : public FieldVisitor {
 
   void texts(const Field& field, Presence presence, std::size_t least, std::size_t most,
              std::vector<std::string>& target) override {
-    const std::string wanted =
-        "a list, [ ... ], of " + std::to_string(least) + " to " + std::to_string(most) + " texts";
+    const std::string wanted = fmt::format("a list, [ ... ], of {} to {} texts", least, most);
     const json* value = find(field.key, presence, wanted);
     if (value == nullptr) return;
     const std::string list = json_pointer(pointer_, field.key);
@@ -248,7 +246,7 @@ class JsonReader final : public FieldVisitor {
 
   void named_texts(const Field& field, std::size_t most,
                    std::vector<std::pair<std::string, std::string>>& target) override {
-    const std::string wanted = "an object, { ... }, of at most " + std::to_string(most) + " texts";
+    const std::string wanted = fmt::format("an object, {{ ... }}, of at most {} texts", most);
     const json* value = find(field.key, Presence::optional, wanted);
     if (value == nullptr) return;
     if (!value->is_object() || value->size() > most) refuse(field.key, *value, wanted);
@@ -270,8 +268,7 @@ class JsonReader final : public FieldVisitor {
 
   void points(const Field& field, std::size_t least, std::size_t most, const Range& each,
               std::vector<Vec3d>& target) override {
-    const std::string wanted =
-        "a list, [ ... ], of " + std::to_string(least) + " to " + std::to_string(most) + " points [x, y]";
+    const std::string wanted = fmt::format("a list, [ ... ], of {} to {} points [x, y]", least, most);
     const json* value = find(field.key, Presence::required, wanted);
     if (value == nullptr) return;
     const std::string list = json_pointer(pointer_, field.key);
@@ -281,7 +278,7 @@ class JsonReader final : public FieldVisitor {
       const json& point = (*value)[i];
       const std::string pointer = json_pointer(list, std::to_string(i));
       if (!point.is_array() || point.size() != 2)
-        fail(pointer, "is " + described(point) + ": give a point, two numbers [x, y]");
+        fail(pointer, fmt::format("is {}: give a point, two numbers [x, y]", described(point)));
       target.push_back({component(pointer, point, 0, each), component(pointer, point, 1, each), 0});
     }
   }
@@ -302,7 +299,7 @@ class JsonReader final : public FieldVisitor {
   }
 
   void list(const Field& field, Presence presence, std::size_t most, const Elements& elements) override {
-    const std::string wanted = "a list, [ ... ], of 1 to " + std::to_string(most) + " objects";
+    const std::string wanted = fmt::format("a list, [ ... ], of 1 to {} objects", most);
     const json* value = find(field.key, presence, wanted);
     if (value == nullptr) return;
     const std::string pointer = json_pointer(pointer_, field.key);
@@ -331,7 +328,7 @@ class JsonReader final : public FieldVisitor {
       problem += "): ";
       const std::string_view nearest = nearest_name(key, known_);
       if (nearest.empty()) fail(json_pointer(pointer_, key), problem + "known here are " + listed(known_));
-      fail(json_pointer(pointer_, key), problem + "did you mean \"" + std::string(nearest) + "\"?");
+      fail(json_pointer(pointer_, key), fmt::format("{}did you mean \"{}\"?", problem, nearest));
     }
     if (!missing_.empty()) fail(missing_, missing_remedy_);
   }
@@ -342,7 +339,7 @@ class JsonReader final : public FieldVisitor {
   }
 
   [[noreturn]] void refuse(std::string_view key, const json& value, const std::string& wanted) const {
-    fail(json_pointer(pointer_, key), "is " + described(value) + ": give " + wanted);
+    fail(json_pointer(pointer_, key), fmt::format("is {}: give {}", described(value), wanted));
   }
 
   /// The key's value, or nullptr when it is not there.
@@ -376,9 +373,9 @@ class JsonReader final : public FieldVisitor {
 
   void require_length(std::string_view pointer, const json& value, std::size_t least, std::size_t most,
                       const std::string& wanted) const {
-    if (!value.is_array()) fail(pointer, "is " + described(value) + ": give " + wanted);
+    if (!value.is_array()) fail(pointer, fmt::format("is {}: give {}", described(value), wanted));
     if (value.size() < least || value.size() > most)
-      fail(pointer, "has " + pluralize(value.size(), "element") + ": give " + wanted);
+      fail(pointer, fmt::format("has {}: give {}", pluralize(value.size(), "element"), wanted));
   }
 
   double component(std::string_view list, const json& value, std::size_t i, const Range& each) const {
@@ -392,7 +389,7 @@ class JsonReader final : public FieldVisitor {
           std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
       if (one_line && count_characters(text) <= longest_text) return text;
     }
-    fail(pointer, "is " + described(value) + ": give " + one_text);
+    fail(pointer, fmt::format("is {}: give {}", described(value), one_text));
   }
 
   double number_of(std::string_view pointer, const json& value, const Range& range,
@@ -403,7 +400,7 @@ class JsonReader final : public FieldVisitor {
   }
 
   inline static const std::string one_text =
-      "one line of text of at most " + std::to_string(longest_text) + " characters";
+      fmt::format("one line of text of at most {} characters", longest_text);
 
   const std::filesystem::path& file_;
   std::string pointer_;

@@ -1,5 +1,7 @@
 #include "scene/spec/scene_spec.h"
 
+#include <fmt/core.h>
+
 #include "platform/machine.h"
 #include "scene/fields/fields.h"
 
@@ -19,8 +21,8 @@ void require_memory(const SceneSpec& spec, std::string_view pointer, const Scene
                     std::uint64_t needed, std::string_view remedy) {
   if (const auto shortage = memory_shortage(needed))
     refuse(spec.file, pointer,
-           "has " + std::to_string(counts.nodes) + " nodes and " + std::to_string(counts.springs_unique) +
-               " springs and " + *shortage + ": " + std::string(remedy));
+           fmt::format("has {} nodes and {} springs and {}: {}", counts.nodes, counts.springs_unique,
+                       *shortage, remedy));
 }
 
 }  // namespace mssim
