@@ -1,6 +1,7 @@
 #include "ranks/messages.h"
 
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -124,6 +125,11 @@ void check_mpi(int result, const char* action) {
 }
 
 Session::Session(int* argc, char*** argv) {
+  // Open MPI (4 and 5) leaves 4 MB of shared memory behind for each rank that is killed: in a folder that
+  // mssim removes, if it is on this machine.
+  if (const std::string folder = variable("MSSIM_MEMORY_FOLDER"); ::access(folder.c_str(), W_OK) == 0)
+    for (const char* name : {"OMPI_MCA_btl_vader_backing_directory", "OMPI_MCA_btl_sm_backing_directory"})
+      ::setenv(name, folder.c_str(), 0);
   int provided = 0;
   // One thread of a rank calls MPI at a time, but not always the same one.
   if (MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)

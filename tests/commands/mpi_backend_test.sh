@@ -9,6 +9,7 @@ need_mpi
 cd "$work"
 export TMPDIR=$work/tmp
 mkdir -p tmp one two
+touch begun
 let_ranks_share
 
 # nothing_left WHAT: no rank, and no folder of mssim's for one
@@ -171,5 +172,7 @@ measured=$(column_of killed/timings.csv rounds | head -n 1)
 succeed bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds $((measured + 3)) --resume --out killed
 [ "$(grep -c 'true,ok' killed/timings.csv)" -eq 2 ] || fail "--resume does not measure mpi: $(cat killed/timings.csv)"
 nothing_left "the end of all"
+segments=$(find /dev/shm -maxdepth 1 -name '*_segment.*' -newer begun)
+[ -z "$segments" ] || fail "ranks leave shared memory behind: $segments"
 [ -z "$(ls tmp tmp1 tmp2 tmp3 tmp4 | grep -v :)" ] || fail "folders stay behind: $(ls tmp tmp1 tmp2 tmp3 tmp4)"
 exit $((failures > 0))

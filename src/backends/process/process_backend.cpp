@@ -31,9 +31,11 @@ namespace mssim {
 namespace {
 
 /// NAME=VALUE: what the program finds in its environment beside this process's. `socket`: where mssim
-/// listens.
+/// listens. `memory`: a folder that is removed when the program has ended, in shared memory where that has
+/// room.
 std::vector<std::string> environment_of(const BackendProgram& program, const std::string& socket,
-                                        const Integrator& integrator, const ExecutionOptions& options) {
+                                        const std::filesystem::path& memory, const Integrator& integrator,
+                                        const ExecutionOptions& options) {
   const char* path = std::getenv("PYTHONPATH");
   const std::string count = std::to_string(processors_of(program, options));
   std::vector<std::string> all{
@@ -42,6 +44,7 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
   if (program.in_ranks) {
     all.push_back("MSSIM_RANKS=" + std::to_string(ranks_of(program, options).ranks));
     all.push_back("MSSIM_LAUNCHER=" + options.launcher);
+    all.push_back("MSSIM_MEMORY_FOLDER=" + memory.string());
     all.push_back("MSSIM_FOLDER=" + std::filesystem::current_path().string());
     all.push_back("MSSIM_INTEGRATOR=" + std::string(integrator.name));
     all.push_back("MSSIM_SCENE_FILE=" + std::filesystem::absolute(options.scene_file).string());
@@ -158,7 +161,8 @@ class ProcessBackend final : public WindowBackend {
     process_.emplace(SupervisedProgram{
         program.program,
         {program.command.begin() + 1, program.command.end()},
-        environment_of(program, conversation_.socket().string(), integrator, options),
+        environment_of(program, conversation_.socket().string(), state_file_.path().parent_path(), integrator,
+                       options),
         program.folder,
         first_cpus(processors),
         {folder_.path(), state_file_.path().parent_path(), conversation_.socket().parent_path()}});
