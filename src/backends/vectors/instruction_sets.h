@@ -49,13 +49,25 @@ std::vector<Kernel> kernels_of_this_processor(Kernel (*const (&table)[size])()) 
   return kernels;
 }
 
+/// The kernels that a file of vector code has for a `Data`, by MSSIM_COMPILED_KERNELS.
+template <class Data, std::size_t stages>
+struct CompiledHere;
+
+template <class Data, std::size_t stages>
+std::vector<StepKernel<Data>> compiled_kernels() {
+  return CompiledHere<Data, stages>::kernels();
+}
+
 }  // namespace mssim
 
-/// Defines compiled_kernels<Data, MSSIM_STAGES>(), in mssim and once for all instruction sets, from functions
+/// Makes compiled_kernels<Data, MSSIM_STAGES>(), in mssim and once for all instruction sets, of functions
 /// `kernel` in HWY_NAMESPACE that return a StepKernel<Data>.
-#define MSSIM_COMPILED_KERNELS(Data, kernel)                             \
-  HWY_EXPORT(kernel);                                                    \
-  template <>                                                            \
-  std::vector<StepKernel<Data>> compiled_kernels<Data, MSSIM_STAGES>() { \
-    return kernels_of_this_processor(HWY_DISPATCH_TABLE(kernel));        \
-  }
+#define MSSIM_COMPILED_KERNELS(Data, kernel)                        \
+  HWY_EXPORT(kernel);                                               \
+  template <>                                                       \
+  struct CompiledHere<Data, MSSIM_STAGES> {                         \
+    static std::vector<StepKernel<Data>> kernels() {                \
+      return kernels_of_this_processor(HWY_DISPATCH_TABLE(kernel)); \
+    }                                                               \
+  };                                                                \
+  template std::vector<StepKernel<Data>> compiled_kernels<Data, MSSIM_STAGES>();
