@@ -43,7 +43,7 @@ struct Dressed {
 inline Dressed dressed(const DressingCase& of, const SettlingRule& rule = {},
                        std::string_view backend_name = "serial") {
   const auto backend = make_dressing_backend(*find_backend(backend_name), of.system,
-                                             *find_integrator("semi-euler"), of.dt_s(), {});
+                                             *find_integrator("semi-euler"), of.dt_s(), {2, {}});
   Dressed dressed;
   dressed.result =
       dress(*backend, of.system, of.dt_s(), rule, [](const State&, std::int64_t) { return true; });
