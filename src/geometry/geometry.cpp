@@ -3,20 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <charconv>
 #include <utility>
 
 namespace mssim {
 
-std::string shown(double computed) {
-  std::array<char, 32> text;
-  constexpr int digits = 12;
-  return {text.data(),
-          std::to_chars(text.data(), text.data() + text.size(), computed, std::chars_format::general, digits)
-              .ptr};
-}
+std::string shown(double computed) { return fmt::format("{:.12g}", computed); }
 
 std::string place(const Vec3d& point) {
   return fmt::format("({}, {}, {})", shown(point.x), shown(point.y), shown(point.z));
