@@ -10,6 +10,7 @@
 #include "geometry/geometry.h"
 #include "mesh/meshing.h"
 #include "tests/support/mesh_fixture.h"
+#include "text/text.h"
 
 namespace mssim {
 namespace {
