@@ -1,5 +1,5 @@
 # Read by ctest, with $program and the filters of labels set: makes one test of each GoogleTest suite, named as it, which runs the
-# suite's cases in one process. To start a process takes 27 ms of a processor, which 1,900 cases would each pay, and cases of
+# suite's cases in one process. To start a process takes 27 ms of a processor, which nearly 3,000 cases would each pay, and cases of
 # a suite share what one of them has made. One case alone: bin/mssim_tests --gtest_filter=SUITE.CASE
 
 # add_suites(FILTER SUFFIX LABEL): the cases that the filter lets through; where that is a part of a suite, the test's name

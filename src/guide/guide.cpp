@@ -13,7 +13,7 @@
 namespace mssim {
 namespace {
 
-/// The cheapest, or where `more_accurate` the most accurate, point that counts and that `takes` takes.
+/// The point of the least measure among those that count and that `takes` takes.
 template <class Takes, class Measure>
 std::optional<std::size_t> least(std::span<const WorkPoint> points, const Takes& takes,
                                  const Measure& measure) {

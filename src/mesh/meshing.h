@@ -68,8 +68,8 @@ struct BoxShape {
 /// Points of the surface: 2 (ab + bc + ca) + 2 for a x b x c cells.
 std::uint64_t surface_point_count(const BoxShape& box);
 
-/// The surface with so many points. Throws InputError for a size that is not
-/// positive or for less than one cell.
+/// The surface with so many points. Throws InputError for a size that is not positive or for less
+/// than one cell.
 Surface surface_of(const BoxShape& box);
 
 /// Distance of a point inside from the nearest side, m; not positive outside.
@@ -87,8 +87,7 @@ struct SphereShape {
 /// Points of the surface: 10 frequency^2 + 2.
 std::uint64_t surface_point_count(const SphereShape& sphere);
 
-/// The surface with so many points. Throws InputError for a radius or a frequency that is not
-/// positive.
+/// The surface with so many points. Throws InputError for a radius or a frequency that is not positive.
 Surface surface_of(const SphereShape& sphere);
 
 /// Distance of a point inside from the sphere, m; not positive outside.
@@ -109,8 +108,8 @@ struct TorusShape {
 /// Points of the surface: cells_around x cells_across.
 std::uint64_t surface_point_count(const TorusShape& torus);
 
-/// The surface with so many points. Throws InputError for radii that make no ring, for an
-/// odd number of cells around, and for fewer than 4 around or 3 across.
+/// The surface with so many points. Throws InputError for radii that make no ring, for an odd number
+/// of cells around, and for fewer than 4 around or 3 across.
 Surface surface_of(const TorusShape& torus);
 
 /// Distance of a point inside from the ring's surface, m; not positive outside.
@@ -146,9 +145,9 @@ inline constexpr const char* keep_surface = "-pY";
 
 /// The mesh that TetGen makes of a valid surface (validate_surface) and points inside it, from the cache when
 /// it was made before; its nodes are the surface's points, then the interior points, then TetGen's own. Where
-/// TetGen is not installed, a mesh that one made earlier is taken. `added_points` is
-/// how many TetGen will add by itself at least. Throws what run_tetgen and require_meshing_memory throw, and
-/// MissingProgram when TetGen is needed and not installed.
+/// TetGen is not installed, a mesh that one made earlier is taken. `added_points` is how many TetGen will
+/// add by itself at least. Throws what run_tetgen and require_meshing_memory throw, and MissingProgram when
+/// TetGen is needed and not installed.
 TetMesh tetrahedralise(const Surface& surface, const std::vector<Vec3d>& interior,
                        const std::string& switches, std::uint64_t added_points = 0);
 
@@ -189,9 +188,8 @@ struct SurfaceShape {
 
 /// The mesh of such a body: TetGen adds nodes, inside and on the surface, until the tetrahedra are well
 /// shaped and small enough; the shape stays. From the cache when it was made before. Throws InputError, which
-/// names the file, for one that cannot be read, encloses no body or is too thin to be
-/// filled, and for numbers out of range;
-/// MissingProgram when TetGen is needed and not installed.
+/// names the file, for one that cannot be read, encloses no body or is too thin to be filled, and for
+/// numbers out of range; MissingProgram when TetGen is needed and not installed.
 TetMesh surface_mesh(const SurfaceShape& body);
 
 }  // namespace mssim

@@ -50,8 +50,7 @@ struct ContainerLimits {
 ContainerLimits container_limits(const std::filesystem::path& root = "/");
 
 /// Bytes that this process can still get: what the kernel calls available, or what the address-space limit
-/// (`ulimit -v`) or
-/// a container's limit leaves if that is less.
+/// (`ulimit -v`) or a container's limit leaves if that is less.
 std::uint64_t available_memory();
 
 /// "needs at least 3.20 GB of memory, but 1.00 GB are available", in as many digits as tell the two apart;

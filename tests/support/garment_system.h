@@ -68,7 +68,7 @@ inline void sew(System& system, const std::vector<std::uint32_t>& first,
 /// The integrator that tests dress garments with.
 inline constexpr const Integrator& semi_euler = *find_integrator("semi-euler");
 
-/// The step that tests dress panels of 1 cm (garment_system.h) with: 0.55 of the limit 2 / sqrt(2 sum k / m).
+/// The step that tests dress panels of 1 cm with: 0.55 of the limit 2 / sqrt(2 sum k / m).
 inline constexpr double dressing_dt_s = 1.5e-4;
 
 }  // namespace mssim

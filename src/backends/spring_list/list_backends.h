@@ -7,7 +7,7 @@
 namespace mssim {
 
 /// The paper's "CPU only": one thread, an array of nodes, a loop over the spring list that adds to both ends.
-/// The honest baseline: compiled with the project's ordinary flags, neither tuned nor slowed down.
+/// The honest baseline: compiled as all timed code is, neither tuned nor slowed down.
 std::unique_ptr<Backend> make_serial(const System& system, const Integrator& integrator, double dt_s,
                                      const ExecutionOptions& options);
 

@@ -101,7 +101,7 @@ struct PairedTimes {
 /// may be, and where something has, at most one of twenty with an interval that misses it.
 bool is_settled(const PairedTimes& times, double threshold);
 
-/// The verdict on pairs: as on independent samples (comparison.h), by signed ranks; undecided below
+/// The verdict on pairs: as on independent samples, by signed ranks; undecided below
 /// first_look_pairs. The interval and p are those of the look at so many pairs, so that they hold although
 /// the pairs were looked at before. To be asked for pairs that are settled, or when time is up. Throws
 /// std::invalid_argument for a time that is not finite and positive, and for no rounds unless NEW is lost.

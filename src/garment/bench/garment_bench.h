@@ -50,7 +50,7 @@ inline constexpr int stretches = verification_steps / stretch_steps;
 ///   show 0.7 to 1, friction 10 % off 120, and a correction left out 290. None may exceed what contact,
 ///   deciding otherwise in every step, would move a node: the speed at which it moves nodes out, times the
 ///   stretch's time, 5,600 to 43,000; they show 400 to 1,900.
-/// tests/garment/bench/garment_verification_test.cpp proves that such mistakes are found.
+/// tests/garment/bench/garment_bench_test.cpp proves that such mistakes are found.
 GarmentReference run_garment_reference(const System& system, const Integrator& integrator, double dt_s,
                                        const State& draped);
 

@@ -55,7 +55,7 @@ struct ShapeOfScene {
   bool operator==(const ShapeOfScene&) const = default;
 };
 
-/// One alternative a kind of shape, in the order of their table (scene/builders.h).
+/// One alternative a kind of shape, in the order of their table (scene/bodies.cpp).
 using BodyShape = std::variant<GeneratedShape<BoxShape>, GeneratedShape<SphereShape>,
                                GeneratedShape<TorusShape>, MeshFiles, SurfaceFile, ShapeOfScene>;
 
