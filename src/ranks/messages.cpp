@@ -126,8 +126,9 @@ void check_mpi(int result, const char* action) {
 
 Session::Session(int* argc, char*** argv) {
   // Open MPI (4 and 5) leaves 4 MB of shared memory behind for each rank that is killed: in a folder that
-  // mssim removes, if it is on this machine.
-  if (const std::string folder = variable("MSSIM_MEMORY_FOLDER"); ::access(folder.c_str(), W_OK) == 0)
+  // mssim removes, if it is in the shared memory of this machine.
+  if (const std::string folder = variable("MSSIM_MEMORY_FOLDER");
+      folder.starts_with("/dev/shm/") && ::access(folder.c_str(), W_OK) == 0)
     for (const char* name : {"OMPI_MCA_btl_vader_backing_directory", "OMPI_MCA_btl_sm_backing_directory"})
       ::setenv(name, folder.c_str(), 0);
   int provided = 0;
