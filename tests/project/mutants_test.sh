@@ -9,15 +9,16 @@ fail() { printf '%s\n' "$@" >&2 && exit 1; }
 
 listed=$("$source_folder/scripts/mutants" --list) || fail 'the list has rotted'
 (($(wc -l <<<"$listed") >= 100)) || fail "only $(wc -l <<<"$listed") mutants"
-mapfile -t suites < <(grep -rhoP --include='*.cpp' '^(TYPED_)?TEST(_[FP])?\(\K\w+' "$source_folder/tests" | sort -u)
-mapfile -t filters < <(awk -F'\t' '!/^#/ { print $4 }' "$source_folder/scripts/mutants.txt" | tr ':' '\n' | sort -u)
+suites=$(grep -rhoP --include='*.cpp' '^(TYPED_)?TEST(_[FP])?\(\K\w+' "$source_folder/tests" | sort -u)
+shell_tests=$(find "$source_folder/tests" -name '*_test.sh' -printf '%f\n')
+mapfile -t filters < <(awk -F'\t' '!/^#/ { print $4 }' "$source_folder/scripts/mutants.txt" | sed '/^ctest:/!y/:/\n/' | sort -u)
 for filter in "${filters[@]}"; do
-  found=''
-  for suite in "${suites[@]}"; do
-    # shellcheck disable=SC2053 # the filter is a pattern
-    [[ $suite != ${filter%%.*} ]] || found=yes
-  done
-  [[ $found ]] || fail "no tests have the name $filter"
+  suite=${filter%%.*}
+  if [[ $filter == ctest:* ]]; then
+    grep -qE -- "${filter#ctest:}" <<<"${shell_tests//.sh/}" || fail "no shell test has the name $filter"
+  else
+    grep -qx -- "${suite//\*/.*}" <<<"$suites" || fail "no tests have the name $filter"
+  fi
 done
 
 mkdir -p "$place"/{tools,scripts,src,build/mutants/source/build/release/bin}
