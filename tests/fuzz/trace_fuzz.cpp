@@ -175,18 +175,10 @@ void check(hid_t file, const TraceContent& content) {
     require(first < nodes && second < nodes, "springs join nodes");
   require(content.rest_length.empty() || content.rest_length.size() == content.springs.size(),
           "springs have lengths");
-  if (const auto* grid = std::get_if<GridPatch>(&content.topology))
-    require(std::size_t{grid->rows} * grid->columns == nodes, "a cloth has rows and columns of nodes");
-  if (const auto* mesh = std::get_if<TetrahedralMesh>(&content.topology))
-    for (const Tetrahedron& tetrahedron : mesh->tetrahedra)
-      for (const std::uint32_t corner : tetrahedron) require(corner < nodes, "corners are nodes");
-  if (const auto* garment = std::get_if<Garment>(&content.topology)) {
-    for (const GarmentPanel& panel : garment->panels)
-      require(panel.first_node + std::size_t{panel.rows} * panel.columns <= nodes, "panels have nodes");
-    for (const Joint& joint : garment->joints)
-      require(joint.node < nodes && joint.edge_second < nodes && joint.seam < garment->seams.size(),
-              "joints fit");
-  }
+  for (const GarmentPanel& sheet : content.shape.sheets)
+    require(sheet.first_node + std::size_t{sheet.rows} * sheet.columns <= nodes, "sheets have nodes");
+  for (const Tetrahedron& tetrahedron : content.shape.tetrahedra)
+    for (const std::uint32_t corner : tetrahedron) require(corner < nodes, "corners are nodes");
   for (const auto& triangle : content.body.triangles)
     for (const std::uint32_t corner : triangle)
       require(corner < content.body.points.size(), "triangles have corners");

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "geometry/surface.h"
-#include "model/node_surface.h"
+#include "model/node_shape.h"
 #include "model/system.h"
 #include "tests/support/systems.h"
 #include "text/text.h"
@@ -206,7 +206,7 @@ TEST(StateHash, IsWrittenInDigitsThatAreReadBack) {
 
 TEST(NodeSurface, OfBodiesIsClosedAndHasNoInnerNodes) {
   const System system = two_solid_blocks();
-  const NodeSurface surface = surface_of(system.topology, system.nodes());
+  const NodeSurface surface = surface_of(shape_of(system.topology), system.nodes());
   Surface closed{{}, surface.triangles};
   for (const std::uint32_t node : surface.node) closed.points.push_back(system.start.position[node]);
   EXPECT_NO_THROW(validate_surface(closed, "two blocks"));  // every point in use, every edge in two triangles

@@ -111,7 +111,7 @@ garment/output        garment_tables h5md_garment
 garment/stepping      dressing_backend
 platform              files process supervised_process machine
 mesh                  meshing surface_file tetgen
-model                 system node_surface
+model                 system node_shape
 scene/fields          fields
 scene/spec            scene_spec
 scene                 scene_file scene_kinds builders

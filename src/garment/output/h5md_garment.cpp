@@ -60,14 +60,8 @@ void read_joints(hid_t file, Garment& garment) {
 }  // namespace
 
 void require_fitting_garment(const Garment& garment, std::size_t nodes) {
-  std::size_t next = 0;
-  for (const GarmentPanel& panel : garment.panels) {
-    if (panel.rows < 2 || panel.columns < 2 || panel.first_node != next)
-      throw std::invalid_argument("a trace needs panels of rows and columns, one behind the other");
-    next += std::size_t{panel.rows} * panel.columns;
-  }
-  if (next != nodes || garment.flat.size() != nodes)
-    throw std::invalid_argument("a trace needs panels of all nodes, and where these lie in the pattern");
+  if (garment.flat.size() != nodes)
+    throw std::invalid_argument("a trace needs to say where all nodes lie in the pattern");
   const bool joined = std::ranges::all_of(garment.joints, [&](const Joint& joint) {
     return std::max({joint.node, joint.edge_first, joint.edge_second}) < nodes &&
            joint.seam < garment.seams.size();

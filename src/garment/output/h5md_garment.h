@@ -20,8 +20,8 @@ namespace mssim {
 ///     /parameters/joints/edge_share           [joints] float64, of the way from the first end to the second
 ///     /parameters/joints/seam                 [joints] uint32, index into /parameters/seams
 
-/// Throws std::invalid_argument unless the panels are all of the nodes in their order, each with two rows and
-/// two columns at least, all nodes lie in the pattern, and joints join nodes for seams that there are.
+/// Throws std::invalid_argument unless all nodes lie in the pattern, and joints join nodes for seams that
+/// there are. The panels are left to require_fitting_shape (model/node_shape.h).
 void require_fitting_garment(const Garment& garment, std::size_t nodes);
 
 /// Writes panels, seams and the numbers of joints into /parameters, which exists. Throws Hdf5Error.

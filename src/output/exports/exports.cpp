@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "model/node_surface.h"
+#include "model/node_shape.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -75,7 +75,7 @@ void write_cells(hid_t file, const std::vector<std::array<std::uint32_t, corners
 }  // namespace
 
 ExportMesh surface_mesh(const TraceContent& content) {
-  NodeSurface surface = surface_of(content.topology, content.nodes);
+  NodeSurface surface = surface_of(content.shape, content.nodes);
   ExportMesh mesh{{surface.node.begin(), surface.node.end()},
                   {surface.part.begin(), surface.part.end()},
                   std::move(surface.parts),
@@ -93,13 +93,12 @@ ExportMesh surface_mesh(const TraceContent& content) {
 
 ExportMesh solid_mesh(const TraceContent& content) {
   ExportMesh mesh = surface_mesh(content);
-  const auto* bodies = std::get_if<TetrahedralMesh>(&content.topology);
-  if (!bodies) return mesh;
+  if (content.shape.tetrahedra.empty()) return mesh;
   mesh.triangles.clear();
-  mesh.tetrahedra = bodies->tetrahedra;
+  mesh.tetrahedra = content.shape.tetrahedra;
   mesh.node.resize(content.nodes);
   std::iota(mesh.node.begin(), mesh.node.end(), 0);
-  const std::vector<std::uint32_t> body = bodies_of(bodies->tetrahedra, content.nodes);
+  const std::vector<std::uint32_t> body = bodies_of(mesh.tetrahedra, content.nodes);
   mesh.part.assign(body.begin(), body.end());
   return mesh;
 }

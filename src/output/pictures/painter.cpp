@@ -76,16 +76,15 @@ Light inside_of(const Light& colour) {
 }
 
 /// The colour of each part of a skin.
-std::vector<Rgb> part_colours(const Topology& topology, const Skin& skin, ColourBy colour) {
-  const auto* garment = std::get_if<Garment>(&topology);
+std::vector<Rgb> part_colours(const NodeShape& shape, const Skin& skin, ColourBy colour) {
+  const bool by_layer = shape.in_panels && colour != ColourBy::panel;
   const auto& categories = category_colours();
   std::vector<Rgb> colours;
   for (std::size_t part = 0; part < skin.parts.size(); ++part) {
-    const std::size_t object = garment && colour != ColourBy::panel ? garment->panels[part].layer : part;
+    const std::size_t object = by_layer ? shape.sheets[part].layer : part;
     // A single object has a colour that suits it; several are told apart.
-    colours.push_back(object == 0 && (skin.parts.size() == 1 || (garment && colour != ColourBy::panel))
-                          ? denim
-                          : categories[object % categories.size()]);
+    colours.push_back(
+        object == 0 && (skin.parts.size() == 1 || by_layer) ? denim : categories[object % categories.size()]);
   }
   return colours;
 }
@@ -105,9 +104,9 @@ std::string picture_name(std::size_t number) {
 
 }  // namespace
 
-Skin skin_of(const Topology& topology, const std::vector<Vec3d>& start) {
-  Skin skin = surface_of(topology, start.size());
-  if (std::holds_alternative<TetrahedralMesh>(topology)) divide_at_creases(skin, start);
+Skin skin_of(const NodeShape& shape, const std::vector<Vec3d>& start) {
+  Skin skin = surface_of(shape, start.size());
+  if (!shape.tetrahedra.empty()) divide_at_creases(skin, start);
   return skin;
 }
 
@@ -115,8 +114,8 @@ Painter::Painter(const TraceContent& content, const std::vector<Vec3d>& start, c
     : content_(content),
       options_(options),
       camera_(options.view),
-      skin_(skin_of(content.topology, start)),
-      colour_(part_colours(content.topology, skin_, options.colour)),
+      skin_(skin_of(content.shape, start)),
+      colour_(part_colours(content.shape, skin_, options.colour)),
       floor_(stated_floor(content.scene_json)) {}
 
 std::vector<Vec3d> Painter::points_at(const std::vector<Vec3d>& positions) const {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/vec3.h"
-#include "model/node_surface.h"
+#include "model/node_shape.h"
 #include "output/traces/trace_reader.h"
 #include "picture/picture.h"
 #include "platform/files.h"
@@ -19,9 +19,9 @@ namespace mssim {
 /// The surface that a picture shows; at a crease several points are the same node.
 using Skin = NodeSurface;
 
-/// The skin of nodes that hang together like `topology` and rest at `start`. Points are divided where a
+/// The skin of nodes of that shape that rest at `start`. Points are divided where a
 /// surface of bodies bends by more than 40 degrees there, so that edges are drawn sharp.
-Skin skin_of(const Topology& topology, const std::vector<Vec3d>& start);
+Skin skin_of(const NodeShape& shape, const std::vector<Vec3d>& start);
 
 /// What the colours of a picture tell apart.
 enum class ColourBy : std::uint8_t {

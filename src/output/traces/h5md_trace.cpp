@@ -39,18 +39,19 @@ void write_metadata(hid_t file, const TraceHeader& header) {
   write_attribute(creator.get(), "version", std::string_view(header.creator_version));
 }
 
-void write_parameters(hid_t file, const Topology& topology, const TraceHeader& header) {
+void write_parameters(hid_t file, const System& system, const NodeShape& shape, const TraceHeader& header) {
   const Hdf5Group parameters = create_group(file, "/parameters");
   write_text(file, "/parameters/scene", header.scene_json);
   write_text(file, "/parameters/provenance", header.provenance_json);
   write_attribute(parameters.get(), "backend", std::string_view(header.backend));
   write_attribute(parameters.get(), "integrator", std::string_view(header.integrator));
   write_attribute(parameters.get(), "dt_s", header.dt_s);
-  if (const auto* grid = std::get_if<GridPatch>(&topology)) {
-    write_attribute(parameters.get(), "rows", std::int64_t{grid->rows});
-    write_attribute(parameters.get(), "columns", std::int64_t{grid->columns});
+  if (shape.in_panels) {
+    write_garment(file, std::get<Garment>(system.topology));
+  } else if (!shape.sheets.empty()) {
+    write_attribute(parameters.get(), "rows", std::int64_t{shape.sheets.front().rows});
+    write_attribute(parameters.get(), "columns", std::int64_t{shape.sheets.front().columns});
   }
-  if (const auto* garment = std::get_if<Garment>(&topology)) write_garment(file, *garment);
   const Hdf5Group units_group = create_group(file, "/parameters/units");
   for (const auto& [quantity, unit] : units)
     write_attribute(units_group.get(), quantity, std::string_view(unit));
@@ -63,10 +64,6 @@ void create_particles(hid_t file, const std::string& particles) {
   constexpr std::array<std::string_view, 3> boundary{"none", "none", "none"};
   write_attribute(box.get(), "dimension", std::int64_t{boundary.size()});
   write_attribute(box.get(), "boundary", boundary);
-}
-
-void write_mass(hid_t file, const std::string& particles, const System& system) {
-  write_numbers(file, particles + "/mass", system.node_mass);
 }
 
 /// What a strain or a force is computed from, in the order of /connectivity/springs.
@@ -86,26 +83,26 @@ void write_springs(hid_t file, const System& system) {
   write("damping", [](const Spring&, const SpringMaterial& material) { return material.damping; });
 }
 
-void write_connectivity(hid_t file, const std::string& particles, const System& system) {
+void write_connectivity(hid_t file, const std::string& particles, const System& system,
+                        const NodeShape& shape) {
   const Hdf5Group connectivity = create_group(file, "/connectivity");
   std::vector<std::array<std::uint32_t, 2>> ends;
   ends.reserve(system.springs.size());
   for (const Spring& spring : system.springs) ends.push_back({spring.first, spring.second});
   write_tuples<2>(file, "/connectivity/springs", particles, ends);
-  if (const auto* mesh = std::get_if<TetrahedralMesh>(&system.topology))
-    write_tuples<4>(file, tetrahedra_dataset, particles, mesh->tetrahedra);
-  if (const auto* garment = std::get_if<Garment>(&system.topology)) write_joints(file, particles, *garment);
+  if (!shape.tetrahedra.empty()) write_tuples<4>(file, tetrahedra_dataset, particles, shape.tetrahedra);
+  if (shape.in_panels) write_joints(file, particles, std::get<Garment>(system.topology));
 }
 
 /// Writes what a trace holds beside its frames: /h5md, /parameters, the group of particles (for example
 /// /particles/cloth) with its box and masses, and /connectivity. Throws Hdf5Error.
-void write_h5md_head(hid_t file, const std::string& particles, const System& system,
+void write_h5md_head(hid_t file, const std::string& particles, const System& system, const NodeShape& shape,
                      const TraceHeader& header) {
   write_metadata(file, header);
-  write_parameters(file, system.topology, header);
+  write_parameters(file, system, shape, header);
   create_particles(file, particles);
-  write_mass(file, particles, system);
-  write_connectivity(file, particles, system);
+  write_numbers(file, particles + "/mass", system.node_mass);
+  write_connectivity(file, particles, system, shape);
   write_springs(file, system);
 }
 
@@ -178,26 +175,9 @@ std::size_t count_frames(const std::filesystem::path& trace) {
 
 }  // namespace
 
-void require_fitting_topology(const Topology& topology, std::size_t nodes) {
-  if (nodes == 0) throw std::invalid_argument("a trace needs nodes");
-  if (const auto* grid = std::get_if<GridPatch>(&topology)) {
-    if (std::uint64_t{grid->rows} * grid->columns != nodes)
-      throw std::invalid_argument("a trace needs a grid of all nodes");
-    return;
-  }
-  if (const auto* garment = std::get_if<Garment>(&topology)) return require_fitting_garment(*garment, nodes);
-  const auto& tetrahedra = std::get<TetrahedralMesh>(topology).tetrahedra;
-  const bool fits = std::ranges::all_of(tetrahedra, [&](const Tetrahedron& corners) {
-    return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });
-  });
-  if (tetrahedra.empty() || !fits)
-    throw std::invalid_argument("a trace of bodies needs tetrahedra between its nodes");
-}
-
-void require_fitting_body(const Topology& topology, const Surface& body) {
+void require_fitting_body(const NodeShape& shape, const Surface& body) {
   if (body.points.empty() && body.triangles.empty()) return;
-  if (!std::holds_alternative<Garment>(topology))
-    throw std::invalid_argument("only a garment's trace has a body that does not move");
+  if (!shape.in_panels) throw std::invalid_argument("only a garment's trace has a body that does not move");
   const bool fits = std::ranges::all_of(body.triangles, [&](const auto& corners) {
     return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < body.points.size(); });
   });
@@ -207,27 +187,30 @@ void require_fitting_body(const Topology& topology, const Surface& body) {
 
 H5mdTrace::H5mdTrace(std::filesystem::path file, const System& system, const TraceHeader& header,
                      const Surface& body)
-    : output_(std::move(file)),
-      mesh_(xdmf_mesh_of(system, body, header.in_double)),
-      with_losses_(header.with_losses) {
-  require_fitting_topology(system.topology, system.nodes());
-  require_fitting_body(system.topology, body);
+    : output_(std::move(file)), with_losses_(header.with_losses) {
+  const NodeShape shape = shape_of(system.topology);
+  require_fitting_shape(shape, system.nodes());
+  if (const auto* garment = std::get_if<Garment>(&system.topology))
+    require_fitting_garment(*garment, system.nodes());
+  require_fitting_body(shape, body);
+  mesh_ = xdmf_mesh_of(shape, system.nodes(), body, header.in_double);
   prepare_hdf5();
   require_replaceable(xdmf_of(name()));
   if (xdmf_of(name()) == name())
     throw WriteError("cannot write " + name().string() +
                      ": its XDMF would have the same name; choose a name that ends in .h5");
-  guard([&] { create(system, header, body); });
+  guard([&] { create(system, shape, header, body); });
 }
 
 H5mdTrace::~H5mdTrace() { give_up(); }
 
-void H5mdTrace::create(const System& system, const TraceHeader& header, const Surface& body) {
+void H5mdTrace::create(const System& system, const NodeShape& shape, const TraceHeader& header,
+                       const Surface& body) {
   const std::string temporary = temporary_of(name()).string();
   // The default, oldest format: the newer ones leave a file that only h5clear can open after a crash.
   file_ = Hdf5File(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                    "creating " + temporary);
-  write_h5md_head(file_.get(), particles(), system, header);
+  write_h5md_head(file_.get(), particles(), system, shape, header);
   write_static_body(file_.get(), body);
   create_series(system);
   checked(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "writing the head of the trace");

@@ -14,7 +14,7 @@
 
 #include "geometry/surface.h"
 #include "hdf5/hdf5.h"
-#include "model/system.h"
+#include "model/node_shape.h"
 #include "platform/files.h"
 
 namespace mssim {
@@ -33,13 +33,9 @@ struct TraceHeader {
   bool in_double = false;
 };
 
-/// Throws std::invalid_argument unless there are nodes and the topology fits them: a file that points beyond
-/// its nodes would crash who reads it.
-void require_fitting_topology(const Topology& topology, std::size_t nodes);
-
 /// Throws std::invalid_argument where a body, which may be empty, has triangles beyond its points, points
 /// without triangles, or stands beside something that is no garment.
-void require_fitting_body(const Topology& topology, const Surface& body);
+void require_fitting_body(const NodeShape& shape, const Surface& body);
 
 /// XDMF describes a trace to viewers such as ParaView: a time series of a cloth as a structured surface, of
 /// bodies as tetrahedra, or of a garment as a structured surface for each panel, with the velocity of the
@@ -59,8 +55,8 @@ struct XdmfPart {
 
 /// What viewers are told about a trace, the same in every frame.
 struct XdmfMesh {
-  std::string particles;  ///< "cloth", "bodies" or "garment", the group of nodes in /particles
-  hsize_t nodes = 0;      ///< in that group
+  std::string_view particles;  ///< NodeShape::kind, the group of nodes in /particles
+  hsize_t nodes = 0;           ///< in that group
   std::vector<XdmfPart> parts;
   bool in_double = false;      ///< positions and velocities
   hsize_t tetrahedra = 0;      ///< in `tetrahedra_dataset`; 0 for structured surfaces
@@ -70,7 +66,7 @@ struct XdmfMesh {
   /// Bytes of a number of positions and velocities.
   std::size_t bytes_per_number() const { return in_double ? sizeof(double) : sizeof(float); }
 };
-XdmfMesh xdmf_mesh_of(const System& system, const Surface& body, bool in_double = false);
+XdmfMesh xdmf_mesh_of(const NodeShape& shape, std::size_t nodes, const Surface& body, bool in_double = false);
 
 /// Path in the trace of the tetrahedra of bodies, [tetrahedra][4] uint32.
 inline constexpr const char* tetrahedra_dataset = "/connectivity/tetrahedra";
@@ -160,9 +156,9 @@ class H5mdTrace {
   const std::filesystem::path& name() const { return output_.name(); }
 
  private:
-  void create(const System& system, const TraceHeader& header, const Surface& body);
+  void create(const System& system, const NodeShape& shape, const TraceHeader& header, const Surface& body);
   void create_series(const System& system);
-  std::string particles() const { return "/particles/" + mesh_.particles; }
+  std::string particles() const { return "/particles/" + std::string(mesh_.particles); }
   void append(std::int64_t step, double time_s, const State& state, const Energy& energy,
               const EnergyLosses& losses);
   void guard(const std::function<void()>& write);

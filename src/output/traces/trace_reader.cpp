@@ -15,7 +15,7 @@
 namespace mssim {
 namespace {
 
-std::string read_particles(hid_t file) {
+std::string_view read_kind(hid_t file) {
   for (const char* name : {"cloth", "bodies", "garment"})
     if (exists(file, std::string("/particles/") + name)) return name;
   throw Hdf5ContentError("there is none of /particles/cloth, /particles/bodies and /particles/garment");
@@ -66,10 +66,12 @@ std::uint32_t read_extent(hid_t file, const std::string& name) {
   return static_cast<std::uint32_t>(extent);
 }
 
-Topology read_topology(hid_t file, const TraceContent& content) {
-  if (content.particles == "cloth") return GridPatch{read_extent(file, "rows"), read_extent(file, "columns")};
-  if (content.particles == "bodies") return TetrahedralMesh{read_tuples<4>(file, tetrahedra_dataset)};
-  return read_garment(file, content.nodes);
+NodeShape read_shape(hid_t file, const TraceContent& content) {
+  if (content.shape.kind == "cloth")
+    return shape_of(GridPatch{read_extent(file, "rows"), read_extent(file, "columns")});
+  if (content.shape.kind == "bodies")
+    return shape_of(TetrahedralMesh{read_tuples<4>(file, tetrahedra_dataset)});
+  return shape_of(read_garment(file, content.nodes));
 }
 
 void read_springs(hid_t file, TraceContent& content) {
@@ -145,13 +147,13 @@ void require_file(const fs::path& file) {
 TraceContent read_trace_content(hid_t file) {
   if (!exists(file, "/h5md")) throw Hdf5ContentError("it is an HDF5 file, but no H5MD trace");
   TraceContent content;
-  content.particles = read_particles(file);
+  content.shape.kind = read_kind(file);
   read_series(file, content);
-  content.topology = read_topology(file, content);
-  require_fitting_topology(content.topology, content.nodes);
+  content.shape = read_shape(file, content);
+  require_fitting_shape(content.shape, content.nodes);
   read_springs(file, content);
   content.body = read_static_body(file);
-  require_fitting_body(content.topology, content.body);
+  require_fitting_body(content.shape, content.body);
   content.scene_json = read_text(file, "/parameters/scene");
   content.backend = read_text_attribute(file, "/parameters", "backend");
   content.integrator = read_text_attribute(file, "/parameters", "integrator");
@@ -163,8 +165,7 @@ TraceContent read_trace_content(hid_t file) {
 
 TraceContent trace_content_of(const System& system, const TraceHeader& header, const Surface& body) {
   TraceContent content;
-  content.particles = xdmf_mesh_of(system, body).particles;
-  content.topology = system.topology;
+  content.shape = shape_of(system.topology);
   for (const Spring& spring : system.springs) {
     content.springs.push_back({spring.first, spring.second});
     content.rest_length.push_back(spring.rest_length);
@@ -179,7 +180,9 @@ TraceContent trace_content_of(const System& system, const TraceHeader& header, c
   return content;
 }
 
-std::string particles_group(const TraceContent& content) { return "/particles/" + content.particles; }
+std::string particles_group(const TraceContent& content) {
+  return "/particles/" + std::string(content.shape.kind);
+}
 
 std::vector<double> node_strain(const TraceContent& content, const std::vector<Vec3d>& positions) {
   std::vector<double> strain(content.nodes);

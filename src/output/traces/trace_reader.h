@@ -15,7 +15,7 @@
 #include "geometry/vec3.h"
 #include "hdf5/hdf5.h"
 #include "hdf5/hdf5_table.h"
-#include "model/system.h"
+#include "model/node_shape.h"
 #include "output/traces/h5md_trace.h"
 #include "text/error.h"
 
@@ -23,10 +23,7 @@ namespace mssim {
 
 /// What a trace says beside its frames (h5md_trace.h).
 struct TraceContent {
-  std::string particles;  ///< "cloth", "bodies" or "garment"
-  /// A grid, whose spacing a trace does not say (0), tetrahedra, or a garment: its panels, seams, flat nodes
-  /// and joints, without how it was dressed and what its joints weigh.
-  Topology topology;
+  NodeShape shape;
   std::vector<std::array<std::uint32_t, 2>> springs;  ///< may be empty; two nodes that differ
   std::vector<double> rest_length;              ///< [springs] m, above 0; empty in traces of earlier versions
   Surface body;                                 ///< that does not move; may be empty
@@ -38,7 +35,7 @@ struct TraceContent {
   std::vector<double> time_s;      ///< [frames] increasing
 };
 
-/// Reads and checks all of it; indices lie below the number of nodes, and the topology fits these. Throws
+/// Reads and checks all of it; indices lie below the number of nodes, and the shape fits these. Throws
 /// Hdf5Error, Hdf5ContentError, and std::invalid_argument with the rule that a trace breaks.
 TraceContent read_trace_content(hid_t file);
 

@@ -108,7 +108,7 @@ std::string frame_grids(const std::string& trace, const XdmfMesh& mesh, double t
     elements.insert(elements.begin(), time);
     return uniform_grid(outer, first.name, elements);
   }
-  std::string text = outer + "<Grid Name=\"" + mesh.particles +
+  std::string text = outer + "<Grid Name=\"" + std::string(mesh.particles) +
                      "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n" + inner + time + "\n";
   for (const XdmfPart& part : mesh.parts)
     text += uniform_grid(inner, part.name, part_elements(trace, mesh, part, frame));
@@ -141,18 +141,15 @@ void number_panels_for_xdmf(hid_t trace, const XdmfMesh& mesh) {
 
 }  // namespace
 
-XdmfMesh xdmf_mesh_of(const System& system, const Surface& body, bool in_double) {
-  const hsize_t nodes = system.nodes();
-  if (const auto* grid = std::get_if<GridPatch>(&system.topology))
-    return {"cloth", nodes, {{"cloth", {}, 0, {1, grid->rows, grid->columns}}}, in_double};
-  if (const auto* mesh = std::get_if<TetrahedralMesh>(&system.topology))
-    return {"bodies", nodes, {{"bodies", {}, 0, {nodes}}}, in_double, mesh->tetrahedra.size()};
-  XdmfMesh mesh{"garment", nodes, {}, in_double, 0, body.points.size(), body.triangles.size()};
-  for (const GarmentPanel& panel : std::get<Garment>(system.topology).panels)
-    mesh.parts.push_back({panel.name,
-                          static_cast<std::int32_t>(mesh.parts.size()),
-                          panel.first_node,
-                          {1, panel.rows, panel.columns}});
+XdmfMesh xdmf_mesh_of(const NodeShape& shape, std::size_t nodes, const Surface& body, bool in_double) {
+  XdmfMesh mesh{shape.kind,           nodes, {}, in_double, shape.tetrahedra.size(), body.points.size(),
+                body.triangles.size()};
+  for (const GarmentPanel& sheet : shape.sheets) {
+    XdmfPart part{sheet.name, {}, sheet.first_node, {1, sheet.rows, sheet.columns}};
+    if (shape.in_panels) part.panel = static_cast<std::int32_t>(mesh.parts.size());
+    mesh.parts.push_back(std::move(part));
+  }
+  if (shape.sheets.empty()) mesh.parts.push_back({std::string(shape.kind), {}, 0, {nodes}});
   return mesh;
 }
 
@@ -175,7 +172,7 @@ void map_frames_for_xdmf(hid_t trace, const XdmfMesh& mesh, std::size_t frames) 
   if (mesh.parts.front().panel) number_panels_for_xdmf(trace, mesh);
   for (const std::string vector : {"position", "velocity"}) {
     create_group(trace, "/xdmf/" + vector);
-    const std::string values = "/particles/" + mesh.particles + "/" + vector + "/value";
+    const std::string values = fmt::format("/particles/{}/{}/value", mesh.particles, vector);
     for (const XdmfPart& part : mesh.parts) {
       if (part.panel) create_group(trace, folder_of(vector, part));
       std::vector<hsize_t> shape = part.shape;

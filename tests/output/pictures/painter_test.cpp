@@ -187,7 +187,7 @@ Surface surface_of(const Skin& skin, const std::vector<Vec3d>& position) {
 
 TEST(Skin, OfAClothIsTwoTrianglesACell) {
   const System system = cloth_system(4, 6);
-  const Skin skin = skin_of(system.topology, system.start.position);
+  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
   EXPECT_EQ(skin.node.size(), 24U);
   EXPECT_EQ(skin.triangles.size(), 2U * 3 * 5);
   EXPECT_EQ(skin.parts, std::vector<std::string>{"cloth"});
@@ -198,7 +198,7 @@ TEST(Skin, OfAClothIsTwoTrianglesACell) {
 
 TEST(Skin, OfBodiesClosesAroundThem) {
   const System system = solid_block(3, 4, 5);
-  const Skin skin = skin_of(system.topology, system.start.position);
+  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
   double volume = 0;
   const auto& nodes = system.start.position;
   for (const auto& [a, b, c, d] : std::get<TetrahedralMesh>(system.topology).tetrahedra)
@@ -216,7 +216,7 @@ TEST(Skin, OfBodiesClosesAroundThem) {
 
 TEST(Skin, HasAPointForEachSideOfASharpEdge) {
   const System system = solid_block(2, 2, 2);
-  const Skin skin = skin_of(system.topology, system.start.position);
+  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
   std::map<std::uint32_t, std::size_t> points;
   for (const std::uint32_t node : skin.node) ++points[node];
   std::map<std::size_t, std::size_t> nodes_with;
@@ -227,7 +227,7 @@ TEST(Skin, HasAPointForEachSideOfASharpEdge) {
 
 TEST(Skin, KeepsBodiesApart) {
   const System system = two_solid_blocks();
-  const Skin skin = skin_of(system.topology, system.start.position);
+  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
   EXPECT_EQ(skin.parts, (std::vector<std::string>{"body 1", "body 2"}));
   for (std::size_t point = 0; point < skin.node.size(); ++point)
     EXPECT_EQ(skin.part[point], skin.node[point] < solid_block(4, 5, 3).nodes() ? 0U : 1U);

@@ -99,7 +99,7 @@ TEST_F(GarmentTrace, ShowsEachPanelOfEachFrameToXdmfReaders) {
   constexpr int frames = 3;
   write_garment_frames(frames);
   const Hdf5File h5 = open(file());
-  const XdmfMesh mesh = xdmf_mesh_of(garment_, small_tetrahedron());
+  const XdmfMesh mesh = xdmf_mesh_of(shape_of(garment_.topology), garment_.nodes(), small_tetrahedron());
   for (int frame = 0; frame < frames; ++frame) {
     const State state = state_at(garment_, frame);
     for (const auto& [vector, values] :

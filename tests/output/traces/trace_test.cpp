@@ -128,7 +128,8 @@ TEST_F(Trace, ShowsEveryFrameToXdmfReadersEvenAfterItIsRenamed) {
     for (const auto& [vector, values] :
          {std::pair{"position", state.position}, std::pair{"velocity", state.velocity}}) {
       const std::string path =
-          xdmf_dataset(vector, xdmf_mesh_of(system_, {}).parts.front(), static_cast<std::size_t>(frame));
+          xdmf_dataset(vector, xdmf_mesh_of(shape_of(system_.topology), system_.nodes(), {}).parts.front(),
+                       static_cast<std::size_t>(frame));
       EXPECT_EQ(shape_of(h5.get(), path), (std::vector<hsize_t>{1, cloth_rows, cloth_columns, 3}));
       EXPECT_EQ(read<float>(h5.get(), path, H5T_NATIVE_FLOAT), in_single_precision(values)) << path;
       EXPECT_THAT(xdmf, HasSubstr(">run.h5:" + path + "<"));
@@ -394,7 +395,8 @@ TEST_F(BodyTrace, ShowsSolidsToXdmfReaders) {
   const Hdf5File h5 = open(file());
   for (int frame = 0; frame < 3; ++frame) {
     const std::string path =
-        xdmf_dataset("position", xdmf_mesh_of(bodies_, {}).parts.front(), static_cast<std::size_t>(frame));
+        xdmf_dataset("position", xdmf_mesh_of(shape_of(bodies_.topology), bodies_.nodes(), {}).parts.front(),
+                     static_cast<std::size_t>(frame));
     EXPECT_EQ(shape_of(h5.get(), path), (std::vector<hsize_t>{bodies_.nodes(), 3}));
     EXPECT_EQ(read<float>(h5.get(), path, H5T_NATIVE_FLOAT),
               in_single_precision(state_at(bodies_, frame).position));

@@ -1,9 +1,10 @@
-#include "model/node_surface.h"
+#include "model/node_shape.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "geometry/geometry.h"
@@ -13,13 +14,13 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Two triangles a cell, from consecutive nodes, row by row.
-void add_grid(NodeSurface& surface, std::string name, std::uint32_t first_node, std::uint32_t rows,
-              std::uint32_t columns) {
+/// Two triangles a cell.
+void add_sheet(NodeSurface& surface, const GarmentPanel& sheet) {
+  const std::uint32_t rows = sheet.rows, columns = sheet.columns;
   const auto first = static_cast<std::uint32_t>(surface.node.size());
-  for (std::uint32_t i = 0; i < rows * columns; ++i) surface.node.push_back(first_node + i);
+  for (std::uint32_t i = 0; i < rows * columns; ++i) surface.node.push_back(sheet.first_node + i);
   surface.part.resize(surface.node.size(), static_cast<std::uint32_t>(surface.parts.size()));
-  surface.parts.push_back(std::move(name));
+  surface.parts.push_back(sheet.name);
   for (std::uint32_t row = 0; row + 1 < rows; ++row)
     for (std::uint32_t column = 0; column + 1 < columns; ++column) {
       const std::uint32_t a = first + row * columns + column, b = a + 1, c = a + columns, d = c + 1;
@@ -81,15 +82,42 @@ std::vector<std::uint32_t> bodies_of(const std::vector<Tetrahedron>& tetrahedra,
   return body;
 }
 
-NodeSurface surface_of(const Topology& topology, std::size_t nodes) {
+NodeShape shape_of(const Topology& topology) {
+  struct Kinds {
+    NodeShape operator()(const GridPatch& grid) const {
+      return {"cloth", {{"cloth", grid.rows, grid.columns}}, {}, false};
+    }
+    NodeShape operator()(const TetrahedralMesh& mesh) const { return {"bodies", {}, mesh.tetrahedra, false}; }
+    NodeShape operator()(const Garment& garment) const { return {"garment", garment.panels, {}, true}; }
+  };
+  return std::visit(Kinds{}, topology);
+}
+
+void require_fitting_shape(const NodeShape& shape, std::size_t nodes) {
+  if (nodes == 0) throw std::invalid_argument("a trace needs nodes");
+  if (shape.sheets.empty()) {
+    const bool fits = std::ranges::all_of(shape.tetrahedra, [&](const Tetrahedron& corners) {
+      return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });
+    });
+    if (shape.tetrahedra.empty() || !fits)
+      throw std::invalid_argument("a trace of bodies needs tetrahedra between its nodes");
+    return;
+  }
+  std::size_t next = 0;
+  for (const GarmentPanel& sheet : shape.sheets) {
+    if (shape.in_panels && (sheet.rows < 2 || sheet.columns < 2 || sheet.first_node != next))
+      throw std::invalid_argument("a trace needs panels of rows and columns, one behind the other");
+    next += std::size_t{sheet.rows} * sheet.columns;
+  }
+  if (next != nodes)
+    throw std::invalid_argument(shape.in_panels ? "a trace needs panels of all nodes"
+                                                : "a trace needs a grid of all nodes");
+}
+
+NodeSurface surface_of(const NodeShape& shape, std::size_t nodes) {
+  if (shape.sheets.empty()) return surface_of_bodies(shape.tetrahedra, nodes);
   NodeSurface surface;
-  if (const auto* grid = std::get_if<GridPatch>(&topology))
-    add_grid(surface, "cloth", 0, grid->rows, grid->columns);
-  else if (const auto* garment = std::get_if<Garment>(&topology))
-    for (const GarmentPanel& panel : garment->panels)
-      add_grid(surface, panel.name, panel.first_node, panel.rows, panel.columns);
-  else
-    surface = surface_of_bodies(std::get<TetrahedralMesh>(topology).tetrahedra, nodes);
+  for (const GarmentPanel& sheet : shape.sheets) add_sheet(surface, sheet);
   return surface;
 }
 
