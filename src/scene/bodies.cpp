@@ -122,6 +122,15 @@ constexpr auto shape_kinds = std::to_array<ShapeKind>({
 });
 static_assert(shape_kinds.size() == std::variant_size_v<BodyShape>);
 
+/// Names the fields that say what shape a body has: the text `shape` and the section of that name, with their
+/// targets in `body`.
+void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
+  std::vector<Section> sections;
+  for (const ShapeKind& kind : shape_kinds)
+    sections.push_back({kind.section, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
+  fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
+}
+
 /// The scene whose shape is meant; a path that is not absolute starts at `folder`.
 SceneSpec scene_of(const ShapeOfScene& shape, const std::filesystem::path& folder) {
   return find_scene(is_path_of_scene(shape.name) ? (folder / shape.name).string() : shape.name);
@@ -137,6 +146,28 @@ const BodySpec& first_body(const ShapeOfScene& shape, const SceneSpec& scene) {
     throw SceneError("the first body of the scene \"{}\" takes its shape from another scene: name that one",
                      printable(shape.name));
   return bodies->list.front();
+}
+
+/// A shape that is not that of another scene any more.
+struct OwnShape {
+  BodyShape shape;
+  std::filesystem::path folder;             ///< that the paths of its files start at
+  std::optional<MeshSize> stated_by_other;  ///< about the mesh, by the scene that it was taken from
+};
+
+/// The shape of a body in a scene file of that folder; where it is another scene's, that is read. Throws
+/// SceneError when there is no such scene, or it cannot be used.
+OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
+  const auto* other = std::get_if<ShapeOfScene>(&shape);
+  if (other == nullptr) return {shape, folder, std::nullopt};
+  const SceneSpec scene = scene_of(*other, folder);
+  const BodySpec& body = first_body(*other, scene);
+  return {body.shape, scene.file.parent_path(), body.expected};
+}
+
+/// What files state about the mesh of a body of that shape.
+std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape) {
+  return std::holds_alternative<ShapeOfScene>(body.shape) ? shape.stated_by_other : body.expected;
 }
 
 /// No OwnShape is that of another scene.
@@ -175,6 +206,11 @@ struct LeastCounter {
   SceneCounts operator()(const SurfaceFile& /*surface*/) const { return {}; }
   SceneCounts operator()(const ShapeOfScene& shape) const { throw_not_own(shape); }
 };
+
+SceneCounts least_counts(const OwnShape& shape) { return std::visit(LeastCounter{}, shape.shape); }
+
+/// The mesh of the shape, m, wherever its origin is. Throws InputError and MissingProgram.
+TetMesh mesh_of(const OwnShape& shape) { return std::visit(Mesher{shape.folder}, shape.shape); }
 
 constexpr std::size_t most_bodies = 10'000;
 
@@ -388,32 +424,7 @@ System build_bodies(const SceneSpec& spec, const MeshedShapes& shapes) {
   return system;
 }
 
-}  // namespace
-
-void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
-  std::vector<Section> sections;
-  for (const ShapeKind& kind : shape_kinds)
-    sections.push_back({kind.section, [&](FieldVisitor& section) { kind.visit_fields(section, body); }});
-  fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
-}
-
-OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) {
-  const auto* other = std::get_if<ShapeOfScene>(&shape);
-  if (other == nullptr) return {shape, folder, std::nullopt};
-  const SceneSpec scene = scene_of(*other, folder);
-  const BodySpec& body = first_body(*other, scene);
-  return {body.shape, scene.file.parent_path(), body.expected};
-}
-
-std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape) {
-  return std::holds_alternative<ShapeOfScene>(body.shape) ? shape.stated_by_other : body.expected;
-}
-
-SceneCounts least_counts(const OwnShape& shape) { return std::visit(LeastCounter{}, shape.shape); }
-
-TetMesh mesh_of(const OwnShape& shape) { return std::visit(Mesher{shape.folder}, shape.shape); }
-
-void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
+void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   BodiesSpec& bodies = spec.content.emplace<BodiesSpec>();
   fields.number(
       {"density_kg_per_m3", "Mass per volume, kg/m^3; the mass of a body is spread evenly over its nodes."},
@@ -426,20 +437,34 @@ void visit_bodies_fields(FieldVisitor& fields, SceneSpec& spec) {
                [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); }});
 }
 
-void check_bodies(const SceneSpec& spec) {
+/// Every turn has an axis.
+void check(const SceneSpec& spec) {
   const BodiesSpec& bodies = bodies_of(spec);
   for (std::size_t i = 0; i < bodies.list.size(); ++i)
     if (!(length(bodies.list[i].turn_axis) > 1e-6))
       refuse(spec.file, pointer_to(i) + "/turn/axis", "has no direction: give another vector than zero");
 }
 
-std::optional<SceneCounts> stated_bodies_counts(const SceneSpec& spec) {
-  return stated_counts_of(spec, [&](std::size_t body) {
-    return own_shape(bodies_of(spec).list[body].shape, spec.file.parent_path());
-  });
+std::vector<std::string> files(const SceneSpec& spec) {
+  std::vector<std::string> names;
+  for (const BodySpec& body : bodies_of(spec).list) {
+    if (const auto* surface = std::get_if<SurfaceFile>(&body.shape)) names.push_back(surface->file);
+    if (const auto* mesh = std::get_if<MeshFiles>(&body.shape))
+      names.insert(names.end(), {mesh->node_file, mesh->ele_file});
+    if (const auto* shape = std::get_if<ShapeOfScene>(&body.shape); shape && is_path_of_scene(shape->name))
+      names.push_back(shape->name);
+  }
+  return names;
 }
 
-SceneParts read_bodies(const SceneSpec& spec) {
+/// Meshes every shape once.
+///
+/// The scene has the bodies one after the other, each in its mesh's node order, its springs the edges of its
+/// tetrahedra at their length in the mesh. A body starts turned, as a rigid body that flies and spins, and
+/// grows at its swell rate. Deterministic. Throws SceneError when a body has no mesh and when the memory does
+/// not suffice for the meshes, and MissingProgram; building it throws SceneError when a body starts below the
+/// floor.
+SceneParts read(const SceneSpec& spec) {
   const auto shapes = std::make_shared<const MeshedShapes>(spec);
   return {shapes->counts(),
           stated_counts_of(spec, [&](std::size_t body) { return shapes->of_body(body).own; }),
@@ -447,5 +472,31 @@ SceneParts read_bodies(const SceneSpec& spec) {
             return BuiltScene{build_bodies(of, *shapes), shapes->note()};
           }};
 }
+
+}  // namespace
+
+SceneCounts least_counts(const BodyShape& shape, const std::filesystem::path& folder) {
+  return least_counts(own_shape(shape, folder));
+}
+
+const SceneKind bodies_kind{
+    .name = "bodies",
+    .description =
+        "Solid bodies cut into tetrahedra, whose edges are the springs. They fall side by side; "
+        "only the floor stops them.",
+    .visit_fields = visit_fields,
+    .check = check,
+    // The published counts seem to be the length of the array of packed springs, three values each: all nine
+    // can be divided by three, and the thirds fit tetrahedral meshes.
+    .published_per_spring = 3,
+    .files = files,
+    .stated =
+        [](const SceneSpec& spec) {
+          return stated_counts_of(spec, [&](std::size_t body) {
+            return own_shape(bodies_of(spec).list[body].shape, spec.file.parent_path());
+          });
+        },
+    .read = read,
+};
 
 }  // namespace mssim

@@ -99,9 +99,7 @@ SceneCounts cloth_counts(const SceneSpec& spec) {
   return {std::uint64_t{cloth.rows} * cloth.columns, springs};
 }
 
-}  // namespace
-
-void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
+void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   ClothSpec& cloth = spec.content.emplace<ClothSpec>();
   fields.integer({"rows", "Number of rows (along z); rows times columns must be below 2^32."}, cloth.rows, 2,
                  1'000'000);
@@ -123,7 +121,9 @@ void visit_cloth_fields(FieldVisitor& fields, SceneSpec& spec) {
                 [&](FieldVisitor& springs) { visit_springs(springs, cloth); });
 }
 
-void check_cloth(const SceneSpec& spec) {
+/// The nodes can be numbered, the pinned row exists, the cloth starts above the floor, and the ripple folds
+/// no spring to length zero.
+void check(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
   constexpr std::uint64_t largest = std::numeric_limits<std::uint32_t>::max();
   if (const std::uint64_t nodes = std::uint64_t{cloth.rows} * cloth.columns; nodes > largest)
@@ -153,12 +153,7 @@ void check_cloth(const SceneSpec& spec) {
                shown_number(cloth.spacing_m) + " or remove /cloth/pins");
 }
 
-std::optional<SceneCounts> stated_cloth_counts(const SceneSpec& spec) { return cloth_counts(spec); }
-
-SceneParts read_cloth(const SceneSpec& spec) {
-  const SceneCounts counts = cloth_counts(spec);
-  return {counts, counts, [](const SceneSpec& of) { return BuiltScene{build_cloth(of)}; }};
-}
+}  // namespace
 
 System outline_of_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
@@ -207,5 +202,25 @@ System build_cloth(const SceneSpec& spec) {
   system.springs = springs_of(std::get<GridPatch>(system.topology));
   return system;
 }
+
+const SceneKind cloth_kind{
+    .name = "cloth",
+    .description =
+        "A regular cloth, level at first: row r, column c starts at (c spacing, ceiling height, r spacing). "
+        "Neighbours are joined by structural springs, diagonal ones by shear springs, those two apart by "
+        "bending springs.",
+    .visit_fields = visit_fields,
+    .check = check,
+    // The published counts take the 12-neighbour stencil of every node, and so each spring from both of its
+    // ends.
+    .published_per_spring = 2,
+    .files = [](const SceneSpec& /*spec*/) { return std::vector<std::string>(); },
+    .stated = [](const SceneSpec& spec) { return std::optional(cloth_counts(spec)); },
+    .read =
+        [](const SceneSpec& spec) {
+          const SceneCounts counts = cloth_counts(spec);
+          return SceneParts{counts, counts, [](const SceneSpec& of) { return BuiltScene{build_cloth(of)}; }};
+        },
+};
 
 }  // namespace mssim

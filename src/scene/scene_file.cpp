@@ -53,9 +53,9 @@ void visit_scene_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.text({"$schema", "The path of this schema, for editors; mssim does not use it."}, Presence::optional,
               schema);
   std::vector<Section> kinds;
-  for (const SceneKind& kind : scene_kinds())
+  for (const SceneKind* kind : scene_kinds())
     kinds.push_back(
-        {{kind.name, kind.description}, [&](FieldVisitor& body) { kind.visit_fields(body, spec); }});
+        {{kind->name, kind->description}, [&, kind](FieldVisitor& body) { kind->visit_fields(body, spec); }});
   fields.one_of({"kind", "The scene kind, which is also the key of the section that describes its content."},
                 kinds);
   fields.text({"description", "One line for listings."}, Presence::required, spec.description);
@@ -126,19 +126,7 @@ SceneSpec load_scene(const std::filesystem::path& file) { return parse_scene(fil
 
 std::vector<std::filesystem::path> files_of(const SceneSpec& spec) {
   std::vector<std::filesystem::path> files{spec.file};
-  const auto add = [&](const std::string& name) { files.push_back(spec.file.parent_path() / name); };
-  if (const auto* bodies = std::get_if<BodiesSpec>(&spec.content))
-    for (const BodySpec& body : bodies->list) {
-      if (const auto* surface = std::get_if<SurfaceFile>(&body.shape)) add(surface->file);
-      if (const auto* mesh = std::get_if<MeshFiles>(&body.shape)) {
-        add(mesh->node_file);
-        add(mesh->ele_file);
-      }
-      if (const auto* shape = std::get_if<ShapeOfScene>(&body.shape); shape && is_path_of_scene(shape->name))
-        add(shape->name);
-    }
-  if (const auto* garment = std::get_if<GarmentSpec>(&spec.content))
-    if (const auto* body = std::get_if<BodyFile>(&garment->body)) add(body->file);
+  for (const std::string& name : kind_of(spec).files(spec)) files.push_back(spec.file.parent_path() / name);
   return files;
 }
 

@@ -10,23 +10,7 @@
 namespace mssim {
 namespace {
 
-constexpr auto table = std::to_array<SceneKind>({
-    // The published counts of cloths take the 12-neighbour stencil of every node, and so each spring from
-    // both of its ends.
-    {"cloth",
-     "A regular cloth, level at first: row r, column c starts at (c spacing, ceiling height, r spacing). "
-     "Neighbours are joined by structural springs, diagonal ones by shear springs, those two apart by "
-     "bending springs.",
-     visit_cloth_fields, check_cloth, 2, stated_cloth_counts, read_cloth},
-    // Those of bodies seem to be the length of the array of packed springs, three values each: all nine can
-    // be divided by three, and the thirds fit tetrahedral meshes.
-    {"bodies",
-     "Solid bodies cut into tetrahedra, whose edges are the springs. They fall side by side; only the floor "
-     "stops them.",
-     visit_bodies_fields, check_bodies, 3, stated_bodies_counts, read_bodies},
-    {"garment", "Panels that are drawn together around a body along their seams, and draped.",
-     visit_garment_fields, check_garment, std::nullopt, stated_garment_counts, read_garment},
-});
+constexpr std::array table{&cloth_kind, &bodies_kind, &garment_kind};
 static_assert(table.size() == std::variant_size_v<decltype(SceneSpec::content)>);
 
 SceneCounts with_published(const SceneSpec& spec, SceneCounts counts) {
@@ -43,9 +27,9 @@ std::string pointer_to_kind(const SceneSpec& spec) { return "/" + std::string(ki
 
 }  // namespace
 
-std::span<const SceneKind> scene_kinds() { return table; }
+std::span<const SceneKind* const> scene_kinds() { return table; }
 
-const SceneKind& kind_of(const SceneSpec& spec) { return table.at(spec.content.index()); }
+const SceneKind& kind_of(const SceneSpec& spec) { return *table.at(spec.content.index()); }
 
 std::optional<SceneCounts> stated_counts(const SceneSpec& spec) {
   return with_published(spec, kind_of(spec).stated(spec));

@@ -6,31 +6,13 @@
 #include <string_view>
 
 #include "model/system.h"
-#include "scene/fields/fields.h"
 #include "scene/spec/scene_spec.h"
 
 namespace mssim {
 
-/// A row of the TABLE of scene kinds.
-struct SceneKind {
-  std::string_view name;         ///< value of the file's `kind`, and the key of the section that describes it
-  std::string_view description;  ///< of that section, in the schema
-  /// Names the section's fields, with their targets in spec.content, which it sets to its alternative.
-  void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
-  /// Checks what one field alone cannot show. Throws SceneError.
-  void (*check)(const SceneSpec& spec);
-  /// How often a spring is counted in Hong et al.'s tables, by inference from their numbers; none for a kind
-  /// that they do not have.
-  std::optional<std::uint64_t> published_per_spring;
-  /// What the file says about nodes and unique springs, none where it says nothing.
-  std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
-  /// Reads the files that it names. Throws SceneError and MissingProgram.
-  SceneParts (*read)(const SceneSpec& spec);
-};
-
-/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is one row in
-/// scene_kinds.cpp and one alternative.
-std::span<const SceneKind> scene_kinds();
+/// The TABLE of scene kinds, in the order of SceneSpec::content's alternatives. A new kind is a row beside
+/// what it describes, and an alternative.
+std::span<const SceneKind* const> scene_kinds();
 
 /// The row of the scene's kind.
 const SceneKind& kind_of(const SceneSpec& spec);

@@ -43,7 +43,7 @@ std::vector<BodyNodes> bodies_in(const SceneSpec& spec) {
   std::vector<BodyNodes> bodies;
   std::size_t first = 0;
   for (const BodySpec& body : std::get<BodiesSpec>(spec.content).list) {
-    bodies.push_back({first, least_counts(own_shape(body.shape, spec.file.parent_path())).nodes});
+    bodies.push_back({first, least_counts(body.shape, spec.file.parent_path()).nodes});
     first += bodies.back().count;
   }
   return bodies;
@@ -79,7 +79,7 @@ TEST(LeastCounts, AreTheNodesOfAMeshBeforeItIsMadeAndNoMoreThanItsSprings) {
   for (const SceneSpec& spec : body_scenes()) {
     SceneCounts least;
     for (const BodySpec& body : std::get<BodiesSpec>(spec.content).list) {
-      const SceneCounts counts = least_counts(own_shape(body.shape, spec.file.parent_path()));
+      const SceneCounts counts = least_counts(body.shape, spec.file.parent_path());
       least.nodes += counts.nodes;
       least.springs_unique += counts.springs_unique;
     }

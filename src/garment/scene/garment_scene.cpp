@@ -317,7 +317,9 @@ FittedGarment cut_and_placed(const SceneSpec& spec, const BodyProfile& profile) 
                                                               : fitted;
 }
 
-void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
+namespace {
+
+void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   GarmentSpec& garment = spec.content.emplace<GarmentSpec>();
   visit_body_fields(fields, garment);
   visit_length(fields, {"pixel_m", "Width of a pixel of the maps that cloth collides with, m."},
@@ -360,22 +362,46 @@ void visit_garment_fields(FieldVisitor& fields, SceneSpec& spec) {
       });
 }
 
-void check_garment(const SceneSpec& spec) {
+/// That the pieces have names, curves and not too many nodes.
+void check(const SceneSpec& spec) {
   check_body(spec);
   const GarmentSpec& garment = garment_of(spec);
   if (garment.pieces) check_pieces(spec.file, pieces_pointer(garment), *garment.pieces, most_nodes);
 }
 
-std::optional<SceneCounts> stated_garment_counts(const SceneSpec& spec) {
+std::optional<SceneCounts> stated(const SceneSpec& spec) {
   const std::optional<MeshSize>& expected = garment_of(spec).expected;
   return expected ? std::optional(SceneCounts{expected->nodes, expected->springs}) : std::nullopt;
 }
 
-SceneParts read_garment(const SceneSpec& spec) {
+/// Measures the body and cuts the garment for it. Throws SceneError when the body cannot be measured or the
+/// pattern does not fit together.
+///
+/// The scene has the panels placed around the body, at rest, and the maps of the body that they collide with;
+/// its note says what of the body they ignore. Deterministic. Building it throws SceneError when the garment
+/// starts below the floor or the memory does not suffice.
+SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
-  return {counts_of(cut->build), stated_garment_counts(spec),
+  return {counts_of(cut->build), stated(spec),
           [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
 }
+
+}  // namespace
+
+const SceneKind garment_kind{
+    .name = "garment",
+    .description = "Panels that are drawn together around a body along their seams, and draped.",
+    .visit_fields = visit_fields,
+    .check = check,
+    .published_per_spring = {},
+    .files =
+        [](const SceneSpec& spec) {
+          const auto* body = std::get_if<BodyFile>(&garment_of(spec).body);
+          return body ? std::vector{body->file} : std::vector<std::string>();
+        },
+    .stated = stated,
+    .read = read,
+};
 
 }  // namespace mssim

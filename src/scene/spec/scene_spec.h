@@ -151,6 +151,29 @@ struct SceneParts {
   std::function<BuiltScene(const SceneSpec& spec)> build;
 };
 
+class FieldVisitor;
+
+/// A kind of scene: all that is asked of it. Rows stand beside what they describe, in scene/cloth.cpp,
+/// scene/bodies.cpp and garment/scene/garment_scene.cpp.
+struct SceneKind {
+  std::string_view name;         ///< value of the file's `kind`, and the key of the section that describes it
+  std::string_view description;  ///< of that section, in the schema
+  /// Names the section's fields, with their targets in spec.content, which it sets to its alternative. The
+  /// functions below need a spec of this alternative.
+  void (*visit_fields)(FieldVisitor& fields, SceneSpec& spec);
+  /// Checks what one field alone cannot show. Throws SceneError.
+  void (*check)(const SceneSpec& spec);
+  /// How often a spring is counted in Hong et al.'s tables, by inference from their numbers; none for a kind
+  /// that they do not have.
+  std::optional<std::uint64_t> published_per_spring;
+  /// The files that the section names, as it does; they start at the scene file's folder.
+  std::vector<std::string> (*files)(const SceneSpec& spec);
+  /// What the file says about nodes and unique springs, none where it says nothing.
+  std::optional<SceneCounts> (*stated)(const SceneSpec& spec);
+  /// Reads the files that it names. Throws SceneError and MissingProgram.
+  SceneParts (*read)(const SceneSpec& spec);
+};
+
 /// Bytes that any run of a scene needs at least: its System with the start state, and the double-precision
 /// reference that every run is compared with (up to four pairs of position and velocity), and one state read
 /// back. The backend under test comes on top.
