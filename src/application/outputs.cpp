@@ -103,7 +103,7 @@ TraceHeader trace_header(const PreparedScene& scene, const Backend& backend, con
   header.creator_version = build_info().version;
   header.scene_json = scene.spec.source;
   header.provenance_json = provenance_text(provenance);
-  header.backend = backend_name + " on " + backend.device();
+  header.backend = fmt::format("{} on {}", backend_name, backend.device());
   header.integrator = integrator.name;
   header.dt_s = scene.dt_s;
   return header;

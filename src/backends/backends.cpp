@@ -163,8 +163,8 @@ std::string unavailable_reason(const BackendInfo& backend, const ExecutionOption
 std::string excess_of(const BackendInfo& info, const Backend& backend, const ExecutionOptions& options) {
   const int asked = info.program ? processors_of(*info.program, options) : options.threads;
   if (backend.threads() <= asked) return "";
-  return "on " + std::to_string(backend.threads()) + " processors instead of " + std::to_string(asked) +
-         ": " + backend.reason_for_excess();
+  return fmt::format("on {} processors instead of {}: {}", backend.threads(), asked,
+                     backend.reason_for_excess());
 }
 
 std::unique_ptr<Backend> make_reference(const System& system, const Integrator& integrator, double dt_s,

@@ -159,9 +159,8 @@ Combination make_verified(const SceneJob& job, const BackendInfo& info, const In
   combination.most_steps = reference.most_steps;
   if (combination.most_steps < verification_steps)
     append_sentence(combination.row.note,
-                    "compared and timed in " +
-                        pluralize(static_cast<std::uint64_t>(combination.most_steps), "step") +
-                        ", in which the integrator doubles a rounding");
+                    fmt::format("compared and timed in {}, in which the integrator doubles a rounding",
+                                pluralize(static_cast<std::uint64_t>(combination.most_steps), "step")));
   if (combination.backend && job.verified)
     take_verification(combination, *job.verified);
   else if (combination.backend)
@@ -257,13 +256,13 @@ struct FirstRound {
 /// Says which sample comes next. `rounds`: those before it, and the share of its own that is done.
 void tell_sample(const ResultRow& row, double rounds, const FirstRound& first, const SceneJob& job,
                  const BenchWatch& watch) {
-  std::string activity = "round " + std::to_string(static_cast<int>(rounds) + 1);
+  std::string activity = fmt::format("round {}", static_cast<int>(rounds) + 1);
   double done = (rounds - first.number) / (job.rounds - first.number);
   if (job.deadline) {
     const std::chrono::duration<double> spent = Clock::now() - first.start, all = *job.deadline - first.start;
     done = all > spent ? std::max(done, spent / all) : 1;
   } else {
-    activity += '/' + std::to_string(job.rounds);
+    activity += fmt::format("/{}", job.rounds);
   }
   watch.progress(activity + ": " + row.integrator + ' ' + row.backend,
                  job.preparation + (1 - job.preparation) * done);

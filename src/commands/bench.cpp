@@ -293,7 +293,7 @@ std::function<int()> declare_bench(Arguments& arguments) {
   declare_backend_limit(arguments, options->own_backends);
   arguments
       .add_list("--integrator", options->integrators,
-                "Integrators, or all (default: " + default_integrators() + ")")
+                fmt::format("Integrators, or all (default: {})", default_integrators()))
       .value_name("NAME,...");
   declare_execution(arguments, options->execution);
   arguments

@@ -120,7 +120,7 @@ std::optional<std::string> warning_of_memory(const SceneSize& size) {
   const BenchSettings settings = usual_settings(comparison_of_suite("").backends(), usual_integrators());
   const auto shortage = memory_shortage(bench_memory_needed(settings, size));
   if (!shortage) return std::nullopt;
-  return "a bench of all backends " + *shortage + ": name fewer with --backend or --integrator";
+  return fmt::format("a bench of all backends {}: name fewer with --backend or --integrator", *shortage);
 }
 
 /// Looks at a scene that has been built. The memory is for as many threads as there are processors, the time

@@ -115,8 +115,8 @@ int run_program(int argc, char** argv) {
   hear_of_slow_drivers([](const std::string& sentence) { std::cerr << "mssim: " + sentence + '\n'; });
   const BuildInfo& build = build_info();
   ProgramParser parser(
-      "mssim", "mssim " + build.version + ": benchmark harness for parallel mass-spring simulation",
-      "mssim " + build.version + " (" + build.commit + (build.dirty ? ", changed" : "") + ")");
+      "mssim", fmt::format("mssim {}: benchmark harness for parallel mass-spring simulation", build.version),
+      fmt::format("mssim {} ({}{})", build.version, build.commit, build.dirty ? ", changed" : ""));
   std::string examples;
   std::map<std::string, std::function<int()>> run;
   for (const Command& command : commands()) {
@@ -126,8 +126,8 @@ int run_program(int argc, char** argv) {
     run[name] = command.declare(arguments);
     examples += "\n  " + example;
   }
-  parser.end_help_with("mssim help COMMAND explains a command and its options.\n\nExamples:" + examples +
-                       "\n\n" + std::string(exit_codes));
+  parser.end_help_with(fmt::format(
+      "mssim help COMMAND explains a command and its options.\n\nExamples:{}\n\n{}", examples, exit_codes));
   const ProgramParser::Request request = parser.parse(argc, argv, option_of_scene);
   if (!request.refusal.empty()) return fail(exit_bad_input, request.refusal);
   int code = exit_ok;

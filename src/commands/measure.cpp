@@ -348,7 +348,7 @@ std::function<int()> declare_measure(Arguments& arguments) {
       .required();
   arguments
       .add("--unit", options->unit,
-           "Unit of the file: " + unit_names() + "or its metres (default: found from the height)")
+           fmt::format("Unit of the file: {}or its metres (default: found from the height)", unit_names()))
       .value_name("UNIT");
   arguments.add_choice("--up", options->up, choices_of<UpAxis>(up_axis_names),
                        "Axis of the file along which the body stands: y or z (default: found)");

@@ -183,7 +183,7 @@ std::function<int()> declare_render(Arguments& arguments) {
            "File to write (default: the trace's or the scene's name, and .png or .webp)")
       .value_name("FILE");
   declare_pictures(arguments, options->look,
-                   std::string(usual_picture_size) + ", and " + size_of_many + " on a sheet and in a movie");
+                   fmt::format("{}, and {} on a sheet and in a movie", usual_picture_size, size_of_many));
   const Argument time = declare_frames(arguments, options->frames);
   const Argument sheet =
       arguments.add("--sheet", options->sheet_size, "Put so many moments, evenly spread, on one sheet")

@@ -28,7 +28,7 @@ double cost_of(const WorkPoint& point) { return point.seconds_a_second(); }
 double error_of(const WorkPoint& point) { return *point.position_error; }
 
 std::string named(const WorkPoint& point) {
-  return std::string(point.integrator->name) + " on " + point.backend;
+  return fmt::format("{} on {}", point.integrator->name, point.backend);
 }
 
 /// Wall time of a frame, s.
@@ -44,8 +44,8 @@ std::string frames_sentence(const WorkPoint& point, const Wish& wish) {
   const double rate = 1 / frame_seconds(point, wish.frames_per_second);
   const std::string asked = decimal(wish.frames_per_second);
   return holds(point, wish.frames_per_second)
-             ? "and " + asked + " frames a second hold (" + three_digits(rate) + " would)"
-             : "so that " + asked + " frames a second do not hold (" + three_digits(rate) + " would)";
+             ? fmt::format("and {} frames a second hold ({} would)", asked, three_digits(rate))
+             : fmt::format("so that {} frames a second do not hold ({} would)", asked, three_digits(rate));
 }
 
 std::string what_to_take(std::span<const WorkPoint> points, const Recommendation& chosen, const Wish& wish) {
@@ -61,9 +61,9 @@ std::string what_to_take(std::span<const WorkPoint> points, const Recommendation
   }
   const WorkPoint& point = points[*chosen.best];
   const int steps = steps_a_frame(point.dt_s, wish.frames_per_second);
-  return "Take " + named(point) + " with a step of " + two_digits(point.dt_s) + " s, which is " +
-         pluralize(static_cast<std::uint64_t>(steps), "step") + " a frame at " +
-         decimal(wish.frames_per_second) + " frames a second.";
+  return fmt::format("Take {} with a step of {} s, which is {} a frame at {} frames a second.", named(point),
+                     two_digits(point.dt_s), pluralize(static_cast<std::uint64_t>(steps), "step"),
+                     decimal(wish.frames_per_second));
 }
 
 std::string what_it_costs(const WorkPoint& point, const Wish& wish, double horizon_s) {
@@ -114,7 +114,7 @@ std::string in_words(std::span<const ErrorRange> ranges) {
     if (!range.to)
       texts.push_back(from + " or more");
     else if (const std::string to = two_digits(*range.to); to != from)
-      texts.push_back(from + " to below " + to);
+      texts.push_back(fmt::format("{} to below {}", from, to));
     else
       texts.push_back("about " + from);
   }
@@ -128,10 +128,10 @@ std::string who_comes_second(std::span<const WorkPoint> points, const Recommenda
   const WorkPoint& second = points[*chosen.runner_up];
   const std::vector<ErrorRange> wins = ranges_to_win(points, winner, second);
   const double ratio = cost_of(second) / cost_of(winner);
-  return "The runner-up is " + named(second) + " with a step of " + two_digits(second.dt_s) +
-         " s, which takes " + three_digits(ratio) + " times as long" +
-         (wins.empty() ? "; it is cheaper at no error."
-                       : "; it would win at errors of " + in_words(wins) + ".");
+  return fmt::format("The runner-up is {} with a step of {} s, which takes {} times as long{}", named(second),
+                     two_digits(second.dt_s), three_digits(ratio),
+                     wins.empty() ? "; it is cheaper at no error."
+                                  : fmt::format("; it would win at errors of {}.", in_words(wins)));
 }
 
 /// Shares of the wall time. A part that ends early leaves its time to the next, and one that takes longer
@@ -234,8 +234,7 @@ void measure_points(SceneGuide& guide, const GuideRequest& request, const GuideW
       next->end("no time was left for smaller steps");
       continue;
     }
-    watch.progress("work and precision: " + std::string(method.integrator->name) + ' ' +
-                       std::string(method.backend->name),
+    watch.progress(fmt::format("work and precision: {} {}", method.integrator->name, method.backend->name),
                    clock.fraction());
     auto measured = next->next();
     clock.forgive(method.late);
@@ -331,19 +330,19 @@ std::string order_on(const SceneGuide& guide, const BackendInfo& backend) {
     milliseconds.push_back(three_digits(1000 * one.seconds_a_step));
     (one.cost ? reaching : others).push_back(one);
   }
-  std::string text = "On " + std::string(backend.name) + " a step of " + integrators_of(all) + " takes " +
-                     listed(milliseconds) + " ms";
+  std::string text =
+      fmt::format("On {} a step of {} takes {} ms", backend.name, integrators_of(all), listed(milliseconds));
   const std::string error = decimal(guide.wish.error);
-  if (reaching.empty()) return text + "; none of them reaches an error of " + error + ".";
+  if (reaching.empty()) return fmt::format("{}; none of them reaches an error of {}.", text, error);
   for (const Compared& one : reaching) seconds.push_back(three_digits(one.cost->seconds_a_second));
   const auto cost = [](const Compared& one) { return one.cost->seconds_a_second; };
   const bool same = others.empty() && std::ranges::is_sorted(reaching, {}, cost);
-  text += "; at an error of " + error + " a simulated second takes " + listed(seconds) + " s with " +
-          (others.empty() ? "them" : integrators_of(reaching));
-  if (!others.empty()) text += ", and " + integrators_of(others) + " did not reach it";
+  text += fmt::format("; at an error of {} a simulated second takes {} s with {}", error, listed(seconds),
+                      others.empty() ? "them" : integrators_of(reaching));
+  if (!others.empty()) text += fmt::format(", and {} did not reach it", integrators_of(others));
   std::ranges::stable_sort(reaching, {}, cost);
   return text + (same ? ": the order is the same."
-                      : ": " + std::string(reaching.front().integrator) + " is the cheapest.");
+                      : fmt::format(": {} is the cheapest.", reaching.front().integrator));
 }
 
 std::string explicit_euler_beside(const SceneGuide& guide) {
@@ -362,9 +361,9 @@ std::string explicit_euler_beside(const SceneGuide& guide) {
         its = std::min(its.value_or(seconds), seconds);
     }
   return "explicit-euler was stable with " + three_digits(euler / semi) + " of semi-euler's largest step" +
-         (its ? ", and takes " + three_digits(*its / *cheapest) +
-                    " times as long as the cheapest method at an error of " + decimal(guide.wish.error) + "."
-              : ", and did not reach an error of " + decimal(guide.wish.error) + ".");
+         (its ? fmt::format(", and takes {} times as long as the cheapest method at an error of {}.",
+                            three_digits(*its / *cheapest), decimal(guide.wish.error))
+              : fmt::format(", and did not reach an error of {}.", decimal(guide.wish.error)));
 }
 
 }  // namespace

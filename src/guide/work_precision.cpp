@@ -256,8 +256,8 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   const double step_seconds = seconds_a_step(system, request.first_dt_s);
   const double affordable_steps = request.seconds / runs / step_seconds;
   if (affordable_steps < 1) {
-    trusted.failure =
-        "no time is left for a reference, of which a step takes " + three_digits(step_seconds) + " s";
+    trusted.failure = fmt::format("no time is left for a reference, of which a step takes {} s",
+                                  three_digits(step_seconds));
     return trusted;
   }
   const double longest_s = std::min(request.longest_s, affordable_steps * request.first_dt_s);
@@ -270,8 +270,8 @@ TrustedState trusted_state(const System& system, const TrustedRequest& request) 
   if (look == 0) {
     trusted.failure = walk.why().empty()
                           ? "it was stopped"
-                          : "there is no horizon to compare over: " + walk.why() + ", within " +
-                                three_digits(longest_s / looks) + " s of the start";
+                          : fmt::format("there is no horizon to compare over: {}, within {} s of the start",
+                                        walk.why(), three_digits(longest_s / looks));
     return trusted;
   }
   trusted.horizon_s = walk.span_s();

@@ -97,7 +97,7 @@ void write_string_dataset(hid_t parent, const std::string& name, std::span<const
 /// Throws unless a dataset's bytes lie in its file, stored in a way that mssim writes. A virtual or
 /// external one would read other files, and a filter from elsewhere run its code.
 void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) {
-  const std::string action = "looking up how " + path + " is stored";
+  const std::string action = fmt::format("looking up how {} is stored", path);
   const Hdf5Properties properties(H5Dget_create_plist(dataset.get()), action);
   if (checked(H5Pget_layout(properties.get()), action) == H5D_VIRTUAL ||
       checked(H5Pget_external_count(properties.get()), action) != 0)
@@ -106,8 +106,9 @@ void require_known_storage(const Hdf5Dataset& dataset, const std::string& path) 
   for (const Hdf5Filter& filter : filters_of(dataset)) {
     constexpr std::array known{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE, H5Z_FILTER_FLETCHER32};
     if (std::ranges::find(known, filter.number) == known.end())
-      throw Hdf5ContentError(path + " is packed by filter " + std::to_string(filter.number) +
-                             ", which mssim does not read: shuffle, deflate and Fletcher32 it does");
+      throw Hdf5ContentError(fmt::format(
+          "{} is packed by filter {}, which mssim does not read: shuffle, deflate and Fletcher32 it does",
+          path, filter.number));
     if (filter.number == H5Z_FILTER_SHUFFLE && filter.option != H5Tget_size(type.get()))
       throw Hdf5ContentError(path + " is said to hold shuffled bytes of other numbers than it does");
   }
@@ -149,21 +150,21 @@ std::vector<std::string> texts_in(hid_t file, const std::string& path, const Hdf
 
 Hdf5Attribute open_attribute(hid_t file, const std::string& path, const std::string& name) {
   if (!exists(file, path) || !has_attribute(file, path, name))
-    throw Hdf5ContentError(path + " has no attribute " + name);
+    throw Hdf5ContentError(fmt::format("{} has no attribute {}", path, name));
   return {H5Aopen_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-          "opening attribute " + name + " of " + path};
+          fmt::format("opening attribute {} of {}", name, path)};
 }
 
 template <class Number>
 Number read_number(hid_t file, const std::string& path, const std::string& name,
                    bool (*is_known)(const Hdf5Type&), hid_t memory_type) {
   const Hdf5Attribute attribute = open_attribute(file, path, name);
-  const std::string action = "reading attribute " + name + " of " + path;
+  const std::string action = fmt::format("reading attribute {} of {}", name, path);
   const Hdf5Type type(H5Aget_type(attribute.get()), action);
   const Hdf5Space space(H5Aget_space(attribute.get()), action);
   if (!is_known(type) || H5Sget_simple_extent_npoints(space.get()) != 1)
-    throw Hdf5ContentError("attribute " + name + " of " + path +
-                           " is no single number of a type that mssim reads");
+    throw Hdf5ContentError(
+        fmt::format("attribute {} of {} is no single number of a type that mssim reads", name, path));
   Number number{};
   checked(H5Aread(attribute.get(), memory_type, &number), action);
   return number;
@@ -378,12 +379,12 @@ std::string read_text(hid_t file, const std::string& path) {
 
 bool has_attribute(hid_t file, const std::string& path, const std::string& name) {
   return checked(H5Aexists_by_name(file, path.c_str(), name.c_str(), H5P_DEFAULT),
-                 "looking up attribute " + name + " of " + path) > 0;
+                 fmt::format("looking up attribute {} of {}", name, path)) > 0;
 }
 
 std::string read_text_attribute(hid_t file, const std::string& path, const std::string& name) {
   const Hdf5Attribute attribute = open_attribute(file, path, name);
-  const std::string place = "attribute " + name + " of " + path;
+  const std::string place = fmt::format("attribute {} of {}", name, path);
   const Hdf5Type type(H5Aget_type(attribute.get()), "reading " + place);
   const Hdf5Space space(H5Aget_space(attribute.get()), "reading " + place);
   std::vector<std::string> texts = texts_in(

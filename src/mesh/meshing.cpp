@@ -56,7 +56,7 @@ std::optional<MeshDefect> node_twice(const TetMesh& mesh) {
   });
   if (same == order.end()) return std::nullopt;
   return MeshDefect{MeshDefect::node, *(same + 1),
-                    "another node is at " + place(mesh.nodes[*same]) + " too; merge the two"};
+                    fmt::format("another node is at {} too; merge the two", place(mesh.nodes[*same]))};
 }
 
 std::optional<MeshDefect> bad_volume(const TetMesh& mesh) {
@@ -67,9 +67,9 @@ std::optional<MeshDefect> bad_volume(const TetMesh& mesh) {
     const bool is_flat = volume >= -flat;
     return MeshDefect{
         MeshDefect::tetrahedron, t,
-        "the tetrahedron's volume is " + shown(volume) + " m^3" +
-            (is_flat ? ": it is flat; move its nodes apart or remove it"
-                     : " while others' are positive; list its nodes in the same sense as theirs")};
+        fmt::format("the tetrahedron's volume is {} m^3{}", shown(volume),
+                    is_flat ? ": it is flat; move its nodes apart or remove it"
+                            : " while others' are positive; list its nodes in the same sense as theirs")};
   }
   return std::nullopt;
 }
@@ -127,7 +127,7 @@ fs::path cache_folder() {
 
 /// "mssim mesh 1 BYTES HASH": bytes of the .node text, hash of both texts.
 std::string header_of(const std::string& nodes, const std::string& tetrahedra) {
-  return "mssim mesh 1 " + std::to_string(nodes.size()) + ' ' + to_hex(fnv1a_64(nodes + tetrahedra)) + '\n';
+  return fmt::format("mssim mesh 1 {} {}\n", nodes.size(), to_hex(fnv1a_64(nodes + tetrahedra)));
 }
 
 /// The mesh, or nothing for a file that is not, or no longer, what was written.
@@ -246,8 +246,7 @@ void require_thick(const Surface& surface) {
     require_meshable(static_cast<std::uint64_t>(std::min(most_nodes, countable)),
                      "by a body that is thicker there");
   } catch (const InputError& error) {
-    throw InputError("it is " + two_digits(worst.size) + " m thick at " + place(worst.at) + ": " +
-                     error.what());
+    throw InputError("it is {} m thick at {}: {}", two_digits(worst.size), place(worst.at), error.what());
   }
 }
 
@@ -407,7 +406,7 @@ TetMesh shape_mesh(const Shape& shape, const InteriorPoints& interior) {
 TetMesh surface_mesh(const SurfaceShape& body) {
   const std::string name = body.file.string();
   if (!(body.unit_m > 0) || !std::isfinite(body.unit_m))
-    throw InputError(name + ": a unit of the file is " + decimal(body.unit_m) + " m; give a positive number");
+    throw InputError("{}: a unit of the file is {} m; give a positive number", name, decimal(body.unit_m));
   if (!(body.largest_volume_m3 >= 0) || !std::isfinite(body.largest_volume_m3))
     throw InputError(name + ": the largest volume of a tetrahedron is " + decimal(body.largest_volume_m3) +
                      " m^3; give a positive number, or 0 for no limit");

@@ -19,16 +19,14 @@ namespace {
 /// coordinates are rounded to micrometres.
 void require_length(double metres, std::string_view what) {
   if (!(metres >= 1e-4 && metres <= 1000))
-    throw InputError(std::string(what) + " is " + decimal(metres) +
-                     " m; give a length from 0.0001 to 1000 m");
+    throw InputError("{} is {} m; give a length from 0.0001 to 1000 m", what, decimal(metres));
 }
 
 /// Throws InputError unless `cells`, which are `what`, are from `smallest` to 1,000.
 void require_cells(std::uint32_t cells, std::uint32_t smallest, std::string_view what) {
   constexpr std::uint32_t largest = 1000;
   if (cells < smallest || cells > largest)
-    throw InputError(std::string(what) + " are " + std::to_string(cells) + "; give a number from " +
-                     std::to_string(smallest) + " to " + std::to_string(largest));
+    throw InputError("{} are {}; give a number from {} to {}", what, cells, smallest, largest);
 }
 
 using Index = std::array<std::uint32_t, 3>;
@@ -203,8 +201,8 @@ class Lattice {
 
 void require_between(double value, double low, double high, const std::string& what) {
   if (!(value >= low && value <= high))
-    throw InputError("the " + what + " of interior points is " + decimal(value) + "; give a number from " +
-                     decimal(low) + " to " + decimal(high));
+    throw InputError("the {} of interior points is {}; give a number from {} to {}", what, decimal(value),
+                     decimal(low), decimal(high));
 }
 
 }  // namespace
@@ -322,8 +320,7 @@ double depth_in(const TorusShape& torus, const Vec3d& point) {
 std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const InteriorSpace& space) {
   constexpr std::uint32_t most = 1000000;
   if (parameters.count > most)
-    throw InputError("the count of interior points is " + std::to_string(parameters.count) +
-                     "; give at most " + std::to_string(most));
+    throw InputError("the count of interior points is {}; give at most {}", parameters.count, most);
   require_between(parameters.jitter, 0, 0.5, "jitter");
   require_between(parameters.margin, 0, 1, "margin");
   if (parameters.count == 0) return {};
@@ -343,9 +340,10 @@ std::vector<Vec3d> place_interior_points(const InteriorPoints& parameters, const
   }
   std::vector<LatticePoint> chosen = points_at(enough);
   if (chosen.size() < parameters.count)
-    throw InputError(std::to_string(parameters.count) + " interior points do not fit into a volume of " +
-                     shown(space.volume) + " m^3 at a margin of " + decimal(parameters.margin) +
-                     " spacings from its surface; give fewer points or a smaller margin");
+    throw InputError(
+        "{} interior points do not fit into a volume of {} m^3 at a margin of {} spacings from its surface; "
+        "give fewer points or a smaller margin",
+        parameters.count, shown(space.volume), decimal(parameters.margin));
   // The few too many lie at the surface, where they are missed least.
   std::stable_sort(chosen.begin(), chosen.end(),
                    [](const LatticePoint& a, const LatticePoint& b) { return a.depth > b.depth; });

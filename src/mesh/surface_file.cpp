@@ -224,8 +224,8 @@ class ObjReader {
       const bool is_empty = may_be_empty && slash == 0;
       const auto number = number_in<std::int64_t>(rest.substr(0, slash));
       if (part > 2 || (!number && !is_empty))
-        lines_.fail("the corner " + TextLines::quoted(word) +
-                    " of a face cannot be read; write V, V/VT, V//VN or V/VT/VN");
+        lines_.fail("the corner {} of a face cannot be read; write V, V/VT, V//VN or V/VT/VN",
+                    TextLines::quoted(word));
       if (part == 0) vertex = *number;
       if (slash == rest.size()) break;
       rest.remove_prefix(slash + 1);
@@ -233,8 +233,8 @@ class ObjReader {
     const auto latest = static_cast<std::int64_t>(vertices_.size());
     if (vertex < 0) vertex += latest + 1;
     if (vertex < 1)
-      lines_.fail("the corner " + TextLines::quoted(word) +
-                  " of a face names no vertex; they count from 1, or -1 for the latest");
+      lines_.fail("the corner {} of a face names no vertex; they count from 1, or -1 for the latest",
+                  TextLines::quoted(word));
     return vertex;
   }
 
@@ -243,7 +243,7 @@ class ObjReader {
     for (std::size_t i = 1; i < lines_.words().size(); ++i)
       face.vertices.push_back(corner(lines_.words()[i]));
     if (face.vertices.size() < 3)
-      lines_.fail("the face has " + std::to_string(face.vertices.size()) + " corners; give three or more");
+      lines_.fail("the face has {} corners; give three or more", face.vertices.size());
     faces_.push_back(std::move(face));
   }
 
@@ -252,9 +252,10 @@ class ObjReader {
     std::vector<std::uint32_t> points;
     for (const std::int64_t vertex : face.vertices) {
       if (vertex > static_cast<std::int64_t>(vertices_.size()))
-        lines_.fail_at(face.line, "the face names vertex " + std::to_string(vertex) + " of " +
-                                      std::to_string(vertices_.size()) +
-                                      "; the file is truncated or the number wrong");
+        lines_.fail_at(
+            face.line,
+            fmt::format("the face names vertex {} of {}; the file is truncated or the number wrong", vertex,
+                        vertices_.size()));
       points.push_back(merger_.add(vertices_[static_cast<std::size_t>(vertex - 1)]));
     }
     if (points.size() > 3) leave_out_repeated(points);
@@ -276,17 +277,16 @@ class ObjReader {
     for (const std::uint32_t point : points) corners.push_back(surface_.points[point]);
     const PolygonCutter polygon(corners);
     if (polygon.has_plane() ? polygon.fan_covers() : on_a_line(corners)) return fan(points.size());
-    const std::string which = "the polygon of " + std::to_string(points.size()) + " corners ";
+    const std::string which = fmt::format("the polygon of {} corners ", points.size());
     constexpr std::string_view remedy = "; cut it into triangles where the surface was made";
     constexpr std::size_t most = 1000;  // ears take the square of it, or more
     if (points.size() > most)
-      lines_.fail_at(line, which + "is concave, and at most " + std::to_string(most) + " can be cut" +
-                               std::string(remedy));
+      lines_.fail_at(line, fmt::format("{}is concave, and at most {} can be cut{}", which, most, remedy));
     if (polygon.has_plane() && !polygon.crosses_itself())
       if (const auto ears = polygon.ears()) return *ears;
     // The edges of one that is bent pass each other, so that any diagonal will do.
     if (points.size() == 4 && !is_flat_quad(corners)) return fan(4);
-    lines_.fail_at(line, which + "crosses itself" + std::string(remedy));
+    lines_.fail_at(line, fmt::format("{}crosses itself{}", which, remedy));
   }
 
   TextLines lines_;
@@ -319,15 +319,14 @@ Vec3d vector_at(std::string_view content, std::size_t byte) {
 Surface parse_binary(const std::string& name, std::string_view content) {
   const std::size_t count = number_at(content, bytes_before_count);
   const std::size_t due = bytes_before_triangles + count * bytes_of_triangle;
-  const std::string promise = name + ", byte " + std::to_string(bytes_before_count) + ": the file promises " +
-                              pluralize(count, "triangle") + " in " + std::to_string(due) + " bytes, and ";
+  const std::string promise = fmt::format("{}, byte {}: the file promises {} in {} bytes, and ", name,
+                                          bytes_before_count, pluralize(count, "triangle"), due);
   if (content.size() < due)
-    throw InputError(promise + "has " + std::to_string(content.size()) +
-                     "; it is truncated or not an STL file");
+    throw InputError("{}has {}; it is truncated or not an STL file", promise, content.size());
   // Some writers fill up the last block; a whole triangle more is one that the number leaves out.
   if (content.size() - due >= bytes_of_triangle)
-    throw InputError(promise + std::to_string(content.size() - due) +
-                     " bytes follow the last; the number is wrong, so write the file again");
+    throw InputError("{}{} bytes follow the last; the number is wrong, so write the file again", promise,
+                     content.size() - due);
   if (count == 0) throw InputError(name + ": the file has no triangles; give a surface");
   Surface surface;
   PointMerger merger(surface);
@@ -339,8 +338,8 @@ Surface parse_binary(const std::string& name, std::string_view content) {
           bytes_before_triangles + t * bytes_of_triangle + (corner + 1) * bytes_of_vector;
       const Vec3d point = vector_at(content, byte);
       if (!is_coordinate(point.x) || !is_coordinate(point.y) || !is_coordinate(point.z))
-        throw InputError(name + ", byte " + std::to_string(byte) + ": a corner is at " + place(point) +
-                         "; for each axis " + std::string(coordinate_wanted));
+        throw InputError("{}, byte {}: a corner is at {}; for each axis {}", name, byte, place(point),
+                         coordinate_wanted);
       triangle[corner] = merger.add(point);
     }
     surface.triangles.push_back(triangle);
@@ -388,8 +387,8 @@ class AsciiReader {
     const auto& words = lines_.words();
     if (begins(first) && (second.empty() || (words.size() > 1 && equal(words[1], second)))) return;
     const std::string due = std::string(first) + (second.empty() ? "" : " ") + std::string(second);
-    lines_.fail("it begins with " + TextLines::quoted(words[0]) + " where \"" + due +
-                "\" is expected; the file is damaged or not an STL file");
+    lines_.fail("it begins with {} where \"{}\" is expected; the file is damaged or not an STL file",
+                TextLines::quoted(words[0]), due);
   }
 
   void next(std::string_view first, std::string_view second) {
@@ -447,8 +446,8 @@ Surface parse_stl(const std::string& name, std::string_view content) {
   if (content.empty()) throw InputError(name + " is empty; give a surface");
   if (!is_binary(content)) return AsciiReader(name, content).read();
   if (content.size() < bytes_before_triangles)
-    throw InputError(name + " has " + pluralize(content.size(), "byte") +
-                     ", and a binary STL file at least 84; it is truncated or not an STL file");
+    throw InputError("{} has {}, and a binary STL file at least 84; it is truncated or not an STL file", name,
+                     pluralize(content.size(), "byte"));
   return parse_binary(name, content);
 }
 

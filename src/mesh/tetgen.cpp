@@ -1,6 +1,5 @@
 #include "mesh/tetgen.h"
 
-#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -60,15 +59,15 @@ std::optional<std::string> version_in(std::string_view program) {
 /// beyond is refused before memory is taken for it.
 std::size_t count_of(const TextLines& lines, const std::string& things) {
   const std::int64_t count = lines.integer(0, "the number of " + things);
-  if (count <= 0)
-    lines.fail("the number of " + things + " is " + std::to_string(count) + "; a mesh has at least one");
+  if (count <= 0) lines.fail("the number of {} is {}; a mesh has at least one", things, count);
   const auto smallest_line = static_cast<std::int64_t>(sizeof "0 0 0 0" - 1);
   if (count > static_cast<std::int64_t>(lines.bytes()) / smallest_line + 1)
-    lines.fail("the number of " + things + " is " + std::to_string(count) + ", more than a file of " +
-               std::to_string(lines.bytes()) + " bytes can hold; it is truncated or the number is wrong");
+    lines.fail(
+        "the number of {} is {}, more than a file of {} bytes can hold; it is truncated or the number is "
+        "wrong",
+        things, count, lines.bytes());
   if (count > std::numeric_limits<std::uint32_t>::max())
-    lines.fail("the number of " + things + " is " + std::to_string(count) +
-               "; at most 4294967295 are allowed");
+    lines.fail("the number of {} is {}; at most 4294967295 are allowed", things, count);
   return static_cast<std::size_t>(count);
 }
 
@@ -78,22 +77,22 @@ std::int64_t optional_integer(const TextLines& lines, std::size_t index, std::st
   if (index >= lines.words().size()) return absent;
   const std::int64_t value = lines.integer(index, what);
   constexpr std::int64_t most = 1000;
-  if (value < 0 || value > most)
-    lines.fail(std::string(what) + " is " + std::to_string(value) + "; give one from 0 to " +
-               std::to_string(most));
+  if (value < 0 || value > most) lines.fail("{} is {}; give one from 0 to {}", what, value, most);
   return value;
 }
 
 void require_words(const TextLines& lines, std::int64_t expected) {
   if (static_cast<std::int64_t>(lines.words().size()) != expected)
-    lines.fail("there are " + std::to_string(lines.words().size()) +
-               " numbers; the file's first line promises " + std::to_string(expected) + " on each line");
+    lines.fail("there are {} numbers; the file's first line promises {} on each line", lines.words().size(),
+               expected);
 }
 
 void require_end(TextLines& lines, const std::string& things, std::size_t count) {
   if (lines.next())
-    lines.fail("the file continues after the " + std::to_string(count) + " " + things +
-               " that its first line promises; correct the number or remove the rest");
+    lines.fail(
+        "the file continues after the {} {} that its first line promises; correct the number or remove the "
+        "rest",
+        count, things);
 }
 
 /// What both files give for each thing: where it stands.
@@ -110,7 +109,7 @@ class NodeFile {
     lines_.require_next("the number of nodes");
     const std::size_t count = count_of(lines_, "nodes");
     if (const std::int64_t dimension = optional_integer(lines_, 1, "the dimension", 3); dimension != 3)
-      lines_.fail("the dimension is " + std::to_string(dimension) + "; give nodes with x, y and z");
+      lines_.fail("the dimension is {}; give nodes with x, y and z", dimension);
     const std::int64_t attributes = optional_integer(lines_, 2, "the number of attributes", 0);
     const std::int64_t markers = optional_integer(lines_, 3, "the number of boundary markers", 0);
 
@@ -118,16 +117,15 @@ class NodeFile {
     nodes.reserve(count);
     at_line.reserve(count);
     for (std::size_t n = 0; n < count; ++n) {
-      lines_.require_next("node " + std::to_string(n + 1) + " of " + std::to_string(count));
+      lines_.require_next(fmt::format("node {} of {}", n + 1, count));
       require_words(lines_, 4 + attributes + markers);
       const std::int64_t index = lines_.integer(0, "the number of a node");
       if (n == 0) first = index;
       if (first != 0 && first != 1)
-        lines_.fail("the first node has the number " + std::to_string(first) + "; number nodes from 0 or 1");
+        lines_.fail("the first node has the number {}; number nodes from 0 or 1", first);
       if (index != first + static_cast<std::int64_t>(n))
-        lines_.fail("node " + std::to_string(index) + " is where node " +
-                    std::to_string(first + static_cast<std::int64_t>(n)) +
-                    " is expected; number nodes in ascending order");
+        lines_.fail("node {} is where node {} is expected; number nodes in ascending order", index,
+                    first + static_cast<std::int64_t>(n));
       nodes.push_back({lines_.coordinate(1, "x"), lines_.coordinate(2, "y"), lines_.coordinate(3, "z")});
       at_line.push_back(lines_.line());
     }
@@ -151,14 +149,13 @@ class EleFile {
     const std::size_t count = count_of(lines_, "tetrahedra");
     if (const std::int64_t corners = optional_integer(lines_, 1, "the number of nodes of a tetrahedron", 4);
         corners != 4)
-      lines_.fail("the number of nodes of a tetrahedron is " + std::to_string(corners) +
-                  "; give linear tetrahedra, of 4 nodes");
+      lines_.fail("the number of nodes of a tetrahedron is {}; give linear tetrahedra, of 4 nodes", corners);
     const std::int64_t attributes = optional_integer(lines_, 2, "the number of attributes", 0);
 
     tetrahedra.reserve(count);
     at_line.reserve(count);
     for (std::size_t t = 0; t < count; ++t) {
-      lines_.require_next("tetrahedron " + std::to_string(t + 1) + " of " + std::to_string(count));
+      lines_.require_next(fmt::format("tetrahedron {} of {}", t + 1, count));
       require_words(lines_, 5 + attributes);
       // TetGen leaves gaps in these numbers where it has dropped tetrahedra, and nothing refers to them.
       lines_.integer(0, "the number of a tetrahedron");
@@ -167,9 +164,8 @@ class EleFile {
         const std::int64_t node = lines_.integer(1 + corner, "a node of a tetrahedron");
         const std::int64_t end = first_node + static_cast<std::int64_t>(nodes);
         if (node < first_node || node >= end)
-          lines_.fail("node " + std::to_string(node) + " is not one of the nodes " +
-                      std::to_string(first_node) + " to " + std::to_string(end - 1) +
-                      "; give .node and .ele files of one mesh");
+          lines_.fail("node {} is not one of the nodes {} to {}; give .node and .ele files of one mesh", node,
+                      first_node, end - 1);
         tetrahedron[corner] = static_cast<std::uint32_t>(node - first_node);
       }
       tetrahedra.push_back(tetrahedron);
@@ -184,7 +180,7 @@ class EleFile {
   TextLines lines_;
 };
 
-void append(std::string& text, std::uint64_t value) { text += ' ' + std::to_string(value); }
+void append(std::string& text, std::uint64_t value) { text += fmt::format(" {}", value); }
 
 void append(std::string& text, const Vec3d& point) {
   for (const double x : {point.x, point.y, point.z}) text += ' ' + decimal(x);
@@ -203,8 +199,8 @@ void write_text(const fs::path& file, const std::string& text) {
   out << text;
   out.close();
   if (!out)
-    throw std::runtime_error("cannot write " + file.string() +
-                             "; make room in the folder of temporary files");
+    throw std::runtime_error(
+        fmt::format("cannot write {}; make room in the folder of temporary files", file.string()));
 }
 
 std::string corners_of(const Surface& surface, std::size_t triangle) {
@@ -240,7 +236,7 @@ class Run {
     try {
       return parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
     } catch (const InputError& error) {
-      throw InputError("the output of " + program_.executable.string() + " cannot be used: " + error.what());
+      throw InputError("the output of {} cannot be used: {}", program_.executable.string(), error.what());
     }
   }
 
@@ -258,23 +254,21 @@ class Run {
     constexpr std::string_view remedy =
         "; give a surface of fewer triangles, a thicker body or a larger largest volume";
     if (ended.out_of_time)
-      throw InputError("TetGen was stopped after " + std::to_string(cpu_seconds) +
-                       " s of processor time or " + std::to_string(elapsed_seconds) + " s in all" +
-                       std::string(remedy));
+      throw InputError("TetGen was stopped after {} s of processor time or {} s in all{}", cpu_seconds,
+                       elapsed_seconds, remedy);
     if (ended.signal == SIGKILL && !ended.out_of_memory)
       throw InputError("TetGen was stopped by signal 9, as the system does where memory runs out" +
                        std::string(remedy));
     if (ended.out_of_memory)
-      throw InputError("TetGen needs more memory than the " +
-                       shown(std::round(1e-8 * static_cast<double>(memory_bytes_)) / 10) +
-                       " GB that were available" + std::string(remedy));
+      throw InputError("TetGen needs more memory than the {} GB that were available{}",
+                       shown(std::round(1e-8 * static_cast<double>(memory_bytes_)) / 10), remedy);
     const std::string search = tetgen("-d").output;
     if (const auto crossing = crossing_triangles(search)) throw InputError(*crossing);
     std::string how = "without writing a mesh";
     if (ended.signal != 0)
-      how = "with signal " + std::to_string(ended.signal);
+      how = fmt::format("with signal {}", ended.signal);
     else if (ended.exit_code != 0)
-      how = "with exit code " + std::to_string(ended.exit_code);
+      how = fmt::format("with exit code {}", ended.exit_code);
     const std::string ending = "TetGen " + program_.version + " ended " + how + last_words(ended.output);
     if (search.find("No faces are intersecting") == std::string::npos)
       throw InputError(ending + " and does not say whether triangles cross; make sure that " +
@@ -289,7 +283,7 @@ class Run {
     std::string last;
     for (std::string line; std::getline(lines, line);)
       if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-    return last.empty() ? last : " after writing \"" + last + "\"";
+    return last.empty() ? last : fmt::format(" after writing \"{}\"", last);
   }
 
   /// Which triangles cross, from what TetGen prints when it is asked with -d: "Facet #3 intersects facet
@@ -367,7 +361,7 @@ TetMesh read_tetgen_files(const std::filesystem::path& node_file, const std::fil
 }
 
 std::string node_text(const std::vector<Vec3d>& nodes) {
-  std::string text = std::to_string(nodes.size()) + " 3 0 0\n";
+  std::string text = fmt::format("{} 3 0 0\n", nodes.size());
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     text += std::to_string(n);
     append(text, nodes[n]);
@@ -377,7 +371,7 @@ std::string node_text(const std::vector<Vec3d>& nodes) {
 }
 
 std::string ele_text(const std::vector<Tetrahedron>& tetrahedra) {
-  std::string text = std::to_string(tetrahedra.size()) + " 4 0\n";
+  std::string text = fmt::format("{} 4 0\n", tetrahedra.size());
   for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
     text += std::to_string(t);
     for (const std::uint32_t node : tetrahedra[t]) append(text, node);
@@ -388,7 +382,7 @@ std::string ele_text(const std::vector<Tetrahedron>& tetrahedra) {
 
 std::string smesh_text(const Surface& surface) {
   std::string text = node_text(surface.points);
-  text += std::to_string(surface.triangles.size()) + " 0\n";
+  text += fmt::format("{} 0\n", surface.triangles.size());
   for (const auto& triangle : surface.triangles) {
     text += '3';
     for (const std::uint32_t point : triangle) append(text, point);
@@ -399,11 +393,10 @@ std::string smesh_text(const Surface& surface) {
 
 void require_meshable(std::uint64_t points, std::string_view remedy) {
   if (points > most_meshable_points)
-    throw InputError("its mesh would have " + std::to_string(points) +
-                     " points or more, with which TetGen takes longer than the " +
-                     std::to_string(cpu_seconds) +
-                     " s of processor time that it is given; make it of at most " +
-                     std::to_string(most_meshable_points) + ", " + std::string(remedy));
+    throw InputError(
+        "its mesh would have {} points or more, with which TetGen takes longer than the {} s of processor "
+        "time that it is given; make it of at most {}, {}",
+        points, cpu_seconds, most_meshable_points, remedy);
 }
 
 void require_meshing_memory(std::uint64_t points) {

@@ -46,8 +46,8 @@ bool TextLines::take_line() {
   ++lines_;
   constexpr std::size_t longest_line = std::size_t{1} << 20;
   if (end - begin_ > longest_line)
-    fail("it has " + std::to_string(end - begin_) + " bytes and at most " + std::to_string(longest_line) +
-         " are read of one line; break the file into lines");
+    fail("it has {} bytes and at most {} are read of one line; break the file into lines", end - begin_,
+         longest_line);
   rest = rest.substr(0, rest.find(signs_.comment));
   while (true) {
     const std::size_t first = rest.find_first_not_of(blanks);
@@ -65,7 +65,7 @@ bool TextLines::take_line() {
 }
 
 void TextLines::require_next(const std::string& expected) {
-  if (!next()) fail("the file ends before " + expected + "; it is truncated, so write it again");
+  if (!next()) fail("the file ends before {}; it is truncated, so write it again", expected);
 }
 
 std::string TextLines::quoted(std::string_view word) {
@@ -76,24 +76,23 @@ std::string TextLines::quoted(std::string_view word) {
 double TextLines::coordinate(std::size_t index, std::string_view what) const {
   const std::string_view text = word(index, what);
   const auto value = number_in<double>(text);
-  if (!value || !is_coordinate(*value))
-    fail(std::string(what) + " is " + quoted(text) + "; " + std::string(coordinate_wanted));
+  if (!value || !is_coordinate(*value)) fail("{} is {}; {}", what, quoted(text), coordinate_wanted);
   return *value;
 }
 
 std::int64_t TextLines::integer(std::size_t index, std::string_view what) const {
   const std::string_view text = word(index, what);
   const auto value = number_in<std::int64_t>(text);
-  if (!value) fail(std::string(what) + " is " + quoted(text) + "; give a whole number");
+  if (!value) fail("{} is {}; give a whole number", what, quoted(text));
   return *value;
 }
 
 void TextLines::fail_at(std::size_t line, const std::string& what) const {
-  throw InputError(file_ + ", line " + std::to_string(std::max<std::size_t>(line, 1)) + ": " + what);
+  throw InputError("{}, line {}: {}", file_, std::max<std::size_t>(line, 1), what);
 }
 
 std::string_view TextLines::word(std::size_t index, std::string_view what) const {
-  if (index >= words_.size()) fail(std::string(what) + " is missing; the line is cut off");
+  if (index >= words_.size()) fail("{} is missing; the line is cut off", what);
   return words_[index];
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace mssim {
@@ -47,7 +50,10 @@ class TextLines {
   /// A word for a message: in quotes, printable, cut off when long.
   static std::string quoted(std::string_view word);
 
-  [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }
+  template <class... Values>
+  [[noreturn]] void fail(fmt::format_string<Values...> what, Values&&... values) const {
+    fail_at(line_, fmt::format(what, std::forward<Values>(values)...));
+  }
   [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 
  private:

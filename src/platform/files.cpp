@@ -242,7 +242,7 @@ void AtomicFile::move_into_place() {
   const fs::path temporary = temporary_of(name_);
   if (::fsync(part_.get()) != 0) fail(name_, "syncing " + temporary.string());
   if (::rename(temporary.c_str(), name_.c_str()) != 0)
-    fail(name_, "renaming " + temporary.string() + " to it");
+    fail(name_, fmt::format("renaming {} to it", temporary.string()));
   const bool closed = part_.close();
   if (!closed) fail(name_, "closing it");
   sync_folder_of(name_);

@@ -45,21 +45,20 @@ std::vector<SceneCounts> counts_of_bodies(const SceneSpec& scene) {
 /// Throws Unavailable, on all ranks alike, where they have not the same meshes, as with another TetGen.
 void require_same_meshes(const Session& session, const std::vector<SceneCounts>& bodies) {
   std::string own;
-  for (const SceneCounts& body : bodies)
-    own += std::to_string(body.nodes) + ' ' + std::to_string(body.springs_unique) + ' ';
+  for (const SceneCounts& body : bodies) own += fmt::format("{} {} ", body.nodes, body.springs_unique);
   const std::vector<std::string> all = session.gather(own);
   for (int rank = 1; rank < session.ranks(); ++rank)
     if (all[static_cast<std::size_t>(rank)] != all.front())
-      throw Unavailable(session.name_of(rank) + " meshes these bodies in another way than " +
-                        session.name_of(0) + ": install the same TetGen on both");
+      throw Unavailable("{} meshes these bodies in another way than {}: install the same TetGen on both",
+                        session.name_of(rank), session.name_of(0));
 }
 
 std::vector<std::vector<BodyShare>> shares_for(int ranks, const std::vector<std::size_t>& nodes) {
   if (auto shares = body_shares(nodes, ranks)) return std::move(*shares);
-  throw Unsupported((nodes.size() == 1 ? "1 body" : std::to_string(nodes.size()) + " bodies") +
-                    " cannot be cut for " + pluralize(static_cast<std::uint64_t>(ranks), "rank") +
-                    ": a part of a body has at least " + std::to_string(least_share) +
-                    " nodes, so give at most --ranks " + std::to_string(most_ranks(nodes, ranks)));
+  throw Unsupported(
+      "{} cannot be cut for {}: a part of a body has at least {} nodes, so give at most --ranks {}",
+      nodes.size() == 1 ? "1 body" : fmt::format("{} bodies", nodes.size()),
+      pluralize(static_cast<std::uint64_t>(ranks), "rank"), least_share, most_ranks(nodes, ranks));
 }
 
 std::vector<std::size_t> nodes_of(const std::vector<SceneCounts>& bodies) {
@@ -225,11 +224,11 @@ std::string BodiesPiece::note() const {
   std::string text = std::string(kernel_.instruction_set) + ", ";
   if (divided == 0) return text + "whole bodies";
   const auto bodies = [](std::size_t count) {
-    return std::to_string(count) + (count == 1 ? " body" : " bodies");
+    return fmt::format("{}{}", count, count == 1 ? " body" : " bodies");
   };
   const std::size_t whole = shares_.size() - divided;
-  return text + (whole == 0 ? bodies(divided) : bodies(whole) + " whole, " + std::to_string(divided)) +
-         " divided";
+  return fmt::format("{}{} divided", text,
+                     whole == 0 ? bodies(divided) : fmt::format("{} whole, {}", bodies(whole), divided));
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ class ClothPiece final : public Piece {
   RankCosts costs() const override { return messages_->costs(); }
   int threads() const override { return static_cast<int>(bands_->threads); }
   std::string note() const override {
-    return std::string(kernel_.instruction_set) + ", " + pluralize(bands_->steps_per_pass, "step") +
-           " an exchange";
+    return fmt::format("{}, {} an exchange", kernel_.instruction_set,
+                       pluralize(bands_->steps_per_pass, "step"));
   }
 
  private:
@@ -228,11 +228,10 @@ State ClothPiece::state(const GridWindow& window) const {
 void require_columns(std::size_t columns, const Integrator& integrator, int ranks) {
   const std::size_t least = ghost_columns(integrator, 1);
   if (ranks > 1 && columns / static_cast<std::size_t>(ranks) < least)
-    throw Unsupported(pluralize(columns, "column") + " cannot be cut for " +
-                      pluralize(static_cast<std::uint64_t>(ranks), "rank") + ": a step of " +
-                      std::string(integrator.name) + " needs " + std::to_string(least) +
-                      " columns in each, so give at most --ranks " +
-                      std::to_string(std::max<std::size_t>(1, columns / least)));
+    throw Unsupported(
+        "{} cannot be cut for {}: a step of {} needs {} columns in each, so give at most --ranks {}",
+        pluralize(columns, "column"), pluralize(static_cast<std::uint64_t>(ranks), "rank"), integrator.name,
+        least, std::max<std::size_t>(1, columns / least));
 }
 
 std::unique_ptr<Piece> make_cloth_piece(const Session& session, const RankJob& job) {

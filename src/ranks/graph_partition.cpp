@@ -1,3 +1,4 @@
+#include <fmt/core.h>
 #include <metis.h>
 
 #include <algorithm>
@@ -16,12 +17,12 @@ namespace {
 std::string reason_of(int result) {
   if (result == METIS_ERROR_MEMORY) return "it has not enough memory";
   if (result == METIS_ERROR_INPUT) return "it does not take the graph";
-  return "error " + std::to_string(result);
+  return fmt::format("error {}", result);
 }
 
 [[noreturn]] void fail(std::size_t nodes, std::size_t parts, const std::string& reason) {
-  throw RankFailure("METIS cannot cut a body of " + std::to_string(nodes) + " nodes into " +
-                    std::to_string(parts) + " parts: " + reason);
+  throw RankFailure(
+      fmt::format("METIS cannot cut a body of {} nodes into {} parts: {}", nodes, parts, reason));
 }
 
 /// Gives every part that is empty a node of the largest one, the one of least neighbours there. METIS leaves

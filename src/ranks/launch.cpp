@@ -54,7 +54,7 @@ class Launcher {
   Launcher(const std::filesystem::path& program, std::vector<std::string> words) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-      throw std::runtime_error(std::string("cannot make a pipe (") + std::strerror(errno) + ')');
+      throw std::runtime_error(fmt::format("cannot make a pipe ({})", std::strerror(errno)));
     output_ = Descriptor(ends[0]);
     const Descriptor written(ends[1]);
     std::vector<char*> arguments;
@@ -70,7 +70,7 @@ class Launcher {
       std::cerr << "cannot run " << program.string() << ": " << why_not_executed(program, errno) << std::endl;
       _exit(127);
     }
-    if (process_ < 0) throw std::runtime_error(std::string("cannot fork (") + std::strerror(errno) + ')');
+    if (process_ < 0) throw std::runtime_error(fmt::format("cannot fork ({})", std::strerror(errno)));
   }
 
   /// Passes on what is printed until the launcher ends. False where it does not: it has not started the ranks

@@ -120,8 +120,8 @@ void check_mpi(int result, const char* action) {
   std::array<char, MPI_MAX_ERROR_STRING> text{};
   int length = 0;
   MPI_Error_string(result, text.data(), &length);
-  throw RankFailure(std::string(action) +
-                    " failed: " + std::string(text.data(), static_cast<std::size_t>(length)));
+  throw RankFailure(
+      fmt::format("{} failed: {}", action, std::string(text.data(), static_cast<std::size_t>(length))));
 }
 
 Session::Session(int* argc, char*** argv) {
@@ -153,7 +153,7 @@ Session::~Session() {
 }
 
 std::string Session::name_of(int rank) const {
-  return "rank " + std::to_string(rank) + " on " + hosts_[static_cast<std::size_t>(rank)];
+  return fmt::format("rank {} on {}", rank, hosts_[static_cast<std::size_t>(rank)]);
 }
 
 void Session::give_up(const std::string& sentence) const {
@@ -184,9 +184,9 @@ void Session::wait(std::span<MPI_Request> requests, std::span<const int> peers) 
     std::vector<std::string> silent;
     for (const int peer : peers)
       if (std::ranges::find(silent, name_of(peer)) == silent.end()) silent.push_back(name_of(peer));
-    throw RankFailure("it has heard nothing for " +
-                      pluralize(static_cast<std::uint64_t>(longest_silence_s), "second") + " from " +
-                      listed(silent, "or"));
+    throw RankFailure(fmt::format("it has heard nothing for {} from {}",
+                                  pluralize(static_cast<std::uint64_t>(longest_silence_s), "second"),
+                                  listed(silent, "or")));
   }
 }
 

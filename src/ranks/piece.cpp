@@ -48,8 +48,8 @@ class CopiesPiece final : public Piece {
     const std::vector<std::string> hashes = session_.gather(std::to_string(state_hash(state)));
     for (int rank = 1; rank < session_.ranks(); ++rank)
       if (hashes[static_cast<std::size_t>(rank)] != hashes.front())
-        throw RankFailure("the copy of " + session_.name_of(rank) + " has another state than that of " +
-                          session_.name_of(0));
+        throw RankFailure(fmt::format("the copy of {} has another state than that of {}",
+                                      session_.name_of(rank), session_.name_of(0)));
     return state;
   }
   void step(int count) override { backend_->step(count); }
@@ -78,8 +78,8 @@ class MappedState {
                        ? ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED, open.get(), 0)
                        : MAP_FAILED;
     if (memory == MAP_FAILED)
-      throw RankFailure("rank 0 cannot open " + file.string() + " (" + std::strerror(errno) +
-                        "): it must run on the machine of mssim");
+      throw RankFailure(fmt::format("rank 0 cannot open {} ({}): it must run on the machine of mssim",
+                                    file.string(), std::strerror(errno)));
     vectors_ = static_cast<Vec3d*>(memory);
   }
   ~MappedState() { ::munmap(vectors_, bytes()); }
@@ -276,7 +276,7 @@ std::vector<std::string> StepCosts::tell(const Session& session, const Piece& pi
                steps = std::exchange(steps_, 0);
   std::vector<std::string> lines;
   const auto say = [&](const char* name, double value) {
-    lines.push_back(std::string("cost ") + name + ' ' + decimal(value));
+    lines.push_back(fmt::format("cost {} {}", name, decimal(value)));
   };
   double waiting = 0, packing = 0, bytes = 0, messages = 0;
   if (seconds > 0) {

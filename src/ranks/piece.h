@@ -104,9 +104,8 @@ StepKernel<Data> common_kernel(const Session& session, std::vector<StepKernel<Da
       roundings, [&](const std::string& rounding) { return rounding != roundings.front(); });
   if (other == roundings.end()) return exact;
   const auto rank = static_cast<std::size_t>(other - roundings.begin());
-  throw Unsupported(session.name_of(0) + " has " + sets.front() + " and " +
-                    session.name_of(static_cast<int>(rank)) + " " + sets[rank] +
-                    ", which round differently: take machines of one kind");
+  throw Unsupported("{} has {} and {} {}, which round differently: take machines of one kind",
+                    session.name_of(0), sets.front(), session.name_of(static_cast<int>(rank)), sets[rank]);
 }
 
 /// States between mssim and the pieces: rank 0 has the file of a state (docs/own-backends.md), and each rank

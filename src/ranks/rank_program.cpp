@@ -70,7 +70,7 @@ RankJob job_of(const std::string& text) {
 std::string take_processors(const Session& session, int threads) {
   const std::vector<int> cpus = process_cpus();
   std::string own;
-  for (const int cpu : cpus) own += std::to_string(cpu) + ' ';
+  for (const int cpu : cpus) own += fmt::format("{} ", cpu);
   const std::vector<std::string> all = session.gather(own);
   bool same = true;
   for (int rank = 0; rank < session.ranks(); ++rank) {
@@ -81,9 +81,9 @@ std::string take_processors(const Session& session, int threads) {
   const auto each = static_cast<std::size_t>(threads);
   const int ranks = same ? session.ranks_on_host() : 1;
   if (cpus.size() < each * static_cast<std::size_t>(ranks))
-    return pluralize(static_cast<std::uint64_t>(ranks), "rank") + " of " + pluralize(each, "thread") +
-           " on " + pluralize(cpus.size(), "processor") + " of " +
-           session.hosts()[static_cast<std::size_t>(session.rank())];
+    return fmt::format("{} of {} on {} of {}", pluralize(static_cast<std::uint64_t>(ranks), "rank"),
+                       pluralize(each, "thread"), pluralize(cpus.size(), "processor"),
+                       session.hosts()[static_cast<std::size_t>(session.rank())]);
   if (!same) return "";
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -111,12 +111,12 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   std::string library(version.data(), static_cast<std::size_t>(length));
   library = library.substr(0, library.find(','));
   if (host_count > 1) requests.answer("device " + pluralize(host_count, "host"));
-  requests.answer("threads " + std::to_string(session.ranks() * piece.threads()));
+  requests.answer(fmt::format("threads {}", session.ranks() * piece.threads()));
   requests.answer("precision single");
   requests.answer("tells costs");
-  requests.answer(in_one_line(
-      "note " + library + ", " + pluralize(static_cast<std::uint64_t>(session.ranks()), "rank") + " of " +
-      pluralize(static_cast<std::uint64_t>(piece.threads()), "thread") + ", " + piece.note()));
+  requests.answer(in_one_line(fmt::format(
+      "note {}, {} of {}, {}", library, pluralize(static_cast<std::uint64_t>(session.ranks()), "rank"),
+      pluralize(static_cast<std::uint64_t>(piece.threads()), "thread"), piece.note())));
   if (!crowded.empty()) requests.answer(in_one_line("untimed " + crowded));
   requests.answer("ready 1");
 }
@@ -139,7 +139,7 @@ Wish wish_of(const std::string& line) {
     return wish;
   if (line.starts_with("step "))
     if (const auto count = number_in<int>(std::string_view(line).substr(5))) return {Wish::step, *count};
-  throw RankFailure("mssim asks for \"" + line + "\", which this program does not know");
+  throw RankFailure(fmt::format("mssim asks for \"{}\", which this program does not know", line));
 }
 
 /// Does what mssim asks for, until it asks for the end.
@@ -202,9 +202,9 @@ int run_rank(int argc, char** argv) {
     if (session->rank() == 0) {
       const int asked = number_in<int>(variable("MSSIM_RANKS")).value_or(1);
       if (asked != session->ranks())
-        throw RankFailure("the launcher has started " +
-                          pluralize(static_cast<std::uint64_t>(session->ranks()), "rank") + " instead of " +
-                          std::to_string(asked) + ": it may be that of another MPI than this program's");
+        throw RankFailure(fmt::format(
+            "the launcher has started {} instead of {}: it may be that of another MPI than this program's",
+            pluralize(static_cast<std::uint64_t>(session->ranks()), "rank"), asked));
     }
     work(*session, argc > 2 && std::string_view(argv[2]) == copies_word);
     session.reset();

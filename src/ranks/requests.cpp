@@ -25,7 +25,7 @@ Requests::Requests() : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0))
         "the path of the socket in MSSIM_SOCKET is too long: set TMPDIR to a shorter one");
   std::strcpy(address.sun_path, path);
   if (::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    throw std::runtime_error(std::string("cannot connect to ") + path + " (" + std::strerror(errno) + ')');
+    throw std::runtime_error(fmt::format("cannot connect to {} ({})", path, std::strerror(errno)));
 }
 
 std::map<std::string, std::string> Requests::read_introduction() {

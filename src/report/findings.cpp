@@ -319,7 +319,7 @@ std::string suggestion(double published_mean, int number) {
   const double log_cost = std::log(published_mean), log_all = std::log(static_cast<double>(number));
   return std::abs(log_cost) < std::abs(log_cost - log_all)
              ? "about what one force evaluation costs, though the method has " + evaluations(number)
-             : "about what its " + evaluations(number) + " cost";
+             : fmt::format("about what its {} cost", evaluations(number));
 }
 
 }  // namespace
@@ -387,10 +387,10 @@ std::vector<Finding> garment_findings(std::span<const ResultRow> rows) {
                        "than without. Measured: `{}` is faster than `serial` in {} of {}, slower in {}.",
                        backend, faster, pluralize(all, "size"), slower)});
     findings.push_back(
-        {Outcome::fact, "Vassilev: dressing a body in jeans takes " + three_digits(published_dressing_s) +
-                            " s on a smart phone. Measured: `" + backend + "` dresses `" + largest->scene +
-                            "` (" + grouped(largest->nodes) + " vertices) in " +
-                            three_digits(largest->dressing->wall_s) + " s on this machine."});
+        {Outcome::fact, fmt::format("Vassilev: dressing a body in jeans takes {} s on a smart phone. "
+                                    "Measured: `{}` dresses `{}` ({} vertices) in {} s on this machine.",
+                                    three_digits(published_dressing_s), backend, largest->scene,
+                                    grouped(largest->nodes), three_digits(largest->dressing->wall_s))});
   }
   return findings;
 }

@@ -167,7 +167,7 @@ std::vector<std::string> by_backends(const std::vector<GuideLine>& lines) {
 
 /// "rk4 with 0.78 ms".
 std::string with_step(const GuidePoint& point) {
-  return point.integrator + " with " + three_digits(*point.dt_s * 1000) + " ms";
+  return fmt::format("{} with {} ms", point.integrator, three_digits(*point.dt_s * 1000));
 }
 
 /// Why an integrator has no points, as its first row says.
@@ -205,7 +205,7 @@ void add_remarks(Chart& chart, const FoundGuide& guide, const std::string& scene
 std::optional<Chart> size_chart(const FoundGuide& guide, const std::string& scene,
                                 const std::string& integrator) {
   Chart chart;
-  chart.title = scene + " in other sizes, " + integrator;
+  chart.title = fmt::format("{} in other sizes, {}", scene, integrator);
   chart.x = {"nodes", true};
   chart.y = {"time of a step (ms)", true};
   chart.families = backend_families;

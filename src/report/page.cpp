@@ -129,7 +129,7 @@ std::string html_of(const Document& document, int level) {
 
 std::string html_data(std::string_view id, std::string_view json) {
   // Nothing may end the element; in JSON a "<" stands in texts alone.
-  std::string text = "<script type=\"application/json\" id=\"" + html_text(id) + "\">\n";
+  std::string text = fmt::format("<script type=\"application/json\" id=\"{}\">\n", html_text(id));
   for (const char character : json)
     if (character == '<')
       text += "\\u003c";
@@ -272,8 +272,8 @@ std::string report_page(const ReportInput& input) {
     const std::string content = section.content(input);
     if (content.empty()) continue;
     const std::string id(section.id), title(section.title);
-    links += "<li><a href=\"#" + id + "\">" + title + "</a></li>\n";
-    body += "<section id=\"" + id + "\">\n<h2>" + title + "</h2>\n" + content + "</section>\n";
+    links += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, title);
+    body += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", id, title, content);
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +

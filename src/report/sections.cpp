@@ -256,9 +256,9 @@ std::string headline_section(const ReportInput& input) {
          of_each_folder(input, "", [](const ReportFolder& folder, const std::string&) -> std::string {
            if (folder.rows.empty()) return "<p>There are no rows.</p>\n";
            const std::vector<const ResultRow*> all = pointers_to(folder.rows);
-           return html_of(times_of(headline_rows(all), all)) + "<details><summary>All " +
-                  pluralize(all.size(), "row") + "</summary>\n" + html_of(times_of(all, all)) +
-                  "</details>\n";
+           return fmt::format("{}<details><summary>All {}</summary>\n{}</details>\n",
+                              html_of(times_of(headline_rows(all), all)), pluralize(all.size(), "row"),
+                              html_of(times_of(all, all)));
          });
 }
 
@@ -276,7 +276,7 @@ std::string published_section(const ReportInput& input) {
 // Charts and pictures
 
 std::string in_figures(const std::string& figures) {
-  return figures.empty() ? figures : "<div class=\"figures\">\n" + figures + "</div>\n";
+  return figures.empty() ? figures : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
 }
 
 /// Charts with their notes, or the sentence why there is none.
@@ -350,9 +350,9 @@ std::string energies_of(const std::vector<FoundCurve>& curves, const std::vector
     charts.push_back(energy_chart(curve, references, fmt::format("{}-energy-{}", id, charts.size())));
     if (charts.back().series.size() == 1) without.push_back(curve.name);
   }
-  return figures_of(charts) +
-         (without.empty() ? ""
-                          : "<p>Without a reference curve: " + html_text(join(without, ", ")) + ".</p>\n");
+  return figures_of(charts) + (without.empty() ? ""
+                                               : fmt::format("<p>Without a reference curve: {}.</p>\n",
+                                                             html_text(join(without, ", "))));
 }
 
 std::string energy_section(const ReportInput& input) {

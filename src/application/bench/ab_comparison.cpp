@@ -157,10 +157,11 @@ void AbProgram::fail(const ChildResult& result) const {
   std::cerr << result.output;
   if (!result.output.empty() && !result.output.ends_with('\n')) std::cerr << '\n';
   if (result.out_of_time)
-    throw UsageError(file_ + " bench has not ended within " + std::to_string(child_.elapsed_seconds) +
-                     " s: run it alone to see why, or give a longer --time-budget");
-  const std::string how = result.signal != 0 ? "was ended by signal " + std::to_string(result.signal)
-                                             : "exited with " + std::to_string(result.exit_code);
+    throw UsageError(
+        "{} bench has not ended within {} s: run it alone to see why, or give a longer --time-budget", file_,
+        child_.elapsed_seconds);
+  const std::string how = result.signal != 0 ? fmt::format("was ended by signal {}", result.signal)
+                                             : fmt::format("exited with {}", result.exit_code);
   const std::string sentence = file_ + " bench " + how + " instead of measuring" +
                                (result.output.empty() ? ", without a message" : "; its messages are above");
   if (result.signal == 0 && result.exit_code == exit_unavailable) throw Unavailable(sentence);
@@ -299,7 +300,7 @@ RunComparison compare_programs(const AbOptions& options) {
   std::size_t rounds = 0;
   {
     ProgressLine progress({1});
-    progress.begin_scene(options.base + " and " + options.next + " alternately");
+    progress.begin_scene(fmt::format("{} and {} alternately", options.base, options.next));
     series = verify(programs, options, progress);
     while (!settled() && (rounds == 0 || watch.seconds() + longest_s <= options.time_budget_s)) {
       const Stopwatch round_watch;

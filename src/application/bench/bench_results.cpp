@@ -75,8 +75,9 @@ void require_samples(const ResultRow& row, const fs::path& folder) {
     throw UsageError(where + "no samples, though timings.csv says ok; measure the folder anew");
   for (std::size_t round = 0; round < row.samples_ms.size(); ++round)
     if (!(row.samples_ms[round] > 0 && row.samples_ms[round] <= longest_ms))
-      throw UsageError(where + "no time above zero in round " + std::to_string(round + 1) +
-                       ", or one of more than 1e12 ms; measure the folder anew");
+      throw UsageError(
+          "{}no time above zero in round {}, or one of more than 1e12 ms; measure the folder anew", where,
+          round + 1);
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ void require_same_origin(const Provenance& earlier, const Provenance& now, const
     if (std::ranges::find(now.scenes, scene.name, &SceneHash::name) == now.scenes.end())
       left_out.push_back(printable(scene.name));
   if (!left_out.empty())
-    all.push_back("it has results of " + join(left_out, ", ") + ", which this command leaves out");
+    all.push_back(fmt::format("it has results of {}, which this command leaves out", join(left_out, ", ")));
   require_resumable(all, folder);
 }
 

@@ -126,9 +126,10 @@ TimeBudget::TimeBudget(std::optional<double> seconds, std::vector<ExpectedTime> 
   const ExpectedTime all = total(scenes_);
   const double least = all.with(1);
   if (*seconds < least)
-    throw UsageError("--time-budget is too short: one round of all this takes about " +
-                     std::to_string(std::lround(std::ceil(least))) +
-                     " s; give more, or name fewer scenes, backends or integrators");
+    throw UsageError(
+        "--time-budget is too short: one round of all this takes about {} s; give more, or name fewer "
+        "scenes, backends or integrators",
+        std::lround(std::ceil(least)));
   end_ = present_start_ + duration_of(*seconds);
 }
 

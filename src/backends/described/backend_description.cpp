@@ -69,8 +69,8 @@ void require_known(const fs::path& file, const std::string& list, const std::vec
                    const std::vector<std::string_view>& known) {
   for (std::size_t i = 0; i < words.size(); ++i)
     if (std::ranges::find(known, words[i]) == known.end())
-      refuse(file, list + '/' + std::to_string(i),
-             "is the text \"" + printable(words[i]) + "\": give " + listed(known, "or"));
+      refuse(file, fmt::format("{}/{}", list, i),
+             fmt::format("is the text \"{}\": give {}", printable(words[i]), listed(known, "or")));
 }
 
 /// Sets the file that is run, or why there is none.
@@ -80,13 +80,13 @@ void find_file(BackendProgram& program, const fs::path& file) {
     if (const auto found = find_program(word))
       program.program = *found;
     else
-      program.missing = "there is no program " + printable(word) + " in PATH";
+      program.missing = fmt::format("there is no program {} in PATH", printable(word));
     return;
   }
   std::error_code error;
   program.program = program.folder / word;
   if (!fs::is_regular_file(program.program, error))
-    program.missing = "there is no file " + printable(word) + " beside " + escaped(file.string());
+    program.missing = fmt::format("there is no file {} beside {}", printable(word), escaped(file.string()));
   else if (::access(program.program.c_str(), X_OK) != 0)
     program.missing = escaped(program.program.string()) + " may not be executed; chmod +x it";
 }
@@ -94,7 +94,7 @@ void find_file(BackendProgram& program, const fs::path& file) {
 }  // namespace
 
 BackendProgram parse_description(const fs::path& file, const std::string& text) {
-  if (text.empty()) throw SceneError(escaped(file.string()) + " is empty: " + std::string(remedy));
+  if (text.empty()) throw SceneError("{} is empty: {}", escaped(file.string()), remedy);
   Description description;
   read_fields(file, text, [&](FieldVisitor& fields) { visit(fields, description); });
   if (description.command.front().empty())

@@ -20,8 +20,8 @@ namespace {
 std::string listing(std::span<const OpenclDevice> devices) {
   std::string text;
   for (const OpenclDevice& device : devices)
-    text += (text.empty() ? "" : ", ") + std::to_string(device.number) + " (" + device.name + ", " +
-            device.platform + ")";
+    text +=
+        fmt::format("{}{} ({}, {})", text.empty() ? "" : ", ", device.number, device.name, device.platform);
   return text;
 }
 
@@ -137,8 +137,7 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
   if (std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
     for (const OpenclDevice& device : devices)
       if (std::to_string(device.number) == wanted) return device;
-    throw Unavailable("no OpenCL device has the number " + std::string(wanted) +
-                      "; there are: " + listing(devices));
+    throw Unavailable("no OpenCL device has the number {}; there are: {}", wanted, listing(devices));
   }
 
   const auto has_it = [part = to_lower(wanted)](const std::string& text) {
@@ -148,8 +147,8 @@ OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::st
   for (const OpenclDevice& device : devices)
     if (has_it(device.name) || has_it(device.platform)) fitting.push_back(device);
   if (fitting.empty())
-    throw Unavailable("no OpenCL device has \"" + std::string(wanted) +
-                      "\" in its name or its platform's; there are: " + listing(devices));
+    throw Unavailable("no OpenCL device has \"{}\" in its name or its platform's; there are: {}", wanted,
+                      listing(devices));
   if (fitting.size() > 1)
     throw Unavailable("several OpenCL devices have \"" + std::string(wanted) +
                       "\" in their names or platforms, choose one by its number: " + listing(fitting));
@@ -187,26 +186,25 @@ int threads_of(const OpenclDevice& device) {
 }
 
 void require_memory(const OpenclDevice& device, std::span<const std::uint64_t> buffer_bytes) {
-  const auto megabytes = [](std::uint64_t bytes) { return std::to_string((bytes >> 20) + 1) + " MiB"; };
+  const auto megabytes = [](std::uint64_t bytes) { return fmt::format("{} MiB", (bytes >> 20) + 1); };
   std::uint64_t largest = 0, all = 0;
   for (const std::uint64_t bytes : buffer_bytes) {
     largest = std::max(largest, bytes);
     all += bytes;
   }
   if (largest > device.max_allocation_bytes)
-    throw Unsupported("the scene needs an OpenCL buffer of " + megabytes(largest) + ", " + device.name +
-                      " allocates at most " + megabytes(device.max_allocation_bytes) + " in one piece");
+    throw Unsupported("the scene needs an OpenCL buffer of {}, {} allocates at most {} in one piece",
+                      megabytes(largest), device.name, megabytes(device.max_allocation_bytes));
   if (all > device.global_memory_bytes)
-    throw Unsupported("the scene needs " + megabytes(all) + " of OpenCL buffers, " + device.name + " has " +
-                      megabytes(device.global_memory_bytes) + " in all");
+    throw Unsupported("the scene needs {} of OpenCL buffers, {} has {} in all", megabytes(all), device.name,
+                      megabytes(device.global_memory_bytes));
 }
 
 std::string opencl_failure(std::string_view call, int error) {
   const auto known = std::find_if(error_names.begin(), error_names.end(),
                                   [&](const ErrorName& entry) { return entry.code == error; });
-  return "the OpenCL call " + std::string(call) + " failed with " +
-         (known == error_names.end() ? "an unknown error" : std::string(known->name)) + " (" +
-         std::to_string(error) + ")";
+  return fmt::format("the OpenCL call {} failed with {} ({})", call,
+                     known == error_names.end() ? "an unknown error" : std::string(known->name), error);
 }
 
 }  // namespace mssim

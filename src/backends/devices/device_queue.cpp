@@ -19,14 +19,14 @@ std::string kernel_file(const char* file) {
 }  // namespace
 
 std::string program_text(int lanes, std::initializer_list<const char*> files) {
-  std::string text = "#define MSSIM_LANES " + std::to_string(lanes) + "\n";
+  std::string text = fmt::format("#define MSSIM_LANES {}\n", lanes);
   for (const char* file : files) text += kernel_file(file);
   return text;
 }
 
 std::string slices_program_text(std::size_t slice_nodes, int lanes,
                                 std::initializer_list<const char*> files) {
-  return "#define MSSIM_SLICE " + std::to_string(slice_nodes) + "\n" + program_text(lanes, files);
+  return fmt::format("#define MSSIM_SLICE {}\n{}", slice_nodes, program_text(lanes, files));
 }
 
 cl::Program DeviceQueue::build(const std::string& text) const {
@@ -39,8 +39,8 @@ cl::Program DeviceQueue::build(const std::string& text) const {
   } catch (const cl::BuildError& error) {
     std::string log = error.getBuildLog().empty() ? "" : error.getBuildLog().front().second;
     log = log.substr(0, log.find('\n', log.find("error")));
-    throw Unavailable(opencl_failure(error.what(), error.err()) + " on " + device.getInfo<CL_DEVICE_NAME>() +
-                      ": " + log);
+    throw Unavailable("{} on {}: {}", opencl_failure(error.what(), error.err()),
+                      device.getInfo<CL_DEVICE_NAME>(), log);
   }
   return program;
 }

@@ -1,5 +1,6 @@
 #include "backends/devices/driver_environment.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -114,14 +115,14 @@ PoclCache provide_pocl_cache() {
     setenv(cache_variable, own.c_str(), 1);
     return cache;
   }
-  const std::string cannot = "PoCL's cache " + usual.string() + " cannot be written (" + obstacle + ")";
+  const std::string cannot = fmt::format("PoCL's cache {} cannot be written ({})", usual.string(), obstacle);
   try {
     setenv(cache_variable, temporary_folder_of_process().c_str(), 1);
     cache.note =
         cannot + ", so that every run compiles its kernels anew; set POCL_CACHE_DIR to a folder that can be";
   } catch (const std::runtime_error& error) {
-    cache.failure =
-        "its cache " + usual.string() + " cannot be written (" + obstacle + "), and mssim " + error.what();
+    cache.failure = fmt::format("its cache {} cannot be written ({}), and mssim {}", usual.string(), obstacle,
+                                error.what());
   }
   return cache;
 }

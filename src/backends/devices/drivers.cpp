@@ -46,7 +46,7 @@ std::string name_of(const RegisteredDriver& driver) {
 
 /// What registers it, for the end of a sentence that has its name_of().
 std::string registration_of(const RegisteredDriver& driver) {
-  return driver.shared_library.empty() ? "" : " (" + driver.file.string() + " registers it)";
+  return driver.shared_library.empty() ? "" : fmt::format(" ({} registers it)", driver.file.string());
 }
 
 /// Asks the drivers in another process.
@@ -59,8 +59,9 @@ Answer ask_in_child(const std::vector<RegisteredDriver>& drivers,
       run({helper_program("ask-opencl"), libraries, environment, ".", cpu_s, elapsed_s});
   Answer answer{failed_end(asked, "asked for devices"), {}};
   if (asked.out_of_time)
-    answer.end = "did not answer within " + std::to_string(cpu_s) + " s of processor time or " +
-                 std::to_string(elapsed_s) + " s in all when asked for devices";
+    answer.end =
+        fmt::format("did not answer within {} s of processor time or {} s in all when asked for devices",
+                    cpu_s, elapsed_s);
   std::istringstream lines(asked.output);
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with(obstacle_mark)) continue;
@@ -144,7 +145,7 @@ OpenclDevice described(cl_device_id id, const std::string& platform, int number)
 /// Takes what a platform offers.
 void take_devices(const cl::Platform& platform, const std::string& pocl_failure, OpenclOffer& offer) {
   const std::string name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
-  const auto driver = [&] { return "the OpenCL driver \"" + name + '"'; };
+  const auto driver = [&] { return fmt::format("the OpenCL driver \"{}\"", name); };
   try {
     // A driver reports it as an error that it has no device.
     const auto devices = all_or_none<cl::Device>(
@@ -180,7 +181,7 @@ void take_survivors(const std::vector<RegisteredDriver>& drivers, const std::str
   setenv(vendors_variable, survivors.c_str(), 1);
   Answer answer = ask_in_child(registered_drivers(), {});
   if (!answer.end.empty())
-    offer.troubles.push_back("the OpenCL drivers " + answer.end + ", but each one alone survives");
+    offer.troubles.push_back(fmt::format("the OpenCL drivers {}, but each one alone survives", answer.end));
   else
     take_devices(std::move(answer), pocl_failure, offer);
 }
@@ -234,10 +235,10 @@ class Patience {
 std::string failure_of(const DriverTrial& trial, const OpenclDevice& device) {
   constexpr unsigned minute_s = 60, most_minutes = 30;  // llvmpipe compiles for minutes
   constexpr std::chrono::seconds told_after{10};
-  const std::string driver = "the OpenCL driver \"" + device.platform + "\" ";
-  const std::string what = "the kernels of " + trial.backend + " with " + trial.integrator;
+  const std::string driver = fmt::format("the OpenCL driver \"{}\" ", device.platform);
+  const std::string what = fmt::format("the kernels of {} with {}", trial.backend, trial.integrator);
   const Patience patience(told_after, [&] {
-    if (listener) listener(driver + "is compiling " + what + ", which takes some drivers minutes");
+    if (listener) listener(fmt::format("{}is compiling {}, which takes some drivers minutes", driver, what));
   });
   // Processor time is of all threads.
   const ChildResult result = run({mssim_program(),
@@ -247,7 +248,7 @@ std::string failure_of(const DriverTrial& trial, const OpenclDevice& device) {
                                   most_minutes * minute_s * device.compute_units,
                                   most_minutes * minute_s});
   if (result.out_of_time)
-    return driver + "had not compiled " + what + " after " + std::to_string(most_minutes) + " minutes";
+    return fmt::format("{}had not compiled {} after {} minutes", driver, what, most_minutes);
   const std::string end = failed_end(result, "it compiled " + what);
   return end.empty() ? "" : driver + end;
 }

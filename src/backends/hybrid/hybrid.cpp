@@ -262,7 +262,7 @@ std::unique_ptr<Backend> make_hybrid(const System& system, const Integrator& int
                                      const OpenclDevice& device, int threads, int lanes, DeviceMemory memory,
                                      const std::function<void(SteppedKind)>& before) {
   if (threads < 1)
-    throw std::invalid_argument("hybrid needs at least one host thread, not " + std::to_string(threads));
+    throw std::invalid_argument(fmt::format("hybrid needs at least one host thread, not {}", threads));
   return opencl_call<Unavailable>([&]() -> std::unique_ptr<Backend> {
     // With seven bodies in sixteen lanes a step takes 1.05 to 1.1 times as long as with packed springs,
     // with thirteen 0.66 times (Intel Xeon).

@@ -73,8 +73,7 @@ void find_units(const System& system, const SpringsByFirstEnd& springs, std::siz
 PackedSprings::PackedSprings(const System& system) : slot(system.nodes()) {
   constexpr std::size_t largest = std::numeric_limits<std::uint32_t>::max() / slice_nodes;
   if (system.springs.size() > largest)
-    throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
-                      " springs; hybrid supports at most " + std::to_string(largest));
+    throw Unsupported("the scene has {} springs; hybrid supports at most {}", system.springs.size(), largest);
   NodeOrder order = node_order(system);
   scene_node = std::move(order.scene_node);
   for (std::uint32_t i = 0; i < scene_node.size(); ++i) slot[scene_node[i]] = i;
@@ -142,8 +141,7 @@ AlikeSprings::AlikeSprings(const std::vector<AlikeBodies>& bodies) : slices(bodi
   for (const AlikeSlices::Group& group : slices.groups) count += bodies[group.shape].springs.size();
   constexpr std::size_t largest = std::numeric_limits<std::uint32_t>::max() / slice_nodes;
   if (count > largest)
-    throw Unsupported("the scene has " + std::to_string(count) +
-                      " springs for each lane; hybrid supports at most " + std::to_string(largest));
+    throw Unsupported("the scene has {} springs for each lane; hybrid supports at most {}", count, largest);
   springs.reserve(count);
   std::vector<std::uint32_t> ends(slices.count, 0);
   for (const AlikeSlices::Group& group : slices.groups) {

@@ -19,8 +19,9 @@ std::vector<std::uint32_t> kind_of_nodes(const System& system) {
     for (const std::uint32_t node : {spring.first, spring.second}) {
       if (kinds[node] == SlicedGraph::no_node) kinds[node] = spring.kind;
       if (kinds[node] != spring.kind)
-        throw Unsupported("springs of different materials meet in node " + std::to_string(node) +
-                          "; this backend needs bodies of one material each");
+        throw Unsupported(
+            "springs of different materials meet in node {}; this backend needs bodies of one material each",
+            node);
     }
   return kinds;
 }
@@ -42,8 +43,8 @@ void sort_in_windows(std::span<std::uint32_t> nodes, const std::vector<std::uint
 /// A whole as the part that has all of it.
 GraphPart whole_of(const System& system) {
   if (system.springs.size() > SlicedGraph::no_node / 2)
-    throw Unsupported("the scene has " + std::to_string(system.springs.size()) +
-                      " springs; a sliced graph holds at most 2147483647");
+    throw Unsupported("the scene has {} springs; a sliced graph holds at most 2147483647",
+                      system.springs.size());
   return {places_in(reverse_cuthill_mckee(system.nodes(), system.springs)), system.nodes()};
 }
 
@@ -131,8 +132,8 @@ void require_nameable_records(const System& system, std::size_t floats_of_record
       std::numeric_limits<std::uint32_t>::max() / (floats_of_record / slice_offset_floats) -
       SlicedGraph::window;
   if (system.nodes() > most_nodes)
-    throw Unsupported("the scene has " + std::to_string(system.nodes()) +
-                      " nodes; openmp supports bodies of at most " + std::to_string(most_nodes));
+    throw Unsupported("the scene has {} nodes; openmp supports bodies of at most {}", system.nodes(),
+                      most_nodes);
 }
 
 }  // namespace mssim

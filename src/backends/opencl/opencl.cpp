@@ -96,9 +96,9 @@ void require_numbers(const std::vector<AlikeBodies>& bodies, std::size_t slots) 
   std::size_t springs = 0;
   for (const AlikeBodies& of : bodies) springs += 2 * of.springs.size();
   if (slots > most || springs > most)
-    throw Unsupported("the scene has " + std::to_string(slots) + " places of nodes and " +
-                      std::to_string(springs) + " ends of springs; opencl supports at most " +
-                      std::to_string(most) + " of each");
+    throw Unsupported(
+        "the scene has {} places of nodes and {} ends of springs; opencl supports at most {} of each", slots,
+        springs, most);
 }
 
 PairLayout slice_layout(const AlikeSlices& slices) {

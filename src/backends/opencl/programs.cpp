@@ -1,5 +1,7 @@
 #include "backends/opencl/programs.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <sstream>
@@ -28,8 +30,7 @@ bool reads_pair(const Stage& stage, Pair pair) {
 /// The sum of an assignment, the last term first, so that the large first term is added last.
 std::string sum_of_terms(const Assignment& assignment, std::size_t stage, std::size_t number) {
   const auto factor = [&](std::size_t term) {
-    return "(Real)(step->coefficients[" + std::to_string(stage) + "][" + std::to_string(number) + "][" +
-           std::to_string(term) + "])";
+    return fmt::format("(Real)(step->coefficients[{}][{}][{}])", stage, number, term);
   };
   const std::size_t last = term_count(assignment) - 1;
   std::string sum = "times(" + factor(last) + ", " + name(assignment.terms[last].slot) + ")";
@@ -51,8 +52,8 @@ bool writes_stored(const StoredStage& stage, Pair stored) {
 std::string pair_parameters(const StoredStage& stage) {
   std::string text;
   for (const Pair pair : stage_arguments(stage))
-    text += std::string("__global ") + (writes_stored(stage, pair) ? "" : "const ") + "float* restrict " +
-            name_of(pair) + ", ";
+    text += fmt::format("__global {}float* restrict {}, ", writes_stored(stage, pair) ? "" : "const ",
+                        name_of(pair));
   return text;
 }
 
@@ -65,8 +66,8 @@ std::string pair_names_of(const StoredStage& stage) {
 /// The call that reads or writes the slot's memory: kernels/*_stage.cl have these functions.
 std::string access(const char* what, Slot slot, Pair arrays, const std::string& value = "") {
   const bool velocity = index(slot) % 2 == 1;
-  return std::string(what) + (velocity ? "_velocity(" : "_position(") + value + name_of(arrays) +
-         ", tile, shape)";
+  return fmt::format("{}{}{}{}, tile, shape)", what, velocity ? "_velocity(" : "_position(", value,
+                     name_of(arrays));
 }
 Pair pair_of(Slot slot) { return static_cast<Pair>(index(slot) / 2); }
 
@@ -123,8 +124,7 @@ std::string gather_springs_text() {
           "  Vector sum = no_vector(), on_other = no_vector();\n";
   for (const GridSpring& spring : grid_stencil)
     for (const int end : {1, -1}) {
-      const std::string other =
-          std::to_string(end * spring.rows) + ", " + std::to_string(end * spring.columns);
+      const std::string other = fmt::format("{}, {}", end * spring.rows, end * spring.columns);
       text << "  add_spring(&sum, &on_other, node, load_node(pair, tile, " << other
            << ", grid), is_on_cloth(tile, " << other << ", grid), " << grid_spring_kinds[spring.kind].name
            << ", grid);\n";
@@ -135,7 +135,7 @@ std::string gather_springs_text() {
 
 /// "update_N(pairs, tile, node, ", to which the forces are added.
 std::string update_call(const StoredStage& stage) {
-  return "update_" + std::to_string(stage.number) + "(" + pair_names_of(stage) + "tile, node, ";
+  return fmt::format("update_{}({}tile, node, ", stage.number, pair_names_of(stage));
 }
 
 std::string nodes_kernel_text(const StoredStage& stage) {
@@ -165,7 +165,7 @@ std::string column_of(const Integrator& integrator, Pair stored, const std::stri
   if (stored == Pair::state) return "state_column(" + end;
   const std::vector<Pair> rings = ring_pairs(integrator);
   const auto ring = std::ranges::find(rings, stored) - rings.begin();
-  return "ring_column(" + std::to_string(ring) + ", " + end;
+  return fmt::format("ring_column({}, {}", ring, end);
 }
 
 /// Takes the stage through one column, if it is one of those that it updates or of the two before them, whose
@@ -287,7 +287,7 @@ std::string with_kernels(std::string text, const Integrator& integrator, const M
 
 }  // namespace
 
-std::string stage_kernel_name(std::size_t stage) { return "stage_" + std::to_string(stage); }
+std::string stage_kernel_name(std::size_t stage) { return fmt::format("stage_{}", stage); }
 
 std::vector<Pair> stage_arguments(const StoredStage& stage) {
   std::vector<Pair> pairs;
@@ -308,7 +308,7 @@ std::string grid_program_text(const Integrator& integrator, int lanes) {
                                           "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
   std::string kinds;
   for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
-    kinds += "#define " + std::string(grid_spring_kinds[kind].name) + " " + std::to_string(kind) + "\n";
+    kinds += fmt::format("#define {} {}\n", grid_spring_kinds[kind].name, kind);
   text = kinds + text;
   if (!walks) text += gather_springs_text();
   for (std::size_t number = 0; number < integrator.stage_count; ++number) {

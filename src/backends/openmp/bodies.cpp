@@ -193,8 +193,7 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
   std::size_t most_nodes = 0;
   for (const AlikeBodies& of : bodies) {
     if (of.nodes() > allowed_nodes)
-      throw Unsupported("a body has " + std::to_string(of.nodes()) + " nodes; openmp supports at most " +
-                        std::to_string(allowed_nodes));
+      throw Unsupported("a body has {} nodes; openmp supports at most {}", of.nodes(), allowed_nodes);
     most_nodes = std::max(most_nodes, of.nodes());
     shapes.push_back(shape_of(of, node_floats));
     costs.emplace_back(of);

@@ -52,9 +52,9 @@ Conversation::Conversation(const std::filesystem::path& folder) : socket_(folder
       ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
       ::listen(listener_.get(), 2) != 0)
     throw std::runtime_error(
-        "cannot listen at " + socket_.string() + " (" + std::strerror(errno) +
-        "); set TMPDIR to a writable folder, and raise the limit of open files (ulimit -n) "
-        "where it is too low");
+        fmt::format("cannot listen at {} ({}); set TMPDIR to a writable folder, and raise the limit of open "
+                    "files (ulimit -n) where it is too low",
+                    socket_.string(), std::strerror(errno)));
 }
 
 void Conversation::fail(ConversationFailure::Cause cause, const std::string& sentence) const {
@@ -69,7 +69,7 @@ void Conversation::begin(std::chrono::duration<double> time_limit, int end_descr
   // A wait for bytes alone is the fastest answer there is; every slice it looks at all else.
   const timeval slice{0, slice_ms * 1000};
   if (::setsockopt(connection_.get(), SOL_SOCKET, SO_RCVTIMEO, &slice, sizeof slice) != 0)
-    throw std::runtime_error(std::string("cannot set a socket's time limit (") + std::strerror(errno) + ")");
+    throw std::runtime_error(fmt::format("cannot set a socket's time limit ({})", std::strerror(errno)));
 }
 
 void Conversation::accept() {
@@ -100,8 +100,8 @@ void Conversation::ask(std::string_view lines, const std::string& asked) {
     if (bytes > 0) received_.assign(early.data(), static_cast<std::size_t>(bytes));
   }
   if (!received_.empty())
-    fail(Cause::answer, "sent " + in_quotes(received_.substr(0, received_.find('\n'))) +
-                            " after its answer to " + asked_ + ", where nothing was asked");
+    fail(Cause::answer, fmt::format("sent {} after its answer to {}, where nothing was asked",
+                                    in_quotes(received_.substr(0, received_.find('\n'))), asked_));
   asked_ = '"' + asked + '"';
   deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit_);
   while (!lines.empty()) {
@@ -118,8 +118,8 @@ std::string Conversation::answer() {
   for (;;) {
     const std::size_t end = received_.find('\n', searched);
     if (std::min(end, received_.size()) >= longest_line)
-      fail(Cause::answer, "answered " + asked_ + " with a line of more than " + std::to_string(longest_line) +
-                              " bytes, which begins " + in_quotes(received_.substr(0, 40)));
+      fail(Cause::answer, fmt::format("answered {} with a line of more than {} bytes, which begins {}",
+                                      asked_, longest_line, in_quotes(received_.substr(0, 40))));
     if (end != std::string::npos) {
       std::string line = received_.substr(0, end);
       received_.erase(0, end + 1);
@@ -171,8 +171,8 @@ std::pair<std::string_view, std::string_view> split(std::string_view line) {
 }
 
 [[noreturn]] void refuse(const std::string& line, const std::string& asked, const char* expected) {
-  throw AnswerFailure("answered \"" + printable(line) + "\" to \"" + asked + "\", where " + expected +
-                      " is expected");
+  throw AnswerFailure(
+      fmt::format("answered \"{}\" to \"{}\", where {} is expected", printable(line), asked, expected));
 }
 
 void refuse_failed(const std::string& line, const std::string& asked) {

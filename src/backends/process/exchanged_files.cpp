@@ -58,8 +58,9 @@ StateFile::StateFile(std::size_t nodes, const std::filesystem::path& elsewhere) 
     shared_.reset();
   }
   if (!make(elsewhere))
-    throw std::runtime_error("cannot make " + path_.string() + " of " + std::to_string(bytes_of(nodes)) +
-                             " bytes (" + std::strerror(errno) + "); set TMPDIR to a folder with more room");
+    throw std::runtime_error(
+        fmt::format("cannot make {} of {} bytes ({}); set TMPDIR to a folder with more room", path_.string(),
+                    bytes_of(nodes), std::strerror(errno)));
 }
 
 bool StateFile::make(const std::filesystem::path& folder) {
@@ -77,8 +78,8 @@ void StateFile::write_at(std::size_t byte, const void* data, std::size_t bytes) 
     const ssize_t count = ::pwrite(file_.get(), data, bytes, static_cast<off_t>(byte));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0)
-      throw std::runtime_error("cannot write " + path_.string() + " (" + std::strerror(errno) +
-                               "); make room there");
+      throw std::runtime_error(
+          fmt::format("cannot write {} ({}); make room there", path_.string(), std::strerror(errno)));
     data = static_cast<const char*>(data) + count;
     byte += static_cast<std::size_t>(count);
     bytes -= static_cast<std::size_t>(count);
@@ -107,15 +108,15 @@ State StateFile::read() const {
   if (!read_at(file_, 0, state.position.data(), half) || !read_at(file_, half, state.velocity.data(), half)) {
     struct stat status {};
     ::fstat(file_.get(), &status);
-    throw StateFileFailure("left a state file of " +
-                           pluralize(static_cast<std::uint64_t>(status.st_size), "byte") + " instead of " +
-                           std::to_string(bytes_of(nodes_)));
+    throw StateFileFailure(fmt::format("left a state file of {} instead of {}",
+                                       pluralize(static_cast<std::uint64_t>(status.st_size), "byte"),
+                                       bytes_of(nodes_)));
   }
   const auto missing = static_cast<std::size_t>(std::ranges::count_if(state.position, is_unwritten) +
                                                 std::ranges::count_if(state.velocity, is_unwritten));
   if (missing > 0)
-    throw StateFileFailure("wrote " + std::to_string(2 * nodes_ - missing) + " of the " +
-                           std::to_string(2 * nodes_) + " positions and velocities of the state file");
+    throw StateFileFailure(fmt::format("wrote {} of the {} positions and velocities of the state file",
+                                       2 * nodes_ - missing, 2 * nodes_));
   return state;
 }
 

@@ -42,7 +42,7 @@ std::vector<std::string> environment_of(const BackendProgram& program, const std
       "MSSIM_SOCKET=" + socket, "MSSIM_THREADS=" + count, "OMP_NUM_THREADS=" + count,
       "PYTHONPATH=" + (data_folder() / "python").string() + (path && *path ? std::string(":") + path : "")};
   if (program.in_ranks) {
-    all.push_back("MSSIM_RANKS=" + std::to_string(ranks_of(program, options).ranks));
+    all.push_back(fmt::format("MSSIM_RANKS={}", ranks_of(program, options).ranks));
     all.push_back("MSSIM_LAUNCHER=" + options.launcher);
     all.push_back("MSSIM_MEMORY_FOLDER=" + memory.string());
     all.push_back("MSSIM_FOLDER=" + std::filesystem::current_path().string());
@@ -193,7 +193,7 @@ class ProcessBackend final : public WindowBackend {
     request("set");
   }
 
-  void step(int count) override { request("step " + std::to_string(count), true); }
+  void step(int count) override { request(fmt::format("step {}", count), true); }
 
   State state() const override { return get("get"); }
 
@@ -270,7 +270,7 @@ class ProcessBackend final : public WindowBackend {
   void take_answers(const std::string& asked, const Take& take) const {
     for (int lines = 0; lines < most_lines; ++lines)
       if (take(conversation_.answer())) return;
-    throw AnswerFailure("answered \"" + asked + "\" with more than " + std::to_string(most_lines) + " lines");
+    throw AnswerFailure(fmt::format("answered \"{}\" with more than {} lines", asked, most_lines));
   }
 
   /// Takes the answers to `prepare`. Throws Unsupported and Unavailable.
@@ -294,7 +294,7 @@ class ProcessBackend final : public WindowBackend {
     try {
       return state_file_.read();
     } catch (const StateFileFailure& failure) {
-      fail(std::string(failure.what()) + " when it was asked \"" + line + '"');
+      fail(fmt::format("{} when it was asked \"{}\"", failure.what(), line));
     }
   }
 

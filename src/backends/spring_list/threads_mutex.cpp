@@ -46,9 +46,9 @@ class ThreadsMutex final : public Backend {
         });
     } catch (const std::system_error& error) {
       complete.set_value(false);
-      throw BackendFailure("the system has made " + std::to_string(group.size() + 1) + " of " +
-                               std::to_string(threads_) + " threads (" + error.code().message() +
-                               "): ask for fewer with --threads, or end other programs",
+      throw BackendFailure(fmt::format("the system has made {} of {} threads ({}): ask for fewer with "
+                                       "--threads, or end other programs",
+                                       group.size() + 1, threads_, error.code().message()),
                            "");
     }
     complete.set_value(true);

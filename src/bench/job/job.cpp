@@ -70,9 +70,9 @@ void find_sample_steps(Combination& combination, const SceneJob& job) {
   for (;;) {
     combination.step_seconds = time_steps(steps) / steps;
     if (combination.step_seconds < least_step_s)
-      return fail(combination, "failed: its steps are not done when it says so: " +
-                                   pluralize(static_cast<std::uint64_t>(steps), "step") +
-                                   " take less than 10 ns each");
+      return fail(combination,
+                  fmt::format("failed: its steps are not done when it says so: {} take less than 10 ns each",
+                              pluralize(static_cast<std::uint64_t>(steps), "step")));
     const int fit =
         sample_steps(combination.step_seconds, job.sample_seconds, resolution_s, combination.most_steps);
     if (fit <= (job.verified ? 10 : 2) * steps) {
@@ -231,7 +231,7 @@ void take_verification(Combination& combination, const std::vector<ResultRow>& v
   if (found->device != row.device || found->threads != row.threads || found->nodes != row.nodes ||
       found->springs_unique != row.springs_unique || found->dt_s != row.dt_s)
     return fail(combination,
-                "failed: verified was " + subject_of(*found) + ", and this is " + subject_of(row));
+                fmt::format("failed: verified was {}, and this is {}", subject_of(*found), subject_of(row)));
   static_cast<Agreement&>(row) = *found;
   row.dressing = found->dressing;
   row.verified = true;
@@ -319,7 +319,7 @@ void require_finite(ResultRow& row) {
     if (!value || !(row.**value) || std::isfinite(*(row.**value))) continue;
     (row.**value).reset();
     row.verified = false;
-    if (row.status == "ok") row.status = "failed: " + std::string(column.name) + " is not finite";
+    if (row.status == "ok") row.status = fmt::format("failed: {} is not finite", column.name);
   }
 }
 

@@ -261,8 +261,8 @@ Machine read_machine(const fs::path& root) {
   // On Arm the kernel gives numbers instead of a name.
   if (machine.cpu_model.empty())
     if (const std::string part = value_of(root / "proc/cpuinfo", "CPU part", ':'); !part.empty())
-      machine.cpu_model =
-          "implementer " + value_of(root / "proc/cpuinfo", "CPU implementer", ':') + " part " + part;
+      machine.cpu_model = fmt::format("implementer {} part {}",
+                                      value_of(root / "proc/cpuinfo", "CPU implementer", ':'), part);
   machine.cpu_generation = read_generation(root / "proc/cpuinfo");
   machine.logical_cpus = count_cpus(first_line(cpus / "online"));
   machine.cpu_mhz = leading_number<double>(value_of(root / "proc/cpuinfo", "cpu MHz", ':'));
@@ -327,8 +327,8 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
   const Machine& machine = provenance.machine;
   std::vector<std::string> noise;
   if (!machine.load_average.empty() && machine.load_average.front() >= least_load)
-    noise.push_back("other programs are running (load " + one_decimal(machine.load_average.front()) +
-                    " over the last minute): end them or wait");
+    noise.push_back(fmt::format("other programs are running (load {} over the last minute): end them or wait",
+                                one_decimal(machine.load_average.front())));
   if (machine.governor && *machine.governor != "performance")
     noise.push_back("the frequency governor is \"" + *machine.governor +
                     "\": choose \"performance\" (cpupower frequency-set -g performance)");
@@ -337,14 +337,13 @@ std::vector<std::string> noise_of(const Provenance& provenance) {
         "turbo is on, so that the frequency depends on temperature and neighbours: turn it off");
   const std::size_t cpus = provenance.allowed_cpus.size();
   if (provenance.threads > 1 && cpus > 0 && static_cast<std::size_t>(provenance.threads) > cpus)
-    noise.push_back(std::to_string(provenance.threads) + " threads share " + pluralize(cpus, "logical CPU") +
-                    ": ask for fewer with --threads");
+    noise.push_back(fmt::format("{} threads share {}: ask for fewer with --threads", provenance.threads,
+                                pluralize(cpus, "logical CPU")));
   if (machine.cpu_quota && provenance.threads > *machine.cpu_quota)
-    noise.push_back(
-        "a quota of this container lets " +
-        pluralize(static_cast<std::uint64_t>(provenance.threads), "thread") + " run for the time of " +
-        one_decimal(*machine.cpu_quota) + " processors and then stops them: " +
-        (provenance.threads > 1 ? "ask for fewer with --threads, or raise the quota" : "raise the quota"));
+    noise.push_back(fmt::format(
+        "a quota of this container lets {} run for the time of {} processors and then stops them: {}",
+        pluralize(static_cast<std::uint64_t>(provenance.threads), "thread"), one_decimal(*machine.cpu_quota),
+        provenance.threads > 1 ? "ask for fewer with --threads, or raise the quota" : "raise the quota"));
   if (provenance.threads > 1 && !binds_threads(provenance))
     noise.emplace_back("threads may move from CPU to CPU: set OMP_PROC_BIND=true");
   return noise;

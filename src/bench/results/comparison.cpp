@@ -13,19 +13,18 @@ namespace {
 void add(std::vector<std::string>& sentences, const std::string& what, const std::string& before,
          const std::string& now) {
   if (before == now) return;
-  std::string sentence = what + " was " + before + " and is " + now;
+  std::string sentence = fmt::format("{} was {} and is {}", what, before, now);
   if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
 }
 
 /// `with_generation`: an mssim that did not know generations wrote results that can be compared all the same.
 std::string cpu_of(const Machine& machine, bool with_generation) {
-  return (with_generation ? cpu_name(machine) : machine.cpu_model) + " with " +
-         std::to_string(machine.logical_cpus) + " logical CPUs";
+  return fmt::format("{} with {} logical CPUs", with_generation ? cpu_name(machine) : machine.cpu_model,
+                     machine.logical_cpus);
 }
 
 std::string size_of(const ResultRow& row) {
-  return "one of " + std::to_string(row.nodes) + " nodes and " + std::to_string(row.springs_unique) +
-         " springs";
+  return fmt::format("one of {} nodes and {} springs", row.nodes, row.springs_unique);
 }
 
 /// With so few samples a side even times that do not overlap are not significant.

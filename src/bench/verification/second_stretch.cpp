@@ -184,8 +184,8 @@ std::optional<std::string> verify_second(Backend& backend, const SecondStretch& 
   if (stretch.steps == 0) return std::nullopt;
   backend.step(stretch.steps);
   const State state = backend.state();
-  const std::string after = " after " + pluralize(static_cast<std::uint64_t>(stretch.steps), "step") +
-                            " of a small scene of its kind that meets the floor";
+  const std::string after = fmt::format(" after {} of a small scene of its kind that meets the floor",
+                                        pluralize(static_cast<std::uint64_t>(stretch.steps), "step"));
   if (first_bad_node(state)) return "not finite" + after;
   const double error = position_deviation(stretch.system, stretch.state, state);
   if (error <= stretch.tolerance) return std::nullopt;

@@ -331,7 +331,7 @@ std::vector<std::string> check_samples(const System& system, const Integrator& i
     way.go_to(end.steps);
     std::ostringstream why;
     const std::string after =
-        " after the " + pluralize(static_cast<std::uint64_t>(end.steps), "step") + " of a sample";
+        fmt::format(" after the {} of a sample", pluralize(static_cast<std::uint64_t>(end.steps), "step"));
     if (first_bad_node(way.state())) {
       reasons[i] = "the double-precision reference is not finite" + after;
       continue;

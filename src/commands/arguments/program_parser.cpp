@@ -75,7 +75,7 @@ std::optional<std::string> leftover(const CLI::App& command, const OptionOfWord&
   if (rest.empty()) return std::nullopt;
   const std::string word = printable(rest.front()), forgotten = option_of(rest.front());
   return "unexpected argument \"" + word + "\" of " + typed_name(command) +
-         (command.get_option_no_throw(forgotten) ? " (did you mean " + forgotten + ' ' + word + "?)"
+         (command.get_option_no_throw(forgotten) ? fmt::format(" (did you mean {} {}?)", forgotten, word)
                                                  : ": an option begins with --");
 }
 
@@ -94,7 +94,7 @@ std::string missing(const std::string& name, const CLI::App& command) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return name + " is missing";
   if (option->get_positional()) return name + " is missing: give " + small_first(option->get_description());
-  return name + ' ' + option->get_type_name() + " is missing";
+  return fmt::format("{} {} is missing", name, option->get_type_name());
 }
 
 std::string wrong_count(const std::string& name, const CLI::App& command) {

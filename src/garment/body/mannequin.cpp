@@ -58,9 +58,9 @@ void require_thighs_below_hip(const BodyMeasures& m) {
   const double most = room / 2 * ellipse_perimeter(1, thigh_aspect);
   if (m.thigh.girth > most)
     fail("thigh girth", m.thigh.girth, " m",
-         ", and both thighs side by side would stick out beyond a hip girth of " + shown(m.hip.girth) +
-             " m; give a thigh girth of at most " + shown(std::floor(most * 1000) / 1000) +
-             " m or a larger hip girth");
+         fmt::format(", and both thighs side by side would stick out beyond a hip girth of {} m; give a "
+                     "thigh girth of at most {} m or a larger hip girth",
+                     shown(m.hip.girth), shown(std::floor(most * 1000) / 1000)));
 }
 
 class Tube {
@@ -300,10 +300,10 @@ class Figure {
         needed =
             std::max(needed, 2 * (least + section.half_width() - (1 - fraction) * thigh_axis_) / fraction);
     }
-    throw InputError("the body's stance is " + shown(m_.stance) +
-                     " m, and its legs would touch at the height " + shown(nearest->height) +
-                     " m; give a stance of at least " + shown(std::ceil(needed * 1000) / 1000) +
-                     " m or thinner legs");
+    throw InputError(
+        "the body's stance is {} m, and its legs would touch at the height {} m; give a stance of at least "
+        "{} m or thinner legs",
+        shown(m_.stance), shown(nearest->height), shown(std::ceil(needed * 1000) / 1000));
   }
 
   BodyMeasures m_;

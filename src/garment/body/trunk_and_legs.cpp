@@ -320,9 +320,9 @@ std::string ignored_parts(const TrunkAndLegs& body) {
   if (!body.left_out) return "";
   return "garments ignore what the body has beside trunk and legs (arms, hands, hair), " +
          shown(*body.left_out) +
-         (body.touched
-              ? "; " + shown(*body.touched) + " they touch the body, whose measures are less certain there"
-              : "");
+         (body.touched ? fmt::format("; {} they touch the body, whose measures are less certain there",
+                                     shown(*body.touched))
+                       : "");
 }
 
 }  // namespace mssim

@@ -45,9 +45,10 @@ ClothClothCollision::ClothClothCollision(const Garment& garment, const ClothLaye
   inverse_mass_.reserve(node_mass.size());
   for (const float mass : node_mass) {
     if (!(mass > 0))
-      throw std::invalid_argument("cloth-cloth collision: node " + std::to_string(inverse_mass_.size()) +
-                                  " weighs " + decimal(mass) +
-                                  " kg, give it a positive mass, or an infinite one to hold it");
+      throw std::invalid_argument(
+          fmt::format("cloth-cloth collision: node {} weighs {} kg, give it a positive mass, or an infinite "
+                      "one to hold it",
+                      inverse_mass_.size(), decimal(mass)));
     inverse_mass_.push_back(1 / mass);
   }
 }

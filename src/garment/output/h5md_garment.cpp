@@ -1,5 +1,7 @@
 #include "garment/output/h5md_garment.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -108,7 +110,7 @@ Garment read_garment(hid_t file, std::size_t nodes) {
   for (std::size_t i = 0; i < nodes; ++i) {
     garment.flat.push_back({numbers[2 * i], numbers[2 * i + 1], 0});
     if (!is_finite(garment.flat.back()))
-      throw Hdf5ContentError(flat + " has a number that is not finite, of node " + std::to_string(i));
+      throw Hdf5ContentError(fmt::format("{} has a number that is not finite, of node {}", flat, i));
   }
   read_joints(file, garment);
   require_fitting_garment(garment, nodes);

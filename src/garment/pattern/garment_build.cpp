@@ -122,14 +122,14 @@ StretchNodes nodes_of(const std::string& where, const SeamStretch& stretch,
   const std::size_t p = panel_named(where, stretch.panel, panels);
   const auto is_fraction = [](double x) { return x >= 0 && x <= 1; };
   if (!is_fraction(stretch.from) || !is_fraction(stretch.to) || stretch.from == stretch.to)
-    throw InputError(where + text_of(stretch) +
-                     " is not a valid stretch; give two different fractions from 0 to 1");
+    throw InputError("{}{} is not a valid stretch; give two different fractions from 0 to 1", where,
+                     text_of(stretch));
   const std::vector<double>& arcs = meshes[p].arcs_on(stretch.edge);
   const std::size_t begin = nearest(arcs, stretch.from * arcs.back());
   const std::size_t end = nearest(arcs, stretch.to * arcs.back());
   if (begin == end)
-    throw InputError(where + text_of(stretch) +
-                     " has fewer than two nodes; lengthen it or give the panel more nodes");
+    throw InputError("{}{} has fewer than two nodes; lengthen it or give the panel more nodes", where,
+                     text_of(stretch));
   const std::vector<std::size_t> on_edge = meshes[p].edge_nodes(stretch.edge);
   StretchNodes found;
   found.drawn_length = std::abs(stretch.to - stretch.from) * arcs.back();

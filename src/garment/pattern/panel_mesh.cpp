@@ -73,8 +73,8 @@ bool intersect(const Segment& a, const Segment& b) {
   const std::string name_a = name_of(a.edge), name_b = name_of(b.edge);
   const std::string who = a.edge == b.edge ? fmt::format("the {} boundary meets itself", name_a)
                                            : fmt::format("the {} and the {} boundary meet", name_a, name_b);
-  throw FoldedPiece(piece.name + ": " + who + " near " + place(rounded(0.5 * (a.from + a.to))) +
-                    "; draw them so that they neither cross nor touch");
+  throw FoldedPiece("{}: {} near {}; draw them so that they neither cross nor touch", piece.name, who,
+                    place(rounded(0.5 * (a.from + a.to))));
 }
 
 /// Throws InputError, which names panel, place and remedy, unless the corners of the piece meet to a tenth of
@@ -129,10 +129,10 @@ LineEnds line_ends(const PatternPiece& piece, std::string_view what, std::uint32
   for (const GridLine& line : given) {
     if (!(line.index > last.index && line.index + 1 < count && line.first > last.first && line.first < 1 &&
           line.second > last.second && line.second < 1))
-      throw InputError(piece.name + ": " + std::string(what) + " " + std::to_string(line.index) +
-                       " cannot end at the fractions " + shown(line.first) + " and " + shown(line.second) +
-                       " of its boundaries; give ascending indices from 1 to " + std::to_string(count - 2) +
-                       " and ascending fractions between 0 and 1");
+      throw InputError(
+          "{}: {} {} cannot end at the fractions {} and {} of its boundaries; give ascending indices from 1 "
+          "to {} and ascending fractions between 0 and 1",
+          piece.name, what, line.index, shown(line.first), shown(line.second), count - 2);
     go_on_to(line);
   }
   go_on_to({count - 1, 1, 1});
@@ -150,9 +150,10 @@ void require_unfolded(const PatternPiece& piece, const PanelMesh& mesh) {
       for (std::size_t i = 0; i < 4; ++i) {
         const Vec3d &here = corner[i], &next = corner[(i + 1) % 4], &before = corner[(i + 3) % 4];
         if (cross(next - here, before - here).z <= 0)
-          throw FoldedPiece(piece.name + ": the cell of row " + std::to_string(row) + " and column " +
-                            std::to_string(column) + " folds over at " + place(here) +
-                            "; straighten the boundaries there or end the grid lines elsewhere");
+          throw FoldedPiece(
+              "{}: the cell of row {} and column {} folds over at {}; straighten the boundaries there or end "
+              "the grid lines elsewhere",
+              piece.name, row, column, place(here));
       }
     }
 }

@@ -19,8 +19,8 @@ namespace {
 
 void visit_girth(FieldVisitor& fields, std::string_view key, GirthAt& girth) {
   const std::string part(key);
-  fields.object({key, "Girth of the " + part + "."}, Presence::required, [&](FieldVisitor& at) {
-    visit_length(at, {"girth_m", "Around the " + part + " as a tape measures it, m."}, girth.girth);
+  fields.object({key, fmt::format("Girth of the {}.", part)}, Presence::required, [&](FieldVisitor& at) {
+    visit_length(at, {"girth_m", fmt::format("Around the {} as a tape measures it, m.", part)}, girth.girth);
     visit_length(at, {"height_m", "Height above the floor at which it is measured, m."}, girth.height);
   });
 }
@@ -111,11 +111,11 @@ void require_person(const SceneSpec& spec, const BodyFile& body, const BodyProfi
   if (height >= shortest_person / 2 && height <= 1.5 * tallest_person) return;
   const auto guess = guess_unit(height / body.stance.unit_m);
   refuse(spec.file, "/garment/surface_file/unit_m",
-         "is " + shown_number(body.stance.unit_m) + ", which makes the body " + shown(height) +
-             " m high: give the metres in one unit of the file" +
-             (guess ? ", " + shown_number(guess->unit.metres) + " where that is a person in " +
-                          std::string(guess->unit.name)
-                    : ""));
+         fmt::format("is {}, which makes the body {} m high: give the metres in one unit of the file{}",
+                     shown_number(body.stance.unit_m), shown(height),
+                     guess ? fmt::format(", {} where that is a person in {}",
+                                         shown_number(guess->unit.metres), guess->unit.name)
+                           : ""));
 }
 
 FileSurface body_of_garment(const SceneSpec& spec) {
@@ -145,11 +145,10 @@ void visit_body_fields(FieldVisitor& fields, GarmentSpec& garment) {
 void check_body(const SceneSpec& spec) {
   const auto* body = std::get_if<BodyFile>(&garment_of(spec).body);
   if (body == nullptr || is_level(body->stance.facing, body->stance.up)) return;
-  refuse(
-      spec.file, "/garment/surface_file/facing",
-      "is \"" + std::string(facing_names.at(static_cast<std::size_t>(body->stance.facing))) +
-          "\", the axis along which the body stands upright: give \"+x\", \"-x\" or the other axis that is "
-          "level");
+  refuse(spec.file, "/garment/surface_file/facing",
+         fmt::format("is \"{}\", the axis along which the body stands upright: give \"+x\", \"-x\" or the "
+                     "other axis that is level",
+                     facing_names.at(static_cast<std::size_t>(body->stance.facing))));
 }
 
 MeasuredBody measured_body(const SceneSpec& spec) {

@@ -76,7 +76,7 @@ void require_body_there(const SceneSpec& spec, const BodyProfile& profile) {
   if (jeans.hem_height < profile.lowest())
     refuse_measure(
         spec, "hem_height_m", jeans.hem_height,
-        ", and the body begins at the height " + shown(profile.lowest()) + " m: give a higher one");
+        fmt::format(", and the body begins at the height {} m: give a higher one", shown(profile.lowest())));
   if (jeans.waist_height + waist_raised > profile.highest())
     refuse_measure(spec, "waist_height_m", jeans.waist_height,
                    ", and the body ends at the height " + shown(profile.highest()) +
@@ -89,11 +89,11 @@ std::string uncut_jeans(const JeansMeasures& jeans, const BodyProfile& profile) 
     const double millimetres = std::round(1000 * profile.hull_girth(height));
     return fmt::format("{} m around at the height {}", shown(millimetres / 1000), shown(height));
   };
-  return "cannot be cut for this body: it measures " + girth_at(jeans.hip_height) + " (hip_height_m) and " +
-         girth_at(jeans.waist_height) + " (waist_height_m), and parts into legs at " +
-         shown(profile.crotch_height()) +
-         " m; give the heights of its hip and waist, and knee_height_m and hem_height_m evenly below (mssim "
-         "measure finds them)";
+  return fmt::format(
+      "cannot be cut for this body: it measures {} (hip_height_m) and {} (waist_height_m), and parts into "
+      "legs at {} m; give the heights of its hip and waist, and knee_height_m and hem_height_m evenly below "
+      "(mssim measure finds them)",
+      girth_at(jeans.hip_height), girth_at(jeans.waist_height), shown(profile.crotch_height()));
 }
 
 using OfHeight = std::function<double(double height)>;

@@ -29,7 +29,7 @@ void append_row(const GarmentPanel& panel, std::uint32_t row, const GridSpring& 
     const auto found = numbers.find(
         key(panel.node(row, column), panel.node(other_row, static_cast<std::uint32_t>(other_column))));
     if (found == numbers.end())
-      throw std::invalid_argument("panel " + panel.name + " misses a spring of its stencil");
+      throw std::invalid_argument(fmt::format("panel {} misses a spring of its stencil", panel.name));
     order.push_back(found->second);
   }
 }
@@ -50,7 +50,7 @@ std::size_t direction_of(const GarmentPanel& panel, std::uint32_t& owner, std::u
     if (other < panel.first_node + panel.nodes() && row(other) - row(owner) == panel_stencil[d].rows &&
         column(other) - column(owner) == panel_stencil[d].columns)
       return d;
-  throw std::invalid_argument("panel " + panel.name + " has a spring that is not of its stencil");
+  throw std::invalid_argument(fmt::format("panel {} has a spring that is not of its stencil", panel.name));
 }
 
 /// The rows at which a panel's blocks begin, which are corrected side by side, and its number of rows at the
@@ -123,8 +123,8 @@ GarmentGrid::GarmentGrid(const System& system) : offset(system.nodes()) {
     float& stiffness = panels[number].stiffness[direction][row];
     const auto own = static_cast<float>(system.materials[spring.kind].stiffness);
     if (stiffness != 0 && stiffness != own)
-      throw Unsupported("the springs of a row of panel " + panel.name +
-                        " that have one direction must have one stiffness");
+      throw Unsupported("the springs of a row of panel {} that have one direction must have one stiffness",
+                        panel.name);
     stiffness = own;
   }
   for (const mssim::Joint& joint : garment.joints)

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <CL/opencl.hpp>
 #include <algorithm>
 #include <cstddef>
@@ -176,13 +178,13 @@ struct OpenclPanels {
 std::string stencil_text() {
   std::string rows, columns;
   for (const GridSpring& spring : panel_stencil) {
-    rows += (rows.empty() ? "" : ", ") + std::to_string(spring.rows);
-    columns += (columns.empty() ? "" : ", ") + std::to_string(spring.columns);
+    rows += fmt::format("{}{}", rows.empty() ? "" : ", ", spring.rows);
+    columns += fmt::format("{}{}", columns.empty() ? "" : ", ", spring.columns);
   }
-  return "#pragma OPENCL FP_CONTRACT OFF\n#define stencil_directions " +
-         std::to_string(panel_stencil.size()) + "\n#define limited_directions " +
-         std::to_string(limited_directions) + "\n__constant int stencil_rows[] = {" + rows +
-         "};\n__constant int stencil_columns[] = {" + columns + "};\n";
+  return fmt::format(
+      "#pragma OPENCL FP_CONTRACT OFF\n#define stencil_directions {}\n#define limited_directions "
+      "{}\n__constant int stencil_rows[] = {{{}}};\n__constant int stencil_columns[] = {{{}}};\n",
+      panel_stencil.size(), limited_directions, rows, columns);
 }
 
 std::string program_text_with(const char* kernels, int lanes) {

@@ -32,14 +32,14 @@ void append_bytes(std::string& bytes, Number number) {
 }
 
 std::string header(const ExportMesh& mesh, double time_s) {
-  std::string text =
-      "ply\nformat binary_little_endian 1.0\ncomment mssim, time " + decimal(time_s) + " s, SI units\n";
+  std::string text = fmt::format("ply\nformat binary_little_endian 1.0\ncomment mssim, time {} s, SI units\n",
+                                 decimal(time_s));
   for (std::size_t part = 0; part < mesh.parts.size(); ++part)
     text += fmt::format("comment part {}: {}\n", part, printable(mesh.parts[part]));
   text += fmt::format("element vertex {}\n", mesh.node.size());
   const std::string type = mesh.in_double ? "double" : "float";
   for (const char* name : {"x", "y", "z", "vx", "vy", "vz", "strain"})
-    text += "property " + type + ' ' + name + '\n';
+    text += fmt::format("property {} {}\n", type, name);
   return text + "property int node\nproperty int part\nelement face " +
          std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
 }
@@ -134,7 +134,7 @@ std::string obj_of(const ExportMesh& mesh, const ExportFrame& frame) {
       text += "o " + (part < 0 ? "person" : printable(mesh.parts[static_cast<std::size_t>(part)])) + '\n';
     before = &triangle;
     text += 'f';
-    for (const std::uint32_t point : triangle) text += ' ' + std::to_string(point + std::uint64_t{1});
+    for (const std::uint32_t point : triangle) text += fmt::format(" {}", point + std::uint64_t{1});
     text += '\n';
   }
   return text;

@@ -102,9 +102,9 @@ class Place {
 
   void require(bool good, const std::string& wanted) const {
     if (!good)
-      fail(file_, (pointer_.empty() ? "the document" : pointer_) + " is " +
-                      printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)) + " instead of " +
-                      wanted + ": give a provenance.json that mssim wrote");
+      fail(file_, fmt::format("{} is {} instead of {}: give a provenance.json that mssim wrote",
+                              pointer_.empty() ? "the document" : pointer_,
+                              printable(value_.dump(-1, ' ', true, json::error_handler_t::replace)), wanted));
   }
 
   const std::filesystem::path& file_;

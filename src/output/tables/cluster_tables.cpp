@@ -207,7 +207,7 @@ std::vector<Cell> cells_of(const ClusterRows& rows, const ClusterRow& cluster_ro
     return value ? Cell(fmt::format("{:.2f}", *value)) : Cell();
   };
   std::string label = "`" + row.backend + "`";
-  if (cluster_row.scene.times > 1) label += " on `" + row.scene + "`";
+  if (cluster_row.scene.times > 1) label += fmt::format(" on `{}`", row.scene);
   Cell interval, bytes, messages, model;
   if (ms) {
     interval = interval_text(*row.ms_per_step_low, *row.ms_per_step_high);
@@ -260,7 +260,7 @@ std::string links_of(const ClusterRows& rows) {
   const auto range = [](const std::vector<double>& values) {
     const auto [low, high] = std::ranges::minmax(values);
     const std::string first = three_digits(low), last = three_digits(high);
-    return first == last ? first : first + " to " + last;
+    return first == last ? first : fmt::format("{} to {}", first, last);
   };
   return "A message of 8 bytes to a neighbour took " + range(latencies) + " µs, one of 64 KiB went with " +
          range(bandwidths) + " GB/s while another one came";
@@ -296,7 +296,7 @@ Document page_of(const ClusterRows& rows, RowPointers pointers, const Provenance
         rows.all(), [&](const ClusterRow& row) { return row.scene.base == family.first && !is_weak(row); });
     const std::string nodes = base == rows.all().end() ? "" : grouped(base->row->nodes) + " nodes";
     const std::string name = std::string(family.first) + ", " + std::string(family.second) + ": ";
-    add_section(family, name + nodes + " for all processes (strong scaling)",
+    add_section(family, fmt::format("{}{} for all processes (strong scaling)", name, nodes),
                 [](const ClusterRow& row) { return !is_weak(row); });
     const bool has_weak = std::ranges::any_of(
         rows.all(), [&](const ClusterRow& row) { return row.scene.base == family.first && is_weak(row); });
@@ -402,7 +402,7 @@ std::string where(const std::vector<Estimate>& estimates, const Network& network
                   const Pays& pays) {
   for (const Estimate& estimate : estimates)
     if (estimate.network == &network && estimate.side == side && pays(estimate))
-      return "from " + grouped(static_cast<std::uint64_t>(estimate.machines)) + " machines on";
+      return fmt::format("from {} machines on", grouped(static_cast<std::uint64_t>(estimate.machines)));
   return "nowhere up to " + grouped(machine_counts.back());
 }
 
@@ -449,18 +449,17 @@ ResultTable cluster_estimates(const ClusterRows& rows, const ClusterRows::Machin
   const std::vector<Estimate> estimates = estimates_of(machine, stages);
   Document page{
       Heading{1, "Estimated: many machines, larger cloths"},
-      Paragraph{"Nothing on this page was measured but the speed of one machine: " + made_by(provenance) +
-                ". Its " + pluralize(static_cast<std::uint64_t>(measured.row->threads), "processor") +
-                " together took " + three_digits(1e9 * measured.node_stage_s * stages) +
-                " ns a node and step of `" + measured.row->integrator + "` (`" + measured.row->backend +
-                "`, `" + measured.row->scene + "`). A machine of this page has " +
-                std::to_string(processors) +
-                " processors, each as fast, and sends to its neighbours as such a network usually does. The "
-                "model is that of cluster.md, which holds it against measured times. *Columns*: each machine "
-                "has some columns of the cloth, as `mpi` does. *Blocks*: some rows and columns. Both with as "
-                "many steps between two exchanges, up to four stages, as take the least time. *Efficiency*: "
-                "against a step without messages. A line - is where a part would be narrower than what its "
-                "neighbours repeat of it."}};
+      Paragraph{fmt::format(
+          "Nothing on this page was measured but the speed of one machine: {}. Its {} together took {} ns a "
+          "node and step of `{}` (`{}`, `{}`). A machine of this page has {} processors, each as fast, and "
+          "sends to its neighbours as such a network usually does. The model is that of cluster.md, which "
+          "holds it against measured times. *Columns*: each machine has some columns of the cloth, as `mpi` "
+          "does. *Blocks*: some rows and columns. Both with as many steps between two exchanges, up to four "
+          "stages, as take the least time. *Efficiency*: against a step without messages. A line - is where "
+          "a part would be narrower than what its neighbours repeat of it.",
+          made_by(provenance), pluralize(static_cast<std::uint64_t>(measured.row->threads), "processor"),
+          three_digits(1e9 * measured.node_stage_s * stages), measured.row->integrator, measured.row->backend,
+          measured.row->scene, processors)}};
   for (const Network& network : networks) {
     BulletList list;
     for (const double side : cloth_sides)

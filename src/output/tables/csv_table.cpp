@@ -65,9 +65,9 @@ CsvTable::CsvTable(std::string name, std::string_view text) : name_(std::move(na
 void CsvTable::require_columns(const std::vector<std::string_view>& columns) const {
   for (std::size_t column = 0; column < columns.size(); ++column)
     if (column >= header_.size() || header_[column] != columns[column])
-      throw CsvError(name_ + ", line 1: column " + std::to_string(column + 1) + " is " +
-                     (column < header_.size() ? "\"" + printable(header_[column]) + "\"" : "missing") +
-                     " instead of \"" + std::string(columns[column]) + "\"; give a file that mssim wrote");
+      throw CsvError(
+          "{}, line 1: column {} is {} instead of \"{}\"; give a file that mssim wrote", name_, column + 1,
+          column < header_.size() ? "\"" + printable(header_[column]) + "\"" : "missing", columns[column]);
 }
 
 std::size_t CsvTable::column(std::string_view name) const {
@@ -78,8 +78,9 @@ std::size_t CsvTable::column(std::string_view name) const {
 }
 
 CsvError CsvTable::complaint(std::size_t record, std::size_t column, const std::string& what) const {
-  return CsvError{name_ + ", line " + std::to_string(records_[record].line) + ", column " +
-                  printable(header_[column]) + ": \"" + printable(text(record, column)) + "\" " + what};
+  return CsvError{
+      "{}, line {}, column {}: \"{}\" {}", name_, records_[record].line, printable(header_[column]),
+      printable(text(record, column)),     what};
 }
 
 double CsvTable::number(std::size_t record, std::size_t column) const {

@@ -151,8 +151,8 @@ class PaperTable {
       if (!has(integrator.name)) continue;
       const std::string evaluations =
           pluralize(static_cast<std::uint64_t>(integrator.force_evaluations), "force evaluation");
-      text.insert(text.end(), {Heading{2, integrator.name + ": " + evaluations +
-                                              " a step, beside the published " + integrator.paper_name},
+      text.insert(text.end(), {Heading{2, fmt::format("{}: {} a step, beside the published {}",
+                                                      integrator.name, evaluations, integrator.paper_name)},
                                times(integrator)});
     }
     const std::vector<const ResultRow*> shown = shown_rows();

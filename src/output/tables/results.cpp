@@ -56,8 +56,8 @@ const ResultRow* find_row(RowPointers rows, std::string_view scene, std::string_
 
 std::string made_by(const Provenance& provenance) {
   const BuildInfo& build = provenance.build;
-  return "mssim " + build.version + ", commit " + build.commit.substr(0, 12) +
-         (build.dirty ? " with uncommitted changes" : "") + "; " + provenance.started_utc;
+  return fmt::format("mssim {}, commit {}{}; {}", build.version, build.commit.substr(0, 12),
+                     build.dirty ? " with uncommitted changes" : "", provenance.started_utc);
 }
 
 Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
@@ -69,9 +69,9 @@ Paragraph measured_on(RowPointers rows, const Provenance& provenance) {
   const auto number = [](int of, std::string_view noun) {
     return pluralize(static_cast<std::uint64_t>(of), noun);
   };
-  std::string text = "Measured on " + cpu_name(provenance.machine) + " (" +
-                     number(provenance.machine.logical_cpus, "logical CPU") + ") with " +
-                     number(provenance.threads, "thread");
+  std::string text = fmt::format("Measured on {} ({}) with {}", cpu_name(provenance.machine),
+                                 number(provenance.machine.logical_cpus, "logical CPU"),
+                                 number(provenance.threads, "thread"));
   for (const std::string_view set : instruction_sets)
     if (!set.empty()) text.append("; ").append(set).append(" vectors");
   for (const std::string_view device : devices)

@@ -235,8 +235,8 @@ ColumnFactor factorise(const StepMatrix& matrix) {
   upper.selfadjointView<Eigen::Upper>() = whole.selfadjointView<Eigen::Upper>().twistedBy(order.inverse());
   const std::size_t entries = count_entries(upper);
   if (entries > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-    throw Unsupported("the factor of its global step would have " + std::to_string(entries) +
-                      " entries, more than Eigen can number");
+    throw Unsupported("the factor of its global step would have {} entries, more than Eigen can number",
+                      entries);
   // Eigen's factor and this one, and what a backend makes of it.
   require_factor_memory(entries, 2 * (sizeof(double) + sizeof(Index)) + sizeof(double));
   const Eigen::SimplicialLLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<Index>> cholesky(upper);

@@ -222,8 +222,8 @@ void take_step(Equation& equation, const Integrator& integrator, const SolverGoa
 /// What a reader of its times must know of a solver that has met a limit; else nothing.
 inline std::string note_of(const SolverWork& work) {
   if (work.unfinished_steps == 0) return {};
-  return "the solver ended before its tolerance in " + std::to_string(work.unfinished_steps) + " of " +
-         pluralize(work.steps, "step");
+  return fmt::format("the solver ended before its tolerance in {} of {}", work.unfinished_steps,
+                     pluralize(work.steps, "step"));
 }
 
 }  // namespace mssim
