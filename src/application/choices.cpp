@@ -8,12 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "backends/described/backend_description.h"
 #include "backends/devices/drivers.h"

@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <iostream>
 #include <numeric>
-#include <string>
 #include <string_view>
 #include <utility>
 
 #include "backends/devices/drivers.h"
 #include "platform/files.h"
 #include "platform/machine.h"
-#include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -5,15 +5,11 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
 #include <string_view>
 
-#include "application/choices.h"
 #include "application/console.h"
 #include "application/outputs.h"
 #include "application/prepared_scene.h"
-#include "guide/guide.h"
 #include "output/folders/result_folder.h"
 #include "output/guide/guide_tables.h"
 #include "output/tables/table.h"

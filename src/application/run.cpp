@@ -7,23 +7,15 @@
 #include <iomanip>
 #include <iostream>
 #include <limits>
-#include <memory>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <vector>
 
-#include "application/choices.h"
-#include "application/console.h"
 #include "application/outputs.h"
-#include "application/prepared_scene.h"
 #include "backends/backends.h"
 #include "bench/estimates.h"
 #include "bench/verification/verification.h"
 #include "garment/fitting/fitting.h"
 #include "garment/stepping/dressing_backend.h"
 #include "output/tables/table.h"
-#include "output/traces/energy_curve.h"
 #include "platform/files.h"
 #include "platform/machine.h"
 #include "platform/process.h"

@@ -10,9 +10,7 @@
 #include "backends/implicit/implicit.h"
 #include "backends/opencl/opencl.h"
 #include "backends/openmp/openmp.h"
-#include "backends/process/process_backend.h"
 #include "backends/spring_list/list_backends.h"
-#include "garment/stepping/dressing_backend.h"
 #include "text/text.h"
 
 namespace mssim {

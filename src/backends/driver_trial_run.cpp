@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <cstdint>
 #include <exception>
 
 #include "backends/backends.h"

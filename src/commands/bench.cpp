@@ -6,9 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "application/bench/bench_plan.h"

@@ -5,8 +5,6 @@
 #include <memory>
 #include <optional>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 

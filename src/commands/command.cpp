@@ -4,11 +4,9 @@
 #include <array>
 #include <csignal>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <map>
 #include <new>
-#include <string>
 #include <vector>
 
 #include "application/outputs.h"

@@ -2,7 +2,6 @@
 #include <iostream>
 #include <memory>
 #include <sstream>
-#include <string>
 #include <vector>
 
 #include "application/bench/ab_comparison.h"

@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "application/console.h"

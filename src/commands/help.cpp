@@ -1,6 +1,5 @@
 #include <iostream>
 #include <memory>
-#include <string>
 
 #include "commands/command.h"
 #include "text/error.h"

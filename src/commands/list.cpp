@@ -4,8 +4,6 @@
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "application/bench/suites.h"

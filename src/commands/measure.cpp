@@ -5,8 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
-#include <string>
 #include <utility>
 
 #include "application/choices.h"

@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "backends/backends.h"

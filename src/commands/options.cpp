@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <numeric>
 
-#include "application/choices.h"
-#include "application/run.h"
 #include "picture/picture.h"
 #include "scene/scene_file.h"
 #include "text/error.h"

@@ -7,9 +7,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <optional>
-#include <span>
-#include <string>
 #include <system_error>
 #include <vector>
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
-#include <string>
 
 #include "platform/machine.h"
 #include "text/text.h"

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "guide/guide.h"
-#include "guide/limits.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
-#include <string>
 #include <unordered_map>
 
 #include "geometry/geometry.h"

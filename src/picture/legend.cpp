@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
-#include <vector>
 
 #include "picture/lettering.h"
 #include "text/text.h"

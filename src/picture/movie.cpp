@@ -5,7 +5,6 @@
 #include <webp/mux.h>
 
 #include <cmath>
-#include <cstddef>
 #include <stdexcept>
 
 namespace mssim {

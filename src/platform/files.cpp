@@ -11,15 +11,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <optional>
 #include <sstream>
-#include <stdexcept>
-#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {

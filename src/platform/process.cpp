@@ -5,16 +5,11 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <deque>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <thread>

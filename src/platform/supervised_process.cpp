@@ -14,7 +14,6 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
-#include <system_error>
 
 #include "platform/files.h"
 #include "platform/machine.h"

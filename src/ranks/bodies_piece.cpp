@@ -1,16 +1,10 @@
-#include <algorithm>
 #include <cstring>
-#include <memory>
 #include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
-#include "ranks/messages.h"
 #include "ranks/piece.h"
 #include "ranks/shares.h"
 #include "scene/scene_kinds.h"

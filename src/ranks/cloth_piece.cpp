@@ -1,15 +1,9 @@
-#include <algorithm>
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "backends/layouts/band_grid.h"
-#include "ranks/messages.h"
 #include "ranks/piece.h"
 #include "scene/builders.h"
 #include "text/text.h"

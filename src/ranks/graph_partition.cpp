@@ -1,13 +1,10 @@
 #include <fmt/core.h>
 #include <metis.h>
 
-#include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <string>
 
-#include "backends/layouts/sliced_graph.h"
 #include "backends/layouts/spring_graph.h"
 #include "ranks/shares.h"
 

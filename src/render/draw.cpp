@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <system_error>
-#include <utility>
 
 #include "platform/machine.h"
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <utility>
 
 #include "output/folders/provenance_file.h"

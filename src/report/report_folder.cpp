@@ -1,11 +1,9 @@
 #include <algorithm>
-#include <string_view>
 #include <system_error>
 
 #include "garment/output/garment_tables.h"
 #include "output/folders/provenance_file.h"
 #include "output/folders/result_folder.h"
-#include "output/tables/results.h"
 #include "platform/files.h"
 #include "report/report.h"
 #include "text/text.h"

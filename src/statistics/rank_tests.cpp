@@ -1,13 +1,10 @@
 #include "statistics/rank_tests.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
-#include <vector>
 
 #include "statistics/statistics.h"
 

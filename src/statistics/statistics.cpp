@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
-#include <vector>
 
 #include "statistics/rank_tests.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <random>
 #include <thread>
@@ -13,10 +12,7 @@
 #include "application/bench/bench_plan.h"
 #include "application/console.h"
 #include "backends/interface/backend.h"
-#include "bench/results/comparison.h"
-#include "output/tables/results.h"
 #include "platform/machine.h"
-#include "platform/process.h"
 #include "text/error.h"
 #include "text/text.h"
 

@@ -1,18 +1,14 @@
 #include "application/bench/bench_plan.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <optional>
-#include <string>
 #include <utility>
 #include <variant>
 
 #include "application/bench/bench_results.h"
 #include "application/bench/suites.h"
-#include "application/choices.h"
 #include "application/outputs.h"
 #include "bench/windows/windows.h"
 #include "integrators/stability.h"

@@ -1,7 +1,6 @@
 #include "application/bench/bench_results.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <set>
 #include <system_error>
@@ -10,7 +9,6 @@
 #include "bench/results/comparison.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
-#include "output/folders/result_folder.h"
 #include "text/error.h"
 #include "text/text.h"
 

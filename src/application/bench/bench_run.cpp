@@ -2,22 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "application/console.h"
 #include "application/outputs.h"
-#include "application/prepared_scene.h"
 #include "application/run.h"
-#include "bench/bench_scene.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "output/traces/h5md_trace.h"
 #include "platform/files.h"
 #include "platform/process.h"
-#include "text/error.h"
 
 namespace mssim {
 

@@ -1,16 +1,13 @@
 #include "application/bench/suites.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 
 #include "application/choices.h"
 #include "application/guide_run.h"
 #include "backends/accumulation/accumulation_methods.h"
-#include "backends/backends.h"
 #include "garment/output/garment_tables.h"
 #include "integrators/all_integrators.h"
-#include "output/tables/suite_tables.h"
 #include "platform/machine.h"
 
 namespace mssim {

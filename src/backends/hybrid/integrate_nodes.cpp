@@ -7,7 +7,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <array>
 #include <type_traits>
 
 #include "backends/hybrid/integrate_nodes.h"

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "backends/interface/backend.h"
 
 namespace mssim {

@@ -2,9 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <map>
-
 namespace mssim {
 namespace {
 

@@ -4,9 +4,7 @@
 #include <array>
 #include <bit>
 #include <compare>
-#include <limits>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <variant>
 

@@ -1,10 +1,7 @@
 #include "backends/layouts/sliced_graph.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
-#include <string>
-#include <utility>
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/spring_graph.h"

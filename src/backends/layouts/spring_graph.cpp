@@ -1,8 +1,6 @@
 #include "backends/layouts/spring_graph.h"
 
-#include <algorithm>
 #include <bit>
-#include <numeric>
 
 namespace mssim {
 namespace {

@@ -3,8 +3,6 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <utility>
 
-#include "backends/layouts/sliced_graph.h"
 #include "backends/threads/chunk_tickets.h"
 
 namespace mssim {

@@ -10,13 +10,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
-#include "backends/interface/backend.h"
-#include "platform/process.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "hdf5/hdf5.h"
-#include "platform/files.h"
 #include "text/text.h"
 
 namespace mssim {

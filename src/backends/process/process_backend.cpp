@@ -11,12 +11,10 @@
 #include <limits>
 #include <optional>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "backends/process/conversation.h"
 #include "backends/process/exchanged_files.h"

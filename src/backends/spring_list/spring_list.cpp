@@ -1,7 +1,6 @@
 #include "backends/spring_list/spring_list.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "backends/interface/backend.h"
 

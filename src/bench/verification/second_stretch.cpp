@@ -1,16 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
 #include <set>
 #include <sstream>
-#include <utility>
-#include <vector>
 
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
-#include "model/system.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -4,12 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <sstream>
-#include <string_view>
-#include <utility>
-
-#include "text/text.h"
 
 namespace mssim {
 

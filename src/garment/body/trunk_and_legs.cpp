@@ -1,7 +1,6 @@
 #include "garment/body/trunk_and_legs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>

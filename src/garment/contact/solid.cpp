@@ -1,7 +1,5 @@
 #include "garment/contact/solid.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cstdint>
-#include <vector>
 
 #include "garment/layers/cloth_contacts.h"
 

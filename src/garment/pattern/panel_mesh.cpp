@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <string>
 
 #include "garment/pattern/garment_build.h"
 #include "geometry/geometry.h"
-#include "text/error.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,8 +1,5 @@
 #include <array>
-#include <optional>
-#include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "garment/body/stance.h"
@@ -10,7 +7,6 @@
 #include "geometry/geometry.h"
 #include "geometry/surface.h"
 #include "mesh/surface_file.h"
-#include "scene/fields/fields.h"
 #include "text/error.h"
 #include "text/text.h"
 

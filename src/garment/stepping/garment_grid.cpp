@@ -3,7 +3,6 @@
 #include <map>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "backends/interface/backend.h"

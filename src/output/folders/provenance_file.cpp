@@ -1,6 +1,5 @@
 #include "output/folders/provenance_file.h"
 
-#include <cmath>
 #include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <iterator>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "garment/output/garment_tables.h"

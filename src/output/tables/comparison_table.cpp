@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include "output/tables/results.h"
-#include "output/tables/table.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -1,6 +1,5 @@
 #include "output/tables/results.h"
 
-#include <algorithm>
 #include <set>
 
 #include "text/text.h"

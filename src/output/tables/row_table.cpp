@@ -1,7 +1,4 @@
-#include <algorithm>
-#include <array>
 #include <climits>
-#include <cstdint>
 #include <cstdio>
 #include <utility>
 

@@ -11,7 +11,6 @@
 #include "backends/implicit/constraints/step_constraints.h"
 #include "backends/implicit/nodes/plain_nodes.h"
 #include "backends/implicit/nodes/solvers.h"
-#include "backends/layouts/spring_graph.h"
 #include "backends/vectors/step_kernels.h"
 
 namespace mssim {

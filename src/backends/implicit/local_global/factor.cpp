@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "backends/interface/backend.h"
