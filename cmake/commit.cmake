@@ -1,6 +1,6 @@
-# Writes the commit of the working tree and whether it is dirty into OUTPUT, from src/bench/machine/commit.h.in. Run by every
-# build, because a commit changes without CMake noticing; the file keeps its time stamp while its text stays the same, so
-# that nothing is rebuilt then.
+# Writes the commit of the working tree and whether it is dirty into OUTPUT, from OUTPUT.in. Run by every build, because a
+# commit changes without CMake noticing; the file keeps its time stamp while its text stays the same, so that nothing is rebuilt
+# then.
 #
 #   cmake -D SOURCE=FOLDER -D OUTPUT=FILE -P commit.cmake
 
@@ -30,4 +30,4 @@ if(git)
   endif()
 endif()
 
-configure_file(${SOURCE}/src/bench/machine/commit.h.in ${OUTPUT} @ONLY)
+configure_file(${OUTPUT}.in ${OUTPUT} @ONLY)

@@ -4,10 +4,9 @@
 set -euo pipefail
 
 # The rule. A room is a folder with files of its own; a row names one and the rooms that it may include beside itself,
-# all of which stand above it. `mssim` are the headers that the build generates; files in src/ itself are rooms of their own.
+# all of which stand above it. Files in src/ itself are rooms of their own.
 # src/starters is what users get to write a backend from; no room of mssim.
 rule='
-mssim
 kernels
 text
 statistics
@@ -58,7 +57,7 @@ garment/fitting       statistics laws model garment/layers garment/stepping
 
 ranks                 text platform integrators model scene/spec scene backends/interface backends/vectors backends/layouts backends/openmp
 
-bench/machine         mssim text platform
+bench/machine         text platform
 bench/results         text statistics bench/machine
 bench/roofline        platform integrators model
 bench/verification    text statistics laws integrators model backends/interface backends
@@ -208,7 +207,7 @@ printf '#include <vector>\n#include "model/b.h"\n  #  include "scene/spec/scene_
   >"$made_up/src/model/a.h"
 printf '#include "bench/results/result.h"\n#include "bench/job/plan.h"\n#include "../bench/plan.h"\n' \
   >"$made_up/src/output/tables/a.cpp"
-printf '#include "mssim/version.h"\n#include <hwy/highway.h>\n' >"$made_up/src/bench/machine/a.cpp"
+printf '#include "text/text.h"\n#include <hwy/highway.h>\n' >"$made_up/src/bench/machine/a.cpp"
 printf '#include "scene/scene_file.h"\n#include "commands/command.h"\n' >"$made_up/src/application/a.cpp"
 printf '#include <vector>\n' >"$made_up/src/gadgets/a.h"
 mkdir -p "$made_up/src/bench/verification"
