@@ -12,7 +12,6 @@
 #include "backends/interface/backend.h"
 #include "bench/machine/provenance.h"
 #include "integrators/integrator.h"
-#include "output/tables/table.h"
 
 namespace mssim {
 

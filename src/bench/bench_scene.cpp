@@ -18,7 +18,6 @@
 #include "garment/bench/garment_bench.h"
 #include "garment/stepping/dressing_backend.h"
 #include "platform/machine.h"
-#include "statistics/statistics.h"
 #include "text/text.h"
 
 namespace mssim {

@@ -12,7 +12,6 @@
 #include "application/bench/bench_results.h"
 #include "application/bench/bench_run.h"
 #include "application/bench/suites.h"
-#include "application/choices.h"
 #include "application/console.h"
 #include "application/guide_run.h"
 #include "application/prepared_scene.h"

@@ -1,6 +1,5 @@
 #include <memory>
 
-#include "application/choices.h"
 #include "application/guide_run.h"
 #include "commands/command.h"
 #include "commands/options.h"

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "application/choices.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "garment/body/body_profile.h"

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "platform/machine.h"
 #include "text/text.h"

@@ -14,7 +14,6 @@
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
-#include "laws/host_laws.h"
 #include "platform/machine.h"
 #include "text/text.h"
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "backends/interface/backend.h"
-
 namespace mssim {
 
 template <class Real>
