@@ -44,10 +44,9 @@ nothing_left "a right program"
   fail "a backend that was asked for has no row, and the bench is content"
 grep -q 'unsupported: it has no implicit-euler' implicit/timings.csv || fail "a program without implicit integrators is not told so"
 
-# What programs do wrong: each has its sentence, and the rows beside it are measured.
-mistakes=(unsupported unavailable fails-early old-protocol many-notes long-line crashes hangs-early never-connects ends-early exits
-  hangs ignores-signals leaves-children nonsense binary negative-time fails closes connects-twice done-twice nan writes-nothing
-  too-few cuts-state floods tells-time idle lazy huge-costs)
+# What programs do wrong (more of it in tests/backends/process): each has its sentence, and the rows beside it are measured.
+mistakes=(unsupported unavailable fails-early many-notes crashes hangs-early ends-early exits hangs ignores-signals leaves-children
+  binary nan floods tells-time idle lazy huge-costs)
 for mistake in "${mistakes[@]}"; do describe "$mistake"; done
 ends 1 "${bench[@]}" --backend "serial$(printf ',%s' "${mistakes[@]}")" --backend-folder backends --backend-limit 2 \
   --out wrong
@@ -62,29 +61,16 @@ row serial ,true,ok,
 row unsupported ',unsupported: it has only red springs,'
 row unavailable ',unavailable: there is no such chip here,'
 row fails-early 'failed: fails-early failed at ""prepare"": the licence has run out'
-row old-protocol 'failed: old-protocol answered ""ready 0"" to ""prepare"", where device, threads,'
 row many-notes 'failed: many-notes answered ""prepare"" with more than 100 lines'
-row long-line 'failed: long-line answered ""prepare"" with a line of more than 4096 bytes'
 row crashes 'failed: crashes was ended by signal 11 (Segmentation fault) before it answered ""prepare""'
 row hangs-early 'failed: hangs-early did not answer ""prepare"" within 2 s'
-row never-connects 'failed: never-connects did not connect to MSSIM_SOCKET within 2 s'
 row ends-early 'failed: ends-early ended with exit code 0 before it connected to MSSIM_SOCKET'
 row exits 'failed: exits ended with exit code 3 before it answered ""step 1""; its last line: out of cake'
 for mistake in hangs ignores-signals leaves-children; do
   row "$mistake" "failed: $mistake did not answer \"\"step 1\"\" within 2 s"
 done
-row nonsense 'failed: nonsense answered ""hello"" to ""step 1"", where done or failed is expected'
 row binary 'to ""step 1"", where done or failed is expected'
-row negative-time 'failed: negative-time answered ""done -1"" to ""step 1"", where done or failed is expected'
-row fails 'failed: fails failed at ""step 1"": a spring has snapped'
-row closes 'failed: closes closed its connection before it answered ""step 1""'
-row connects-twice 'failed: connects-twice connected a second time before it answered ""step 1""'
-# The second answer may come when more steps are asked for: then it is that request's, which is answered twice.
-row done-twice 'failed: done-twice sent ""done"" after its answer to ""step '
 row nan 'failed: blew up at step 1 (t = 5e-05 s): node 7 is not finite'
-row writes-nothing 'failed: writes-nothing wrote 0 of the 5000 positions and velocities of the state file'
-row too-few 'failed: too-few wrote 4999 of the 5000 positions and velocities of the state file'
-row cuts-state 'failed: cuts-state left a state file of 119976 bytes instead of 120000'
 row floods ,true,ok,
 row tells-time ,true,ok,
 row idle 'failed: position error '

@@ -211,10 +211,8 @@ class Mistakes {
     if (is("unsupported")) connection_.send("unsupported it has only red springs\n");
     if (is("unavailable")) connection_.send("unavailable there is no such chip here\n");
     if (is("fails-early")) connection_.send("failed the licence has run out\n");
-    if (is("old-protocol")) connection_.send("ready 0\n");
     if (is("many-notes"))
       for (int i = 0; i < 1000; ++i) connection_.send("note again\n");
-    if (is("long-line")) connection_.send(std::string(100000, 'x'));
     if (is("crashes")) std::raise(SIGSEGV);
     if (is("hangs-early")) ::pause();
     if (is("tells-costs") || is("many-costs") || is("huge-costs")) connection_.send("tells costs\n");
@@ -230,19 +228,12 @@ class Mistakes {
     if (is("hangs") || is("ignores-signals") || is("leaves-children")) ::pause();
     if (is("nonsense")) connection_.send("hello\n");
     if (is("binary")) connection_.send(std::string("\x01\xff\0\n", 4));
-    if (is("negative-time")) connection_.send("done -1\n");
     if (is("fails")) connection_.send("failed a spring has snapped\n");
     if (is("closes")) {
       connection_.close();
       ::pause();
     }
-    if (is("connects-twice")) {
-      new Connection;
-      ::pause();
-    }
-    // Both at once: of a second one that comes late, mssim may already have asked for the next.
-    if (is("done-twice")) connection_.send("done\ndone\n");
-    return is("done-twice") || is("nonsense") || is("binary") || is("negative-time") || is("fails");
+    return is("nonsense") || is("binary") || is("fails");
   }
 
  private:
@@ -262,11 +253,9 @@ void write_state(const std::string& name, Simulation& simulation, const Mistakes
   std::FILE* file = std::fopen(name.c_str(), mistakes.is("cuts-state") ? "w" : "r+");
   const std::size_t nodes = simulation.position().size();
   if (mistakes.is("nan")) simulation.position()[7][1] = std::numeric_limits<double>::quiet_NaN();
-  if (!mistakes.is("writes-nothing")) {
-    const std::size_t written = mistakes.is("too-few") || mistakes.is("cuts-state") ? nodes - 1 : nodes;
-    std::fwrite(simulation.position().data(), sizeof(double), 3 * nodes, file);
-    std::fwrite(simulation.velocity().data(), sizeof(double), 3 * written, file);
-  }
+  const std::size_t written = mistakes.is("too-few") || mistakes.is("cuts-state") ? nodes - 1 : nodes;
+  std::fwrite(simulation.position().data(), sizeof(double), 3 * nodes, file);
+  std::fwrite(simulation.velocity().data(), sizeof(double), 3 * written, file);
   std::fclose(file);
 }
 
@@ -281,7 +270,6 @@ void read_state(const std::string& name, Simulation& simulation) {
 }
 
 void serve(const std::string& mistake) {
-  if (mistake == "never-connects") ::pause();
   if (mistake == "ends-early") std::exit(0);
   Connection connection;
   Mistakes mistakes(mistake, connection);
