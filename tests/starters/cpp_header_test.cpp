@@ -6,9 +6,9 @@
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
-#include "laws/host_laws.h"
 #include "src/starters/cpp/mssim_backend.h"
 #include "tests/support/systems.h"
+#include "tests/support/textbook_force.h"
 
 namespace mssim {
 namespace {
@@ -75,9 +75,7 @@ void expect_same_steps(const System& system, int steps) {
           Vec3d{x[second][0], x[second][1], x[second][2]} - Vec3d{x[first][0], x[first][1], x[first][2]};
       const Vec3d u =
           Vec3d{v[second][0], v[second][1], v[second][2]} - Vec3d{v[first][0], v[first][1], v[first][2]};
-      const double stiffness = copy.stiffness[s];
-      const Vec3d force =
-          spring_pull(dot(d, d), dot(u, d), stiffness, stiffness * copy.rest_length[s], copy.damping[s]) * d;
+      const Vec3d force = textbook_force({copy.stiffness[s], copy.damping[s]}, copy.rest_length[s], d, u);
       const std::array<double, 3> f{force.x, force.y, force.z};
       for (std::size_t k = 0; k < 3; ++k) {
         a[first][k] += f[k] / copy.mass[first];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/system.h"
+#include "tests/support/textbook_force.h"
 
 namespace mssim {
 
@@ -13,12 +14,10 @@ namespace mssim {
 inline std::vector<Vec3d> forces(const System& system, const State& state) {
   std::vector<Vec3d> force(system.nodes());
   for (const Spring& spring : system.springs) {
-    const auto [stiffness, damping] = system.materials[spring.kind];
     const Vec3d d = state.position[spring.second] - state.position[spring.first];
     const Vec3d u = state.velocity[spring.second] - state.velocity[spring.first];
-    const Vec3d n = 1 / length(d) * d;
     const Vec3d f =
-        (stiffness * (length(d) - static_cast<double>(spring.rest_length)) + damping * dot(u, n)) * n;
+        textbook_force(system.materials[spring.kind], static_cast<double>(spring.rest_length), d, u);
     force[spring.first] += f;
     force[spring.second] -= f;
   }

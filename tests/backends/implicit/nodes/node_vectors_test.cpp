@@ -14,6 +14,7 @@
 
 #include "backends/implicit/nodes/node_vectors-inl.h"
 #include "tests/support/systems.h"
+#include "tests/support/textbook_force.h"
 
 #ifndef MSSIM_ACCELERATION_KERNEL  // once, before the code of the first instruction set
 #define MSSIM_ACCELERATION_KERNEL
@@ -70,15 +71,13 @@ PlainAccelerations plain_accelerations(const System& system) {
   std::vector<double> rounding(system.nodes(), 0);
   for (const Spring& spring : system.springs) {
     const Vec3d d = x[spring.second] - x[spring.first], u = v[spring.second] - v[spring.first];
-    const double length = std::sqrt(dot(d, d));
     const SpringMaterial& material = system.materials[spring.kind];
-    const double pull = material.stiffness * (length - static_cast<double>(spring.rest_length)) +
-                        material.damping * dot(u, d) / length;
+    const Vec3d force = textbook_force(material, static_cast<double>(spring.rest_length), d, u);
     // The force is the difference of two of about stiffness times length, each after three roundings.
     for (const std::uint32_t end : {spring.first, spring.second})
-      rounding[end] += 6 * 0x1p-24 * material.stiffness * length / system.node_mass[end];
-    a[spring.first] += pull / length / system.node_mass[spring.first] * d;
-    a[spring.second] += -pull / length / system.node_mass[spring.second] * d;
+      rounding[end] += 6 * 0x1p-24 * material.stiffness * length(d) / system.node_mass[end];
+    a[spring.first] += 1 / system.node_mass[spring.first] * force;
+    a[spring.second] += -1 / system.node_mass[spring.second] * force;
   }
   for (std::size_t node = 0; node < system.nodes(); ++node)
     a[node] += Vec3d{0, -system.gravity, 0} - system.viscous_damping * v[node];
