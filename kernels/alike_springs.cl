@@ -8,22 +8,23 @@
 
 /* nodes: slices (alike_slices.h). forces: [springs][x y z][16], accelerations (m/s^2) of the first ends; on
  * the second ends they are the opposite. springs: first slice, second slice, stiffness times rest length /
- * mass (the bits of a float, m/s^2), and an index into shapes: stiffness / mass (1/s^2), damping / mass
- * (1/s). A work-item takes `count` parts of springs, MSSIM_LANES lanes each, up to parts_end. */
+ * mass (the bits of a float, m/s^2), and an index into shapes: constants divided by a mass. A work-item takes
+ * `count` parts of springs, MSSIM_LANES lanes each, up to parts_end. */
 __kernel void alike_spring_forces(__global const float* restrict nodes, __global float* restrict forces,
                                   __global const uint4* restrict springs,
-                                  __global const float2* restrict shapes, uint parts_end, uint count) {
+                                  __global const struct SpringFloats* restrict shapes, uint parts_end,
+                                  uint count) {
   const size_t begin = get_global_id(0) * count;
   const size_t end = min(begin + count, (size_t)parts_end);
   for (size_t part = begin; part < end; ++part) {
     const size_t number = part / spring_parts, lane = part % spring_parts * MSSIM_LANES;
     const uint4 spring = springs[number];
-    const float2 shape = shapes[spring.w];
+    const struct SpringFloats shape = shapes[spring.w];
     const Node first = load_node_of_slice(nodes + slice_floats * (size_t)spring.x + lane);
     const Node second = load_node_of_slice(nodes + slice_floats * (size_t)spring.y + lane);
     const Vector d = minus(second.x, first.x);
     const Real pull = spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d),
-                                  (Real)(shape.x), (Real)(as_float(spring.z)), (Real)(shape.y));
+                                  spring_in_every_lane(shape, (Real)(as_float(spring.z))));
     store_to_slice(times(pull, d), forces + number * 3 * MSSIM_SLICE + lane);
   }
 }

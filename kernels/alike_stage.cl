@@ -5,10 +5,10 @@
  * A pair is an array of slices (alike_slices.h). Constants are per unit of node mass.
  */
 typedef struct {
-  __global const uint4* slices;     /* where its springs begin and end, its bodies' first slice, 1: pinned */
-  __global const uint2* springs;    /* the neighbour's slice, from the bodies' first one on; stiffness times
-                                       rest length, m/s^2, the bits of a float */
-  __global const float2* constants; /* of a slice: stiffness, 1/s^2, and damping, 1/s */
+  __global const uint4* slices;  /* where its springs begin and end, its bodies' first slice, 1: pinned */
+  __global const uint2* springs; /* the neighbour's slice, from the bodies' first one on; stiffness times
+                                    rest length, m/s^2, the bits of a float */
+  __global const struct SpringFloats* constants; /* of a slice */
 } Mesh;
 typedef const Mesh* Shape;
 
@@ -50,7 +50,7 @@ static inline void store_velocity(Vector value, __global float* pair, Tile tile,
 static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node,
                                     const Mesh* mesh) {
   const uint4 own = mesh->slices[tile.slice];
-  const float2 constants = mesh->constants[tile.slice];
+  const struct SpringFloats constants = mesh->constants[tile.slice];
   __global const float* bodies = pair + slice_floats * (size_t)own.z + tile.lane;
   Vector sum = no_vector();
   for (uint number = own.x; number < own.y; ++number) {
@@ -58,7 +58,7 @@ static inline Vector gather_springs(__global const float* restrict pair, Tile ti
     const Node other = load_node_of_slice(bodies + slice_floats * (size_t)spring.x);
     const Vector d = minus(other.x, node.x);
     const Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, node.v), d),
-                                  (Real)(constants.x), (Real)(as_float(spring.y)), (Real)(constants.y));
+                                  spring_in_every_lane(constants, (Real)(as_float(spring.y))));
     sum = times_plus(pull, d, sum);
   }
   return sum;

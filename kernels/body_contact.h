@@ -5,18 +5,8 @@
  * face bounds it far better than the face's depth, which is a flight of stairs: the signed distance from it
  * is continuous within a pixel and nearly so across its edge.
  *
- * Text for many number types like node_laws.h, after which it stands (for floor_grip, Coulomb's law). Beyond
- * the names of that file it needs in C++
- *   MSSIM_STRUCT(Name)   what stands before the braces of a struct of Reals,
- *   MSSIM_OF(Name)       the type,
- *   MSSIM_GIVES(Name)    what stands before a function that returns it;
- * OpenCL C gets them here.
+ * Text for many number types like spring_law.h; it stands after node_laws.h (for floor_grip, Coulomb's law).
  */
-#ifdef __OPENCL_VERSION__
-#define MSSIM_STRUCT(Name) struct Name
-#define MSSIM_OF(Name) struct Name
-#define MSSIM_GIVES(Name) MSSIM_INLINE struct Name
-#endif
 
 /* The record of a pixel: of each plane the unit normal, which points out of the body, and n . P (m). */
 MSSIM_STRUCT(BodyPlanes) {

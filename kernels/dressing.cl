@@ -80,8 +80,8 @@ MSSIM_INLINE Tile tile_at(int number, Block block) {
 
 /* What a spring to nodes at `away` does, N. */
 MSSIM_INLINE Vector spring_force(Vector away, Real rest, float stiffness) {
-  Real pull =
-      spring_pull(dot_product(away, away), (Real)(0.0f), (Real)(stiffness), stiffness * rest, (Real)(0.0f));
+  const struct SpringConstants undamped = {(Real)(stiffness)}; /* the others are zero */
+  Real pull = spring_pull(dot_product(away, away), (Real)(0.0f), linear_spring(undamped, rest));
   return times(select(pull, (Real)(0.0f), rest <= 0.0f), away);
 }
 

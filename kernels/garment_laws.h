@@ -1,7 +1,7 @@
 /* What a garment has besides springs, written once in the common subset of C++ and OpenCL C: a limit to the
  * elongation of its springs, and the joints of its seams.
  *
- * Text for many number types like body_contact.h, after which it stands; beyond that file's names it needs
+ * Text for many number types like spring_law.h; beyond that file's names it needs
  *   square_root(a)   correctly rounded.
  */
 

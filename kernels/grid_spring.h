@@ -11,9 +11,8 @@ typedef const struct GridParameters* Shape; /* a copy: stores to the cloth canno
 MSSIM_INLINE void add_spring(Vector* on_first, Vector* on_second, Node first, Node second, Mask there,
                              int kind, Shape grid) {
   Vector d = minus(second.x, first.x);
-  Real pull =
-      spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d), (Real)(grid->stiffness[kind]),
-                  (Real)(grid->stiffness_rest[kind]), (Real)(grid->damping[kind]));
+  Real pull = spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d),
+                          spring_in_every_lane(grid->constants[kind], (Real)(grid->stiffness_rest[kind])));
   pull = select((Real)(0.0f), pull, there);
   *on_first = times_plus(pull, d, *on_first);
   *on_second = times_plus(-pull, d, *on_second);

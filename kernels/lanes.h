@@ -59,6 +59,10 @@ static inline int any_lane(int16 mask) {
 #define MSSIM_INLINE static inline __attribute__((always_inline))
 #define MSSIM_LAW MSSIM_INLINE Real
 #define MSSIM_VECTOR_LAW MSSIM_INLINE Vector
+#define MSSIM_STRUCT(Name) struct Name
+#define MSSIM_MEMBER(name) Real name;
+#define MSSIM_OF(Name) struct Name
+#define MSSIM_GIVES(Name) MSSIM_INLINE struct Name
 #define mul_add(a, b, c) fma(a, b, c)
 #define square_root(a) sqrt(a)
 #define inverse_sqrt(a) (1.0f / sqrt(a))

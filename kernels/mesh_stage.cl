@@ -10,8 +10,7 @@ typedef struct {
   __global const uint* first_entry;     /* of a slice */
   __global const uint* neighbour;       /* [entries][MSSIM_SLICE] */
   __global const float* stiffness_rest; /* [entries][MSSIM_SLICE] m/s^2, negative: no spring */
-  __global const float* stiffness;      /* of a node, 1/s^2 */
-  __global const float* damping;        /* of a node, 1/s */
+  __global const float* constants;      /* [slices][spring_constant_count][MSSIM_SLICE] of a node's springs */
   __global const int* held;             /* 1: pinned, or no node at all */
 } Mesh;
 typedef const Mesh* Shape;
@@ -53,9 +52,9 @@ static inline void store_velocity(Vector value, __global float* pair, Tile tile,
 #define neighbour_record(lane) neighbour[lane]
 static inline Vector gather_springs(__global const float* restrict pair, Tile tile, Node node,
                                     const Mesh* mesh) {
-  const Real stiffness = load_aligned(mesh->stiffness + tile.first);
-  const Real damping = load_aligned(mesh->damping + tile.first);
   const size_t slice = tile.first / MSSIM_SLICE, lane = tile.first % MSSIM_SLICE;
+  const struct SpringConstants constants =
+      load_constants(mesh->constants + slice * spring_constant_count * MSSIM_SLICE + lane, MSSIM_SLICE);
   const uint end = mesh->first_entry[slice + 1];
   Vector sum = no_vector();
   for (uint entry = mesh->first_entry[slice]; entry < end; ++entry) {
@@ -64,8 +63,8 @@ static inline Vector gather_springs(__global const float* restrict pair, Tile ti
     const Real stiffness_rest = load_aligned(mesh->stiffness_rest + element);
     const Node other = load_records(pair, neighbour_record);
     const Vector d = minus(other.x, node.x);
-    Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, node.v), d), stiffness,
-                            stiffness_rest, damping);
+    const struct LinearSpring spring = {constants, stiffness_rest};
+    Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, node.v), d), spring);
     pull = select(pull, (Real)(0.0f), stiffness_rest < 0.0f);
     sum = times_plus(pull, d, sum);
   }

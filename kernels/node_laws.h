@@ -2,7 +2,6 @@
  * acceleration, and the floor.
  *
  * Text for many number types like spring_law.h; beyond that file's names it needs
- *   where_less(a, b, yes, no)   yes where a < b, else no,
  *   MSSIM_VECTOR_LAW            what stands before a function that returns a Vector, three Reals x, y and z,
  *   dot_product(a, b)           of two Vectors.
  */

@@ -16,18 +16,18 @@
 #define units_at_a_time (parts_at_a_time * MSSIM_LANES)
 
 /* Forces on the first nodes of MSSIM_LANES units, N, as (x, y, z, 0) each; on the second node it is the
- * opposite. second, rest_length: those of the first of the units; material: stiffness (N/m), damping
- * (N s/m); forces: where the entry's forces begin, lane: the first unit's number in the entry. */
+ * opposite. second, rest_length: those of the first of the units; material: their constants;
+ * forces: where the entry's forces begin, lane: the first unit's number in the entry. */
 #define second_node(lane) second[lane]
 static inline void forces_of_units(Node first, __global const uint* restrict second,
                                    __global const float* restrict rest_lengths,
                                    __global const float* restrict nodes, __global float* restrict forces,
-                                   size_t lane, float2 material) {
+                                   size_t lane, struct SpringFloats material) {
   const Node other = load_records(nodes, second_node);
   const Real rest_length = load_aligned(rest_lengths);
   const Vector d = minus(other.x, first.x);
-  Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, first.v), d), (Real)(material.x),
-                          material.x * rest_length, (Real)(material.y));
+  Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, first.v), d),
+                          spring_in_every_lane(material, material.stiffness * rest_length));
   pull = select(pull, (Real)(0.0f), rest_length < 0.0f); /* no unit there, and a distance of 0 */
   const Vector force = times(pull, d);
 #if MSSIM_LANES == 1
@@ -49,7 +49,8 @@ static inline void forces_of_units(Node first, __global const uint* restrict sec
 __kernel void packed_spring_forces(__global const float* restrict nodes, __global float* restrict forces,
                                    __global const uint* restrict units,
                                    __global const uint2* restrict entries,
-                                   __global const float2* restrict materials, uint parts_end, uint count) {
+                                   __global const struct SpringFloats* restrict materials, uint parts_end,
+                                   uint count) {
   const size_t begin = get_global_id(0) * count * units_at_a_time;
   const size_t end = min(begin + count * units_at_a_time, (size_t)parts_end * units_at_a_time);
   uint slice = 0xffffffffu;

@@ -1,8 +1,11 @@
 /* What the host tells kernels, in the common subset of C++ and OpenCL C: it fills these structs and the
- * device reads them.
+ * device reads them. Needs spring_constants.h.
  */
 #ifndef MSSIM_PARAMETERS
 #define MSSIM_PARAMETERS
+#ifndef __OPENCL_VERSION__
+#include "kernels/spring_constants.h"
+#endif
 
 /* What acts on every node besides springs. */
 struct Surroundings {
@@ -23,9 +26,8 @@ struct StepParameters {
 struct GridParameters {
   int rows;
   int columns;
-  float stiffness[3];      /* 1/s^2, by kind of spring */
-  float stiffness_rest[3]; /* stiffness * rest length, m/s^2 */
-  float damping[3];        /* 1/s */
+  struct SpringFloats constants[3]; /* by kind of spring */
+  float stiffness_rest[3];          /* stiffness * rest length, m/s^2 */
   /* For grid_nodes.cl, where a work-item owns one node. */
   int stride; /* floats from one row to the next */
   int plane;  /* floats from one plane to the next */

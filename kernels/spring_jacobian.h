@@ -1,17 +1,7 @@
-/* How the force of spring_law.h changes with the ends' positions and velocities, written once in the common
- * subset of C++ and OpenCL C. With n = d/|d|, on the first end, for changes of d and of u:
+/* The Jacobian of a spring's force (spring_law.h) as a matrix, along n n^T + across (I - n n^T), and sums of
+ * such matrices, written once in the common subset of C++ and OpenCL C.
  *
- *     df/dd = k n n^T + k (1 - L/|d|) (I - n n^T),     df/du = c n n^T.
- *
- * The part of df/dd that comes from damping is left out: it is not symmetric (Baraff and Witkin 1998,
- * section 4). All that remains has the form
- *
- *     along n n^T + across (I - n n^T),
- *
- * which is positive definite where along and across are positive. An implicit step's matrix has
- * along = dt c + dt^2 k and across = dt^2 spring_across_definite(...).
- *
- * Text for many number types like body_contact.h, after which it stands.
+ * Text for many number types like spring_law.h.
  */
 
 /* A symmetric matrix of 3 x 3: what stands on the diagonal of a stiffness matrix for a node, and its inverse.
@@ -52,19 +42,6 @@ MSSIM_GIVES(SymmetricBlock) block_inverse(MSSIM_OF(SymmetricBlock) block) {
   inverse.yz = scale * (block.xy * block.xz - block.xx * block.yz);
   inverse.zz = scale * (block.xx * block.yy - block.xy * block.xy);
   return inverse;
-}
-
-/* k (1 - L/|d|), N/m: what a spring does against a force across it. Below zero where it is compressed.
- * inverse_length = 1/|d| (1/m), stiffness = k (N/m), stiffness_rest = k L (N). */
-MSSIM_LAW spring_across(Real inverse_length, Real stiffness, Real stiffness_rest) {
-  return mul_add(-stiffness_rest, inverse_length, stiffness);
-}
-
-/* The same, but 0 for a compressed spring: no sum of springs is then indefinite. */
-MSSIM_LAW spring_across_definite(Real inverse_length, Real stiffness, Real stiffness_rest) {
-  Real none = stiffness - stiffness;
-  Real across = spring_across(inverse_length, stiffness, stiffness_rest);
-  return where_less(across, none, none, across);
 }
 
 /* [along n n^T + across (I - n n^T)] p; n: a unit vector. */

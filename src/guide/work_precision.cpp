@@ -44,11 +44,8 @@ class MotionOfNodes {
     for (const Spring& spring : system_.springs) {
       const Vec3d d = vector_at(now, spring.second) - vector_at(now, spring.first);
       const Vec3d u = vector_at(now, nodes + spring.second) - vector_at(now, nodes + spring.first);
-      const SpringMaterial& material = system_.materials[spring.kind];
-      const Vec3d force =
-          spring_pull(dot(d, d), dot(u, d), material.stiffness,
-                      material.stiffness * static_cast<double>(spring.rest_length), material.damping) *
-          d;
+      const auto law = linear_spring(system_.materials[spring.kind], static_cast<double>(spring.rest_length));
+      const Vec3d force = spring_pull(dot(d, d), dot(u, d), law) * d;
       force_[spring.first] += force;
       force_[spring.second] -= force;
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/vec3.h"
+#include "kernels/spring_constants.h"
 
 namespace mssim {
 
@@ -36,6 +37,13 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
 
 #define MSSIM_LAW_INLINE inline
 #include "laws/laws-inl.h"
+
+template <class Real>
+inline bool operator==(const SpringConstants<Real>& a, const SpringConstants<Real>& b) {
+#define MSSIM_EQUAL(name) (a.name == b.name)&&
+  return MSSIM_SPRING_CONSTANTS(MSSIM_EQUAL) true;
+#undef MSSIM_EQUAL
+}
 
 /// Puts a node that has fallen below y = height (m) back onto the floor and changes its velocity as
 /// kernels/node_laws.h says; a node above it stays as it is. `x` in m, `v` in m/s.

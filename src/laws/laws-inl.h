@@ -8,6 +8,7 @@
 #define MSSIM_STRUCT(Name) \
   template <class Real>    \
   struct Name
+#define MSSIM_MEMBER(name) Real name{};
 #define MSSIM_OF(Name) Name<Real>
 #define MSSIM_GIVES(Name) \
   template <class Real>   \
@@ -24,8 +25,21 @@
 #include "kernels/garment_laws.h"
 #include "kernels/spring_jacobian.h"
 
+/// Constants of a spring, each made from those of the same name: make(number...).
+template <class Real, class Make, class... From>
+MSSIM_LAW_INLINE SpringConstants<Real> constants_from(const Make& make, const From&... from) {
+#define MSSIM_MADE(name) static_cast<Real>(make(from.name...)),
+  return {MSSIM_SPRING_CONSTANTS(MSSIM_MADE)};
+#undef MSSIM_MADE
+}
+template <class Real, class Make, class... From>
+MSSIM_LAW_INLINE LinearSpring<Real> spring_from(const Make& make, const From&... from) {
+  return {constants_from<Real>(make, from.constants...), static_cast<Real>(make(from.stiffness_rest...))};
+}
+
 #undef MSSIM_LAW
 #undef MSSIM_STRUCT
+#undef MSSIM_MEMBER
 #undef MSSIM_OF
 #undef MSSIM_GIVES
 #undef MSSIM_VECTOR_LAW

@@ -23,31 +23,30 @@ void append(std::string& bytes, const Vec3d& vector) {
 }
 
 /// What a spring answers changes of its ends with, in a state.
-struct LinearSpring {
+struct LinearisedSpring {
   std::uint32_t first, second;
   Vec3d direction;
   double along, across;
 };
 
 /// The springs' part of K, or of C, at the state.
-std::vector<LinearSpring> linear_springs(const System& system, const State& state, bool damping) {
-  std::vector<LinearSpring> springs;
+std::vector<LinearisedSpring> linearised_springs(const System& system, const State& state, bool damping) {
+  std::vector<LinearisedSpring> springs;
   springs.reserve(system.springs.size());
   for (const Spring& spring : system.springs) {
     const Vec3d d = state.position[spring.second] - state.position[spring.first];
     const double inverse_length = 1 / length(d);
-    const SpringMaterial& material = system.materials[spring.kind];
-    const double rest = material.stiffness * static_cast<double>(spring.rest_length);
+    const auto law = linear_spring(system.materials[spring.kind], static_cast<double>(spring.rest_length));
     springs.push_back({spring.first, spring.second, inverse_length * d,
-                       damping ? material.damping : material.stiffness,
-                       damping ? 0 : spring_across(inverse_length, material.stiffness, rest)});
+                       damping ? spring_damping_along(law.constants) : spring_along(law),
+                       damping ? 0 : spring_across(inverse_length, law)});
   }
   return springs;
 }
 
 class PowerIteration {
  public:
-  PowerIteration(const System& system, const std::vector<LinearSpring>& springs)
+  PowerIteration(const System& system, const std::vector<LinearisedSpring>& springs)
       : system_(system), springs_(springs), x_(system.nodes()), force_(system.nodes()) {
     std::mt19937 random(19580101);  // any fixed seed: the same vector each time
     std::uniform_real_distribution<double> component(-1, 1);
@@ -59,7 +58,7 @@ class PowerIteration {
   /// One iteration: the Rayleigh quotient of the vector before it.
   double next() {
     for (Vec3d& force : force_) force = {};
-    for (const LinearSpring& spring : springs_) {
+    for (const LinearisedSpring& spring : springs_) {
       const Vec3d pull = spring_jacobian_times(spring.direction, spring.along, spring.across,
                                                x_[spring.second] - x_[spring.first]);
       force_[spring.first] -= pull;
@@ -85,11 +84,11 @@ class PowerIteration {
   }
 
   const System& system_;
-  const std::vector<LinearSpring>& springs_;
+  const std::vector<LinearisedSpring>& springs_;
   std::vector<Vec3d> x_, force_;
 };
 
-double spectral_radius_of(const System& system, const std::vector<LinearSpring>& springs) {
+double spectral_radius_of(const System& system, const std::vector<LinearisedSpring>& springs) {
   constexpr int stride = 100, most = 3000;
   PowerIteration iteration(system, springs);
   double before = 0, quotient = 0;
@@ -190,10 +189,10 @@ StiffnessBound stiffness_bound(const System& system) {
   };
   std::vector<Sum> node(system.nodes());
   for (const Spring& spring : system.springs) {
-    const SpringMaterial& material = system.materials[spring.kind];
+    const auto law = linear_spring(system.materials[spring.kind], static_cast<double>(spring.rest_length));
     for (const std::uint32_t end : {spring.first, spring.second}) {
-      node[end].stiffness += material.stiffness;
-      node[end].damping += material.damping;
+      node[end].stiffness += spring_along(law);
+      node[end].damping += spring_damping_along(law.constants);
     }
   }
   StiffnessBound bound;
@@ -220,8 +219,8 @@ std::uint64_t state_hash(const State& state) {
 }
 
 Spectrum spectrum_at(const System& system, const State& state) {
-  return {spectral_radius_of(system, linear_springs(system, state, false)),
-          spectral_radius_of(system, linear_springs(system, state, true)) + system.viscous_damping};
+  return {spectral_radius_of(system, linearised_springs(system, state, false)),
+          spectral_radius_of(system, linearised_springs(system, state, true)) + system.viscous_damping};
 }
 
 Energy energy_of(const System& system, const State& state) {
@@ -244,8 +243,7 @@ std::string_view energies_leave_out(const System& system) {
 
 double elastic_energy(const System& system, const Spring& spring, const State& state) {
   const Vec3d d = state.position[spring.second] - state.position[spring.first];
-  const double stretch = length(d) - static_cast<double>(spring.rest_length);
-  return 0.5 * system.materials[spring.kind].stiffness * stretch * stretch;
+  return spring_energy(length(d), static_cast<double>(spring.rest_length), system.materials[spring.kind]);
 }
 
 double damping_power(const System& system, const State& state) {
@@ -255,7 +253,7 @@ double damping_power(const System& system, const State& state) {
   for (const Spring& spring : system.springs) {
     const Vec3d d = state.position[spring.second] - state.position[spring.first];
     const double closing = dot(state.velocity[spring.second] - state.velocity[spring.first], d);
-    power += system.materials[spring.kind].damping * closing * closing / dot(d, d);
+    power += spring_loss(dot(d, d), closing, system.materials[spring.kind]);
   }
   return power;
 }

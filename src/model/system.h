@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <variant>
@@ -11,6 +12,7 @@
 
 #include "garment/garment.h"
 #include "geometry/vec3.h"
+#include "laws/host_laws.h"
 
 namespace mssim {
 
@@ -25,10 +27,7 @@ struct Spring {
 };
 
 /// How a spring answers stretching.
-struct SpringMaterial {
-  double stiffness = 0;  ///< N/m
-  double damping = 0;    ///< N s/m, along the spring
-};
+using SpringMaterial = SpringConstants<double>;
 
 /// The springs of a regular cloth, by what they resist. The numbers index GridSpringKind tables and
 /// materials.
@@ -145,6 +144,15 @@ struct System {
   std::size_t nodes() const { return start.position.size(); }
 };
 
+/// System::materials in some precision.
+template <class Real>
+std::vector<SpringConstants<Real>> materials_of(const System& system) {
+  std::vector<SpringConstants<Real>> materials;
+  for (const SpringMaterial& material : system.materials)
+    materials.push_back(constants_from<Real>(std::identity(), material));
+  return materials;
+}
+
 /// The mass of each node, kg, where all nodes weigh the same.
 std::optional<double> uniform_node_mass(const System& system);
 
@@ -184,7 +192,7 @@ struct Spectrum {
 /// The spectral radii of M^-1 K and M^-1 C at `state`, by power iteration (for example Golub and Van Loan,
 /// Matrix Computations, section 7.3.1) from a fixed pseudo-random vector: x becomes M^-1 K x, and its
 /// Rayleigh quotient in the inner product of M, which is at most the largest eigenvalue, tends to it. K and C
-/// are the derivatives of the spring forces by positions and velocities (kernels/spring_jacobian.h), where
+/// are the derivatives of the spring forces by positions and velocities (kernels/spring_law.h), where
 /// pinned nodes do not move. Ends where a hundred iterations have raised the quotient by less than a
 /// thousandth, or after 3,000. A garment's joints and contacts are left out.
 Spectrum spectrum_at(const System& system, const State& state);
@@ -235,9 +243,8 @@ std::string_view energies_leave_out(const System& system);
 /// Energy of one spring, J.
 double elastic_energy(const System& system, const Spring& spring, const State& state);
 
-/// What damping of the springs and of the air takes in `state`, W: the sum of c ((u . d) / |d|)^2 over all
-/// springs, d and u the differences of positions and velocities of their ends, and of viscous_damping m v^2
-/// over all nodes.
+/// What damping of the springs and of the air takes in `state`, W: the sum of spring_loss over all springs,
+/// and of viscous_damping m v^2 over all nodes.
 double damping_power(const System& system, const State& state);
 
 }  // namespace mssim

@@ -36,11 +36,10 @@ TEST(FloorLaw, StopsASlideThatIsSlowerThanFriction) {
 }
 
 constexpr double stiffness = 200, damping = 0.3, rest = 0.01;
+const LinearSpring<double> spring = linear_spring({stiffness, damping}, rest);
 
 /// The force on the first end of a spring, N.
-Vec3d spring_force(const Vec3d& d, const Vec3d& u) {
-  return spring_pull(dot(d, d), dot(u, d), stiffness, stiffness * rest, damping) * d;
-}
+Vec3d spring_force(const Vec3d& d, const Vec3d& u) { return spring_pull(dot(d, d), dot(u, d), spring) * d; }
 
 /// By how much `force` changes from one side of zero to the other, a metre or m/s.
 template <class Force>
@@ -66,9 +65,9 @@ class SpringJacobian : public testing::TestWithParam<double> {
 INSTANTIATE_TEST_SUITE_P(Lengths, SpringJacobian, testing::Values(0.25, 0.8, 1.0, 1.02, 4.0));
 
 TEST_P(SpringJacobian, IsTheElasticForcesDerivativeByPosition) {
-  const double across = spring_across(inverse(), stiffness, stiffness * rest);
+  const double across = spring_across(inverse(), spring);
   for (const Vec3d& p : directions)
-    expect_near(spring_jacobian_times(n(), stiffness, across, p),
+    expect_near(spring_jacobian_times(n(), spring_along(spring), across, p),
                 central_difference(1e-7, [&](double step) { return spring_force(d() + step * p, {}); }),
                 1e-6 * stiffness);
 }
@@ -76,13 +75,13 @@ TEST_P(SpringJacobian, IsTheElasticForcesDerivativeByPosition) {
 TEST_P(SpringJacobian, IsTheDampingForcesDerivativeByVelocity) {
   const Vec3d u{0.3, 0.1, -0.2};
   for (const Vec3d& p : directions)
-    expect_near(spring_jacobian_times(n(), damping, 0.0, p),
+    expect_near(spring_jacobian_times(n(), spring_damping_along(spring.constants), 0.0, p),
                 central_difference(0.1, [&](double step) { return spring_force(d(), u + step * p); }), 1e-12);
 }
 
 TEST_P(SpringJacobian, MadeDefiniteLeavesOutOnlyWhatCompressionTakes) {
-  const double across = spring_across(inverse(), stiffness, stiffness * rest);
-  const double definite = spring_across_definite(inverse(), stiffness, stiffness * rest);
+  const double across = spring_across(inverse(), spring);
+  const double definite = spring_across_definite(inverse(), spring);
   EXPECT_EQ(across < 0, GetParam() < 1);
   EXPECT_EQ(definite, GetParam() < 1 ? 0 : across);
 }

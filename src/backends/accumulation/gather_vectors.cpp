@@ -6,7 +6,7 @@ PaddedRows::PaddedRows(const System& system, const GridPatch& grid, const Integr
                        std::size_t lanes, std::size_t thread_count)
     : SeparateSteps(system, method, dt_s),
       layout(grid, lanes),
-      springs(spring_constants_of(system, grid)),
+      springs(springs_per_mass(system, grid)),
       threads(thread_count) {
   make_pairs(layout.floats());
   first_pin.assign(1, 0);

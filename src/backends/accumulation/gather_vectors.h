@@ -30,7 +30,7 @@ struct PaddedRows : SeparateSteps {
   };
 
   PairRows layout;
-  std::vector<SpringConstants> springs;  ///< [kinds]
+  std::vector<SpringPerMass> springs;  ///< [kinds]
   std::size_t threads = 1;
   std::vector<Pin> pins;               ///< row by row
   std::vector<std::size_t> first_pin;  ///< [rows + 1] where a row's pins begin

@@ -44,8 +44,7 @@ HWY_INLINE Lanes3 spring_acceleration(const ClothConstants& constants, const Pla
         here + to.rows * static_cast<std::ptrdiff_t>(PairRows::components) * pitch + to.columns, pitch);
     const Lanes3 to_other = other.x - node.x;
     const Lanes pull =
-        spring_pull_at(inverse_length(dot(to_other, to_other)), dot(other.v - node.v, to_other),
-                       spring.stiffness, spring.stiffness_rest, spring.damping);
+        spring_pull_at(inverse_length(dot(to_other, to_other)), dot(other.v - node.v, to_other), spring);
     sum = mul_add(keep(place.has(to.rows, to.columns), pull), to_other, sum);
   };
   [&]<std::size_t... i>(std::index_sequence<i...>) MSSIM_INLINE_LAMBDA {

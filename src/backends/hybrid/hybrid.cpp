@@ -21,7 +21,10 @@
 namespace mssim {
 
 HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s)
-    : ExplicitSteps(system, method, dt_s), packed(system), constants(packed.slots() * 2) {
+    : ExplicitSteps(system, method, dt_s),
+      packed(system),
+      constants(packed.slots() * 2),
+      materials(materials_of<float>(system)) {
   constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
   const auto of_slot = [&](std::size_t slot) {
     return constants.data() + slot / slice_nodes * 2 * slice_nodes + slot % slice_nodes;
@@ -32,13 +35,12 @@ HostNodes::HostNodes(const System& system, const Integrator& method, double dt_s
     of_slot(packed.slot[node])[slice_nodes] = 0;
   }
   for (const std::uint32_t pin : system.pins) of_slot(packed.slot[pin])[slice_nodes] = 1;
-  for (const SpringMaterial& material : system.materials)
-    materials.push_back({static_cast<float>(material.stiffness), static_cast<float>(material.damping)});
 }
 
 SpringKernel HostNodes::spring_kernel(int lanes) const {
   const std::size_t units_of_part = lanes == 1 ? 1 : PackedSprings::slice_nodes;
-  return {program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "packed_springs.cl"}),
+  return {program_text(lanes,
+                       {"lanes.h", "records.h", "spring_constants.h", "spring_law.h", "packed_springs.cl"}),
           "packed_spring_forces",
           packed.unit_count() / units_of_part,
           packed.slots() * record_floats,
@@ -58,8 +60,9 @@ AlikeNodes::AlikeNodes(const System& system, const std::vector<AlikeBodies>& bod
 
 SpringKernel AlikeNodes::spring_kernel(int lanes) const {
   const std::size_t parts = AlikeSprings::slice_nodes / static_cast<std::size_t>(lanes);
-  return {slices_program_text(AlikeSprings::slice_nodes, lanes,
-                              {"lanes.h", "spring_law.h", "alike_slices.h", "alike_springs.cl"}),
+  return {slices_program_text(
+              AlikeSprings::slice_nodes, lanes,
+              {"lanes.h", "spring_constants.h", "spring_law.h", "alike_slices.h", "alike_springs.cl"}),
           "alike_spring_forces",
           springs.springs.size() * parts,
           springs.slices.floats(),

@@ -31,11 +31,7 @@ struct HostNodes : ExplicitSteps {
   PackedSprings packed;
   /// [slices][inverse mass, held][16]: 1/kg; 1 where nothing may move (pinned, or no node), else 0.
   AlignedArray constants;
-  struct Material {
-    float stiffness;  // N/m
-    float damping;    // N s/m
-  };
-  std::vector<Material> materials;  ///< of the system, by kind
+  std::vector<SpringConstants<float>> materials;  ///< System::materials
 
   HostNodes(const System& system, const Integrator& method, double dt_s);
 

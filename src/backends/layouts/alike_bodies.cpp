@@ -10,8 +10,8 @@ namespace mssim {
 namespace {
 
 bool are_alike(const AlikeBodies& a, const AlikeBodies& b) {
-  return a.stiffness == b.stiffness && a.damping == b.damping && a.pinned == b.pinned &&
-         a.first_spring == b.first_spring && a.springs == b.springs;
+  return a.constants == b.constants && a.pinned == b.pinned && a.first_spring == b.first_spring &&
+         a.springs == b.springs;
 }
 
 }  // namespace
@@ -40,12 +40,11 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
         const Spring& spring = system.springs[number];
         if (spring.kind != kind.value_or(spring.kind)) return std::nullopt;
         kind = spring.kind;
-        const SpringConstants constants(system.materials[spring.kind],
-                                        static_cast<double>(spring.rest_length), mass);
-        body.stiffness = constants.stiffness;
-        body.damping = constants.damping;
+        const SpringPerMass law =
+            spring_per_mass(system.materials[spring.kind], static_cast<double>(spring.rest_length), mass);
+        body.constants = law.constants;
         body.springs.push_back(
-            {springs.second_slot(spring) - static_cast<std::uint32_t>(begin), constants.stiffness_rest});
+            {springs.second_slot(spring) - static_cast<std::uint32_t>(begin), law.stiffness_rest});
       }
       std::ranges::sort(body.springs.begin() + static_cast<std::ptrdiff_t>(first), body.springs.end(), {},
                         &AlikeBodies::SpringAhead::other);

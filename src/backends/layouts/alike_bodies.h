@@ -20,8 +20,8 @@ struct AlikeBodies {
     bool operator==(const SpringAhead&) const = default;
   };
 
-  float stiffness = 0, damping = 0;  ///< divided by a node's mass: 1/s^2, 1/s
-  std::vector<std::uint8_t> pinned;  ///< [nodes] 1 where it is, else 0
+  SpringConstants<float> constants{};  ///< divided by a node's mass
+  std::vector<std::uint8_t> pinned;    ///< [nodes] 1 where it is, else 0
   /// [nodes + 1] where each node's begin in `springs`; the last one is their number.
   std::vector<std::uint32_t> first_spring;
   std::vector<SpringAhead> springs;  ///< [springs] ascending by both ends

@@ -11,7 +11,7 @@ bool has_row(const BandLayout& layout, std::ptrdiff_t row) {
 }
 
 /// The vectors of a row of the bands.
-std::vector<float> values_of_row(const BandLayout& layout, const std::vector<SpringConstants>& springs,
+std::vector<float> values_of_row(const BandLayout& layout, const std::vector<SpringPerMass>& springs,
                                  float gravity, const ColumnsToEnd& to_end, std::ptrdiff_t band_row) {
   const std::size_t lanes = layout.lanes;
   std::vector<float> values((BandRows::gravity_vector + 1) * lanes);
@@ -23,11 +23,9 @@ std::vector<float> values_of_row(const BandLayout& layout, const std::vector<Spr
     for (std::size_t i = 0; i < grid_stencil.size(); ++i) {
       if (!has_row(layout, row + grid_stencil[i].rows)) continue;
       if (static_cast<std::size_t>(grid_stencil[i].columns) >= columns) continue;
-      const SpringConstants& spring = springs[grid_stencil[i].kind];
+      const SpringPerMass& spring = springs[grid_stencil[i].kind];
       float* of_lane = values.data() + i * BandRows::spring_vectors * lanes + lane;
-      of_lane[0] = spring.stiffness;
-      of_lane[lanes] = spring.stiffness_rest;
-      of_lane[2 * lanes] = spring.damping;
+      *write_constants(of_lane, lanes, spring.constants) = spring.stiffness_rest;
     }
   }
   return values;
@@ -68,7 +66,7 @@ double rows_of_pass(const BandLayout& layout, const Integrator& integrator, std:
 
 }  // namespace
 
-BandRows::BandRows(const BandLayout& layout, const std::vector<SpringConstants>& springs, float gravity,
+BandRows::BandRows(const BandLayout& layout, const std::vector<SpringPerMass>& springs, float gravity,
                    ColumnsToEnd to_end) {
   std::vector<float> all;
   std::map<std::vector<float>, std::uint32_t> offset_of;
@@ -138,7 +136,7 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
     columns = own.end() + ghosts;
   }
   cut(most_threads);
-  const std::vector<SpringConstants> springs = spring_constants_of(system, grid);
+  const std::vector<SpringPerMass> springs = springs_per_mass(system, grid);
   for (BandPartition& partition : partitions) {
     make_arrays(partition);
     choose_rows(partition, springs);
@@ -191,7 +189,7 @@ ColumnRange BandGrid::filled_columns(const BandPartition& partition) const {
   return with_ghosts({partition.first, partition.count}, partition.ghosts, columns);
 }
 
-void BandGrid::choose_rows(BandPartition& partition, const std::vector<SpringConstants>& springs) {
+void BandGrid::choose_rows(BandPartition& partition, const std::vector<SpringPerMass>& springs) {
   const auto to_end = [&](std::ptrdiff_t column) {
     const auto left = static_cast<std::ptrdiff_t>(layout.columns) - column;
     if (column < 0 || left < 0) return std::size_t{0};

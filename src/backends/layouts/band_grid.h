@@ -73,14 +73,14 @@ class BandRows {
  public:
   /// The constants of a column that so many are `behind`, unless it is far from the cloth's end. `springs`:
   /// by GridSpringKind. `gravity` in m/s^2.
-  BandRows(const BandLayout& layout, const std::vector<SpringConstants>& springs, float gravity,
+  BandRows(const BandLayout& layout, const std::vector<SpringPerMass>& springs, float gravity,
            ColumnsToEnd to_end = {far_from_end, far_from_end});
 
   /// Columns to the end beyond which springs reach no further.
   static constexpr std::size_t far_from_end = BandLayout::halo + 1;
 
-  /// Vectors of a row: [spring of grid_stencil][stiffness, stiffness_rest, damping], then gravity.
-  static constexpr std::size_t spring_vectors = 3;
+  /// Vectors of a row: [spring of grid_stencil][constants, stiffness_rest], then gravity.
+  static constexpr std::size_t spring_vectors = spring_constant_count + 1;
   static constexpr std::size_t gravity_vector = grid_stencil.size() * spring_vectors;
 
   /// Those of row 0; the others' are offset_of_row() floats behind.
@@ -267,7 +267,7 @@ struct BandGrid : ExplicitSteps {
   void cut(std::size_t most_threads);
   void add_partition(ColumnRange its);
   void make_arrays(BandPartition& partition) const;
-  void choose_rows(BandPartition& partition, const std::vector<SpringConstants>& springs);
+  void choose_rows(BandPartition& partition, const std::vector<SpringPerMass>& springs);
   void add_pins(BandPartition& partition, const System& system) const;
   /// The columns of a partition that are filled: own ones and ghosts, where the layout has them.
   ColumnRange filled_columns(const BandPartition& partition) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -142,26 +143,32 @@ struct SeparateSteps : ExplicitSteps {
   }
 };
 
-/// What kernels/spring_law.h asks for, divided by the mass of a node, so that the force is an acceleration.
-struct SpringConstants {
-  float stiffness;       ///< 1/s^2
-  float stiffness_rest;  ///< stiffness times rest length, m/s^2
-  float damping;         ///< 1/s
+/// A spring divided by the mass of a node, so that its force is an acceleration.
+using SpringPerMass = LinearSpring<float>;
 
-  /// rest_length in m, mass in kg.
-  SpringConstants(const SpringMaterial& material, double rest_length, double mass)
-      : stiffness(static_cast<float>(material.stiffness / mass)),
-        stiffness_rest(static_cast<float>(material.stiffness * rest_length / mass)),
-        damping(static_cast<float>(material.damping / mass)) {}
-};
+/// rest_length in m, mass in kg.
+inline SpringPerMass spring_per_mass(const SpringMaterial& material, double rest_length, double mass) {
+  return spring_from<float>([mass](double number) { return number / mass; },
+                            linear_spring(material, rest_length));
+}
+
+/// Writes the constants of one spring or node, `step` floats apart. Returns where a next one would stand.
+inline float* write_constants(float* to, std::size_t step, const SpringConstants<float>& constants) {
+  for (const float number : std::bit_cast<std::array<float, spring_constant_count>>(constants)) {
+    *to = number;
+    to += step;
+  }
+  return to;
+}
 
 /// Those of a cloth's springs, by GridSpringKind. Throws Unsupported where its nodes differ in mass.
-inline std::vector<SpringConstants> spring_constants_of(const System& system, const GridPatch& grid) {
+inline std::vector<SpringPerMass> springs_per_mass(const System& system, const GridPatch& grid) {
   const double mass = require_uniform_mass(system);
-  std::vector<SpringConstants> constants;
+  std::vector<SpringPerMass> springs;
   for (const GridSpringKind kind : {structural, shear, bending})
-    constants.emplace_back(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass);
-  return constants;
+    springs.push_back(
+        spring_per_mass(system.materials[kind], static_cast<double>(grid.rest_length(kind)), mass));
+  return springs;
 }
 
 }  // namespace mssim

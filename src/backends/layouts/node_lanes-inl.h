@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "backends/interface/backend.h"
@@ -19,23 +20,37 @@
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {
 
-/// Spring constants in registers.
-struct SpringLanes {
-  Lanes stiffness, stiffness_rest, damping;
-  HWY_INLINE SpringLanes(Lanes k, Lanes k_rest, Lanes c) : stiffness(k), stiffness_rest(k_rest), damping(c) {}
-  /// Of a SpringConstants, or what else has its numbers.
-  template <class Constants>
-  HWY_INLINE explicit SpringLanes(const Constants& s)
-      : stiffness(s.stiffness), stiffness_rest(s.stiffness_rest), damping(s.damping) {}
-};
+/// Springs in registers.
+using SpringLanes = LinearSpring<Lanes>;
+
+/// The same in every lane.
+HWY_INLINE SpringConstants<Lanes> in_every_lane(const mssim::SpringConstants<float>& constants) {
+  return HWY_NAMESPACE::constants_from<Lanes>(std::identity(), constants);
+}
+HWY_INLINE SpringLanes in_every_lane(const mssim::LinearSpring<float>& spring) {
+  return {in_every_lane(spring.constants), spring.stiffness_rest};
+}
+
+/// Constants of each lane, a vector of each (write_constants). Leaves `from` behind them.
+HWY_INLINE SpringConstants<Lanes> load_constants(const float*& from) {
+  const auto next = [&from]() MSSIM_INLINE_LAMBDA {
+    const Lanes number = hn::Load(FloatTag(), from);
+    from += lane_count();
+    return number;
+  };
+#define MSSIM_LOADED(name) next(),
+  return {MSSIM_SPRING_CONSTANTS(MSSIM_LOADED)};
+#undef MSSIM_LOADED
+}
 
 /// What every vector needs of a cloth in rows. A copy, because a vector's store may change anything that has
 /// an address elsewhere, as far as the compiler knows.
 struct WalkedRows {
   SpringLanes spring[3];  ///< by GridSpringKind
   std::ptrdiff_t pitch;   ///< RowLayout::pitch
-  HWY_INLINE WalkedRows(const std::vector<SpringConstants>& springs, std::size_t of_layout)
-      : spring{SpringLanes(springs[structural]), SpringLanes(springs[shear]), SpringLanes(springs[bending])},
+  HWY_INLINE WalkedRows(const std::vector<SpringPerMass>& springs, std::size_t of_layout)
+      : spring{in_every_lane(springs[structural]), in_every_lane(springs[shear]),
+               in_every_lane(springs[bending])},
         pitch(static_cast<std::ptrdiff_t>(of_layout)) {}
 };
 

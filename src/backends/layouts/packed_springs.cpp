@@ -134,7 +134,7 @@ void PackedSprings::list_subtracted() {
 }
 
 AlikeSprings::AlikeSprings(const std::vector<AlikeBodies>& bodies) : slices(bodies, slice_nodes) {
-  for (const AlikeBodies& of : bodies) shapes.push_back({of.stiffness, of.damping});
+  for (const AlikeBodies& of : bodies) shapes.push_back(of.constants);
   std::size_t count = 0;
   for (const AlikeSlices::Group& group : slices.groups) count += bodies[group.shape].springs.size();
   constexpr std::size_t largest = std::numeric_limits<std::uint32_t>::max() / slice_nodes;

@@ -84,14 +84,11 @@ struct AlikeSprings {
     float stiffness_rest;         ///< AlikeBodies::SpringAhead::stiffness_rest
     std::uint32_t shape;
   };
-  struct ShapeConstants {
-    float stiffness, damping;  ///< AlikeBodies::stiffness, damping
-  };
 
   AlikeSlices slices;
-  std::vector<ShapeConstants> shapes;
-  std::vector<std::uint8_t> pinned;     ///< [slices] 1 where nodes are, else 0
-  std::vector<SpringOfSlices> springs;  ///< ascending by first, then by second slice
+  std::vector<SpringConstants<float>> shapes;  ///< AlikeBodies::constants
+  std::vector<std::uint8_t> pinned;            ///< [slices] 1 where nodes are, else 0
+  std::vector<SpringOfSlices> springs;         ///< ascending by first, then by second slice
   std::vector<std::uint32_t>
       first_end;  ///< [slices + 1] where in `springs` those begin that begin at a slice
   /// [slices + 1] where in `subtracted` the springs of a slice begin, which are the springs that end there.

@@ -99,8 +99,7 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const Gr
 
   neighbour.resize(entries() * lanes);
   stiffness_rest.assign(entries() * lanes, empty_entry);
-  stiffness.assign(slots(), 0);
-  damping.assign(slots(), 0);
+  constants.resize(slots());
   held.assign(slots(), 0);
   for (std::size_t i = 0; i < slots(); ++i) {
     const std::size_t slice = i / lanes;
@@ -112,9 +111,8 @@ SlicedGraph::SlicedGraph(const System& system, std::size_t slice_lanes, const Gr
     const double mass = system.node_mass[scene_node[i]];
     std::size_t element = first_entry[slice] * lanes + i % lanes;
     for (const Neighbour& other : springs[i]) {
-      const SpringConstants spring(material, static_cast<double>(other.rest_length), mass);
-      stiffness[i] = spring.stiffness;
-      damping[i] = spring.damping;
+      const SpringPerMass spring = spring_per_mass(material, static_cast<double>(other.rest_length), mass);
+      constants[i] = spring.constants;
       neighbour[element] = slot[other.node];
       stiffness_rest[element] = spring.stiffness_rest;
       element += lanes;

@@ -52,9 +52,8 @@ struct SlicedGraph {
       first_entry;                       ///< [slices + 1] of the slice; the last one is the number of entries
   std::vector<std::uint32_t> neighbour;  ///< [entries][lanes] slots
   std::vector<float> stiffness_rest;     ///< [entries][lanes] stiffness * rest length / mass, m/s^2
-  std::vector<float> stiffness;          ///< [slots] 1/s^2, of all springs of the node
-  std::vector<float> damping;            ///< [slots] 1/s
-  std::vector<std::uint32_t> held;       ///< [slots] 1 where nothing may move: pinned, or no node; else 0
+  std::vector<SpringConstants<float>> constants;  ///< [slots] divided by mass, of all springs of the node
+  std::vector<std::uint32_t> held;  ///< [slots] 1 where nothing may move: pinned, or no node; else 0
 
   /// Throws Unsupported where springs of unlike materials meet in a node, and for more springs than 32 bits
   /// number from both ends.

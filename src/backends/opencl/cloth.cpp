@@ -19,12 +19,10 @@ GridParameters grid_parameters_of(const System& system, const GridPatch& patch) 
   GridParameters grid{};
   grid.rows = static_cast<int>(patch.rows);
   grid.columns = static_cast<int>(patch.columns);
-  const std::vector<SpringConstants> springs = spring_constants_of(system, patch);
+  const std::vector<SpringPerMass> springs = springs_per_mass(system, patch);
   for (const GridSpringKind kind : {structural, shear, bending}) {
-    const SpringConstants& spring = springs[kind];
-    grid.stiffness[kind] = spring.stiffness;
-    grid.stiffness_rest[kind] = spring.stiffness_rest;
-    grid.damping[kind] = spring.damping;
+    grid.constants[kind] = std::bit_cast<SpringFloats>(springs[kind].constants);
+    grid.stiffness_rest[kind] = springs[kind].stiffness_rest;
   }
   return grid;
 }

@@ -25,6 +25,16 @@ PairLayout record_layout(const SlicedGraph& graph) {
   return pair;
 }
 
+/// [slices][spring_constant_count][lanes] of the nodes.
+std::vector<float> slice_constants(const SlicedGraph& graph) {
+  std::vector<float> constants(graph.slots() * spring_constant_count);
+  for (std::size_t slot = 0; slot < graph.slots(); ++slot)
+    write_constants(
+        constants.data() + slot / graph.lanes * spring_constant_count * graph.lanes + slot % graph.lanes,
+        graph.lanes, graph.constants[slot]);
+  return constants;
+}
+
 /// How work-items share the nodes of bodies, `lanes` in a tile.
 struct MeshTiles {
   OpenclChunks chunks;
@@ -45,12 +55,9 @@ struct AlikeGraph {
     cl_uint node;  // of the body
     cl_uint stiffness_rest;
   };
-  struct Constants {
-    float stiffness, damping;
-  };
   std::vector<Slice> slices;
   std::vector<Neighbour> springs;  // of a shape, from both ends, by node, ascending by neighbour
-  std::vector<Constants> constants;
+  std::vector<SpringConstants<float>> constants;  // of slices
   std::uint64_t stored_springs = 0;
 
   AlikeGraph(const std::vector<AlikeBodies>& bodies, const AlikeSlices& layout);
@@ -84,7 +91,7 @@ AlikeGraph::AlikeGraph(const std::vector<AlikeBodies>& bodies, const AlikeSlices
     for (Slice slice : of_shape[group.shape]) {
       slice.first_slice = static_cast<cl_uint>(group.first_slice);
       slices.push_back(slice);
-      constants.push_back({bodies[group.shape].stiffness, bodies[group.shape].damping});
+      constants.push_back(bodies[group.shape].constants);
     }
 }
 
@@ -135,11 +142,11 @@ std::unique_ptr<Backend> make_opencl(const System& system, const Integrator& int
     };
     if (!alike) {
       const SlicedGraph graph(system, mesh_slice_lanes(lanes));
+      const std::vector<float> constants = slice_constants(graph);
       const MeshTiles tiles(graph.slots(), device, lanes);
       return stages({record_layout(graph),
                      {bytes_of(tiles.parameters), bytes_of(graph.first_entry), bytes_of(graph.neighbour),
-                      bytes_of(graph.stiffness_rest), bytes_of(graph.stiffness), bytes_of(graph.damping),
-                      bytes_of(graph.held)},
+                      bytes_of(graph.stiffness_rest), bytes_of(constants), bytes_of(graph.held)},
                      mesh_program_text(integrator, lanes),
                      tiles.chunks.items});
     }

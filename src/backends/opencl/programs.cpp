@@ -247,12 +247,12 @@ struct MeshText {
 };
 constexpr MeshText sliced{
     "__global const uint* restrict first_entry, __global const uint* restrict neighbour,\n"
-    "    __global const float* restrict stiffness_rest, __global const float* restrict stiffness,\n"
-    "    __global const float* restrict damping, __global const int* restrict held",
-    "first_entry, neighbour, stiffness_rest, stiffness, damping, held"};
+    "    __global const float* restrict stiffness_rest, __global const float* restrict constants,\n"
+    "    __global const int* restrict held",
+    "first_entry, neighbour, stiffness_rest, constants, held"};
 constexpr MeshText alike{
     "__global const uint4* restrict slices, __global const uint2* restrict springs,\n"
-    "    __global const float2* restrict constants",
+    "    __global const struct SpringFloats* restrict constants",
     "slices, springs, constants"};
 
 std::string kernel_text(const StoredStage& stage, const MeshText& mesh) {
@@ -304,8 +304,9 @@ std::vector<Pair> stage_arguments(const StoredStage& stage) {
 
 std::string grid_program_text(const Integrator& integrator, int lanes) {
   const bool walks = lanes > 1;
-  std::string text = program_text(lanes, {"lanes.h", "spring_law.h", "node_laws.h", "parameters.h", "stage.h",
-                                          "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
+  std::string text =
+      program_text(lanes, {"lanes.h", "spring_constants.h", "spring_law.h", "node_laws.h", "parameters.h",
+                           "stage.h", "grid_spring.h", walks ? "grid_bands.cl" : "grid_nodes.cl"});
   std::string kinds;
   for (std::size_t kind = 0; kind < grid_spring_kinds.size(); ++kind)
     kinds += fmt::format("#define {} {}\n", grid_spring_kinds[kind].name, kind);
@@ -326,8 +327,8 @@ std::size_t mesh_slice_lanes(int lanes) {
 
 std::string mesh_program_text(const Integrator& integrator, int lanes) {
   return with_kernels(slices_program_text(mesh_slice_lanes(lanes), lanes,
-                                          {"lanes.h", "records.h", "spring_law.h", "node_laws.h",
-                                           "parameters.h", "stage.h", "mesh_stage.cl"}),
+                                          {"lanes.h", "records.h", "spring_constants.h", "spring_law.h",
+                                           "node_laws.h", "parameters.h", "stage.h", "mesh_stage.cl"}),
                       integrator, sliced);
 }
 
@@ -339,8 +340,8 @@ std::size_t alike_slice_lanes(int lanes) {
 
 std::string alike_program_text(const Integrator& integrator, int lanes) {
   return with_kernels(slices_program_text(alike_slice_lanes(lanes), lanes,
-                                          {"lanes.h", "spring_law.h", "node_laws.h", "parameters.h",
-                                           "stage.h", "alike_slices.h", "alike_stage.cl"}),
+                                          {"lanes.h", "spring_constants.h", "spring_law.h", "node_laws.h",
+                                           "parameters.h", "stage.h", "alike_slices.h", "alike_stage.cl"}),
                       integrator, alike);
 }
 

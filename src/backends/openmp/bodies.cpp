@@ -130,7 +130,7 @@ std::vector<Cut> cut_groups_into(const std::vector<AlikeSlices::Group>& groups,
 }
 
 BodyLanes::Shape shape_of(const AlikeBodies& bodies, std::size_t node_floats) {
-  BodyLanes::Shape shape{bodies.stiffness, bodies.damping, bodies.pinned, bodies.first_spring, {}};
+  BodyLanes::Shape shape{bodies.constants, bodies.pinned, bodies.first_spring, {}};
   shape.springs.reserve(bodies.springs.size());
   for (const AlikeBodies::SpringAhead& spring : bodies.springs)
     shape.springs.push_back({static_cast<std::uint32_t>(spring.other * node_floats), spring.stiffness_rest});
@@ -163,12 +163,10 @@ SlicedBodies::SlicedBodies(const System& system, SlicedGraph graph, const Integr
     : BodySteps(system, method, dt_s), lanes(graph.lanes) {
   require_nameable_records(system, record_floats);
   entries = slice_entries(graph, record_floats, [](std::uint32_t node_slot) { return node_slot; });
-  constants = AlignedArray(graph.slots() * 3);
+  constants = AlignedArray(graph.slots() * slice_constants);
   for (std::size_t i = 0; i < graph.slots(); ++i) {
-    float* slice = constants.data() + i / lanes * 3 * lanes + i % lanes;
-    slice[0] = graph.stiffness[i];
-    slice[lanes] = graph.damping[i];
-    slice[2 * lanes] = static_cast<float>(graph.held[i]);
+    float* of_slot = constants.data() + i / lanes * slice_constants * lanes + i % lanes;
+    *write_constants(of_slot, lanes, graph.constants[i]) = static_cast<float>(graph.held[i]);
   }
   make_pairs((graph.slots() + graph.ghosts) * record_floats);
   slot.assign(graph.slot.begin(), graph.slot.end() - static_cast<std::ptrdiff_t>(graph.ghosts));

@@ -54,8 +54,9 @@ struct SlicedBodies : BodySteps {
   std::vector<std::uint32_t> slot;         ///< [own nodes] SlicedGraph::slot
   std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
   AlignedArray entries;                    ///< slice_entries()
-  /// [slices][3][lanes] SlicedGraph's stiffness, damping and `held`, the last as 0 or 1.
+  /// [slices][slice_constants][lanes] SlicedGraph's `constants`, and `held` as 0 or 1.
   AlignedArray constants;
+  static constexpr std::size_t slice_constants = spring_constant_count + 1;
   /// Of a part, whose `chunks` have the slices without edge nodes and may be empty: as many of the others.
   std::vector<Chunk> edge_chunks;
   NodeMessages* messages = nullptr;  ///< of a part: what brings its ghosts; null of a whole
@@ -86,7 +87,7 @@ struct BodyLanes : BodySteps {
       std::uint32_t other;   ///< offset
       float stiffness_rest;  ///< AlikeBodies::SpringAhead::stiffness_rest
     };
-    float stiffness, damping;
+    SpringConstants<float> constants;
     std::vector<std::uint8_t> pinned;         ///< [nodes]
     std::vector<std::uint32_t> first_spring;  ///< [nodes + 1]
     std::vector<Spring> springs;

@@ -108,11 +108,10 @@ struct RowConstants {
 
 /// The constants of one of the springs that a row's nodes own (RowConstants::of_row).
 HWY_INLINE SpringLanes spring_of_row(const float* of_row, SpringSet spring) {
-  const FloatTag d;
   const auto number = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(spring)));
   const float* of_spring = of_row + number * BandRows::spring_vectors * lane_count();
-  return {hn::Load(d, of_spring), hn::Load(d, of_spring + lane_count()),
-          hn::Load(d, of_spring + 2 * lane_count())};
+  const SpringConstants<Lanes> constants = load_constants(of_spring);
+  return {constants, hn::Load(FloatTag(), of_spring)};
 }
 
 /// Forces that wait for the rows below while the walk goes down.
@@ -141,9 +140,7 @@ HWY_INLINE BegunSpring begin_spring(const NodeLanes& node, const NodeLanes& othe
 
 /// Its force on the other end; the owner gets the opposite one.
 HWY_INLINE Lanes3 force_of(const BegunSpring& begun, const SpringLanes& spring) {
-  return spring_pull_at(begun.inverse_length, begun.closing, spring.stiffness, spring.stiffness_rest,
-                        spring.damping) *
-         begun.d;
+  return spring_pull_at(begun.inverse_length, begun.closing, spring) * begun.d;
 }
 
 /// Asks for the row of a column of states that the walk comes to next but so many. Measured on Zen 5 at 500 x

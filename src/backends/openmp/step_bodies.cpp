@@ -29,7 +29,7 @@ namespace mssim::HWY_NAMESPACE {
 /// where serial's gives NaN.
 HWY_INLINE Lanes body_spring_pull(const Lanes3& to_other, const Lanes3& closing, const SpringLanes& spring) {
   return spring_pull_at(inverse_length(dot_add(to_other, to_other, Lanes(1e-36F))), dot(closing, to_other),
-                        spring.stiffness, spring.stiffness_rest, spring.damping);
+                        spring);
 }
 
 /// The pairs in a stage, counted from the first one of a call: `state` and `next` change places every step.
@@ -107,14 +107,14 @@ class EntryWalk {
 /// Acceleration that the springs of a slice's nodes give them, neighbour by neighbour in the order of
 /// entries, which end at `end`.
 HWY_INLINE Lanes3 spring_acceleration(EntryWalk& entries, const float* end, const NodeLanes& node,
-                                      Lanes stiffness, Lanes damping) {
+                                      const SpringConstants<Lanes>& constants) {
   Lanes3 sum = zero3();
   while (entries.is_before(end)) {
     const Lanes stiffness_rest = entries.stiffness_rest();
     const NodeLanes other = entries.take();
     const Lanes3 to_other = other.x - node.x;
     // An empty entry's pull is finite and its length zero: it gives no force.
-    const Lanes pull = body_spring_pull(to_other, other.v - node.v, {stiffness, stiffness_rest, damping});
+    const Lanes pull = body_spring_pull(to_other, other.v - node.v, {constants, stiffness_rest});
     sum = mul_add(pull, to_other, sum);
   }
   return sum;
@@ -126,11 +126,10 @@ HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::s
                            EntryWalk& entries) {
   const std::size_t offset = slice * vector_nodes * record_floats;
   const NodeLanes node = load_nodes(base[index(integrators[method].stages[stage].gather)] + offset);
-  const float* constants = bodies.constants.data() + slice * 3 * vector_nodes;
-  const Mask free = hn::Eq(hn::Load(FloatTag(), constants + 2 * vector_nodes), hn::Zero(FloatTag()));
-  const Lanes3 a = spring_acceleration(entries, EntryWalk::first_entry(bodies, slice + 1), node,
-                                       Lanes(hn::Load(FloatTag(), constants)),
-                                       Lanes(hn::Load(FloatTag(), constants + vector_nodes)));
+  const float* of_slice = bodies.constants.data() + slice * SlicedBodies::slice_constants * vector_nodes;
+  const SpringConstants<Lanes> constants = load_constants(of_slice);
+  const Mask free = hn::Eq(hn::Load(FloatTag(), of_slice), hn::Zero(FloatTag()));
+  const Lanes3 a = spring_acceleration(entries, EntryWalk::first_entry(bodies, slice + 1), node, constants);
   update_nodes<method, stage>(base, offset, node, a, free, bodies.coefficients, bodies.surroundings);
 }
 
@@ -148,13 +147,12 @@ HWY_INLINE NodeLanes load_bodies(const float* from) { return {load3(from), load3
 /// Adds to the forces on a piece's nodes those of springs from nodes before it.
 HWY_NOINLINE inline void add_cut_springs(const BodyLanes::Shape& shape, const BodyLanes::Piece& piece,
                                          const float* gathered, float* forces) {
-  const Lanes stiffness(shape.stiffness), damping(shape.damping);
+  const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
   for (const BodyLanes::CutSpring& cut : piece.cut) {
     const NodeLanes first = load_bodies(gathered + 2 * std::size_t{cut.first});
     const NodeLanes second = load_bodies(gathered + 2 * std::size_t{cut.second});
     const Lanes3 to_other = second.x - first.x;
-    const Lanes pull =
-        body_spring_pull(to_other, second.v - first.v, {stiffness, Lanes(cut.stiffness_rest), damping});
+    const Lanes pull = body_spring_pull(to_other, second.v - first.v, {constants, Lanes(cut.stiffness_rest)});
     float* const force = forces + cut.second;
     store3(force, mul_add(-pull, to_other, load3(force)));
   }
@@ -166,7 +164,7 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
                              float* const forces) {
   constexpr std::size_t force_floats = 3 * vector_nodes;
   const BodyLanes::Shape& shape = bodies.shapes[piece.shape];
-  const Lanes stiffness(shape.stiffness), damping(shape.damping);
+  const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
   // Copies: a vector's store may change all else, as far as the compiler knows.
   const Coefficients<float> coefficients = bodies.coefficients;
   const Surroundings surroundings = bodies.surroundings;
@@ -190,7 +188,7 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
       const NodeLanes other = load_bodies(gathered + 2 * std::size_t{spring->other});
       const Lanes3 to_other = other.x - here.x;
       const Lanes pull =
-          body_spring_pull(to_other, other.v - here.v, {stiffness, Lanes(spring->stiffness_rest), damping});
+          body_spring_pull(to_other, other.v - here.v, {constants, Lanes(spring->stiffness_rest)});
       float* const force = forces + spring->other;
       store3(force, mul_add(-pull, to_other, load3(force)));
       sum = mul_add(pull, to_other, sum);

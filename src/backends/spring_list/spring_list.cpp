@@ -9,10 +9,9 @@ SpringList<Real>::SpringList(const System& system, const Integrator& integrator,
     : system_(system),
       integrator_(integrator),
       coefficients_(coefficients_of<Real>(integrator, dt_s)),
+      materials_(materials_of<Real>(system)),
       pinned_(system.nodes()),
       force_(system.nodes()) {
-  for (const SpringMaterial& material : system.materials)
-    materials_.push_back({static_cast<Real>(material.stiffness), static_cast<Real>(material.damping)});
   inverse_mass_.reserve(system.nodes());
   for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
   for (const std::uint32_t node : system.pins) pinned_[node] = 1;

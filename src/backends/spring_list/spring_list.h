@@ -44,9 +44,8 @@ class SpringList {
     const Node& first = array(gather)[spring.first];
     const Node& second = array(gather)[spring.second];
     const Vec3<Real> d = second.x - first.x;
-    const Material& material = materials_[spring.kind];
-    return spring_pull(dot(d, d), dot(second.v - first.v, d), material.stiffness,
-                       material.stiffness * static_cast<Real>(spring.rest_length), material.damping) *
+    return spring_pull(dot(d, d), dot(second.v - first.v, d),
+                       linear_spring(materials_[spring.kind], static_cast<Real>(spring.rest_length))) *
            d;
   }
   void add_force(const Spring& spring, const Vec3<Real>& force) {
@@ -62,9 +61,6 @@ class SpringList {
   void end_step();
 
  private:
-  struct Material {
-    Real stiffness, damping;
-  };
   /// All forces of a stage are known before a node is updated, so pairs may share arrays.
   static constexpr Storage storage = Storage::in_place;
   const std::vector<Node>& array(Pair pair) const { return pairs_[place_[index(pair)]]; }
@@ -73,7 +69,7 @@ class SpringList {
   const System& system_;
   const Integrator& integrator_;
   Coefficients<Real> coefficients_;
-  std::vector<Material> materials_;
+  std::vector<SpringConstants<Real>> materials_;
   std::vector<std::uint8_t> pinned_;                 ///< [nodes]
   std::vector<Real> inverse_mass_;                   ///< [nodes] 1/kg
   std::vector<Vec3<Real>> force_;                    ///< [nodes] N

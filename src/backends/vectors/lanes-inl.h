@@ -14,6 +14,7 @@
 
 #include "backends/vectors/instruction_sets.h"
 #include "integrators/coefficients.h"
+#include "laws/host_laws.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mssim::HWY_NAMESPACE {

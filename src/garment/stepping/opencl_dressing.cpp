@@ -188,9 +188,9 @@ std::string stencil_text() {
 }
 
 std::string program_text_with(const char* kernels, int lanes) {
-  return stencil_text() +
-         program_text(lanes, {"lanes.h", "records.h", "spring_law.h", "node_laws.h", "parameters.h",
-                              "stage.h", "body_contact.h", "garment_laws.h", "dressing.cl", kernels});
+  return stencil_text() + program_text(lanes, {"lanes.h", "records.h", "spring_constants.h", "spring_law.h",
+                                               "node_laws.h", "parameters.h", "stage.h", "body_contact.h",
+                                               "garment_laws.h", "dressing.cl", kernels});
 }
 
 class OpenclDressing final : public DressingBackend {

@@ -28,7 +28,7 @@ class SerialDressing final : public DressingBackend {
         correction_order_(correction_order(garment_, system.springs)),
         layers_(layer_collision(system, garment_, 1)) {
     for (const SpringMaterial& material : system.materials)
-      stiffness_.push_back(static_cast<Real>(material.stiffness));
+      undamped_.push_back({.stiffness = static_cast<Real>(material.stiffness)});
     for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
     for (const std::uint32_t pin : system.pins) inverse_mass_[pin] = 0;
     SerialDressing::set_state(system.start);
@@ -83,10 +83,8 @@ class SerialDressing final : public DressingBackend {
     std::fill(force_.begin(), force_.end(), Vector{});
     for (const Spring& spring : system_.springs) {
       const Vector d = nodes_[spring.second].x - nodes_[spring.first].x;
-      const Real stiffness = stiffness_[spring.kind];
-      const Vector force = spring_pull(dot(d, d), Real{0}, stiffness,
-                                       stiffness * static_cast<Real>(spring.rest_length), Real{0}) *
-                           d;
+      const auto law = linear_spring(undamped_[spring.kind], static_cast<Real>(spring.rest_length));
+      const Vector force = spring_pull(dot(d, d), Real{0}, law) * d;
       force_[spring.first] += force;
       force_[spring.second] -= force;
     }
@@ -224,10 +222,10 @@ class SerialDressing final : public DressingBackend {
   Real dt_;
   double dt_s_;
   std::vector<Node> nodes_;
-  std::vector<Vector> force_;       ///< [nodes] N, from loop 2 on m/s^2
-  std::vector<Real> stiffness_;     ///< [kinds] N/m
-  std::vector<Real> inverse_mass_;  ///< [nodes] 1/kg, 0 for a pin
-  std::vector<Real> free_;          ///< [nodes] the same, 0 for what friction holds, too
+  std::vector<Vector> force_;                    ///< [nodes] N, from loop 2 on m/s^2
+  std::vector<SpringConstants<Real>> undamped_;  ///< [kinds]
+  std::vector<Real> inverse_mass_;               ///< [nodes] 1/kg, 0 for a pin
+  std::vector<Real> free_;                       ///< [nodes] the same, 0 for what friction holds, too
   PhaseRule<Real> phase_{};
   CorrectionRule<Real> correction_rule_;
   ClosingRule<Real> closing_rule_;

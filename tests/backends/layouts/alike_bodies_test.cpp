@@ -49,8 +49,8 @@ TEST(AlikeBodies, HaveEverySpringOfEachBodyFromTheFirstOfItsEnds) {
   }
   EXPECT_EQ(found, expected);
   EXPECT_EQ(std::ranges::count(seen, true), system.nodes());
-  EXPECT_EQ(alike.stiffness, static_cast<float>(200 / 0.004));
-  EXPECT_EQ(alike.damping, static_cast<float>(0.05 / 0.004));
+  EXPECT_EQ(alike.constants.stiffness, static_cast<float>(200 / 0.004));
+  EXPECT_EQ(alike.constants.damping, static_cast<float>(0.05 / 0.004));
 }
 
 TEST(AlikeBodies, AreToldApartByAnythingThatSpringsOrNodesHave) {

@@ -23,15 +23,15 @@ namespace {
 
 constexpr float gravity = 9.81F;
 
-std::vector<SpringConstants> constants() {
-  std::vector<SpringConstants> all;
-  for (const double stiffness : {200, 60, 8}) all.emplace_back(SpringMaterial{stiffness, 0.01}, 0.1, 0.002);
+std::vector<SpringPerMass> constants() {
+  std::vector<SpringPerMass> all;
+  for (const double stiffness : {200, 60, 8}) all.push_back(spring_per_mass({stiffness, 0.01}, 0.1, 0.002));
   return all;
 }
 
 /// Expects the constants of every spring that is there, and zeros for the others.
 void expect_springs_of_cloth(const BandLayout& layout, ColumnsToEnd to_end) {
-  const std::vector<SpringConstants> springs = constants();
+  const std::vector<SpringPerMass> springs = constants();
   const BandRows band_rows(layout, springs, gravity, to_end);
   const std::size_t lanes = layout.lanes;
   const auto halo = static_cast<std::ptrdiff_t>(BandLayout::halo);
@@ -49,11 +49,13 @@ void expect_springs_of_cloth(const BandLayout& layout, ColumnsToEnd to_end) {
         const auto columns = static_cast<std::size_t>(grid_stencil[i].columns);
         const bool exists =
             is_there(of_cloth, 0, half) && is_there(of_cloth + grid_stencil[i].rows, columns, half);
-        const SpringConstants& spring = springs[grid_stencil[i].kind];
+        const SpringPerMass& spring = springs[grid_stencil[i].kind];
         const float* found = of_row + i * BandRows::spring_vectors * lanes + lane;
-        EXPECT_EQ(found[0], exists ? spring.stiffness : 0) << "row " << row << ", spring " << i;
-        EXPECT_EQ(found[lanes], exists ? spring.stiffness_rest : 0) << "row " << row << ", spring " << i;
-        EXPECT_EQ(found[2 * lanes], exists ? spring.damping : 0) << "row " << row << ", spring " << i;
+        for (const float number :
+             {spring.constants.stiffness, spring.constants.damping, spring.stiffness_rest}) {
+          EXPECT_EQ(*found, exists ? number : 0) << "row " << row << ", spring " << i;
+          found += lanes;
+        }
       }
     }
   }

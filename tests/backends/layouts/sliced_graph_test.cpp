@@ -76,10 +76,9 @@ TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThat
     for (const Spring& spring : system.springs)
       for (const std::uint32_t node : {spring.first, spring.second}) {
         const SpringMaterial& material = system.materials[spring.kind];
-        EXPECT_EQ(graph.stiffness[graph.slot[node]],
-                  static_cast<float>(material.stiffness / system.node_mass[node]));
-        EXPECT_EQ(graph.damping[graph.slot[node]],
-                  static_cast<float>(material.damping / system.node_mass[node]));
+        const SpringConstants<float>& constants = graph.constants[graph.slot[node]];
+        EXPECT_EQ(constants.stiffness, static_cast<float>(material.stiffness / system.node_mass[node]));
+        EXPECT_EQ(constants.damping, static_cast<float>(material.damping / system.node_mass[node]));
       }
   }
 }
@@ -159,8 +158,7 @@ TEST_P(SlicedGraphOfLanes, OfAPartGivesItsNodesWhatTheyHaveInTheWhole) {
   for (std::uint32_t node = 0; node < own; ++node) {
     const auto entries = entries_of(graph, node);
     EXPECT_EQ(entries, entries_of(whole, node));
-    EXPECT_EQ(graph.stiffness[graph.slot[node]], whole.stiffness[whole.slot[node]]);
-    EXPECT_EQ(graph.damping[graph.slot[node]], whole.damping[whole.slot[node]]);
+    EXPECT_EQ(graph.constants[graph.slot[node]], whole.constants[whole.slot[node]]);
     const bool edge = std::ranges::any_of(entries, [&](const auto& entry) { return entry.first >= own; });
     EXPECT_EQ(graph.slot[node] / graph.lanes >= graph.first_edge_slice, edge);
   }

@@ -32,11 +32,6 @@ Counted inverse_sqrt(Counted a) {
   Counted::operations += 2;
   return {1 / std::sqrt(a.value)};
 }
-using Real = Counted;
-#define MSSIM_LAW inline Real
-#include "kernels/spring_law.h"
-#undef MSSIM_LAW
-
 struct CountedVector {
   Counted x, y, z;
 };
@@ -48,7 +43,7 @@ TEST(StepCost, CountsASpringAsTheLawIsWritten) {
   const CountedVector d{other_x.x - x.x, other_x.y - x.y, other_x.z - x.z};
   const CountedVector u{other_v.x - v.x, other_v.y - v.y, other_v.z - v.z};
   const Counted pull = spring_pull(d.x * d.x + d.y * d.y + d.z * d.z, u.x * d.x + u.y * d.y + u.z * d.z,
-                                   Counted(10), Counted(20), Counted(0.5));
+                                   LinearSpring<Counted>{{10, 0.5}, 20});
   const CountedVector f{pull * d.x, pull * d.y, pull * d.z};
   force = {force.x + f.x, force.y + f.y, force.z + f.z};
   other_force = {other_force.x - f.x, other_force.y - f.y, other_force.z - f.z};

@@ -186,8 +186,10 @@ TEST_P(OpenclBodyContact, DoesTheSame) {
     for (std::size_t k = 0; k < inputs; ++k) in[k * points + i] = static_cast<float>(numbers[k]);
   }
   const DeviceQueue queue(choose_opencl_device(opencl_offer().devices, ""), DeviceMemory::shared);
-  const cl::Program program = queue.build(
-      program_text(GetParam(), {"lanes.h", "node_laws.h", "parameters.h", "body_contact.h"}) + kernel);
+  const cl::Program program =
+      queue.build(program_text(GetParam(), {"lanes.h", "node_laws.h", "spring_constants.h", "parameters.h",
+                                            "body_contact.h"}) +
+                  kernel);
   const auto given = queue.copy_of(std::span<const float>(in));
   const auto result = queue.zeros<float>(outputs * points);
   cl::Kernel meet(program, "meet");

@@ -48,9 +48,9 @@ class SerialConstraints final : public Backend {
     springs_.reserve(system.springs.size());
     for (const Spring& spring : spring_order(system).springs)
       springs_.push_back({spring.first, spring.second,
-                          Compliance<Real>(system.materials[spring.kind], spring.rest_length, h_s,
-                                           static_cast<double>(mobility_[spring.first]) +
-                                               static_cast<double>(mobility_[spring.second]))});
+                          compliant_spring<Real>(system.materials[spring.kind], spring.rest_length, h_s,
+                                                 static_cast<double>(mobility_[spring.first]) +
+                                                     static_cast<double>(mobility_[spring.second]))});
   }
 
   void set_state(const State& state) override {
@@ -80,7 +80,7 @@ class SerialConstraints final : public Backend {
  private:
   struct CompliantSpring {
     std::uint32_t first, second;
-    Compliance<Real> compliance;
+    LinearSpring<Real> law;
   };
 
   /// Gravity and the damping of the air, of a small step: v becomes (v - h g) / (1 + h c).
@@ -104,9 +104,7 @@ class SerialConstraints final : public Backend {
     Vec3<Real>&v1 = nodes_.v[spring.first], &v2 = nodes_.v[spring.second];
     const Vec3<Real> u = v2 - v1;
     const Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first] + h_ * u;
-    const Compliance<Real>& c = spring.compliance;
-    const Vec3<Real> impulse =
-        spring_pull(dot(d, d), dot(u, d), c.stiffness, c.stiffness_rest, c.damping) * d;
+    const Vec3<Real> impulse = spring_pull(dot(d, d), dot(u, d), spring.law) * d;
     v1 += mobility_[spring.first] * impulse;
     v2 -= mobility_[spring.second] * impulse;
   }
@@ -211,11 +209,11 @@ QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lane
   const auto& grid = std::get<GridPatch>(system.topology);
   const double mass = require_uniform_mass(system);
   for (const GridSpringKind kind : {structural, shear, bending}) {
-    const SpringMaterial by_mass{system.materials[kind].stiffness / mass,
-                                 system.materials[kind].damping / mass};
+    const auto by_mass =
+        constants_from<double>([mass](double number) { return number / mass; }, system.materials[kind]);
     const auto rest_length = static_cast<double>(grid.rest_length(kind));
-    of_free.emplace_back(by_mass, rest_length, small_s, 2);
-    of_pinned.emplace_back(by_mass, rest_length, small_s, 1);
+    of_free.push_back(compliant_spring<float>(by_mass, rest_length, small_s, 2));
+    of_pinned.push_back(compliant_spring<float>(by_mass, rest_length, small_s, 1));
   }
 
   std::set<std::size_t> pinned_rows;
@@ -321,14 +319,10 @@ SpringBatches::SpringBatches(const System& system, double dt_s, std::size_t lane
         std::ranges::sort(list, {}, [&](const Spring& spring) { return slot[spring.first]; });
         const double first_mobility = std::get<1>(constants), second_mobility = std::get<2>(constants);
         const auto compliance = [&](const Spring& spring) {
-          return Compliance<float>(system.materials[spring.kind], spring.rest_length, small_s,
-                                   first_mobility + second_mobility);
+          return compliant_spring<float>(system.materials[spring.kind], spring.rest_length, small_s,
+                                         first_mobility + second_mobility);
         };
-        Batch batch{written(),
-                    0,
-                    compliance(list.front()).stiffness,
-                    compliance(list.front()).damping,
-                    static_cast<float>(first_mobility),
+        Batch batch{written(), 0, compliance(list.front()).constants, static_cast<float>(first_mobility),
                     static_cast<float>(second_mobility)};
         batch.end = batch.begin + (list.size() + lanes - 1) / lanes;
         list.resize((batch.end - batch.begin) * lanes, list.back());

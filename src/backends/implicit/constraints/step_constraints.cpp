@@ -35,8 +35,8 @@ HWY_INLINE void meet_floor(Mask moves, const Surroundings& surroundings, NodeLan
 }
 
 HWY_INLINE SpringLanes select(Mask first, const SpringLanes& a, const SpringLanes& b) {
-  return {select(first, a.stiffness, b.stiffness), select(first, a.stiffness_rest, b.stiffness_rest),
-          select(first, a.damping, b.damping)};
+  return HWY_NAMESPACE::spring_from<Lanes>(
+      [first](Lanes yes, Lanes no) MSSIM_INLINE_LAMBDA { return select(first, yes, no); }, a, b);
 }
 
 /// Three components of a vector of nodes that need not begin where a vector does.
@@ -53,13 +53,13 @@ HWY_INLINE void store_part(Mask lanes, const Lanes3& value, float* to, std::size
   hn::BlendedStore(value.z.v, lanes, d, to + 2 * pitch);
 }
 
-/// What springs pull with between nodes a and b in a small step of h (Compliance), in parts of `way`, which
+/// What compliant springs pull with between nodes a and b in a small step of h, in parts of `way`, which
 /// becomes that from a to b at its end.
 HWY_INLINE Lanes pull_between(const NodeLanes& a, const NodeLanes& b, Lanes h, const SpringLanes& c,
                               Lanes3& way) {
   const Lanes3 u = b.v - a.v;
   way = mul_add(h, u, b.x - a.x);
-  return spring_pull_at(inverse_length(dot(way, way)), dot(u, way), c.stiffness, c.stiffness_rest, c.damping);
+  return spring_pull_at(inverse_length(dot(way, way)), dot(u, way), c);
 }
 
 /// The springs of a vector of `first` and one of `second`: where the x of the nodes begin. The ends that move
@@ -92,7 +92,7 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
   const std::size_t target = springs.stream + springs.right;
   const std::size_t other = target % QuarterLayout::streams, further = target / QuarterLayout::streams;
   const Lanes h(cloth.h_s);
-  const SpringLanes c(cloth.of_free[springs.kind]);
+  const SpringLanes c = in_every_lane(cloth.of_free[springs.kind]);
   for (std::size_t i = 0; i < springs.rows; ++i) {
     const std::size_t row = springs.first_row + i * springs.row_step;
     const std::size_t other_row = row + static_cast<std::size_t>(springs.down);
@@ -103,7 +103,7 @@ HWY_NOINLINE inline void project_springs(QuarteredRows& cloth, const Springs& sp
     if (cloth.has_pins(row) || cloth.has_pins(other_row)) {
       const float* const first_free = cloth.free_of_row[row] + springs.stream * pitch;
       const float* const second_free = cloth.free_of_row[other_row] + other * pitch + further;
-      const SpringLanes of_pinned(cloth.of_pinned[springs.kind]);
+      const SpringLanes of_pinned = in_every_lane(cloth.of_pinned[springs.kind]);
       const FloatTag d;
       for (std::size_t at = 0; at < count; at += lanes) {
         const Mask there = below(hn::Iota(IndexTag(), 0), static_cast<std::uint32_t>(count - at));
@@ -357,7 +357,7 @@ HWY_INLINE void project_batch(SpringBatches& bodies, const SpringBatches::Batch&
   const FloatTag d;
   float* const nodes = bodies.nodes.data();
   const Lanes h(bodies.h_s);
-  SpringLanes spring(batch.stiffness, Lanes(0.0F), batch.damping);
+  SpringLanes spring{in_every_lane(batch.constants), Lanes(0.0F)};
   const Lanes first_mobility(batch.first_mobility), second_mobility(batch.second_mobility);
   const float* const last = bodies.springs.data() + end * 3 * vector_springs;
   for (const float* entry = bodies.springs.data() + begin * 3 * vector_springs; entry < last;

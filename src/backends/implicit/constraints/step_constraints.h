@@ -29,23 +29,17 @@ namespace mssim {
 /// time. So the same law gives the impulse, from other constants; velocities carry the displacements, which
 /// single precision would lose in differences of positions; and a spring without stiffness is no exception.
 ///
-/// These are the constants of the law with which its pull is that impulse divided by the vector to the other
-/// end, kg/s. They are finite for all k and c that are not negative.
+/// This gives the spring with which the law's pull is that impulse divided by the vector to the other end,
+/// kg/s. Its constants, h k / (1 + ...) and h c / (1 + ...), are finite for all k and c that are not
+/// negative. rest_length in m; h_s: the small step; mobility: w1 + w2, 1/kg, 0 for an end that is held.
 template <class Real>
-struct Compliance {
-  Real stiffness;       ///< h k / (1 + ...), kg/s
-  Real stiffness_rest;  ///< that times the rest length, kg m/s
-  Real damping;         ///< h c / (1 + ...), kg
-
-  /// rest_length in m; h_s: the small step; mobility: w1 + w2, 1/kg, 0 for an end that is held.
-  Compliance(const SpringMaterial& material, double rest_length, double h_s, double mobility) {
-    const double impulse_per_force =
-        h_s / (1 + (h_s * h_s * material.stiffness + h_s * material.damping) * mobility);
-    stiffness = static_cast<Real>(material.stiffness * impulse_per_force);
-    stiffness_rest = static_cast<Real>(material.stiffness * rest_length * impulse_per_force);
-    damping = static_cast<Real>(material.damping * impulse_per_force);
-  }
-};
+LinearSpring<Real> compliant_spring(const SpringMaterial& material, double rest_length, double h_s,
+                                    double mobility) {
+  const double impulse_per_force =
+      h_s / (1 + (h_s * h_s * material.stiffness + h_s * material.damping) * mobility);
+  return spring_from<Real>([=](double number) { return number * impulse_per_force; },
+                           linear_spring(material, rest_length));
+}
 
 /// The colours of a cloth, in their order: springs along rows, then those between the rows of a pair, then
 /// bending springs across rows. In that order a walk down the rows can do all colours of a row that those of
@@ -134,7 +128,7 @@ struct QuarteredRows : SmallSteps {
 
   /// By GridSpringKind, between free nodes and between a free one and a pin; divided by the mass of a node,
   /// so that what acts on a free end is its change of velocity.
-  std::vector<Compliance<float>> of_free, of_pinned;
+  std::vector<LinearSpring<float>> of_free, of_pinned;
   std::size_t threads = 1;
   std::size_t depth = 1;  ///< small steps that one pass over the cloth takes
   TeamGain team_gain;
@@ -156,7 +150,7 @@ struct SpringBatches : SmallSteps {
   /// Springs of a colour whose constants are the same, in vectors [begin, end) of `springs`.
   struct Batch {
     std::size_t begin, end;
-    float stiffness, damping;               ///< as in Compliance
+    SpringConstants<float> constants;       ///< of compliant_spring
     float first_mobility, second_mobility;  ///< 1/kg
   };
   /// Batches [begin, end) of a colour.
@@ -175,7 +169,7 @@ struct SpringBatches : SmallSteps {
   AlignedArray rest;                ///< [slots / lanes][x y z][lanes] m, what x y z lack (carried_sum-inl.h)
   AlignedArray free;                ///< [slots] 1 where a node may move, 0 for a pin and where there is none
   /// [vectors][3][lanes] where the records of both ends begin, in units of offset_floats and as
-  /// std::uint32_t, then the stiffness of Compliance times the rest length. The last vector of a batch
+  /// std::uint32_t, then the stiffness_rest of compliant_spring. The last vector of a batch
   /// repeats its last spring, which writes the same once more.
   AlignedArray springs;
   static constexpr std::size_t offset_floats = record_floats;

@@ -211,8 +211,7 @@ StepMatrix::StepMatrix(const System& system, double dt_s) {
     diagonal.push_back((1 + dt_s * system.viscous_damping) * system.node_mass[i]);
   }
   for (const Spring& spring : system.springs) {
-    const SpringMaterial& material = system.materials[spring.kind];
-    const double weight = dt_s * (dt_s * material.stiffness + material.damping);
+    const double weight = spring_step_along(dt_s, system.materials[spring.kind]);
     const std::uint32_t first = row[spring.first], second = row[spring.second];
     if (first != no_row) diagonal[first] += weight;
     if (second != no_row) diagonal[second] += weight;

@@ -85,9 +85,8 @@ class LocalGlobalSerial final : public Backend {
     for (const Spring& spring : system_.springs) {
       const Vec3<Real> u = w_[spring.second] - w_[spring.first];
       const Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first] + dt_ * u;
-      const auto [stiffness, damping] = nodes_.materials[spring.kind];
-      const Real stiffness_rest = stiffness * static_cast<Real>(spring.rest_length);
-      const Vec3<Real> force = spring_pull(dot(d, d), dot(u, d), stiffness, stiffness_rest, damping) * d;
+      const auto law = linear_spring(nodes_.materials[spring.kind], static_cast<Real>(spring.rest_length));
+      const Vec3<Real> force = spring_pull(dot(d, d), dot(u, d), law) * d;
       force_[spring.first] += force;
       force_[spring.second] -= force;
     }

@@ -46,9 +46,8 @@ SolverGoal solver_goal(const System& system, double dt_s, double tolerance) {
   std::vector<double> diagonal, others(system.nodes());
   for (const double mass : system.node_mass) diagonal.push_back(mass * (1 + dt_s * system.viscous_damping));
   for (const Spring& spring : system.springs) {
-    const SpringMaterial& material = system.materials[spring.kind];
-    const double tension = material.stiffness * static_cast<double>(spring.rest_length);
-    const double along = dt_s * (material.damping + dt_s * material.stiffness);
+    const auto law = linear_spring(system.materials[spring.kind], static_cast<double>(spring.rest_length));
+    const double tension = law.stiffness_rest, along = spring_step_along(dt_s, law.constants);
     for (const auto& [end, other] : {std::pair{spring.first, spring.second}, {spring.second, spring.first}}) {
       sum += tension * tension / system.node_mass[end];
       diagonal[end] += along;

@@ -109,20 +109,19 @@ class SpringEquation {
     std::fill(e_.begin(), e_.end(), Vec3<Real>{});
     for (std::size_t i = 0; i < springs_.size(); ++i) {
       const Spring& spring = springs_[i];
-      const auto [stiffness, damping] = nodes_.materials[spring.kind];
-      const Real stiffness_rest = stiffness * static_cast<Real>(spring.rest_length);
+      const auto law = linear_spring(nodes_.materials[spring.kind], static_cast<Real>(spring.rest_length));
       const Vec3<Real> u = w_[spring.second] - w_[spring.first];
       Vec3<Real> d = nodes_.x[spring.second] - nodes_.x[spring.first];
       // Not the difference of x + dt w: rounding these would cost most digits of a small stretch.
       if constexpr (!at_state) d += dt_ * u;
       const Real inverse_length = inverse_sqrt(dot(d, d));
       const Vec3<Real> n = inverse_length * d;
-      const Real across = spring_across_definite(inverse_length, stiffness, stiffness_rest);
-      Vec3<Real> force = spring_pull_at(inverse_length, dot(u, d), stiffness, stiffness_rest, damping) * d;
-      if constexpr (at_state) force += dt_ * spring_jacobian_times(n, stiffness, across, u);
+      const Real across = spring_across_definite(inverse_length, law);
+      Vec3<Real> force = spring_pull_at(inverse_length, dot(u, d), law) * d;
+      if constexpr (at_state) force += dt_ * spring_jacobian_times(n, spring_along(law), across, u);
       e_[spring.first] += force;
       e_[spring.second] -= force;
-      slopes_[i] = {n, dt_ * (damping + dt_ * stiffness), dt_ * dt_ * across};
+      slopes_[i] = {n, spring_step_along(dt_, law.constants), dt_ * dt_ * across};
     }
     double norm = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {

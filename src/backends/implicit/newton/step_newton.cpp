@@ -35,16 +35,10 @@ class DoubleSum {
   hn::Vec<Tag> low_, high_;
 };
 
-/// What the springs of one place do at the end of a step of dt: `along` of kernels/spring_jacobian.h.
-HWY_INLINE Lanes along_spring(const SpringLanes& spring, Lanes dt) {
-  return dt * mul_add(dt, spring.stiffness, spring.damping);
-}
-
 /// What springs whose ends are d apart (m) add to A at the end of a step of dt.
 HWY_INLINE SlopeLanes slope_of(const SpringLanes& spring, const Lanes3& d, Lanes dt) {
   const Lanes inverse_root = inverse_length(dot(d, d));
-  return {inverse_root * d,
-          dt * (dt * spring_across_definite(inverse_root, spring.stiffness, spring.stiffness_rest))};
+  return {inverse_root * d, dt * (dt * spring_across_definite(inverse_root, spring))};
 }
 
 /// The block of P of a vector of nodes, from where it stands in VectorEquation::inverse.
@@ -85,24 +79,21 @@ HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk c
     Lanes3 pull = zero3();
     SymmetricBlock<Lanes> block{inertia, Lanes(0.0F), Lanes(0.0F), inertia, Lanes(0.0F), inertia};
     vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
-      const SpringLanes& spring = springs.constants;
+      const SpringLanes& spring = springs.law;
       const Lanes3 u = springs.load(w) - node.v;
       Lanes3 d = springs.load(x) - node.x;
       // Not the difference of x + dt w: rounding these would cost most digits of a small stretch.
       if constexpr (!at_state) d = mul_add(dt, u, d);
       const Lanes inverse_root = inverse_length(dot(d, d));
-      SlopeLanes slope{inverse_root * d,
-                       spring_across_definite(inverse_root, spring.stiffness, spring.stiffness_rest)};
-      Lanes3 force =
-          spring_pull_at(inverse_root, dot(u, d), spring.stiffness, spring.stiffness_rest, spring.damping) *
-          d;
+      SlopeLanes slope{inverse_root * d, spring_across_definite(inverse_root, spring)};
+      Lanes3 force = spring_pull_at(inverse_root, dot(u, d), spring) * d;
       if constexpr (at_state)
-        force = mul_add(dt, spring_jacobian_times(slope.n, spring.stiffness, slope.across, u), force);
+        force = mul_add(dt, spring_jacobian_times(slope.n, spring_along(spring), slope.across, u), force);
       pull = pull + keep(springs.exists, force);
       slope.across = dt * (dt * slope.across);
       slope = keep(springs.exists, slope);
       if (slopes != nullptr) springs.store_slope(slopes, slope);
-      const Lanes along = keep(springs.exists, along_spring(spring, dt));
+      const Lanes along = keep(springs.exists, spring_step_along(dt, spring.constants));
       block = block_sum(block, spring_jacobian(slope.n.x, slope.n.y, slope.n.z, along, slope.across));
     });
     Lanes3 missing = dt * node_acceleration(pull, node.v, viscous_damping, gravity);
@@ -160,8 +151,8 @@ HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, NodeChunk ch
     Lanes3 product = inertia * here;
     vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
       const SlopeLanes slope = springs.load_slope(slopes);
-      product = product - spring_jacobian_times(slope.n, along_spring(springs.constants, dt), slope.across,
-                                                springs.load(p) - here);
+      product = product - spring_jacobian_times(slope.n, spring_step_along(dt, springs.law.constants),
+                                                slope.across, springs.load(p) - here);
     });
     vector.store(q, product);
     sum.add(vector.weighted(dot(here, product)));
@@ -181,10 +172,11 @@ HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, NodeChu
     const Lanes3 here = vector.load(p), place = vector.load(y);
     Lanes3 product = inertia * here;
     vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
-      const SpringLanes& spring = springs.constants;
+      const SpringLanes& spring = springs.law;
       const SlopeLanes slope = slope_of(spring, springs.load(y) - place, dt);
-      product = product - keep(springs.exists, spring_jacobian_times(slope.n, along_spring(spring, dt),
-                                                                     slope.across, springs.load(p) - here));
+      product = product -
+                keep(springs.exists, spring_jacobian_times(slope.n, spring_step_along(dt, spring.constants),
+                                                           slope.across, springs.load(p) - here));
     });
     product = keep(vector.free, product);
     vector.store(q, product);

@@ -33,8 +33,8 @@ HWY_INLINE SlopeLanes keep(Exists exists, const SlopeLanes& slope) {
 /// spring_of_node().
 template <std::size_t i, class Exists>
 struct RowSprings {
-  const SpringLanes& constants;  ///< divided by the mass of a node
-  Exists exists;                 ///< a Mask or EveryLane: where there is such a spring
+  const SpringLanes& law;  ///< divided by the mass of a node
+  Exists exists;           ///< a Mask or EveryLane: where there is such a spring
   std::ptrdiff_t pitch;
   std::ptrdiff_t there;  ///< offset of the neighbours in a field
   std::ptrdiff_t slope;  ///< offset of what these springs have in a field of slopes
@@ -224,10 +224,10 @@ HWY_INLINE void store_slice(float* to, const Lanes3& value) {
 
 /// One entry of a slice: springs to one neighbour of each of its nodes.
 struct SliceSprings {
-  SpringLanes constants;  ///< divided by the mass of a node
-  Mask exists;            ///< where there is such a spring
-  const float* entry;     ///< in NodeSlices::entries
-  std::ptrdiff_t slope;   ///< offset of what these springs have in a field of slopes
+  SpringLanes law;       ///< divided by the mass of a node
+  Mask exists;           ///< where there is such a spring
+  const float* entry;    ///< in NodeSlices::entries
+  std::ptrdiff_t slope;  ///< offset of what these springs have in a field of slopes
 
   /// A field at the neighbours.
   HWY_INLINE Lanes3 load(const float* field) const {
@@ -267,7 +267,8 @@ struct SliceVector {
   /// Calls act(springs) for each entry.
   template <class Act>
   HWY_INLINE void for_each_spring(Act&& act) const {
-    SpringLanes spring(constant(NodeSlices::stiffness), Lanes(0.0F), constant(NodeSlices::damping));
+    const float* of_slice = constants;
+    SpringLanes spring{load_constants(of_slice), Lanes(0.0F)};
     constexpr std::ptrdiff_t slope_floats = 4 * slice_lanes;
     std::ptrdiff_t slope = slopes;
     for (const float* e = entries; e < entries_end; e += 2 * slice_lanes, slope += slope_floats) {
@@ -310,8 +311,7 @@ HWY_INLINE Lanes3 acceleration_at(const Vector& vector, const float* x, const fl
   vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
     const Lanes3 to_other = springs.load(x) - node.x;
     const Lanes factor = spring_pull_at(inverse_length(dot(to_other, to_other)),
-                                        dot(springs.load(v) - node.v, to_other), springs.constants.stiffness,
-                                        springs.constants.stiffness_rest, springs.constants.damping);
+                                        dot(springs.load(v) - node.v, to_other), springs.law);
     pull = mul_add(keep(springs.exists, factor), to_other, pull);
   });
   return node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping), Lanes(surroundings.gravity));

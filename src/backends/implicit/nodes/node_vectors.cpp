@@ -18,7 +18,7 @@ NodeRows::NodeRows(const System& system, std::size_t lanes)
     : layout(std::get<GridPatch>(system.topology), lanes),
       slope_layout(std::get<GridPatch>(system.topology), lanes),
       plane(std::get<GridPatch>(system.topology), lanes),
-      springs(spring_constants_of(system, std::get<GridPatch>(system.topology))),
+      springs(springs_per_mass(system, std::get<GridPatch>(system.topology))),
       surroundings(surroundings_of(system)),
       nodes(system.nodes()),
       mass(system.node_mass.front()),
@@ -44,8 +44,7 @@ NodeSlices::NodeSlices(const System& system, std::size_t slice_lanes)
   for (std::size_t slot = 0; slot < graph.slots(); ++slot) {
     if (graph.scene_node[slot] == SlicedGraph::no_node) continue;
     float* first = constants.data() + slot / lanes * constant_count * lanes + slot % lanes;
-    first[stiffness * lanes] = graph.stiffness[slot];
-    first[damping * lanes] = graph.damping[slot];
+    write_constants(first, lanes, graph.constants[slot]);
     first[free * lanes] = graph.held[slot] == 0 ? 1.0F : 0.0F;
     first[mass * lanes] = static_cast<float>(system.node_mass[graph.scene_node[slot]]);
   }

@@ -54,7 +54,7 @@ struct NodeRows {
   Layout layout;
   SlopeLayout slope_layout;
   Plane plane;
-  std::vector<SpringConstants> springs;  ///< [kinds] divided by the mass of a node
+  std::vector<SpringPerMass> springs;  ///< [kinds]
   Surroundings surroundings{};
   std::size_t nodes = 0;
   double mass = 0;                        ///< of each node, kg
@@ -91,8 +91,8 @@ struct NodeRows {
 /// gathered by loading whole records and transposing them in registers. Functions are as NodeRows has them.
 struct NodeSlices {
   static constexpr std::size_t record_floats = 4;
-  /// Numbers of each node in `constants`.
-  enum Constant : std::size_t { stiffness, damping, free, mass, constant_count };
+  /// Numbers of each node in `constants`, behind those of its springs.
+  enum Constant : std::size_t { free = spring_constant_count, mass, constant_count };
 
   std::size_t lanes = 0;
   Surroundings surroundings{};
@@ -100,8 +100,8 @@ struct NodeSlices {
   std::vector<std::uint32_t> record;       ///< [nodes] the number of a node's record
   std::vector<std::uint32_t> first_entry;  ///< SlicedGraph::first_entry
   AlignedArray entries;                    ///< slice_entries()
-  /// [slices][constant_count][lanes] SlicedGraph's stiffness and damping, 1 where a node moves or else 0, and
-  /// mass in kg, 0 where no node is.
+  /// [slices][constant_count][lanes] SlicedGraph's constants, 1 where a node moves or else 0, and mass in kg,
+  /// 0 where no node is.
   AlignedArray constants;
   std::vector<NodeChunk> chunks;  ///< of slices
 

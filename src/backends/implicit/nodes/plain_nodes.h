@@ -12,20 +12,17 @@ namespace mssim {
 /// The nodes of a system as a straightforward implicit program holds them: arrays in the scene's node order.
 template <class Real>
 struct PlainNodes {
-  struct Material {
-    Real stiffness, damping;  ///< N/m, N s/m
-  };
-
-  std::vector<Vec3<Real>> x;         ///< [nodes] m
-  std::vector<Vec3<Real>> v;         ///< [nodes] m/s
-  std::vector<Real> mass;            ///< [nodes] kg
-  std::vector<std::uint8_t> pinned;  ///< [nodes] 1 where nothing moves
-  std::vector<Material> materials;   ///< System::materials
+  std::vector<Vec3<Real>> x;                     ///< [nodes] m
+  std::vector<Vec3<Real>> v;                     ///< [nodes] m/s
+  std::vector<Real> mass;                        ///< [nodes] kg
+  std::vector<std::uint8_t> pinned;              ///< [nodes] 1 where nothing moves
+  std::vector<SpringConstants<Real>> materials;  ///< System::materials
   Real viscous_damping{}, gravity{};
   Real floor_height{}, restitution{}, friction{};
 
   explicit PlainNodes(const System& system)
       : pinned(system.nodes()),
+        materials(materials_of<Real>(system)),
         viscous_damping(static_cast<Real>(system.viscous_damping)),
         gravity(static_cast<Real>(system.gravity)),
         floor_height(static_cast<Real>(system.floor.height)),
@@ -33,8 +30,6 @@ struct PlainNodes {
         friction(static_cast<Real>(system.floor.friction)) {
     for (const double value : system.node_mass) mass.push_back(static_cast<Real>(value));
     for (const std::uint32_t node : system.pins) pinned[node] = 1;
-    for (const SpringMaterial& material : system.materials)
-      materials.push_back({static_cast<Real>(material.stiffness), static_cast<Real>(material.damping)});
     set_state(system.start);
   }
 

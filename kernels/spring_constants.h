@@ -1,0 +1,22 @@
+/* The constants of the law of a spring (spring_law.h), in the common subset of C++ and OpenCL C. They are
+ * those of springs of one kind, and lie beside each other in this order wherever they are stored. The force
+ * is linear in each of them, so that constants divided by a mass give accelerations. What files call them
+ * says `spring_constants` in src/model/system.h.
+ */
+#ifndef MSSIM_SPRING_CONSTANTS
+
+/* ROW(name) of each. */
+#define MSSIM_SPRING_CONSTANTS(ROW) \
+  ROW(stiffness) /* k, N/m */       \
+  ROW(damping)   /* c, N s/m, along the spring */
+
+#define MSSIM_COUNTED(name) +1
+enum { spring_constant_count = MSSIM_SPRING_CONSTANTS(MSSIM_COUNTED) };
+
+/* As the host gives them to kernels. */
+#define MSSIM_FLOAT(name) float name;
+struct SpringFloats {
+  MSSIM_SPRING_CONSTANTS(MSSIM_FLOAT)
+};
+
+#endif
