@@ -57,15 +57,8 @@ ClothMaker cloth_family(const SceneSpec& spec) {
 bool same_family(const SceneSpec& a, const SceneSpec& b) {
   const auto *one = std::get_if<ClothSpec>(&a.content), *other = std::get_if<ClothSpec>(&b.content);
   if (one == nullptr || other == nullptr) return false;
-  const auto same_springs = [&] {
-    for (std::size_t kind = 0; kind < one->springs.size(); ++kind)
-      if (one->springs[kind].stiffness != other->springs[kind].stiffness ||
-          one->springs[kind].damping != other->springs[kind].damping)
-        return false;
-    return true;
-  };
   return one->spacing_m == other->spacing_m &&
-         one->areal_density_kg_per_m2 == other->areal_density_kg_per_m2 && same_springs() &&
+         one->areal_density_kg_per_m2 == other->areal_density_kg_per_m2 && one->springs == other->springs &&
          a.gravity_m_per_s2 == b.gravity_m_per_s2 && a.viscous_damping_per_s == b.viscous_damping_per_s;
 }
 

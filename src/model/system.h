@@ -29,6 +29,22 @@ struct Spring {
 /// How a spring answers stretching.
 using SpringMaterial = SpringConstants<double>;
 
+/// What files call one of its constants.
+struct SpringConstantInfo {
+  double SpringMaterial::*number;
+  std::string_view name;             ///< in traces, and in the files of programs of the user's
+  std::string_view unit, h5md_unit;  ///< in those files, and as traces have it
+  std::string_view key, sentence;    ///< in scene files and their schema
+  double most;                       ///< that a scene file may say
+};
+inline constexpr auto spring_constants = std::to_array<SpringConstantInfo>({
+    {&SpringMaterial::stiffness, "stiffness", "N/m", "N m-1", "stiffness_n_per_m",
+     "Force per lengthening, N/m.", 1e9},
+    {&SpringMaterial::damping, "damping", "N s/m", "N s m-1", "damping_n_s_per_m",
+     "Force against the rate of lengthening, along the spring, N s/m.", 1e6},
+});
+static_assert(spring_constants.size() == spring_constant_count);
+
 /// The springs of a regular cloth, by what they resist. The numbers index GridSpringKind tables and
 /// materials.
 enum GridSpringKind : std::uint32_t { structural, shear, bending };

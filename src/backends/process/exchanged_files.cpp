@@ -191,19 +191,15 @@ void write_nodes(hid_t file, const System& system) {
 
 void write_springs(hid_t file, const System& system) {
   const std::vector<Spring>& springs = system.springs;
-  const auto of_material = [&](const std::string& path, const std::string& unit,
-                               double SpringMaterial::*number) {
-    write_list<double, 1>(file, path, unit, springs.size(), [&](std::size_t i) {
-      return std::array{system.materials[springs[i].kind].*number};
-    });
-  };
   write_list<std::uint32_t, 2>(file, "/springs", "", springs.size(), [&](std::size_t i) {
     return std::array{springs[i].first, springs[i].second};
   });
   write_list<double, 1>(file, "/rest_length", "m", springs.size(),
                         [&](std::size_t i) { return std::array<double, 1>{springs[i].rest_length}; });
-  of_material("/stiffness", "N/m", &SpringMaterial::stiffness);
-  of_material("/damping", "N s/m", &SpringMaterial::damping);
+  for (const SpringConstantInfo& constant : spring_constants)
+    write_list<double, 1>(
+        file, "/" + std::string(constant.name), std::string(constant.unit), springs.size(),
+        [&](std::size_t i) { return std::array{system.materials[springs[i].kind].*constant.number}; });
   write_list<std::uint32_t, 1>(file, "/kind", "", springs.size(),
                                [&](std::size_t i) { return std::array{springs[i].kind}; });
 }

@@ -230,19 +230,19 @@ CloseCloth close_cloth(const CloseSeams& close, const Garment& garment) {
 }
 
 void require_cloth(const std::string& panel, const PanelMaterial& cloth) {
-  const auto require = [&](double value, bool zero_too, const char* what) {
+  const auto require = [&](double value, bool zero_too, std::string_view what) {
     if (!std::isfinite(value) || value < 0 || (value == 0 && !zero_too))
       throw InputError("{}: {} is {}; give a number {} 0", panel, what, shown(value),
                        zero_too ? "not below" : "above");
   };
   const Waistband& band = cloth.waistband;
   require(cloth.area_density, false, "the cloth's area density");
-  require(cloth.structural.stiffness, false, "the structural stiffness");
-  require(cloth.shear.stiffness, true, "the shear stiffness");
-  require(cloth.bending.stiffness, true, "the bending stiffness");
-  require(cloth.structural.damping, true, "the structural damping");
-  require(cloth.shear.damping, true, "the shear damping");
-  require(cloth.bending.damping, true, "the bending damping");
+  const std::array kinds{&cloth.structural, &cloth.shear, &cloth.bending};
+  for (const SpringConstantInfo& constant : spring_constants)
+    for (const GridSpringKind kind : {structural, shear, bending})
+      require(kinds[kind]->*constant.number,
+              kind != structural || constant.number != &SpringMaterial::stiffness,
+              fmt::format("the {} {}", grid_spring_kinds[kind].name, constant.name));
   require(cloth.least_mass_share, true, "the nodes' least share of the mean mass");
   require(band.height, true, "the waistband's height");
   require(band.stiffness_factor, false, "the waistband's stiffness factor");
@@ -271,9 +271,10 @@ void append_springs(const GarmentPanel& panel, const PanelMesh& mesh, const Pane
   materials.insert(materials.end(), {cloth.structural, cloth.shear, cloth.bending});
   const std::uint32_t hoop = first_material + 3;
   const std::uint32_t rows_of_band = waistband_rows(mesh, cloth.waistband);
-  if (rows_of_band > 0)
-    materials.push_back(
-        {cloth.structural.stiffness * cloth.waistband.stiffness_factor, cloth.structural.damping});
+  if (rows_of_band > 0) {
+    materials.push_back(cloth.structural);
+    materials.back().stiffness *= cloth.waistband.stiffness_factor;
+  }
   const std::size_t band_begin = mesh.node(mesh.rows - rows_of_band, 0);
   for (Spring spring : springs_of(GridPatch{mesh.rows, mesh.columns, 1})) {
     const bool along_a_row = spring.kind == structural && spring.second == spring.first + 1;

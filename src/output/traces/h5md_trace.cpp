@@ -24,8 +24,6 @@ constexpr auto units = std::to_array<UnitInfo>({
     {"mass", "kg"},
     {"energy", "J"},
     {"rest_length", "m"},
-    {"stiffness", "N m-1"},
-    {"damping", "N s m-1"},
 });
 
 void write_metadata(hid_t file, const TraceHeader& header) {
@@ -55,6 +53,8 @@ void write_parameters(hid_t file, const System& system, const NodeShape& shape, 
   const Hdf5Group units_group = create_group(file, "/parameters/units");
   for (const auto& [quantity, unit] : units)
     write_attribute(units_group.get(), quantity, std::string_view(unit));
+  for (const SpringConstantInfo& constant : spring_constants)
+    write_attribute(units_group.get(), std::string(constant.name), constant.h5md_unit);
 }
 
 void create_particles(hid_t file, const std::string& particles) {
@@ -69,18 +69,19 @@ void create_particles(hid_t file, const std::string& particles) {
 /// What a strain or a force is computed from, in the order of /connectivity/springs.
 void write_springs(hid_t file, const System& system) {
   if (system.springs.empty()) return;
-  const auto write = [&](const std::string& name, const auto& number_of) {
+  const auto write = [&](std::string_view name, const auto& number_of) {
     std::vector<double> numbers;
     numbers.reserve(system.springs.size());
     for (const Spring& spring : system.springs)
       numbers.push_back(number_of(spring, system.materials[spring.kind]));
-    write_numbers(file, "/parameters/springs/" + name, numbers);
+    write_numbers(file, "/parameters/springs/" + std::string(name), numbers);
   };
   create_group(file, "/parameters/springs");
   write("rest_length",
         [](const Spring& spring, const SpringMaterial&) { return double{spring.rest_length}; });
-  write("stiffness", [](const Spring&, const SpringMaterial& material) { return material.stiffness; });
-  write("damping", [](const Spring&, const SpringMaterial& material) { return material.damping; });
+  for (const SpringConstantInfo& constant : spring_constants)
+    write(constant.name,
+          [&](const Spring&, const SpringMaterial& material) { return material.*constant.number; });
 }
 
 void write_connectivity(hid_t file, const std::string& particles, const System& system,

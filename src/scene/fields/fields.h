@@ -103,13 +103,13 @@ inline void visit_length(FieldVisitor& fields, const Field& field, double& targe
   fields.number(field, target, above(0, largest_length_m));
 }
 
-inline constexpr double largest_stiffness = 1e9;  ///< N/m
+inline constexpr double largest_stiffness = spring_constants.front().most;  ///< N/m
 
 /// Names the fields of one kind of spring, with their targets in `material`.
 inline void visit_material(FieldVisitor& fields, SpringMaterial& material, const Range& stiffness) {
-  fields.number({"stiffness_n_per_m", "Force per lengthening, N/m."}, material.stiffness, stiffness);
-  fields.number({"damping_n_s_per_m", "Force against the rate of lengthening, along the spring, N s/m."},
-                material.damping, from(0, 1e6));
+  for (const SpringConstantInfo& constant : spring_constants)
+    fields.number({constant.key, constant.sentence}, material.*constant.number,
+                  constant.number == &SpringMaterial::stiffness ? stiffness : from(0, constant.most));
 }
 
 /// Bad input: a scene that cannot be found, read, understood or built. what() is one sentence that names the
