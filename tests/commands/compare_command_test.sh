@@ -96,12 +96,6 @@ expect 2 'not comparable: the CPU was .* and is Another CPU with 2 logical CPUs;
 compare 0 "$work/base" "$work/cpu" --force
 warns 'compared anyway: the CPU was '
 says 'openmp .* same'
-cp -r "$work/base" "$work/scene"
-sed -i 's/"cloth2500": "[0-9a-f]*"/"cloth2500": "0123456789abcdef"/' "$work/scene/provenance.json"
-expect 2 'the hash of scene cloth2500 was [0-9a-f]* and is 0123456789abcdef' compare "$work/base" "$work/scene"
-cp -r "$work/base" "$work/device"
-sed -i 's/,openmp,cpu[^,]*,/,openmp,cpu SSE2,/' "$work/device/timings.csv"
-expect 2 'the device of openmp was cpu .* and is cpu SSE2' compare "$work/base" "$work/device"
 cp -r "$work/base" "$work/threads"
 sed -i 's/"asked_for": 2/"asked_for": 1/; s/GNU 12/GNU 13/' "$work/threads/provenance.json"
 expect 2 'the compiler was GNU 12.* and is GNU 13.*; the number of threads was 2 and is 1' compare "$work/base" "$work/threads"
@@ -124,12 +118,8 @@ broken && sed -i 's/,10,0.1\([0-9]*\),$/,10,0,/' "$work/broken/samples.csv"
 expect 2 'openmp, semi-euler has no time above zero in round' compare "$work/base" "$work/broken"
 broken && sed -i '/,openmp,/d' "$work/broken/samples.csv"
 expect 2 'openmp, semi-euler has no samples' compare "$work/base" "$work/broken"
-broken && rm "$work/broken/samples.csv"
-expect 2 'samples.csv' compare "$work/base" "$work/broken"
 broken && rm "$work/broken/provenance.json"
 expect 2 'provenance.json: there is no such file: give a folder that mssim bench wrote' compare "$work/base" "$work/broken"
-broken && sed -i 's/"logical_cpus": 2/"logical_cpus": "two"/' "$work/broken/provenance.json"
-expect 2 '/cpu/logical_cpus is "two"' compare "$work/broken" "$work/base"
 
 # Options.
 expect 2 'threshold' compare "$work/base" "$work/base" --threshold -5

@@ -39,7 +39,6 @@ expect 2 'TRACE is missing' export --format ply
 expect 2 'unknown value "stl": known are obj, ply and vtkhdf' export cloth.h5 --format stl
 expect 2 '--time and --frames exclude each other' export cloth.h5 --format ply --frames 0 --time 0
 expect 2 'there is no frame 5; the last one is 4' export cloth.h5 --format ply --frames 0,5 --out never/a.ply
-expect 2 '"none" is no frame; give numbers from 0 on' export cloth.h5 --format ply --frames none --out never/a.ply
 expect 2 '1 s is after the last frame, at 0.1 s' export cloth.h5 --format vtkhdf --time 1 --out never/a.vtkhdf
 expect 2 'no such file' export nope.h5 --format obj
 expect 2 'give the trace, cloth.h5' export cloth.xdmf --format obj
