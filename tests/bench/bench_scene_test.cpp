@@ -9,12 +9,9 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "backends/backends.h"
-#include "bench/job/job.h"
 #include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/systems.h"
@@ -24,34 +21,45 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A backend that is right until its state has been set a number of times, as a data race may be.
-class RightForAWhile final : public Backend {
+/// The serial backend under another name.
+class OtherSerial : public Backend {
  public:
-  explicit RightForAWhile(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {}
-  void set_state(const State& state) override {
-    ++sets_;
-    serial_->set_state(state);
-  }
+  explicit OtherSerial(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {}
+  void set_state(const State& state) override { serial_->set_state(state); }
   void step(int count) override { serial_->step(count); }
-  State state() const override {
-    State state = serial_->state();
-    if (sets_ > 12) state.position[3].y = std::numeric_limits<double>::quiet_NaN();
-    return state;
-  }
+  State state() const override { return serial_->state(); }
   std::string device() const override { return "made up"; }
   int threads() const override { return 1; }
-  std::string note() const override { return sets_ > 2 ? "tired" : ""; }
 
  private:
   std::unique_ptr<Backend> serial_;
-  int sets_ = 0;
 };
 
-std::unique_ptr<Backend> right_for_a_while(const System& system, const Integrator& integrator, double dt_s,
-                                           const ExecutionOptions& options) {
-  return std::make_unique<RightForAWhile>(find_backend("serial")->make(system, integrator, dt_s, options));
+template <class Other>
+std::unique_ptr<Backend> make_other(const System& system, const Integrator& integrator, double dt_s,
+                                    const ExecutionOptions& options) {
+  return std::make_unique<Other>(find_backend("serial")->make(system, integrator, dt_s, options));
 }
-constexpr BackendInfo flaky{"flaky", "", "fails in the end", false, {}, right_for_a_while, {}, {}};
+
+/// A backend that is right until its state has been set a number of times, as a data race may be.
+class RightForAWhile final : public OtherSerial {
+ public:
+  using OtherSerial::OtherSerial;
+  void set_state(const State& state) override {
+    ++sets_;
+    OtherSerial::set_state(state);
+  }
+  State state() const override {
+    State state = OtherSerial::state();
+    if (sets_ > 12) state.position[3].y = std::numeric_limits<double>::quiet_NaN();
+    return state;
+  }
+  std::string note() const override { return sets_ > 2 ? "tired" : ""; }
+
+ private:
+  int sets_ = 0;
+};
+constexpr BackendInfo flaky{"flaky", "", "fails in the end", false, {}, make_other<RightForAWhile>, {}, {}};
 
 /// What a row looks like that a verification has found wrong.
 void fail_row(ResultRow& row, const std::string& status) {
@@ -60,47 +68,34 @@ void fail_row(ResultRow& row, const std::string& status) {
 }
 
 /// A right one that takes two processors whatever it was asked for, as a device that cannot be divided.
-class OnTwoProcessors final : public Backend {
+class OnTwoProcessors final : public OtherSerial {
  public:
-  explicit OnTwoProcessors(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {}
-  void set_state(const State& state) override { serial_->set_state(state); }
-  void step(int count) override { serial_->step(count); }
-  State state() const override { return serial_->state(); }
-  std::string device() const override { return "made up"; }
+  using OtherSerial::OtherSerial;
   int threads() const override { return 2; }
-
- private:
-  std::unique_ptr<Backend> serial_;
 };
-
-std::unique_ptr<Backend> on_two_processors(const System& system, const Integrator& integrator, double dt_s,
-                                           const ExecutionOptions& options) {
-  return std::make_unique<OnTwoProcessors>(find_backend("serial")->make(system, integrator, dt_s, options));
-}
-constexpr BackendInfo undividable{"undividable", "", "takes two", false, {}, on_two_processors, {}, {}};
+constexpr BackendInfo undividable{
+    "undividable", "", "takes two", false, {}, make_other<OnTwoProcessors>, {}, {}};
 
 /// A right one behind which a program stands that fails at one of its calls, counted from 1. It takes note of
 /// whether it rests.
-class FailsAt final : public Backend {
+class FailsAt final : public OtherSerial {
  public:
-  explicit FailsAt(std::unique_ptr<Backend> serial) : serial_(std::move(serial)) {
+  explicit FailsAt(std::unique_ptr<Backend> serial) : OtherSerial(std::move(serial)) {
     calls = 0;
     call();
   }
   void set_state(const State& state) override {
     call();
-    serial_->set_state(state);
+    OtherSerial::set_state(state);
   }
   void step(int count) override {
     call();
-    serial_->step(count);
+    OtherSerial::step(count);
   }
   State state() const override {
     call();
-    return serial_->state();
+    return OtherSerial::state();
   }
-  std::string device() const override { return "made up"; }
-  int threads() const override { return 1; }
   std::string note() const override { return "settings"; }
   void rest() override { rests = true; }
   std::string end() override { return "all went well"; }
@@ -115,15 +110,9 @@ class FailsAt final : public Backend {
     rests = false;
     if (++calls == fails_at) throw BackendFailure("it stumbled", "oh dear");
   }
-
-  std::unique_ptr<Backend> serial_;
 };
-
-std::unique_ptr<Backend> fails_at(const System& system, const Integrator& integrator, double dt_s,
-                                  const ExecutionOptions& options) {
-  return std::make_unique<FailsAt>(find_backend("serial")->make(system, integrator, dt_s, options));
-}
-constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, {}, fails_at, {}, {}};
+constexpr BackendInfo stumbling{"stumbling", "", "fails when it is told to", false, {}, make_other<FailsAt>,
+                                {},          {}};
 
 /// What a program may do that wants to look fast.
 enum class Cheat : std::uint8_t {

@@ -180,21 +180,14 @@ std::vector<std::string> names_in(const Chart& chart) {
   return names;
 }
 
-const Series& series_called(const Chart& chart, const std::string& name) {
-  for (const Series& each : chart.series)
-    if (each.name == name) return each;
-  ADD_FAILURE() << chart.id << " has no series " << name;
-  return chart.series.front();
-}
-
 TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
   const auto charts = guide_charts(two_methods(), "cloth", "f1-guide-1");
   const Chart& work = chart_called(charts, "f1-guide-1-work-precision");
   EXPECT_TRUE(work.x.logarithmic && work.y.logarithmic);
   EXPECT_THAT(names_in(work), ElementsAre("rk4", "implicit-euler", "diverged", "on the front"));
-  EXPECT_THAT(series_called(work, "rk4").x, ElementsAre(2, 8));
-  EXPECT_THAT(series_called(work, "rk4").y, ElementsAre(0.5, 0.03));
-  EXPECT_THAT(series_called(work, "on the front").x, ElementsAre(2));
+  EXPECT_THAT(series(work, "rk4").x, ElementsAre(2, 8));
+  EXPECT_THAT(series(work, "rk4").y, ElementsAre(0.5, 0.03));
+  EXPECT_THAT(series(work, "on the front").x, ElementsAre(2));
   EXPECT_THAT(work.remarks,
               Contains("1 of 2 points on the front not drawn, as their backends take longer for "
                        "the same step"));
@@ -206,7 +199,7 @@ TEST(GuideCharts, TakeTheCheapestBackendWithEachStep) {
 
 TEST(GuideCharts, PutDivergedPointsAtTheEdgeWhateverTheirError) {
   for (const Chart& chart : guide_charts(two_methods(), "cloth", "f1")) {
-    const Series& diverged = series_called(chart, "diverged");
+    const Series& diverged = series(chart, "diverged");
     EXPECT_EQ(diverged.mark, PointMark::cross);
     EXPECT_THAT(diverged.y, ElementsAre(10)) << chart.id;
     EXPECT_THAT(chart.remarks, Contains("Crosses at an error of 10 diverged, whatever their error"));
@@ -219,7 +212,7 @@ TEST(GuideCharts, PreferABackendThatDidNotDiverge) {
   FoundGuide guide = two_methods();
   guide.points[0] = guide_point("rk4", "serial", 0.004, 1, 0.7);
   const auto charts = guide_charts(guide, "cloth", "f1");
-  EXPECT_THAT(series_called(charts.front(), "rk4").x, ElementsAre(1, 2, 8));
+  EXPECT_THAT(series(charts.front(), "rk4").x, ElementsAre(1, 2, 8));
   EXPECT_THAT(names_in(charts.front()), Not(Contains("diverged")));
 }
 
@@ -227,7 +220,7 @@ TEST(GuideCharts, MarkWhatIsNotCompared) {
   FoundGuide guide = two_methods();
   guide.points[2].status = "within the reference's error";
   for (const Chart& chart : guide_charts(guide, "cloth", "f1")) {
-    const Series& marked = series_called(chart, "not compared");
+    const Series& marked = series(chart, "not compared");
     EXPECT_EQ(marked.mark, PointMark::square);
     EXPECT_THAT(marked.y, ElementsAre(0.03));
     EXPECT_THAT(chart.remarks, Contains(HasSubstr("are not compared")));
@@ -238,9 +231,9 @@ TEST(GuideCharts, ShowErrorsOverStepsWithTheirOrders) {
   const auto charts = guide_charts(two_methods(), "cloth", "f1");
   const Chart& steps = chart_called(charts, "f1-error-step");
   EXPECT_THAT(names_in(steps), ElementsAre("rk4", "implicit-euler", "diverged", "order 1", "order 4"));
-  EXPECT_THAT(series_called(steps, "rk4").x, ElementsAre(0.002, 0.001));
+  EXPECT_THAT(series(steps, "rk4").x, ElementsAre(0.002, 0.001));
   for (const int order : {1, 4}) {
-    const Series& line = series_called(steps, "order " + std::to_string(order));
+    const Series& line = series(steps, "order " + std::to_string(order));
     ASSERT_EQ(line.x.size(), 2U);
     EXPECT_NEAR(std::log(line.y[1] / line.y[0]) / std::log(line.x[1] / line.x[0]), order, 1e-9);
   }
@@ -250,7 +243,7 @@ TEST(GuideCharts, SayWhichMethodsHaveNoNumberOfEvaluations) {
   const auto charts = guide_charts(two_methods(), "cloth", "f1");
   const Chart& evaluations = chart_called(charts, "f1-error-evaluations");
   EXPECT_THAT(names_in(evaluations), ElementsAre("rk4", "diverged"));
-  EXPECT_THAT(series_called(evaluations, "rk4").x, ElementsAre(2000, 4000));
+  EXPECT_THAT(series(evaluations, "rk4").x, ElementsAre(2000, 4000));
   EXPECT_THAT(evaluations.remarks, Contains("Without a fixed number of force evaluations: implicit-euler"));
 }
 
@@ -267,7 +260,7 @@ TEST(GuideCharts, ShowSizesOfAnExplicitAndAnImplicitIntegrator) {
   EXPECT_EQ(charts[0].title, "cloth in other sizes, semi-euler");
   EXPECT_EQ(charts[1].title, "cloth in other sizes, implicit-euler");
   EXPECT_THAT(names_in(charts[0]), ElementsAre("openmp")) << "one size is no line";
-  EXPECT_THAT(series_called(charts[0], "openmp").y, ElementsAre(2.56, 5.29));
+  EXPECT_THAT(series(charts[0], "openmp").y, ElementsAre(2.56, 5.29));
 }
 
 }  // namespace

@@ -184,34 +184,38 @@ TEST(Dressing, CorrectsAlongRowsColumnsAndDiagonals) {
   EXPECT_EQ(second.second, 2U);
 }
 
-TEST(Dressing, InVectorsIsTheReferenceButForRounding) {
-  for (const std::string_view instruction_set : dressing_instruction_sets()) {
-    System system = two_squares();
-    system.gravity = 9.81;
-    const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1, instruction_set);
-    const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
-    vectors->step(400);
-    reference->step(400);
-    EXPECT_EQ(vectors->progress().draping, reference->progress().draping);
-    EXPECT_LT(largest_distance(vectors->state().position, reference->state().position), 1e-5)
-        << instruction_set;
-  }
+TEST(Dressing, IsTheReferenceButForRounding) {
+  System system = two_squares();
+  system.gravity = 9.81;
+  const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
+  reference->step(400);
+  const auto expect_near = [&](std::unique_ptr<DressingBackend> backend, std::string_view name) {
+    backend->step(400);
+    EXPECT_EQ(backend->progress().draping, reference->progress().draping) << name;
+    EXPECT_LT(largest_distance(backend->state().position, reference->state().position), 1e-5) << name;
+  };
+  expect_near(make_serial_dressing(system, semi_euler, dressing_dt_s), "serial");
+  for (const std::string_view instruction_set : dressing_instruction_sets())
+    expect_near(make_openmp_dressing(system, semi_euler, dressing_dt_s, 1, instruction_set), instruction_set);
 }
 
-TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
-  const System system = stretched_sheets();
+/// Steps a garment into its draping by one thread and by several, and returns where one thread has got.
+State state_of_any_number_of_threads(const System& system, double dt_s, int steps) {
   const auto run = [&](int threads) {
-    const auto backend = make_openmp_dressing(system, semi_euler, dressing_dt_s, threads);
-    backend->step(2000);
+    const auto backend = make_openmp_dressing(system, semi_euler, dt_s, threads);
+    backend->step(steps);
     EXPECT_TRUE(backend->progress().draping);
     return backend->state();
   };
   const State one = run(1);
-  EXPECT_GT(fit_of(system, one.position, nobody).elongation_max, 0.05) << "nothing is corrected";
-  for (const int threads : {2, 3, 5, 8}) {
-    const State several = run(threads);
-    EXPECT_TRUE(same_state(several, one)) << threads;
-  }
+  for (const int threads : {2, 3, 5, 8}) EXPECT_TRUE(same_state(run(threads), one)) << threads;
+  return one;
+}
+
+TEST(Dressing, GivesTheSameBitsForAnyNumberOfThreads) {
+  const System system = stretched_sheets();
+  const State state = state_of_any_number_of_threads(system, dressing_dt_s, 2000);
+  EXPECT_GT(fit_of(system, state.position, nobody).elongation_max, 0.05) << "nothing is corrected";
 }
 
 TEST(Dressing, GivesTheSameBitsWhereFewerThreadsAreGivenThanAskedFor) {
@@ -262,17 +266,6 @@ TEST(Dressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
   const System system = stretched_sheets();
   expect_goes_on_when_draped(*make_serial_dressing(system, semi_euler, dressing_dt_s), system);
   expect_goes_on_when_draped(*make_openmp_dressing(system, semi_euler, dressing_dt_s, 2), system);
-}
-
-TEST(Dressing, InSinglePrecisionIsTheReferenceButForRounding) {
-  System system = two_squares();
-  system.gravity = 9.81;
-  const auto single = make_serial_dressing(system, semi_euler, dressing_dt_s);
-  const auto reference = make_reference_dressing(system, semi_euler, dressing_dt_s);
-  single->step(400);
-  reference->step(400);
-  EXPECT_EQ(single->progress().draping, reference->progress().draping);
-  EXPECT_LT(largest_distance(single->state().position, reference->state().position), 1e-5);
 }
 
 // Cloth that comes to rest on a body.
@@ -359,17 +352,7 @@ TEST(Drape, StepsInWhichEnergyGrowsAddLittle) {
 
 TEST(Drape, OnABodyGivesTheSameBitsForAnyNumberOfThreads) {
   const DressingCase jeans("jeans1k");
-  const auto run = [&](int threads) {
-    const auto backend = make_openmp_dressing(jeans.system, semi_euler, jeans.dt_s(), threads);
-    backend->step(800);
-    EXPECT_TRUE(backend->progress().draping);
-    return backend->state();
-  };
-  const State one = run(1);
-  for (const int threads : {2, 3, 7}) {
-    const State several = run(threads);
-    EXPECT_TRUE(same_state(several, one)) << threads;
-  }
+  state_of_any_number_of_threads(jeans.system, jeans.dt_s(), 800);
 }
 
 }  // namespace
