@@ -6,9 +6,7 @@
 #include <limits>
 #include <set>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "text/text.h"
 

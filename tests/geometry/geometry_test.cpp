@@ -3,10 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include "geometry/depth_raster.h"
 #include "mesh/meshing.h"

@@ -4,11 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
-#include <string_view>
 
-#include "guide/limits.h"
-#include "guide/work_precision.h"
 #include "integrators/all_integrators.h"
 #include "tests/support/systems.h"
 

@@ -9,9 +9,7 @@
 #include "backends/backends.h"
 #include "bench/verification/verification.h"
 #include "guide/guide.h"
-#include "guide/limits.h"
 #include "integrators/all_integrators.h"
-#include "model/system.h"
 #include "tests/support/systems.h"
 
 namespace mssim {

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <csignal>
 
-#include "mesh/meshing.h"
 #include "platform/process.h"
 #include "tests/support/mesh_fixture.h"
 #include "text/error.h"

@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "tests/support/picture_fixture.h"
 

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "picture/lettering.h"
 #include "picture/movie.h"

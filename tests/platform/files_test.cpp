@@ -7,8 +7,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <filesystem>
-#include <string>
 
 #include "tests/support/files_fixture.h"
 #include "tests/support/output_fixture.h"

@@ -3,10 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "tests/support/files_fixture.h"
 

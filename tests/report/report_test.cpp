@@ -3,14 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
 #include "output/guide/guide_tables.h"
-#include "output/tables/results.h"
-#include "output/tables/table.h"
 #include "report/report_internal.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <stdexcept>
-#include <vector>
 
 namespace mssim {
 namespace {

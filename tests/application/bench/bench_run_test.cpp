@@ -3,19 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <optional>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "application/bench/bench_plan.h"
-#include "application/bench/bench_results.h"
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
 #include "output/folders/provenance_file.h"
 #include "tests/support/trace_fixture.h"
-#include "text/error.h"
 
 namespace mssim {
 namespace {

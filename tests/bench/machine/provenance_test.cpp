@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "output/folders/provenance_file.h"
 #include "tests/support/files_fixture.h"

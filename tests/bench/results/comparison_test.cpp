@@ -3,10 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "tests/support/result_fixture.h"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <string>
 #include <string_view>
 #include <vector>
 

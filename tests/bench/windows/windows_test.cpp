@@ -2,18 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "backends/backends.h"
 #include "backends/layouts/band_grid.h"
-#include "bench/verification/verification.h"
 #include "integrators/all_integrators.h"
 #include "scene/builders.h"
 #include "scene/scene_kinds.h"

@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "garment/body/mannequin.h"
-#include "geometry/surface.h"
 #include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"

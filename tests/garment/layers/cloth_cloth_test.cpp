@@ -10,7 +10,6 @@
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "model/system.h"
 #include "tests/support/cloth_layers_fixture.h"

@@ -4,16 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <map>
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "geometry/triangle_tree.h"
 #include "tests/support/cloth_layers_fixture.h"

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <set>
 
-#include "model/system.h"
 #include "tests/support/mesh_fixture.h"
 #include "tests/support/rectangle_piece.h"
 

@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"

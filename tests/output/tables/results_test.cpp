@@ -5,12 +5,8 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <vector>
 
-#include "output/tables/table.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/result_fixture.h"
 #include "tests/support/sentence_of.h"

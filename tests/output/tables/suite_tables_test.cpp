@@ -3,9 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
 #include "output/tables/table.h"
 #include "tests/support/result_fixture.h"
 
