@@ -7,8 +7,8 @@ typedef __global const struct DressingJoint* Joint;
 typedef struct {
   Joint all;
   __global const int* level_ends; /* [level] the number of the joint after its last one */
-  __global const int* nodes;      /* the different nodes of all joints, as floats */
-  __global int* sewn;             /* [joint] */
+  __global const int* nodes; /* the different nodes of all joints, as floats; those that are held first */
+  __global int* sewn;        /* [joint] */
 } Joints;
 
 /* What the three nodes of a joint have of an array. */
@@ -118,15 +118,16 @@ __kernel void begin_joints(GARMENT_GRID, JOINTS) {
 __kernel void step_joints(GARMENT_GRID, JOINTS) {
   const GarmentGrid grid = grid_of_arguments;
   const Joints joints = joints_of_arguments;
+  const int was_draping = state->draping, steps = state->steps + 1, open_joints = state->still_open;
   close_sewn_joints(&joints, &grid);
   for (int i = item; i < rules->joint_nodes; i += items) {
     const int at = nodes[i];
     Vector v = load_one(velocity + at, rules->plane);
+    if (i < rules->held_nodes && !was_draping) v.y = 0.0f;
     const Vector x = moved_on(load_one(moved + at, rules->plane), &v, inverse_mass[at] > 0.0f, rules);
     store_one(x, position + at, rules->plane);
     store_one(v, velocity + at, rules->plane);
   }
-  const int was_draping = state->draping, steps = state->steps + 1, open_joints = state->still_open;
   const int closed = open_joints == 0 || steps >= rules->longest_seaming;
   block_barrier();
   if (item == 0) {

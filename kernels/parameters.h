@@ -87,7 +87,8 @@ struct DressingParameters {
   int spring_rows;                  /* from a direction's stiffnesses to the next one's */
   int joints;
   int joint_levels; /* joints of one level have no node in common */
-  int joint_nodes;  /* the different nodes of all joints */
+  int joint_nodes;  /* the different nodes of all joints, and those that are held */
+  int held_nodes;   /* of these the first, which keep their height while the seams close */
 };
 
 /* Rows of a panel that a work-group works on, and that one spring after the other is corrected in. */

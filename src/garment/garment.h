@@ -32,6 +32,8 @@ struct DressingSettings {
   double seaming_damping = 8;          ///< 1/s, per mass; draping takes System::viscous_damping
   double seaming_gravity = 0;          ///< share of gravity that acts meanwhile
   double longest_seaming_s = 1;        ///< what is open then is sewn as it is
+  /// Meanwhile the upper edge of every panel keeps its height, as hands hold the waistband of trousers.
+  bool edge_held = false;
   /// A joint nearer than this is sewn: from then on its gap closes by an inelastic constraint on velocities.
   double sewn_gap = 0.01;      ///< m
   double closing_share = 0.2;  ///< of a sewn joint's gap that a step closes at most

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "garment/body/body_profile.h"
 #include "garment/pattern/garment_build.h"
@@ -11,13 +12,17 @@ namespace mssim {
 /// What jeans are drafted from, m. Heights are above the floor, on the standing body; "all round" is one
 /// leg's circumference or the whole waist's.
 struct JeansMeasures {
-  /// The body's girth at a height between hip and waist (of the convex hull: a tape measure bridges hollows).
+  /// The body's girth at a height between thigh and waist (of the convex hull: a tape measure bridges
+  /// hollows).
   std::function<double(double)> girth;
   /// The share of it before the side seams; none: half of it.
   std::function<double(double)> front_share{};
   /// The body's length from the front at a height through the crotch to the back
   /// (BodyProfile::crotch_length); none: the crotch curves are as long as the girth of the hip has them.
   std::function<double(double)> crotch_length{};
+  /// Where the body is widest above its crotch: the jeans are to lie close at the sides up to there, whatever
+  /// hip they are drafted with; none: up to the hip's height.
+  std::optional<double> widest_height{};
   double waist_height = 1.005;   ///< of the jeans' upper edge at the side
   double hip_height = 0.86;      ///< where the girth is largest
   double crotch_height = 0.768;  ///< of the body
@@ -26,6 +31,7 @@ struct JeansMeasures {
   double knee = 0.42;          ///< of the jeans, all round one leg
   double hem = 0.36;           ///< of the jeans, all round one leg
   double hip_ease = 0;         ///< what the jeans are wider than 0.969 of the body, and offset, all round
+  double thigh_ease = 0;       ///< the same a centimetre below the crotch, where the girth is of both legs
   double waist_ease = 0.01;    ///< what they are wider than 0.994 of the body, and offset
   double crotch_ease = 0.03;   ///< how far the crotch line lies below the body's
   double body_offset = 0.004;  ///< between body and cloth: both waist and hip grow by 2 pi of it
@@ -35,7 +41,7 @@ struct JeansMeasures {
 /// the crease, y the height at which it is worn.
 struct JeansOutline {
   Curve hem, waist;  ///< from the outer side to the inner one
-  Curve outer;       ///< the side seam, from hem to waist, smooth from knee to waist
+  Curve outer;       ///< the side seam, from hem to waist, smooth from knee over thigh and hip to waist
   Curve inseam;      ///< from the hem to the crotch point
   Curve centre;      ///< crotch curve and centre seam, from the crotch point to the waist
 };
@@ -73,7 +79,8 @@ using LegAxis = std::function<double(double)>;
 /// six seams ("outer left", "outer right", "inner left", "inner right", "centre front", "centre back"), of
 /// `cloth`, with about as many nodes as wanted. The wearer looks to +z, its left is +x. At the
 /// outer seams, and 5 cm beside them, they are to lie close to the body, from the thigh (1 cm below the
-/// crotch) up to the hip. Throws InputError as draft_jeans and jeans_grid do.
+/// crotch) up to where the body is widest, and to the hip's height at least. Throws InputError as draft_jeans
+/// and jeans_grid do.
 GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelMaterial& cloth,
                              const LegAxis& leg_axis);
 

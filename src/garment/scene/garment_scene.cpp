@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -128,6 +129,7 @@ GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, 
   measures.front_share = body.front_share;
   measures.crotch_length = [&of = body.profile](double y) { return of.crotch_length(y); };
   measures.crotch_height = body.profile.crotch_height();
+  measures.widest_height = find_landmarks(body.profile).hip.height;
   return jeans_pattern(measures, garment.jeans->nodes, garment.cloth,
                        [leg_x = body.leg_x](double height) { return leg_x(height) + beside_the_leg_m; });
 }
@@ -185,6 +187,12 @@ void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
        "How much wider than 0.969 of the body, and what lies between, the jeans are at the hip, all "
        "round, m."},
       jeans.measures.hip_ease, from(0, largest_length_m));
+  std::optional<double> thigh_ease;
+  fields.optional_number({"thigh_ease_m",
+                          "The same a centimetre below the crotch, around both legs, m; 0 where it is not "
+                          "given."},
+                         thigh_ease, from(-0.2, 0.5));
+  jeans.measures.thigh_ease = thigh_ease.value_or(0);
   fields.number({"waist_ease_m", "The same at the waist, over 0.994 of the body, m."},
                 jeans.measures.waist_ease, from(-0.2, largest_length_m));
   fields.number({"crotch_ease_m", "How far the crotch of the jeans lies below the body's, m."},
@@ -204,6 +212,8 @@ void visit_correction(FieldVisitor& fields, DressingSettings& dressing, Velocity
                   dressing.correction_rate, from(0, 1));
 }
 
+constexpr std::array<std::string_view, 2> held_names{"nothing", "upper edge"};
+
 void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
   fields.number({"seam_force_n_per_m", "Force that draws a seam together at first, per length, N/m."},
                 dressing.seam_force, from(0, 1e6));
@@ -217,6 +227,12 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
                 dressing.seaming_gravity, from(0, 1));
   fields.number({"longest_seaming_s", "Simulated time after which open seams are sewn as they are, s."},
                 dressing.longest_seaming_s, from(0, 1e6));
+  auto held = static_cast<std::uint32_t>(dressing.edge_held);
+  fields.choice({"held",
+                 "What keeps its height while the seams close, as if hands held it: \"nothing\", or the "
+                 "\"upper edge\" of every panel; nothing where it is not given."},
+                Presence::optional, held_names, held);
+  dressing.edge_held = held != 0;
   visit_length(fields, {"sewn_gap_m", "Gap below which a joint counts as sewn and its ends move as one, m."},
                dressing.sewn_gap);
   fields.number({"closing_share", "Share of a sewn joint's gap that a step closes at most, without unit."},

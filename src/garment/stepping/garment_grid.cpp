@@ -101,6 +101,10 @@ GarmentGrid::GarmentGrid(const System& system) : offset(system.nodes()) {
     for (std::size_t block = 0; block + 1 < begins.size(); ++block)
       blocks.push_back({panels.size() - 1, begins[block], begins[block + 1]});
   }
+  if (garment.dressing.edge_held && !garment.joints.empty())
+    for (const GarmentPanel& panel : garment.panels)
+      for (std::uint32_t column = 0; column < panel.columns; ++column)
+        held.push_back(offset[panel.node(panel.rows - 1, column)]);
   position = Float3Arrays(floats);
   moved = Float3Arrays(floats);
   velocity = Float3Arrays(floats);

@@ -96,6 +96,7 @@ struct GarmentGrid {
   std::array<AlignedArray, panel_stencil.size()> rest;  ///< m
   std::vector<Joint> joints;
   std::vector<std::uint8_t> sewn;  ///< [joints]
+  std::vector<std::size_t> held;   ///< floats of the nodes that keep their height while the seams close
 };
 
 }  // namespace mssim

@@ -128,6 +128,12 @@ struct OpenclPanels {
     }
 
     at_joint.assign(plane, 0);
+    const auto add_node = [&](std::size_t node) {
+      if (at_joint[node] == 0) joint_nodes.push_back(static_cast<cl_int>(node));
+      at_joint[node] = -1;
+    };
+    std::ranges::for_each(grid.held, add_node);
+    parameters.held_nodes = static_cast<int>(joint_nodes.size());
     const std::vector<std::size_t> levels = levels_of(grid.joints);
     const std::size_t level_count = levels.empty() ? 0 : std::ranges::max(levels) + 1;
     for (std::size_t level = 0; level < level_count; ++level) {
@@ -138,10 +144,7 @@ struct OpenclPanels {
         joints.push_back({static_cast<int>(joint.node), static_cast<int>(joint.first),
                           static_cast<int>(joint.second), joint.fraction, static_cast<float>(rule.length),
                           static_cast<float>(rule.strength)});
-        for (const std::size_t node : {joint.node, joint.first, joint.second}) {
-          if (at_joint[node] == 0) joint_nodes.push_back(static_cast<cl_int>(node));
-          at_joint[node] = -1;
-        }
+        for (const std::size_t node : {joint.node, joint.first, joint.second}) add_node(node);
       }
       level_ends.push_back(static_cast<cl_int>(joints.size()));
     }
@@ -168,10 +171,10 @@ struct OpenclPanels {
   std::vector<float> inverse_mass;    ///< [plane]
   std::vector<float> rest;            ///< [directions][plane]
   std::vector<float> stiffness;       ///< [directions][spring_rows]
-  std::vector<cl_int> at_joint;       ///< [plane] -1 for the nodes of joints, else 0
+  std::vector<cl_int> at_joint;       ///< [plane] -1 for the nodes of joints and those held, else 0
   std::vector<DressingJoint> joints;  ///< level by level
   std::vector<cl_int> level_ends;     ///< [levels]
-  std::vector<cl_int> joint_nodes;
+  std::vector<cl_int> joint_nodes;    ///< those held first
 };
 
 /// panel_stencil for the kernels. Contractions would round differently in kernels of different shapes.

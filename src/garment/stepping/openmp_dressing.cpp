@@ -89,6 +89,8 @@ void close_sewn_joints(PanelDressing& dressing) {
         closing_of_joint(rule, joint.fraction, at(grid.moved, joint), at(grid.velocity, joint),
                          inverse_masses(grid, joint)));
   }
+  if (!dressing.progress.draping)
+    for (const std::size_t at : grid.held) grid.velocity.y.data()[at] = 0;
 }
 
 std::vector<std::string_view> dressing_instruction_sets() {

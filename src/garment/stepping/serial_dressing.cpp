@@ -67,6 +67,7 @@ class SerialDressing final : public DressingBackend {
       collide_with_body();
       correct_velocities();
       close_sewn_joints();
+      hold_edges();
       move();
       end_step();
     }
@@ -197,6 +198,13 @@ class SerialDressing final : public DressingBackend {
       nodes_[joint.edge_first].v += change.first;
       nodes_[joint.edge_second].v += change.second;
     }
+  }
+
+  void hold_edges() {
+    if (!rules_.edge_held || progress_.draping) return;
+    for (const GarmentPanel& panel : garment_.panels)
+      for (std::uint32_t column = 0; column < panel.columns; ++column)
+        nodes_[panel.node(panel.rows - 1, column)].v.y = 0;
   }
 
   void move() {  // loop 6

@@ -28,7 +28,7 @@ struct PanelDressing {
 void pull_joints(PanelDressing& dressing);
 
 /// After loop 5, which would open them again: the ends of a sewn joint move as one but for what closes its
-/// gap.
+/// gap, and edges that are held keep their height.
 void close_sewn_joints(PanelDressing& dressing);
 
 }  // namespace mssim

@@ -123,6 +123,19 @@ TEST(JeansDraft, WaistAndHipAreTheBodysWithOffsetAndEase) {
   }
 }
 
+TEST(JeansDraft, TheThighIsTheBodysWithOffsetAndEase) {
+  for (const double ease : {0.0, 0.02}) {
+    JeansMeasures measures = JeansBody{}.measures();
+    measures.thigh_ease = ease;
+    const JeansDraft draft = draft_jeans(measures);
+    // The centre seams stand upright up to 75 mm in front, and 90 mm behind, over the crotch line, which is
+    // 30 mm below the crotch; the thigh is measured 10 mm below it.
+    const double width = x_at(draft.front.centre, 0.738 + 0.075) + x_at(draft.back.centre, 0.738 + 0.09) -
+                         x_at(draft.front.outer, 0.758) - x_at(draft.back.outer, 0.758);
+    EXPECT_NEAR(2 * width, 0.969 * 0.98 + 2 * std::numbers::pi * 0.004 + ease, 1e-4) << ease;
+  }
+}
+
 TEST(JeansDraft, TheSideIsSmoothFromKneeToWaist) {
   for (const double hip : hips)
     for (const JeansOutline& half :
@@ -290,6 +303,17 @@ TEST(Jeans, LieCloseBesideTheOuterSeamsFromThighToHip) {
             << panel.name << ", row " << row << ", column " << column;
       }
   }
+}
+
+TEST(Jeans, LieCloseAsFarUpAsTheBodyIsWidestWhateverTheirOwnHip) {
+  const auto highest = [](double hip_height) {
+    JeansMeasures measures = JeansBody{}.measures();
+    measures.hip_height = hip_height;
+    measures.widest_height = 0.87;
+    return jeans_pattern(measures, 1'000, {}, JeansBody{}.leg_axis()).close.highest;
+  };
+  EXPECT_EQ(highest(0.84), 0.87);
+  EXPECT_EQ(highest(0.88), 0.88);
 }
 
 TEST(Jeans, TheWaistbandsJointsPullHarder) {

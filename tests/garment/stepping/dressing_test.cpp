@@ -117,6 +117,37 @@ TEST(Dressing, LetsPanelsFallWhileTheirSeamsCloseOnlyWhereAskedTo) {
   }
 }
 
+TEST(Dressing, HoldsTheUpperEdgesAtTheirHeightUntilTheSeamsAreClosed) {
+  System system = two_squares();
+  system.gravity = 9.81;
+  DressingSettings& rules = garment_in(system).dressing;
+  rules.seaming_gravity = 1;
+  rules.edge_held = true;
+  rules.longest_seaming_s = 200.5 * dressing_dt_s;
+  rules.seam_force = 0.1;
+  const auto serial = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  const auto vectors = make_openmp_dressing(system, semi_euler, dressing_dt_s, 2);
+  for (DressingBackend* backend : std::initializer_list<DressingBackend*>{serial.get(), vectors.get()}) {
+    backend->step(200);
+    ASSERT_FALSE(backend->progress().draping);
+    const std::vector<Vec3d> seaming = backend->state().position;
+    for (const GarmentPanel& panel : garment_in(system).panels)
+      for (std::uint32_t column = 0; column < panel.columns; ++column) {
+        const std::uint32_t upper = panel.node(9, column), lower = panel.node(0, column);
+        EXPECT_EQ(seaming[upper].y, system.start.position[upper].y) << panel.name << ", " << column;
+        EXPECT_LT(seaming[lower].y, system.start.position[lower].y - 1e-4);  // the cloth hangs from it
+      }
+    // Along the edge they are free: the seam draws them together.
+    const GarmentPanel& left = garment_in(system).panels[0];
+    EXPECT_GT(seaming[left.node(9, 9)].x, system.start.position[left.node(9, 9)].x + 1e-4);
+    backend->step(101);
+    ASSERT_TRUE(backend->progress().draping);
+    // Let go, an edge falls dt^2 g n (n + 1) / 2 in n steps of draping, less what its damping of 16/s takes.
+    const double fall = 9.81 * dressing_dt_s * dressing_dt_s * 100 * 101 / 2;
+    EXPECT_LT(backend->state().position[left.node(9, 0)].y, seaming[left.node(9, 0)].y - 0.5 * fall);
+  }
+}
+
 TEST(Dressing, SewsAJointToAPointOfAnEdge) {
   // A strip of two rows against one edge of a coarser strip.
   System system = garment_of({{2, 3, 0.01, {0, 0.02, 0}}, {2, 2, 0.02, {0, 0, 0}, {1, 0, 0}, {0, -1, 0}}});

@@ -157,6 +157,27 @@ TEST(OpenclDressing, GoesOnFromADrapedStateAsIfItHadSewnItself) {
   expect_goes_on_when_draped(*make(system, shapes().back()), system);
 }
 
+TEST(OpenclDressing, HoldsUpperEdgesAsSerialDoes) {
+  System system = soon_closed_sack();
+  system.gravity = 9.81;
+  garment_in(system).dressing.seaming_gravity = 1;
+  garment_in(system).dressing.edge_held = true;
+  const auto device = make(system, shapes().back());
+  const auto serial = make_serial_dressing(system, semi_euler, dressing_dt_s);
+  for (const int steps : {seaming_steps, 20}) {
+    device->step(steps);
+    serial->step(steps);
+    expect_same_progress(*device, *serial);
+    EXPECT_LT(largest_distance(device->state().position, serial->state().position), 1e-5) << steps;
+    if (steps != seaming_steps) continue;
+    for (const GarmentPanel& panel : garment_in(system).panels)
+      for (std::uint32_t column = 0; column < panel.columns; ++column) {
+        const std::uint32_t node = panel.node(panel.rows - 1, column);
+        EXPECT_EQ(device->state().position[node].y, system.start.position[node].y) << panel.name;
+      }
+  }
+}
+
 TEST(OpenclDressing, DrapesAtOnceWhatHasNoSeams) {
   System system = garment_of({{20, 5, 0.01, {0, 0, 0}}});
   system.gravity = 9.81;
