@@ -166,7 +166,7 @@ std::string jeans_scene(const std::filesystem::path& file, const MeasuredJeans& 
     section["hem_height_m"] = jeans.measures.hem_height;
     section["knee_m"] = jeans.measures.knee;
     section["hem_m"] = jeans.measures.hem;
-    section["thigh_ease_m"] = jeans.measures.thigh_ease;
+    section["thigh_ease_m"] = jeans.measures.thigh_ease.value();
     section["waist_ease_m"] = jeans.measures.waist_ease;
     section["crotch_ease_m"] = jeans.measures.crotch_ease;
     // As people dress: the waistband in their hands, the legs hanging from it.

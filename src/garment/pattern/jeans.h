@@ -28,10 +28,12 @@ struct JeansMeasures {
   double crotch_height = 0.768;  ///< of the body
   double knee_height = 0.47;
   double hem_height = 0.07;
-  double knee = 0.42;          ///< of the jeans, all round one leg
-  double hem = 0.36;           ///< of the jeans, all round one leg
-  double hip_ease = 0;         ///< what the jeans are wider than 0.969 of the body, and offset, all round
-  double thigh_ease = 0;       ///< the same a centimetre below the crotch, where the girth is of both legs
+  double knee = 0.42;   ///< of the jeans, all round one leg
+  double hem = 0.36;    ///< of the jeans, all round one leg
+  double hip_ease = 0;  ///< what the jeans are wider than 0.969 of the body, and offset, all round
+  /// The same a centimetre below the crotch, where the girth is of both legs; none: the side seam goes from
+  /// hip to knee whatever lies between.
+  std::optional<double> thigh_ease{};
   double waist_ease = 0.01;    ///< what they are wider than 0.994 of the body, and offset
   double crotch_ease = 0.03;   ///< how far the crotch line lies below the body's
   double body_offset = 0.004;  ///< between body and cloth: both waist and hip grow by 2 pi of it
@@ -41,7 +43,7 @@ struct JeansMeasures {
 /// the crease, y the height at which it is worn.
 struct JeansOutline {
   Curve hem, waist;  ///< from the outer side to the inner one
-  Curve outer;       ///< the side seam, from hem to waist, smooth from knee over thigh and hip to waist
+  Curve outer;       ///< the side seam, from hem to waist, smooth from knee to waist
   Curve inseam;      ///< from the hem to the crotch point
   Curve centre;      ///< crotch curve and centre seam, from the crotch point to the waist
 };

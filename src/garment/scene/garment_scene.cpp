@@ -187,12 +187,10 @@ void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
        "How much wider than 0.969 of the body, and what lies between, the jeans are at the hip, all "
        "round, m."},
       jeans.measures.hip_ease, from(0, largest_length_m));
-  std::optional<double> thigh_ease;
   fields.optional_number({"thigh_ease_m",
-                          "The same a centimetre below the crotch, around both legs, m; 0 where it is not "
-                          "given."},
-                         thigh_ease, from(-0.2, 0.5));
-  jeans.measures.thigh_ease = thigh_ease.value_or(0);
+                          "The same a centimetre below the crotch, around both legs, m; not given, the side "
+                          "seams go from hip to knee whatever lies between."},
+                         jeans.measures.thigh_ease, from(-0.2, 0.5));
   fields.number({"waist_ease_m", "The same at the waist, over 0.994 of the body, m."},
                 jeans.measures.waist_ease, from(-0.2, largest_length_m));
   fields.number({"crotch_ease_m", "How far the crotch of the jeans lies below the body's, m."},
