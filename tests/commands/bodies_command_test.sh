@@ -11,7 +11,7 @@ mkdir "$TMPDIR" "$work/no-programs"
 
 # succeed_silently ARGUMENTS...: and says nothing on stderr but what it wrote
 succeed_silently() {
-  succeed "$@"
+  ends 0 "$@"
   ! grep -v '^mssim: wrote ' "$work/err" || fail "mssim $* says $(cat "$work/err")"
 }
 
@@ -48,7 +48,7 @@ refuse() {
 }
 
 # Without TetGen and without a mesh made before.
-PATH=$work/no-programs succeed list scenes --format csv
+PATH=$work/no-programs ends 0 list scenes --format csv
 [ "$(wc -l <"$work/err")" -eq 1 ] || fail "list scenes does not say once that TetGen is missing"
 grep -q 'torus-small, .* and bodies38233 .*install Debian.s package tetgen' "$work/err" || fail "list scenes: $(cat "$work/err")"
 [ "$(grep -c '^[a-z0-9-]*,bodies,,,,' "$work/out")" -eq 15 ] || fail "not fifteen scenes without counts"
@@ -154,6 +154,7 @@ cp "a \"folder\"/the cube's.obj" cube.obj
 
 # Files that are none: refused, and said where. More of them in tests/mesh.
 sed '$d' cube.obj >open.obj && refuse open.obj 'belongs to one triangle only'
+: >empty.obj && refuse empty.obj 'give an OBJ file with a surface'
 head -c 100 cube.obj >truncated.obj && refuse truncated.obj 'line 12: the face has 2 corners'
 refuse missing.obj 'there is no such file'
 surface millimetres.json cube.obj 100
@@ -175,12 +176,14 @@ grep -q ",ok,\"\?$difference" other/timings.csv || fail "another mesh is not not
 awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "paper_ms") c = i; next } $c != "" { bad = 1 } END { exit bad || NR != 2 }' \
   other/timings.csv || fail "a published time stands beside another mesh"
 [ ! -e other/table3.md ] || fail "another mesh stands in Table 3"
-PATH=$other:$PATH succeed run --scene torus-small --duration 0.001
+PATH=$other:$PATH ends 0 run --scene torus-small --duration 0.001
 grep -q 'torus-small: the mesh has 620 nodes and .* where the scene states 620 and 3690' err || fail "run does not tell: $(cat err)"
 
-# A program that is no TetGen.
+# Programs that are no TetGen.
 PATH=$(tetgen_that 'echo no licence >&2; exit 7'):$PATH expect 2 \
   'torus-small.json: /bodies/list/0 has no mesh: .*ended with exit code 7 after writing "no licence"' run --scene torus-small --duration 0.001
+PATH=$(tetgen_that 'echo garbage >body.1.node; echo garbage >body.1.ele'):$PATH expect 2 \
+  'torus-small.json: /bodies/list/0 has no mesh: .*/tetgen cannot be used: .*"garbage"' run --scene torus-small --duration 0.001
 [ "$(find "$work/cache" -type f | wc -l)" -ge 9 ] || fail "the cache has shrunk"
 
 # Ctrl-C while TetGen runs: mssim ends by the signal, and neither TetGen nor its folder is left behind.

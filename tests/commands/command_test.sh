@@ -54,7 +54,7 @@ ends 1 bench --scene "$work/wild.json" --backend serial,openmp --rounds 2 --out 
 grep -q '"\?failed: .*blew up at step' "$work/results/timings.csv" || fail "timings.csv does not say what failed"
 
 # Data copied between host and device: the rows that do so say it.
-succeed bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite
+ends 0 bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 2 --memory copy --out "$work/results" --overwrite
 [ "$(column verified | sort -u)" = true ] || fail "not every row is verified with copied memory"
 [ "$(column device | grep -c '(copied memory)$')" -eq 2 ] || fail "not two rows say that memory is copied"
 
@@ -74,7 +74,7 @@ for command in 'bench --scene cloth2500' 'bench --scene cloth2500 --dry-run' 'be
 done
 
 # The methods to avoid the data race: those asked for, and the base of the ratios where it is one of them.
-succeed bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races"
+ends 0 bench --suite races --backend serial,gather --rounds 2 --threads 2 --out "$work/races"
 [ "$(wc -l <"$work/races/races.csv")" -eq 5 ] || fail "races.csv has not four methods: $(cat "$work/races/races.csv")"
 [ "$(grep -c ',yes,ok$' "$work/races/races.csv")" -eq 4 ] || fail "races.csv: $(cat "$work/races/races.csv")"
 [ -s "$work/races/races.md" ] || fail "races.md is missing"
@@ -83,7 +83,7 @@ succeed bench --suite races --backend serial,gather --rounds 2 --threads 2 --out
 # Help and listings.
 for arguments in '--help' 'bench --help' 'run --help' 'check --help' 'compare --help' 'measure --help' 'list --help' 'help --help'; do
   # shellcheck disable=SC2086 # words of their own
-  succeed $arguments
+  ends 0 $arguments
   grep -q 'Example' "$work/out" || fail "$arguments shows no example"
   [ ! -s "$work/err" ] || fail "$arguments writes to stderr"
 done

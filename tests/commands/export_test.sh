@@ -7,27 +7,27 @@ mssim=$1
 . "$2/tests/support/command_line.sh"
 cd "$work"
 
-succeed run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5
-succeed run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5
-succeed run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies.h5
-succeed run --scene jeans1k --threads 1 --fps 5 --trace garment.h5
+ends 0 run --scene cloth2500 --threads 1 --duration 0.1 --fps 40 --trace cloth.h5
+ends 0 run --scene cloth2500 --backend serial --precision double --duration 0.02 --fps 100 --trace double.h5
+ends 0 run --scene box-small --threads 1 --duration 0.1 --fps 40 --trace bodies.h5
+ends 0 run --scene jeans1k --threads 1 --fps 5 --trace garment.h5
 for trace in cloth double bodies garment; do
-  succeed export "$trace.h5" --format vtkhdf --frames all
+  ends 0 export "$trace.h5" --format vtkhdf --frames all
   [ "$(cat err)" = "mssim: wrote ./$trace.vtkhdf" ] || fail "export says $(cat err)"
-  for format in obj ply; do succeed export "$trace.h5" --format "$format" --frames all; done
-  succeed export "$trace.h5" --format vtkhdf --out "$trace-last.vtkhdf"
+  for format in obj ply; do ends 0 export "$trace.h5" --format "$format" --frames all; done
+  ends 0 export "$trace.h5" --format vtkhdf --out "$trace-last.vtkhdf"
 done
 [ "$(cat err)" = "mssim: wrote garment-last.vtkhdf" ] || fail "export says $(cat err)"
 
 # One frame of one file each, by its number, by its time, and the last unasked.
 mkdir one
-succeed export cloth.h5 --format ply --out one/last.ply
+ends 0 export cloth.h5 --format ply --out one/last.ply
 cmp -s one/last.ply cloth-000004.ply || fail "not the last frame is written"
-succeed export cloth.h5 --format ply --frames 1 --out one/first.ply
+ends 0 export cloth.h5 --format ply --frames 1 --out one/first.ply
 cmp -s one/first.ply cloth-000001.ply || fail "frame 1 is not what is written"
-succeed export cloth.h5 --format OBJ --time 0.051 --out one/time.obj
+ends 0 export cloth.h5 --format OBJ --time 0.051 --out one/time.obj
 cmp -s one/time.obj cloth-000002.obj || fail "the frame nearest to 0.051 s is not frame 2"
-succeed export cloth.h5 --format obj --frames last,0-1,0 --out one/some.obj
+ends 0 export cloth.h5 --format obj --frames last,0-1,0 --out one/some.obj
 [ "$(cat err)" = "mssim: wrote one/some-000000.obj to some-000004.obj, 3 files" ] || fail "export says $(cat err)"
 [ "$(echo one/*)" = "one/first.ply one/last.ply one/some-000000.obj one/some-000001.obj one/some-000004.obj one/time.obj" ] ||
   fail "written: $(echo one/*)"

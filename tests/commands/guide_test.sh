@@ -18,7 +18,7 @@ cat >"$work/tiny.json" <<'SCENE'
 SCENE
 tiny=(guide --scene "$work/tiny.json" --backend serial --integrator 'semi-euler,rk4' --threads 1 --horizon 0.01 --time-budget 8)
 
-succeed "${tiny[@]}" --error 1e-2 --out "$work/folder"
+ends 0 "${tiny[@]}" --error 1e-2 --out "$work/folder"
 grep -q '^Take \(semi-euler\|rk4\) on serial with a step of ' "$work/folder/guide.md" || fail "the page recommends nothing: $(head -20 "$work/folder/guide.md")"
 for file in guide.csv guide.md guide-steps.csv guide-errors.csv guide-sizes.csv guide-frames.csv provenance.json; do
   [ -s "$work/folder/$file" ] || fail "there is no $file"
@@ -39,7 +39,7 @@ awk -F, 'NR > 1 { ratio = $4 / $6; if (ratio < 0.95 || ratio > 1.05) print }' "$
 [ ! -s "$work/off" ] || fail "limits differ from theory: $(cat "$work/off")"
 
 expect 2 'folder already holds results: give another --out, or --overwrite' "${tiny[@]}" --out "$work/folder"
-succeed "${tiny[@]}" --out "$work/folder" --overwrite --error 1e-9
+ends 0 "${tiny[@]}" --out "$work/folder" --overwrite --error 1e-9
 grep -q '^Nothing that was measured keeps the error within 1e-09 of a mean rest length' "$work/folder/guide.md" || fail "an error that nothing keeps: $(head -9 "$work/folder/guide.md")"
 
 ends 1 guide --scene cloth40k --backend serial --integrator newton-euler --threads 1 --time-budget 0.01
@@ -50,7 +50,7 @@ grep -Eq '^(Nothing was measured|No errors were measured: no time)' "$work/out" 
 cp -r "$work/folder" "$work/before"
 timeout -s INT 3 "$mssim" guide --scene cloth350k --backend openmp --out "$work/folder" --overwrite >"$work/out" 2>"$work/err" || true
 diff -r "$work/before" "$work/folder" || fail "a guide that was stopped has replaced an earlier one: $(cat "$work/err")"
-succeed bench --scene "$work/tiny.json" --backend serial --integrator semi-euler --rounds 1 --out "$work/folder" --overwrite
+ends 0 bench --scene "$work/tiny.json" --backend serial --integrator semi-euler --rounds 1 --out "$work/folder" --overwrite
 [ -z "$(find "$work/folder" -name 'guide*')" ] || fail "--overwrite leaves $(ls "$work/folder")"
 
 # Programs: one that fails, and one that hangs, cost their own points, and the status says why.
@@ -69,6 +69,6 @@ expect 2 'jeans1k is a garment' guide --scene jeans1k
 expect 2 '^mssim: --overwrite needs the folder of an earlier run' guide --scene cloth2500 --overwrite
 
 # The suite is the same for many scenes.
-succeed bench --suite guide --dry-run --time-budget 1080
+ends 0 bench --suite guide --dry-run --time-budget 1080
 [ "$(grep -c '^\(cloth\|bodies\)[0-9].* 90$' "$work/out")" -eq 12 ] || fail "--suite guide: $(cat "$work/out")"
 expect 2 '^mssim: --rounds cannot be used with --suite guide: leave it out$' bench --suite guide --rounds 3

@@ -55,14 +55,14 @@ first_sample() { grep '^cloth2500,serial,semi-euler,1,' int/samples.csv | cut -d
 before=$(first_sample)
 
 # --resume keeps that and measures the rest; a finished folder is left as it is.
-succeed "${bench[@]}" --out int --resume
+ends 0 "${bench[@]}" --out int --resume
 [ "$(rounds int)" = '6 6 6 6 ' ] || fail "after --resume the rows have the rounds $(rounds int)"
 grep -A 1 '"earlier_starts_utc": \[' int/provenance.json | grep '"20' >/dev/null || fail "the provenance does not tell of the first run"
 [ "$(first_sample)" = "$before" ] || fail "--resume has lost a sample"
 [ "$(grep -c '^cloth2500,serial,' int/samples.csv)" -eq 6 ] || fail "cloth2500 has not six samples"
 whole int
 cp int/samples.csv kept
-succeed "${bench[@]}" --out int --resume
+ends 0 "${bench[@]}" --out int --resume
 cmp -s kept int/samples.csv || fail "--resume measured a finished folder again"
 sed -n '/^cloth4900: /,$p' out | grep -q ' openmp ' || fail "--resume of a finished folder prints no table"
 
@@ -97,7 +97,7 @@ for signal in INT KILL; do
   [ "$signal" = KILL ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
   diff -r before int || fail "--overwrite that is ended by SIG$signal before it has a row changes what is there"
 done
-succeed bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite
+ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite
 [ "$(rounds int)" = '1 ' ] || fail "--overwrite left $(rounds int)"
 [ "$(wc -l <int/samples.csv)" -eq 2 ] || fail "--overwrite left samples"
 
@@ -124,7 +124,7 @@ for delay in 0.3 0.7 1.1 1.6; do
   wait "$process" 2>/dev/null || true
   [ ! -e killed/timings.csv ] || whole killed
 done
-succeed "${bench[@]}" --out killed --resume
+ends 0 "${bench[@]}" --out killed --resume
 [ "$(rounds killed)" = '6 6 6 6 ' ] || fail "after kill -9 and --resume the rows have the rounds $(rounds killed)"
 [ "$(cut -d, -f1-4 killed/samples.csv | sort | uniq -d | wc -l)" -eq 0 ] || fail "a sample stands twice"
 whole killed

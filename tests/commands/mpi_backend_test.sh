@@ -23,7 +23,7 @@ nothing_left() {
 }
 
 # Every explicit integrator; the last bit is openmp's, for 1 to 8 ranks, parts of different widths and several threads.
-succeed bench --scene cloth4900 --backend openmp,mpi --integrator "$explicit" --ranks 2 --threads 1 --rounds 1 --out all
+ends 0 bench --scene cloth4900 --backend openmp,mpi --integrator "$explicit" --ranks 2 --threads 1 --rounds 1 --out all
 [ "$(column_of all/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * explicit_count)) true" ] || fail "not every row is verified: $(cat all/timings.csv)"
 [ "$(hashes all | wc -l)" -eq "$explicit_count" ] || fail "mpi and openmp differ: $(cat all/timings.csv)"
 if [ "$(nproc)" -ge 2 ]; then
@@ -36,7 +36,7 @@ grep ',mpi,' bits/timings.csv | grep -q 'not timed: 2 ranks of 2 threads on [1-3
   fail "ranks that share processors are timed: $(cat bits/timings.csv)"
 
 # What a step spends on messages, and copies that send none.
-succeed bench --scene cloth4900 --backend mpi:1,mpi:2,mpi-copies:2 --integrator semi-euler --threads 1 --rounds 2 --out costs
+ends 0 bench --scene cloth4900 --backend mpi:1,mpi:2,mpi-copies:2 --integrator semi-euler --threads 1 --rounds 2 --out costs
 sed 's/"[^"]*"//' costs/timings.csv >bare.csv  # notes have commas
 [ "$(column_of costs/timings.csv verified | xargs)" = 'true true true' ] || fail "not every row is verified: $(cat costs/timings.csv)"
 [ "$(hashes costs | wc -l)" -eq 1 ] || fail "copies have other bits: $(cat costs/timings.csv)"
@@ -59,13 +59,13 @@ expect 2 '"0" is' bench --scene cloth2500 --backend mpi --ranks 0
 # What launchers and ranks are told, unless the user has told them something else.
 printf '#!/bin/sh\nenv >"%s"\nexec mpirun "$@"\n' "$work/told" >one/telling
 chmod +x one/telling
-SLURM_OVERLAP=0 succeed bench --scene cloth2500 --backend mpi:1 --integrator semi-euler --threads 1 --rounds 1 --launcher one/telling
+SLURM_OVERLAP=0 ends 0 bench --scene cloth2500 --backend mpi:1 --integrator semi-euler --threads 1 --rounds 1 --launcher one/telling
 grep -qx 'OMPI_MCA_btl_vader_eager_limit=65536' told || fail "short messages are not told from long ones: $(cat told)"
 grep -qx 'SLURM_OVERLAP=0' told || fail "what the user has told Slurm does not go before: $(cat told)"
 
 # Files of a launcher are looked for where mssim was started, and no launcher is started for more ranks than a scene can be cut for.
 echo 'localhost slots=4' >hosts
-succeed bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --threads 1 --rounds 1 --launcher 'mpirun --hostfile hosts'
+ends 0 bench --scene cloth2500 --backend mpi:2 --integrator semi-euler --threads 1 --rounds 1 --launcher 'mpirun --hostfile hosts'
 rm told
 "$mssim" bench --scene cloth2500 --backend mpi:5000 --integrator semi-euler --threads 1 --rounds 1 --launcher one/telling --out many \
   >/dev/null 2>&1 && fail "fifty columns do for 5000 ranks"
@@ -77,14 +77,14 @@ grep -q 'unavailable: ./hosts is no file that may be executed' hostless/timings.
 
 # A guide has it, and its larger cloths.
 sed 's/"rows": 50/"rows": 20/; s/"columns": 50/"columns": 20/' "$2/scenes/cloth2500.json" >small.json
-succeed guide --scene ./small.json --backend openmp,mpi --ranks 2 --threads 1 --integrator semi-euler --horizon 0.01 --time-budget 40 --error 1e-2 \
+ends 0 guide --scene ./small.json --backend openmp,mpi --ranks 2 --threads 1 --integrator semi-euler --horizon 0.01 --time-budget 40 --error 1e-2 \
   --out guide
 [ "$(column_of guide/guide.csv backend | grep -c '^mpi$')" -ge 2 ] || fail "a guide has no points of mpi: $(cat guide/guide.csv)"
 ! grep 'failed:' guide/*.csv || fail "mpi fails in a guide"
 [ "$(grep -c ',mpi,' guide/guide-sizes.csv)" -ge 2 ] || fail "a guide has no cloths of mpi: $(cat guide/guide-sizes.csv)"
 
 # Names that say how many ranks: rows of their own.
-succeed bench --scene cloth2500 --backend openmp,mpi:3,mpi:1 --integrator semi-euler --threads 1 --ranks 7 --rounds 1 --out counts
+ends 0 bench --scene cloth2500 --backend openmp,mpi:3,mpi:1 --integrator semi-euler --threads 1 --ranks 7 --rounds 1 --out counts
 [ "$(column_of counts/timings.csv backend | xargs)" = 'openmp mpi:3 mpi:1' ] || fail "rows: $(cat counts/timings.csv)"
 [ "$(column_of counts/timings.csv threads | xargs)" = '1 3 1' ] || fail "ranks: $(cat counts/timings.csv)"
 [ "$(hashes counts | wc -l)" -eq 1 ] || fail "mpi:3 has other bits: $(cat counts/timings.csv)"
@@ -96,7 +96,7 @@ expect 2 'openmp:2 says a number of ranks, and openmp runs in one process' bench
 expect 2 'unknown backend "mpl:2"' bench --scene cloth2500 --backend mpl:2
 expect 2 'ranks is for backends that run in several processes, and none of these does' bench --scene cloth2500 --backend openmp --ranks 2
 expect 2 'launcher is for backends that run in several processes' run --scene cloth2500 --duration 0.01 --launcher srun
-succeed list backends
+ends 0 list backends
 grep -q '^mpi .*on one machine or several' out || fail "mssim list backends does not show mpi"
 "$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler --launcher no-mpirun --rounds 1 --out missing >/dev/null 2>&1 &&
   fail "a launcher that is missing does"
@@ -105,8 +105,8 @@ fails_with 'unavailable: there is no no-mpirun in PATH: install Open MPI' missin
 # Different processors: the bits of exact roots, or a refusal.
 if [ "$(uname -m)" = x86_64 ]; then
   make_mixed_launcher mixed
-  succeed bench --scene cloth2500 --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
-  SET=AVX2 succeed bench --scene cloth2500 --backend mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
+  ends 0 bench --scene cloth2500 --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
+  SET=AVX2 ends 0 bench --scene cloth2500 --backend mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
   [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"
   SET=SSE4 "$mssim" bench --scene cloth2500 --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out sse >/dev/null 2>&1 &&
     fail "SSE4 beside other sets does"
@@ -115,7 +115,7 @@ fi
 
 # A simulation, to the last bit.
 for backend in openmp mpi:2; do
-  succeed run --scene cloth2500 --backend "$backend" --threads 1 --duration 0.0025 --trace "${backend%:2}.h5"
+  ends 0 run --scene cloth2500 --backend "$backend" --threads 1 --duration 0.0025 --trace "${backend%:2}.h5"
 done
 h5diff -q openmp.h5 mpi.h5 /particles/cloth/position/value || fail "run: mpi has other positions than openmp"
 
@@ -169,7 +169,7 @@ fails_with 'mpirun --host node9 has not started 2 ranks within 25 s' silent
 # What was measured beside a row that failed is kept, and the row is measured when the bench goes on.
 measured=$(column_of killed/timings.csv rounds | head -n 1)
 [ "$measured" -gt 3 ] || fail "the other row is not measured: $(cat killed/timings.csv)"
-succeed bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds $((measured + 3)) --resume --out killed
+ends 0 bench --scene cloth40k --integrator semi-euler --backend openmp,mpi --ranks 2 --threads 1 --rounds $((measured + 3)) --resume --out killed
 [ "$(grep -c 'true,ok' killed/timings.csv)" -eq 2 ] || fail "--resume does not measure mpi: $(cat killed/timings.csv)"
 nothing_left "the end of all"
 segments=$(find /dev/shm -maxdepth 1 -name '*_segment.*' -newer begun)

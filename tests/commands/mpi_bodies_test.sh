@@ -61,7 +61,7 @@ scene bounce.json 0 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
 scene deep.json -9 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
 for integrator in semi-euler rk4; do
   for of in openmp_bounce mpi:3_bounce openmp_deep; do
-    succeed run --scene "./${of#*_}.json" --backend "${of%_*}" --integrator "$integrator" --threads 1 --duration 0.02 --trace "${of/:3/}.h5"
+    ends 0 run --scene "./${of#*_}.json" --backend "${of%_*}" --integrator "$integrator" --threads 1 --duration 0.02 --trace "${of/:3/}.h5"
   done
   h5diff -q openmp_bounce.h5 mpi_bounce.h5 "$(h5ls -r mpi_bounce.h5 | awk '/position\/value/ { print $1; exit }')" ||
     fail "$integrator: mpi has other positions than openmp on the floor"
@@ -78,8 +78,8 @@ fails_with 'unsupported: 1 body cannot be cut for 9 ranks: a part of a body has 
 # Different processors: the bits of exact roots, or a refusal.
 if [ "$(uname -m)" = x86_64 ]; then
   make_mixed_launcher mixed
-  succeed bench --scene ./unequal.json --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
-  SET=AVX2 succeed bench --scene ./unequal.json --backend mpi --integrator rk4 --ranks 3 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
+  ends 0 bench --scene ./unequal.json --backend openmp --integrator rk4 --threads 1 --rounds 1 --roots exact --out exact
+  SET=AVX2 ends 0 bench --scene ./unequal.json --backend mpi --integrator rk4 --ranks 3 --threads 1 --rounds 1 --launcher "$work/mixed" --out mixed_bits
   [ "$(hashes exact)" = "$(hashes mixed_bits)" ] || fail "AVX-512 and AVX2: $(cat mixed_bits/timings.csv)"
   SET=SSE4 "$mssim" bench --scene ./one.json --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$work/mixed" --out sse >/dev/null 2>&1 &&
     fail "SSE4 beside other sets does"

@@ -13,11 +13,11 @@ trap 'remove_other_host; rm -rf "$work"' EXIT
 make_other_host "$work" || exit 77
 cd "$work"
 
-succeed bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler,rk4 --ranks 2 --threads 1 --rounds 2 --launcher "$hosts" --out two
+ends 0 bench --scene cloth2500 --backend openmp,mpi --integrator semi-euler,rk4 --ranks 2 --threads 1 --rounds 2 --launcher "$hosts" --out two
 [ "$(column_of two/timings.csv device | sort | uniq -c | xargs)" = "2 2 hosts 2 $(column_of two/timings.csv device | head -n 1)" ] ||
   fail "mpi did not run on two hosts: $(cat two/timings.csv)"
 [ "$(hashes two | wc -l)" -eq 2 ] || fail "two hosts have other bits: $(cat two/timings.csv)"
-succeed bench --scene box-small --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$hosts" --out body
+ends 0 bench --scene box-small --backend openmp,mpi --integrator rk4 --ranks 2 --threads 1 --rounds 1 --launcher "$hosts" --out body
 [ "$(column_of body/timings.csv verified | sort | uniq -c | xargs)" = '2 true' ] || fail "a body on two hosts: $(cat body/timings.csv)"
 [ "$(hashes body | wc -l)" -eq 1 ] || fail "a body has other bits on two hosts: $(cat body/timings.csv)"
 

@@ -17,7 +17,7 @@ said() {
 }
 
 # Python: one file that can be run, with its own name in it.
-succeed new-backend mine --language python
+ends 0 new-backend mine --language python
 said out 'mssim bench --scene cloth2500 --backend serial,openmp,./mine.py'
 said err 'mssim: wrote ./mine.py'
 [ -x mine.py ] || fail "mine.py is not executable"
@@ -26,7 +26,7 @@ grep -q 'serial,openmp,./mine.py' mine.py && ! grep -q my_backend mine.py || fai
 
 # C++: compiled by the command that is printed, warnings as errors.
 mkdir 'a folder'
-succeed new-backend mine --language C++ --out 'a folder'
+ends 0 new-backend mine --language C++ --out 'a folder'
 said err 'mssim: wrote a folder/mine.cpp' 'mssim: wrote a folder/mssim_backend.h'
 said out "c++ -std=c++17 -O3 'a folder/mine.cpp' \$(pkg-config --cflags --libs hdf5) -o 'a folder/mine'" \
   "mssim bench --scene cloth2500 --backend 'serial,openmp,a folder/mine'"
@@ -38,7 +38,7 @@ status=0
 verified_everywhere 'a folder/mine' mine
 
 # A second one beside it takes the header that is there.
-succeed new-backend other --language c++ --out 'a folder'
+ends 0 new-backend other --language c++ --out 'a folder'
 said err 'mssim: wrote a folder/other.cpp'
 
 # What does not go, in a sentence, and nothing is written.

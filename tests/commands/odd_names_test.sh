@@ -11,14 +11,14 @@ source=$2
 # one_scene FILE NAME: a bench of it makes files of valid UTF-8 in which it is called NAME, here and in its trace
 one_scene() {
   rm -rf "$work/results"
-  succeed bench --scene "$1" --backend serial --integrator semi-euler --rounds 1 --threads 1 --out "$work/results"
+  ends 0 bench --scene "$1" --backend serial --integrator semi-euler --rounds 1 --threads 1 --out "$work/results"
   [ "$(column_of "$work/results/timings.csv" scene | head -n 1)" = "$2" ] || fail "$2 is called otherwise: $(cat "$work/results/timings.csv")"
   local file
   for file in "$work"/results/*; do iconv -f UTF-8 -t UTF-8 "$file" >/dev/null || fail "$file is no UTF-8"; done
-  succeed run --scene "$1" --duration 0.001 --trace "$work/t.h5" --energy-curve "$work/e.csv"
+  ends 0 run --scene "$1" --duration 0.001 --trace "$work/t.h5" --energy-curve "$work/e.csv"
   iconv -f UTF-8 -t UTF-8 "$work/e.csv" >/dev/null || fail "the energy curve is no UTF-8"
   h5dump -d /parameters/provenance "$work/t.h5" | grep -qF "${2//\\/\\\\}" || fail "the trace does not name $2"
-  succeed check "$1" --format json
+  ends 0 check "$1" --format json
 }
 
 cp "$source/scenes/cloth2500.json" "$work/caf"$'\xe9'".json"
@@ -29,10 +29,10 @@ expect 2 'names traces after their scene, and "caf.xe9.h5" has a .\\., which rea
   bench --scene "$work/caf"$'\xe9'".json" --trace --out "$work/never"
 
 # Words that are no UTF-8 anywhere else.
-succeed bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --format json --device $'\xff' --out "$work/f"$'\xfe'
+ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --format json --device $'\xff' --out "$work/f"$'\xfe'
 [ -s "$work/f"$'\xfe'/provenance.json ] || fail "there is no provenance in a folder of that name"
 expect 3 'there are' list backends --format json --device $'\xff'
-OMP_DISPLAY_AFFINITY=$'\xff' succeed bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out "$work/g"
+OMP_DISPLAY_AFFINITY=$'\xff' ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out "$work/g"
 expect 2 'no scene is named' run --scene $'\xff\x1b'
 expect 2 'unknown backend' run --scene cloth2500 --backend $'\xff\x1b'
 expect 2 'unknown command' $'\xff\x1b'
@@ -59,12 +59,12 @@ rm -r "$work/colliding"
 
 # Commas.
 cp "$source/scenes/cloth2500.json" "$work/a,b.json"
-succeed bench --scene "$work/a,b.json,cloth4900" --dry-run
+ends 0 bench --scene "$work/a,b.json,cloth4900" --dry-run
 [ "$(grep -c '^a,b \|^cloth4900 ' "$work/out")" -eq 2 ] || fail "a comma in a path: $(cat "$work/out")"
 
 # Names of traces.
 mkdir "$work/fol:der"
-succeed run --scene cloth2500 --duration 0.001 --trace "$work/fol:der/the 'trace' & more.h5"
+ends 0 run --scene cloth2500 --duration 0.001 --trace "$work/fol:der/the 'trace' & more.h5"
 cd "$work"
 expect 2 '^mssim: --trace: "t.txt" is not a name of the form NAME.h5: give t.h5$' run --scene cloth2500 --trace t.txt
 expect 2 '^mssim: --trace: "a:b.h5" has a .:., which readers of the XDMF file misread: give a name without it$' run --scene cloth2500 --trace a:b.h5

@@ -28,7 +28,7 @@ drivers() {
 
 # devices COUNT PATTERN: so many are listed, and stderr is one line that matches, or nothing
 devices() {
-  succeed list devices --format csv
+  ends 0 list devices --format csv
   echo "list devices: $(cat err)"
   local found
   found=$(awk 'NR > 1' out | wc -l)
@@ -66,9 +66,9 @@ drivers aborting_driver
 end='the OpenCL driver .*/aborting_driver.so ended with signal 6 when asked for devices: Not enough memory to run on this device\.'
 devices 0 "$end\$"
 expect 3 "$end\$" run --scene cloth2500 --backend opencl --duration 0.01
-succeed list backends --format csv
+ends 0 list backends --format csv
 [ "$(grep -c "^\(opencl\|hybrid\),.*,false,\"\?$end" out)" -eq 2 ] || fail "list backends: $(cat out err)"
-succeed bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1 --out results
+ends 0 bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1 --out results
 [ "$(column_of results/timings.csv verified | grep -c true)" -eq 3 ] || fail "not three rows: $(cat results/timings.csv)"
 [ "$(grep -c "unavailable: $end" results/timings.csv)" -eq 2 ] || fail "not two rows without a device: $(cat results/timings.csv)"
 drivers aborting_device_driver
@@ -77,7 +77,7 @@ drivers aborting_driver pocl
 devices 1 "$end\$"
 OCL_ICD_VENDORS=$work/vendors/aborting_driver.icd devices 0 "$end\$"
 OCL_ICD_VENDORS=$fakes/aborting_driver.so devices 0 "$end\$"
-succeed run --scene cloth2500 --backend opencl --duration 0.01
+ends 0 run --scene cloth2500 --backend opencl --duration 0.01
 grep -q "^mssim: $end\$" err || fail "run does not name the driver that it left out: $(cat err)"
 
 # Nobody asks who needs no device.
@@ -87,8 +87,8 @@ export FAKE_OPENCL_LOADED=$work/loaded
 [ -e loaded ] || fail "the fake driver leaves no trace"
 rm loaded
 "$mssim" list scenes >out 2>err
-succeed bench --scene cloth2500 --backend serial,openmp --integrator semi-euler --rounds 2 --out few
-succeed run --scene cloth2500 --backend openmp --duration 0.01 --trace fall.h5
+ends 0 bench --scene cloth2500 --backend serial,openmp --integrator semi-euler --rounds 2 --out few
+ends 0 run --scene cloth2500 --backend openmp --duration 0.01 --trace fall.h5
 [ ! -e loaded ] || fail "drivers are asked by commands that need no device"
 unset FAKE_OPENCL_LOADED
 
@@ -121,8 +121,8 @@ FAKE_OPENCL=float-8 "$mssim" list devices --format csv >out 2>err
 unset OPENCL_LAYERS
 
 # What was verified beside a device counts for those of its backends that need none.
-succeed "${scene[@]}" --backend serial,opencl --out both
-succeed "${scene[@]}" --backend serial --verified both --out part
+ends 0 "${scene[@]}" --backend serial,opencl --out both
+ends 0 "${scene[@]}" --backend serial --verified both --out part
 
 # PoCL's cache. The user's own that cannot be written is named; no other is taken in its place.
 drivers pocl
@@ -144,7 +144,7 @@ HOME=/dev/null TMPDIR=/dev/null devices 0 'the OpenCL driver "Portable Computing
 env -u HOME "$mssim" list devices --format csv >out 2>err || fail "list devices without HOME exits with $?"
 [ "$(wc -l <out)" -eq 2 ] || fail "no device without HOME: $(cat out err)"
 POCL_CACHE_DIR='' HOME=$work/home2 devices 1 ''
-HOME=/dev/null succeed run --scene cloth2500 --backend opencl --duration 0.01
+HOME=/dev/null ends 0 run --scene cloth2500 --backend opencl --duration 0.01
 grep -q "^mssim: $costs" err || fail "run does not say that kernels are compiled anew: $(cat err)"
 [ -z "$(ls tmp)" ] || fail "run leaves $(ls tmp)"
 

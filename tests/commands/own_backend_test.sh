@@ -31,7 +31,7 @@ bench=(bench --scene cloth2500 --integrator semi-euler --rounds 2 --threads 1)
 
 # A right program, by its path, has every integrator, and its rows hold what it said of itself.
 explicit=$(explicit_integrators | paste -sd,) explicit_count=$(explicit_integrators | wc -l)
-succeed bench --scene cloth2500 --backend serial,./spring_list --integrator "$explicit" --rounds 2 --threads 1 --out right
+ends 0 bench --scene cloth2500 --backend serial,./spring_list --integrator "$explicit" --rounds 2 --threads 1 --out right
 [ "$(column_of right/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * explicit_count)) true" ] || fail "not every row is verified: $(cat right/timings.csv)"
 [ "$(column_of right/timings.csv backend | grep -c '^spring_list$')" -eq "$explicit_count" ] || fail "the rows are not called spring_list"
 [ "$(column_of right/timings.csv note | grep -c '^double precision; a list of springs$')" -eq "$explicit_count" ] || fail "the notes are lost"
@@ -84,17 +84,17 @@ row huge-costs 'failed: latency_us is not finite'
 [ "$(find wrong/programs -type f | wc -l)" -eq 2 ] || fail "wrong/programs holds $(ls wrong/programs)"
 
 # A finished folder is left as it is; another program under the same name is another result.
-succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again
+ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again
 cp again/timings.csv before
-succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 cmp -s before again/timings.csv || fail "--resume changes a finished folder"
 describe floods '"environment": {"A": "1"}'
-succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
+ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 printf '{"command": ["%s"]}' "$work/spring_list" >backends/floods.json
 expect 2 'a program that is a backend is not the same' "${bench[@]}" --backend serial,floods --backend-folder backends --out again --resume
 mkdir again/programs/mine
 echo mine >again/programs/mine/file
-succeed "${bench[@]}" --backend serial,floods --backend-folder backends --out again --overwrite
+ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends --out again --overwrite
 [ "$(find again/programs -type f)" = again/programs/mine/file ] || fail "--overwrite leaves, of programs and the user: $(find again/programs)"
 
 # Ctrl-C and Ctrl-\ end a wait, without --backend-limit of two minutes, and leave nothing; nor does SIGKILL.
@@ -139,7 +139,7 @@ for reason in 'crlf: .*CR LF' 'lost: its interpreter /no/such/python' 'bare: it 
 done
 mkdir "$(printf 'long%.0s' {1..25})"
 for folder in tmp "$PWD"/long*; do
-  TMPDIR=$folder succeed "${bench[@]}" --backend serial,floods --backend-folder backends
+  TMPDIR=$folder ends 0 "${bench[@]}" --backend serial,floods --backend-folder backends
   [ -z "$(ls "$folder")" ] || fail "$folder holds $(ls "$folder")"
 done
 TMPDIR=$work/none "$mssim" "${bench[@]}" --backend serial,./spring_list --out nowhere >out 2>err && fail "a missing TMPDIR is not told"
@@ -154,14 +154,14 @@ echo text >wrong.txt
 # Descriptions: found in the folder, in the user's own, and beside a scene's file.
 describe here '"description": "a list of springs", "scenes": ["bodies"], "integrators": ["rk4"]'
 cp backends/here.json config/mssim/backends/mine.json
-succeed list backends --backend-folder backends --format csv
+ends 0 list backends --backend-folder backends --format csv
 grep -q '^here,,true,,a list of springs$' "$work/out" && grep -q '^mine,,true,' "$work/out" || fail "list backends: $(cat "$work/out")"
 status=0
 "$mssim" "${bench[@]}" --backend mine >out 2>err || status=$?
 [ "$status" -eq 3 ] && grep -q 'mine, semi-euler: unsupported: it does not step cloths$' err || fail "mine gives $status: $(cat err)"
 cp "$2/scenes/cloth2500.json" small.json
 printf '{"command": ["./spring_list"]}' >beside.json
-succeed bench --scene ./small.json --backend beside --integrator semi-euler --rounds 2
+ends 0 bench --scene ./small.json --backend beside --integrator semi-euler --rounds 2
 expect 2 '(did you mean here?)' "${bench[@]}" --backend heer --backend-folder backends
 expect 2 'there are two backends called here' "${bench[@]}" --backend here --backend-folder backends,twin
 expect 2 'is called like the backend serial of mssim' "${bench[@]}" --backend serial --backend-folder twin
@@ -170,11 +170,11 @@ expect 3 'there is no program ./nothing' "${bench[@]}" --backend ./nothing
 expect 3 'wrong.txt may not be executed; chmod +x it' "${bench[@]}" --backend ./wrong.txt
 
 # Two programs of mssim are compared by how they time one.
-succeed compare --ab "$mssim" "$mssim" --scene cloth2500 --backend ./spring_list --time-budget 10
+ends 0 compare --ab "$mssim" "$mssim" --scene cloth2500 --backend ./spring_list --time-budget 10
 grep -q 'spring_list' "$work/out" || fail "compare --ab says: $(cat "$work/out")"
 
 # run has them too.
-succeed run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fall.h5
+ends 0 run --scene cloth2500 --backend ./spring_list --duration 0.02 --trace fall.h5
 grep -q ' spring_list ' "$work/out" || fail "run says: $(cat "$work/out")"
 expect 1 'exits ended with exit code 3 before it answered' run --scene cloth2500 --backend exits --backend-folder backends
 nothing_left "run"

@@ -12,7 +12,7 @@ export XDG_CONFIG_HOME=$work/config  # no descriptions of the user's
 expect 2 '^mssim: --suite peers compares backends that are described.*scripts/peers' bench --suite peers --dry-run
 
 # mssim reads all descriptions, and all of them are in the suite.
-succeed bench --suite peers --backend-folder "$peers" --dry-run
+ends 0 bench --suite peers --backend-folder "$peers" --dry-run
 described=$(find "$peers" -name '*.json' | wc -l)
 [ "$described" -eq 7 ] || fail "there are $described descriptions"
 [ "$(grep -c "^bodies38233 .* $((described + 2)) " "$work/out")" -eq 1 ] || fail "not all are in the suite: $(cat "$work/out")"
@@ -24,7 +24,7 @@ root=$source
 compile_cpp_peer "$work/cpp-list"
 printf '{"command": ["./cpp-list"]}' >"$work/cpp-list.json"
 
-succeed bench --suite peers --backend openmp,cpp-list --backend-folder "$work" --rounds 1 --threads 2 --out "$work/peers"
+ends 0 bench --suite peers --backend openmp,cpp-list --backend-folder "$work" --rounds 1 --threads 2 --out "$work/peers"
 [ "$(grep -c ',openmp,' "$work/peers/peers.csv")" -eq 4 ] || fail "peers.csv: $(cat "$work/peers/peers.csv")"
 [ "$(grep -c ',cpp-list,1,.*,true,ok,.*spring list; [0-9]* lines' "$work/peers/peers.csv")" -eq 4 ] ||
   fail "the peer is not verified: $(cat "$work/peers/peers.csv")"

@@ -13,7 +13,7 @@ cd "$work"
 export PATH=$2/build/readers/bin:$PATH PYTHONDONTWRITEBYTECODE=1
 python3 -c 'import numpy, h5py' 2>err || { echo "skipped: $(tail -n 1 err)" && exit 77; }
 
-succeed new-backend mine --language python
+ends 0 new-backend mine --language python
 verified_everywhere ./mine.py mine.py
 
 # The steps and the floor of the module against formulas written out, with what mssim sends; see there.

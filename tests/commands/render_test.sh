@@ -21,36 +21,36 @@ expect_picture() {
 frames_of() { grep -abo ANMF "$1" | wc -l; }
 
 cd "$work"
-succeed run --scene cloth2500 --duration 0.2 --fps 20 --trace t.h5
-succeed render t.h5 --size 200x150
+ends 0 run --scene cloth2500 --duration 0.2 --fps 20 --trace t.h5
+ends 0 render t.h5 --size 200x150
 expect_picture t.png 200x150
-succeed render t.h5 --size 200x150 --frames last --out last.png
+ends 0 render t.h5 --size 200x150 --frames last --out last.png
 cmp -s t.png last.png || fail "the last frame is not what is drawn"
-succeed render t.h5 --size 200x150 --time 0.21 --out late.png
+ends 0 render t.h5 --size 200x150 --time 0.21 --out late.png
 cmp -s t.png late.png || fail "the frame nearest to 0.21 s is not the last one"
-succeed render t.h5 --size 200x150 --time 0 --out first.png
+ends 0 render t.h5 --size 200x150 --time 0 --out first.png
 cmp -s first.png t.png && fail "the first frame looks like the last"
-succeed render t.h5 --size 200x150 --threads 1 --out one.png
-succeed render t.h5 --size 200x150 --threads 3 --out three.png
+ends 0 render t.h5 --size 200x150 --threads 1 --out one.png
+ends 0 render t.h5 --size 200x150 --threads 3 --out three.png
 cmp -s one.png three.png || fail "the picture depends on the number of threads"
 for view in front side back three-quarter -20,35; do
-  succeed render t.h5 --size 120x90 --view "$view" --out "from$view.png"
+  ends 0 render t.h5 --size 120x90 --view "$view" --out "from$view.png"
   expect_picture "from$view.png" 120x90
 done
 for colour in object panel strain; do
-  succeed render t.h5 --size 320x240 --colour "$colour" --out "$colour.png"
+  ends 0 render t.h5 --size 320x240 --colour "$colour" --out "$colour.png"
 done
 cmp -s object.png panel.png || fail "a cloth has panels"
 cmp -s object.png strain.png && fail "strain is not shown"
 
-succeed render t.h5 --sheet 2x2 --size 100x80
+ends 0 render t.h5 --sheet 2x2 --size 100x80
 expect_picture t-sheet.png "$(size_of t-sheet.png)"
 [ "$(size_of t-sheet.png | cut -dx -f1)" -gt 200 ] || fail "two pictures do not fit beside each other on the sheet"
-succeed render t.h5 --movie --size 80x60
+ends 0 render t.h5 --movie --size 80x60
 [ "$(frames_of t.webp)" -eq 5 ] || fail "the movie has $(frames_of t.webp) frames instead of 5"
-succeed render t.h5 --movie --size 80x60 --frames 1-2,last --out some.webp
+ends 0 render t.h5 --movie --size 80x60 --frames 1-2,last --out some.webp
 [ "$(frames_of some.webp)" -eq 3 ] || fail "the movie has $(frames_of some.webp) frames instead of 3"
-succeed render t.h5 --size 80x60 --movie named.webp
+ends 0 render t.h5 --size 80x60 --movie named.webp
 cmp -s t.webp named.webp || fail "--movie FILE writes something else than --movie"
 expect 2 'put the trace before it' render --movie t.h5
 for name in movie.png movie.apng; do
@@ -82,7 +82,7 @@ fi
 ends 1 render --scene jeans1k --size 160x120 --duration 0.02 --out jeans.png
 expect_picture jeans.png 160x120
 mkdir scene && cd scene
-succeed render --scene box-small --size 160x120 --duration 0.01
+ends 0 render --scene box-small --size 160x120 --duration 0.01
 expect_picture box-small.png 160x120
 [ "$(ls)" = box-small.png ] || fail "more than the picture is left: $(ls)"
 cd ..
@@ -93,6 +93,8 @@ expect 2 'exclude each other' render t.h5 --scene cloth2500
 expect 2 '"top" is no view; give front' render t.h5 --view top
 expect 2 'up to 2048 pixels' render t.h5 --size 3000x10
 expect 2 'no frame 99; the last one is 4' render t.h5 --frames 0,99
+expect 2 '"a" is no frame' render t.h5 --frames a
+expect 2 '"3-1" ends before it begins' render t.h5 --frames 3-1
 expect 2 '"3" is no number of pictures' render t.h5 --sheet 3
 expect 2 'exclude each other' render t.h5 --movie --sheet 2x2
 cp t.h5 same.png
@@ -106,7 +108,7 @@ expect 2 '--out is mine.json, .*PNG: give mine.png' render --scene mine.json --o
 # Links are followed, also where they lead to what is not there yet; where the system is, nothing is replaced.
 mkdir linked
 ln -s ../drawn.png linked/link.png
-succeed render t.h5 --size 80x60 --out linked/link.png
+ends 0 render t.h5 --size 80x60 --out linked/link.png
 [ -L linked/link.png ] && cmp drawn.png linked/link.png || fail "a link was replaced: $(ls -l linked)"
 for place in /dev/stdout /dev/fd/1 /proc/self/fd/1; do expect 4 "cannot write $place: .*choose another file name" render t.h5 --out "$place"; done
 cmp -s "$2/scenes/cloth2500.json" mine.json || fail "the scene is written over"

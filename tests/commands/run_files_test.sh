@@ -50,15 +50,15 @@ expect 4 'cannot write x.h5: x.h5.part is a link; remove it' "${fall[@]}" --dura
 [ "$(cat victim)" = mine ] || fail "a file that a link leads to was written"
 mkdir elsewhere
 ln -s elsewhere/real.h5 link.h5
-succeed "${fall[@]}" --duration 0.01 --trace link.h5
+ends 0 "${fall[@]}" --duration 0.01 --trace link.h5
 [ -L link.h5 ] && [ -s elsewhere/real.xdmf ] && [ "$(frames elsewhere/real.h5)" -ge 1 ] || fail "a link is not followed: $(ls -l . elsewhere)"
 
 # Pictures while it runs: one a frame, into a folder of their own, and the last is what the trace shows at the end.
-succeed "${fall[@]}" --duration 0.1 --fps 20 --pictures new/shots --size 160x120 --view side --trace shots.h5
+ends 0 "${fall[@]}" --duration 0.1 --fps 20 --pictures new/shots --size 160x120 --view side --trace shots.h5
 [ "$(ls new/shots | tr '\n' ' ')" = 'frame-000000.png frame-000001.png frame-000002.png ' ] ||
   fail "the folder of pictures holds $(ls new/shots)"
 [ "$(cat err)" = $'mssim: wrote shots.h5 and shots.xdmf\nmssim: wrote 3 pictures into new/shots' ] || fail "a run says it wrote $(cat err)"
-succeed render shots.h5 --frames 0 --size 160x120 --view side --out start.png
+ends 0 render shots.h5 --frames 0 --size 160x120 --view side --out start.png
 cmp -s start.png new/shots/frame-000000.png || fail "the first picture is not the trace's first frame"
 expect 4 'new/shots, which is not empty; empty it or choose another folder' \
   "${fall[@]}" --duration 0.01 --pictures new/shots --trace refused.h5

@@ -24,7 +24,7 @@ sed 's/\("[a-z_]*damping[a-z_]*"\): [0-9.]*/\1: 0/g' damped.json >undamped.json
 trajectories() {
   for scene in damped undamped; do
     for dt in "$2" "$3"; do
-      succeed run --scene "$scene.json" --backend serial --precision double --integrator "$1" --dt "$dt" --duration 0.008 --fps 125 \
+      ends 0 run --scene "$scene.json" --backend serial --precision double --integrator "$1" --dt "$dt" --duration 0.008 --fps 125 \
         --trace "$scene-$1-$dt.h5"
     done
   done

@@ -8,15 +8,15 @@ mssim=$1
 . "$2/tests/support/command_line.sh"
 cd "$work"
 
-succeed run --scene cloth2500 --threads 1 --duration 0.5 --fps 2 --trace cloth.h5
-succeed run --scene box-small --threads 1 --duration 0.4 --fps 3 --trace bodies.h5
-succeed run --scene jeans1k --threads 1 --fps 1 --trace garment.h5
+ends 0 run --scene cloth2500 --threads 1 --duration 0.5 --fps 2 --trace cloth.h5
+ends 0 run --scene box-small --threads 1 --duration 0.4 --fps 3 --trace bodies.h5
+ends 0 run --scene jeans1k --threads 1 --fps 1 --trace garment.h5
 pictures=()
 for trace in cloth bodies garment; do
-  succeed export "$trace.h5" --format obj
+  ends 0 export "$trace.h5" --format obj
   # From above, where ground and shadow are drawn as well, and from below.
   for view in 35,18 -110,-15; do
-    succeed render "$trace.h5" --view "$view" --size 320x240 --out "$trace-$view.png"
+    ends 0 render "$trace.h5" --view "$view" --size 320x240 --out "$trace-$view.png"
     ${3:+"$3"} "${mssim%/*}/../bin/depth_map" "$trace.h5" "$view" 320 240 "$trace-$view.depths" || fail "there are no depths of $trace"
     pictures+=("$trace-$view")
   done

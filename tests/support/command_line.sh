@@ -33,7 +33,6 @@ ends() {
   "$mssim" "${@:2}" >"$work/out" 2>"$work/err" </dev/null || status=$?
   [ "$status" -eq "$1" ] || fail "mssim $(printf '%q ' "${@:2}") exits with $status instead of $1: $(cat "$work/out" "$work/err")"
 }
-succeed() { ends 0 "$@"; }
 
 # column_of FILE NAME: that column of a CSV file in which no field before it holds a comma
 column_of() {

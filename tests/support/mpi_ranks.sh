@@ -45,7 +45,7 @@ explicit=$(explicit_integrators | paste -sd,) explicit_count=$(explicit_integrat
 # the results are in the folder bits
 same_bits() {
   rm -rf bits
-  succeed bench --scene "$1" --backend openmp,mpi --integrator "$4" --ranks "$2" --threads "$3" --rounds 1 --out bits
+  ends 0 bench --scene "$1" --backend openmp,mpi --integrator "$4" --ranks "$2" --threads "$3" --rounds 1 --out bits
   [ "$(column_of bits/timings.csv verified | sort | uniq -c | xargs)" = "$((2 * $5)) true" ] ||
     fail "$1 with $2 ranks of $3 threads: $(cat bits/timings.csv)"
   [ "$(hashes bits | wc -l)" -eq "$5" ] || fail "$1 with $2 ranks of $3 threads has other bits"
