@@ -7,8 +7,8 @@ typedef __global const struct DressingJoint* Joint;
 typedef struct {
   Joint all;
   __global const int* level_ends; /* [level] the number of the joint after its last one */
-  __global const int* nodes; /* the different nodes of all joints, as floats; those that are held first */
-  __global int* sewn;        /* [joint] */
+  __global const int* nodes;      /* those that are held, then the others of joints, as floats */
+  __global int* sewn;             /* [joint] */
 } Joints;
 
 /* What the three nodes of a joint have of an array. */

@@ -1,7 +1,7 @@
 /* The constants of the law of a spring (spring_law.h), in the common subset of C++ and OpenCL C. They are
  * those of springs of one kind, and lie beside each other in this order wherever they are stored. The force
- * is linear in each of them, so that constants divided by a mass give accelerations. What files call them
- * says `spring_constants` in src/model/system.h.
+ * is linear in each of them, so that constants divided by a mass give accelerations. `spring_constants` in
+ * src/model/system.h says what files call them.
  */
 #ifndef MSSIM_SPRING_CONSTANTS
 

@@ -1,7 +1,7 @@
 /* The Jacobian of a spring's force (spring_law.h) as a matrix, along n n^T + across (I - n n^T), and sums of
  * such matrices, written once in the common subset of C++ and OpenCL C.
  *
- * Text for many number types like spring_law.h.
+ * Text for many number types like node_laws.h.
  */
 
 /* A symmetric matrix of 3 x 3: what stands on the diagonal of a stiffness matrix for a node, and its inverse.

@@ -95,7 +95,7 @@ NodeShape shape_of(const Topology& topology) {
 
 void require_fitting_shape(const NodeShape& shape, std::size_t nodes) {
   if (nodes == 0) throw std::invalid_argument("a trace needs nodes");
-  if (shape.sheets.empty()) {
+  if (shape.sheets.empty() && !shape.in_panels) {
     const bool fits = std::ranges::all_of(shape.tetrahedra, [&](const Tetrahedron& corners) {
       return std::ranges::all_of(corners, [&](std::uint32_t corner) { return corner < nodes; });
     });
@@ -115,7 +115,7 @@ void require_fitting_shape(const NodeShape& shape, std::size_t nodes) {
 }
 
 NodeSurface surface_of(const NodeShape& shape, std::size_t nodes) {
-  if (shape.sheets.empty()) return surface_of_bodies(shape.tetrahedra, nodes);
+  if (shape.sheets.empty() && !shape.in_panels) return surface_of_bodies(shape.tetrahedra, nodes);
   NodeSurface surface;
   for (const GarmentPanel& sheet : shape.sheets) add_sheet(surface, sheet);
   return surface;

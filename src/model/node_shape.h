@@ -14,11 +14,10 @@ namespace mssim {
 /// What lies between the nodes of a system: all that surfaces, traces, exports and pictures ask of a
 /// topology.
 struct NodeShape {
-  std::string_view kind;  ///< "cloth", "bodies" or "garment": the group of the nodes in a trace
-  std::vector<GarmentPanel>
-      sheets;  ///< grids of all nodes, in their order: the cloth, or panels; none for bodies
+  std::string_view kind;                ///< "cloth", "bodies" or "garment": the group of the nodes in a trace
+  std::vector<GarmentPanel> sheets;     ///< all nodes in their order, the cloth or panels; none for bodies
   std::vector<Tetrahedron> tetrahedra;  ///< of bodies
-  bool in_panels = false;  ///< the sheets are a garment's panels, and a body may stand beside them
+  bool in_panels = false;               ///< sheets are a garment's panels, and a body may stand beside them
 };
 
 NodeShape shape_of(const Topology& topology);

@@ -175,8 +175,12 @@ void check(hid_t file, const TraceContent& content) {
     require(first < nodes && second < nodes, "springs join nodes");
   require(content.rest_length.empty() || content.rest_length.size() == content.springs.size(),
           "springs have lengths");
-  for (const GarmentPanel& sheet : content.shape.sheets)
-    require(sheet.first_node + std::size_t{sheet.rows} * sheet.columns <= nodes, "sheets have nodes");
+  std::size_t next = 0;
+  for (const GarmentPanel& sheet : content.shape.sheets) {
+    require(sheet.first_node == next, "sheets follow each other");
+    next += std::size_t{sheet.rows} * sheet.columns;
+  }
+  require(content.shape.sheets.empty() || next == nodes, "sheets have all nodes");
   for (const Tetrahedron& tetrahedron : content.shape.tetrahedra)
     for (const std::uint32_t corner : tetrahedron) require(corner < nodes, "corners are nodes");
   for (const auto& triangle : content.body.triangles)

@@ -6,6 +6,7 @@
 
 #include "backends/backends.h"
 #include "integrators/all_integrators.h"
+#include "laws/host_laws.h"
 #include "src/starters/cpp/mssim_backend.h"
 #include "tests/support/systems.h"
 #include "tests/support/textbook_force.h"

@@ -121,8 +121,8 @@ class Drafting {
     return girth;
   }
 
-  /// Of jeans that are wider by `ease` than such a girth and what lies between, m, the part of front or back,
-  /// which share it as the body does at the height y.
+  /// Half of the front or of the back, m, of jeans as wide as girth, offset and ease. Front and back share
+  /// them as the body does at the height y.
   double quarter(double y, double girth, double ease) const {
     const double front = m_.front_share ? m_.front_share(y) : 0.5;
     const double share = half_.before ? front : 1 - front;
@@ -244,6 +244,10 @@ void require_measures(const JeansMeasures& m) {
   require_between(m.hem, 0.1, 2, "the jeans' circumference at the hem, hem_m,");
   require_between(m.hip_ease, -0.2, 0.5, "the ease at the hip, hip_ease_m,");
   require_between(m.thigh_ease.value_or(0), -0.2, 0.5, "the ease at the thigh, thigh_ease_m,");
+  if (m.thigh_ease)
+    require_between(
+        m.crotch_height - thigh_below_crotch, m.knee_height + least, 2,
+        "the thigh's height, 1 cm below the body's crotch, which lies above the knee's, knee_height_m,");
   require_between(m.waist_ease, -0.2, 0.5, "the ease at the waist, waist_ease_m,");
   require_between(m.crotch_ease, -0.05, 0.2, "the ease at the crotch, crotch_ease_m,");
   require_between(m.body_offset, 0, 0.05, "the distance between body and cloth");
@@ -429,7 +433,7 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
   pattern.close = {{"outer left", "outer right"},
                    beside_the_seam,
                    measures.crotch_height - thigh_below_crotch,
-                   std::max(measures.hip_height, measures.widest_height.value_or(0))};
+                   std::max(measures.hip_height, measures.body_hip_height.value_or(0))};
   return pattern;
 }
 

@@ -20,9 +20,9 @@ struct JeansMeasures {
   /// The body's length from the front at a height through the crotch to the back
   /// (BodyProfile::crotch_length); none: the crotch curves are as long as the girth of the hip has them.
   std::function<double(double)> crotch_length{};
-  /// Where the body is widest above its crotch: the jeans are to lie close at the sides up to there, whatever
-  /// hip they are drafted with; none: up to the hip's height.
-  std::optional<double> widest_height{};
+  /// The hip that the body shows (BodyLandmarks::hip): the jeans are to lie close at the sides up to there,
+  /// even where they are drafted with a lower one; none: up to the hip's height.
+  std::optional<double> body_hip_height{};
   double waist_height = 1.005;   ///< of the jeans' upper edge at the side
   double hip_height = 0.86;      ///< where the girth is largest
   double crotch_height = 0.768;  ///< of the body
@@ -31,8 +31,8 @@ struct JeansMeasures {
   double knee = 0.42;   ///< of the jeans, all round one leg
   double hem = 0.36;    ///< of the jeans, all round one leg
   double hip_ease = 0;  ///< what the jeans are wider than 0.969 of the body, and offset, all round
-  /// The same a centimetre below the crotch, where the girth is of both legs; none: the side seam goes from
-  /// hip to knee whatever lies between.
+  /// What they are wider than 0.969 of both legs together, and offset, a centimetre below the crotch; none:
+  /// the side seam goes from hip to knee whatever lies between.
   std::optional<double> thigh_ease{};
   double waist_ease = 0.01;    ///< what they are wider than 0.994 of the body, and offset
   double crotch_ease = 0.03;   ///< how far the crotch line lies below the body's
@@ -81,14 +81,15 @@ using LegAxis = std::function<double(double)>;
 /// six seams ("outer left", "outer right", "inner left", "inner right", "centre front", "centre back"), of
 /// `cloth`, with about as many nodes as wanted. The wearer looks to +z, its left is +x. At the
 /// outer seams, and 5 cm beside them, they are to lie close to the body, from the thigh (1 cm below the
-/// crotch) up to where the body is widest, and to the hip's height at least. Throws InputError as draft_jeans
-/// and jeans_grid do.
+/// crotch) up to the hip that the body shows, and to the jeans' own at least. Throws InputError as
+/// draft_jeans and jeans_grid do.
 GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes, const PanelMaterial& cloth,
                              const LegAxis& leg_axis);
 
 /// Measures of jeans for a body, in whole millimetres, but for what the body itself says when they are
 /// drafted (its girth, crotch and offset): worn as those of the reference body are, with their upper edge a
-/// fifth of the way below the waist and legs that are wider than the body's at every height.
+/// fifth of the way below the waist and legs that are wider than the body's at every height. They have an
+/// ease at the thigh, and a larger one at the crotch.
 JeansMeasures jeans_for_body(const BodyProfile& profile, const BodyLandmarks& body);
 
 }  // namespace mssim

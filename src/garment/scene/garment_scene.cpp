@@ -129,7 +129,7 @@ GarmentPattern jeans_for(const GarmentSpec& garment, const AskedMeasures& body, 
   measures.front_share = body.front_share;
   measures.crotch_length = [&of = body.profile](double y) { return of.crotch_length(y); };
   measures.crotch_height = body.profile.crotch_height();
-  measures.widest_height = find_landmarks(body.profile).hip.height;
+  measures.body_hip_height = find_landmarks(body.profile).hip.height;
   return jeans_pattern(measures, garment.jeans->nodes, garment.cloth,
                        [leg_x = body.leg_x](double height) { return leg_x(height) + beside_the_leg_m; });
 }
@@ -188,8 +188,9 @@ void visit_jeans(FieldVisitor& fields, JeansSpec& jeans) {
        "round, m."},
       jeans.measures.hip_ease, from(0, largest_length_m));
   fields.optional_number({"thigh_ease_m",
-                          "The same a centimetre below the crotch, around both legs, m; not given, the side "
-                          "seams go from hip to knee whatever lies between."},
+                          "How much wider than 0.969 of both legs together, and what lies between, the jeans "
+                          "are a centimetre below the crotch, m; not given, the side seams go from hip to "
+                          "knee whatever lies between."},
                          jeans.measures.thigh_ease, from(-0.2, 0.5));
   fields.number({"waist_ease_m", "The same at the waist, over 0.994 of the body, m."},
                 jeans.measures.waist_ease, from(-0.2, largest_length_m));

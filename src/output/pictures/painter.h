@@ -19,8 +19,8 @@ namespace mssim {
 /// The surface that a picture shows; at a crease several points are the same node.
 using Skin = NodeSurface;
 
-/// The skin of nodes of that shape that rest at `start`. Points are divided where a
-/// surface of bodies bends by more than 40 degrees there, so that edges are drawn sharp.
+/// The skin of nodes of that shape that rest at `start`. Points are divided where a surface of bodies bends
+/// by more than 40 degrees there, so that edges are drawn sharp.
 Skin skin_of(const NodeShape& shape, const std::vector<Vec3d>& start);
 
 /// What the colours of a picture tell apart.

@@ -138,11 +138,15 @@ TEST(JeansDraft, TheThighIsTheBodysWithOffsetAndEase) {
 
 TEST(JeansDraft, TheSideIsSmoothFromKneeToWaist) {
   for (const double hip : hips)
-    for (const JeansOutline& half :
-         {draft_jeans(JeansBody{hip}.measures()).front, draft_jeans(JeansBody{hip}.measures()).back}) {
-      EXPECT_LT(sharpest_turn(half.outer), 0.02) << hip;
-      EXPECT_LT(sharpest_turn(half.inseam), 0.02) << hip;
-      EXPECT_LT(sharpest_turn(half.centre), 0.05) << hip;
+    for (const std::optional<double> thigh_ease : {std::optional<double>(), {0.0}, {0.02}}) {
+      JeansMeasures measures = JeansBody{hip}.measures();
+      measures.thigh_ease = thigh_ease;
+      const JeansDraft draft = draft_jeans(measures);
+      for (const JeansOutline* half : {&draft.front, &draft.back}) {
+        EXPECT_LT(sharpest_turn(half->outer), 0.02) << hip << ' ' << thigh_ease.value_or(-1);
+        EXPECT_LT(sharpest_turn(half->inseam), 0.02) << hip;
+        EXPECT_LT(sharpest_turn(half->centre), 0.05) << hip;
+      }
     }
 }
 
@@ -179,6 +183,14 @@ TEST(JeansDraft, BadMeasuresAreRefused) {
               StartsWith("jeans: the waist's height"));
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.crotch_height = 0.5; }),
               StartsWith("jeans: the crotch line's height"));
+  EXPECT_THAT(complaint([](JeansMeasures& m) { m.thigh_ease = 0.6; }),
+              StartsWith("jeans: the ease at the thigh, thigh_ease_m, is 0.6 m"));
+  EXPECT_THAT(complaint([](JeansMeasures& m) {
+                m.thigh_ease = 0;
+                m.crotch_ease = -0.05;
+                m.knee_height = m.crotch_height - 0.01;
+              }),
+              StartsWith("jeans: the thigh's height, 1 cm below"));
   EXPECT_THAT(complaint([](JeansMeasures& m) { m.hem = std::nan(""); }),
               StartsWith("jeans: the jeans' circumference at the hem, hem_m, is nan"));
 }
@@ -309,7 +321,7 @@ TEST(Jeans, LieCloseAsFarUpAsTheBodyIsWidestWhateverTheirOwnHip) {
   const auto highest = [](double hip_height) {
     JeansMeasures measures = JeansBody{}.measures();
     measures.hip_height = hip_height;
-    measures.widest_height = 0.87;
+    measures.body_hip_height = 0.87;
     return jeans_pattern(measures, 1'000, {}, JeansBody{}.leg_axis()).close.highest;
   };
   EXPECT_EQ(highest(0.84), 0.87);

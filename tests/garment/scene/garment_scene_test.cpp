@@ -226,6 +226,11 @@ TEST_F(ScannedBody, OfAPersonIsDressedByTheSceneThatMeasureWritesForIt) {
   EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("waist_height"));
   ASSERT_EQ(code, 0);
   const DressingCase jeans(load_scene(scene));
+  const auto& garment = std::get<GarmentSpec>(jeans.spec.content);
+  EXPECT_TRUE(garment.dressing.edge_held);
+  EXPECT_EQ(garment.dressing.seaming_gravity, 1);
+  EXPECT_EQ(garment.jeans->measures.thigh_ease, 0.01);
+  EXPECT_EQ(garment.jeans->measures.crotch_ease, 0.04);
   EXPECT_THAT(dressed(jeans).found, IsEmpty());
 }
 

@@ -221,6 +221,11 @@ TEST_F(GarmentTrace, RefusesWhatWouldPointBeyondItsNodes) {
   refused([](Garment& garment) { garment.panels[1] = {"strip", 1, 10, 12}; });
   refused([](Garment& garment) { garment.joints[0].edge_second = 22; });
   refused([](Garment& garment) { garment.joints[1].seam = 2; });
+  EXPECT_THAT(
+      [] {
+        require_fitting_shape({"garment", {}, {}, true}, 22);
+      },
+      testing::ThrowsMessage<std::invalid_argument>(HasSubstr("panels of all nodes")));
   const auto nothing = [](Garment&) {};
   Surface body = small_tetrahedron();
   body.triangles[3][1] = 4;

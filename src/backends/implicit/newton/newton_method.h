@@ -67,7 +67,7 @@ SolverGoal solver_goal(const System& system, double dt_s, double tolerance) {
 ///
 ///     r(w) = M (w - v) - dt F(x + dt w, w) = 0.
 ///
-/// A is the Jacobian of r, made symmetric and positive definite (kernels/spring_jacobian.h); P, its
+/// A is the Jacobian of r, made symmetric and positive definite (kernels/spring_law.h); P, its
 /// preconditioner, is the inverse of its blocks of 3 x 3 on the diagonal. In what follows s is the change of
 /// w that A s = e gives, p a direction of conjugate gradients and q = A p. P is zero for pinned nodes, and so
 /// are their s and p; they take no part in products of vectors. Those are sums in double precision. Where
