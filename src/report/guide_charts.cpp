@@ -208,7 +208,6 @@ std::optional<Chart> size_chart(const FoundGuide& guide, const std::string& scen
   chart.title = fmt::format("{} in other sizes, {}", scene, integrator);
   chart.x = {"nodes", true};
   chart.y = {"time of a step (ms)", true};
-  chart.families = backend_families;
   for (const GuideTime& time : guide.times) {
     if (time.scene != scene || time.integrator != integrator) continue;
     auto series = std::ranges::find(chart.series, time.backend, &Series::name);

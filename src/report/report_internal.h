@@ -117,10 +117,6 @@ inline constexpr double published_fall = 0.05;
 /// Charts. `id` begins their ids, so that those of several folders differ. A chart without anything to show
 /// is none.
 
-/// Backends have the same look in every chart.
-inline const std::vector<std::string> backend_families{"serial", "threads-mutex", "openmp", "opencl",
-                                                       "hybrid"};
-
 /// For each integrator of the paper: speed-ups over one thread against nodes, published and measured.
 std::vector<Chart> speedup_charts(const PaperScenes& scenes, const std::string& id);
 

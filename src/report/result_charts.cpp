@@ -43,7 +43,6 @@ Chart chart_of(const std::string& id, const std::string& title, Axis x, Axis y,
   chart.form = form;
   chart.x = std::move(x);
   chart.y = std::move(y);
-  chart.families = backend_families;
   return chart;
 }
 
@@ -280,7 +279,6 @@ Chart energy_chart(const FoundCurve& curve, std::span<const FoundCurve> referenc
   // More points would hide the reference.
   constexpr std::size_t most_points = 40;
   Chart chart = chart_of(id, "Total energy: " + curve.name, {"time (s)", false}, {"total energy (J)", false});
-  chart.families.clear();
   Series& points = chart.series.emplace_back(measured_series(curve.name, ""));
   const std::size_t count = curve.time_s.size(), apart = std::max<std::size_t>(1, count / most_points);
   for (std::size_t i = 0; i < count; i += apart) {

@@ -279,6 +279,15 @@ std::string in_figures(const std::string& figures) {
   return figures.empty() ? figures : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
 }
 
+/// Where nothing else decides how series look, each backend looks the same in every chart.
+std::vector<Chart> with_looks_of_backends(std::vector<Chart> charts, const PaperLegend& legend) {
+  for (Chart& chart : charts) {
+    if (!chart.families.empty()) continue;
+    for (const PaperLegend::Backend& backend : legend.backends) chart.families.push_back(backend.name);
+  }
+  return charts;
+}
+
 /// Charts with their notes, or the sentence why there is none.
 std::string figures_of(const std::vector<Chart>& charts) {
   std::string text;
@@ -317,19 +326,21 @@ std::string speedup_section(const ReportInput& input) {
                           }
                           if (auto figure6 = figure6_chart(folder.rows, id))
                             charts.push_back(std::move(*figure6));
-                          return figures_of(charts);
+                          return figures_of(with_looks_of_backends(std::move(charts), input.legend));
                         });
 }
 
 std::string scaling_section(const ReportInput& input) {
   return "<p>A slope is the exponent p of time ~ nodes<sup>p</sup>, by least squares on logarithmic axes: 1 "
          "where a node costs the same at every size.</p>\n" +
-         of_each_folder(input, "<p>No folder has two sizes of a kind of scene.</p>\n",
-                        [&](const ReportFolder& folder, const std::string& id) {
-                          const Table slopes = slope_table(folder.rows, input.legend, input.published);
-                          return figures_of(scaling_charts(folder.rows, input.legend, input.published, id)) +
-                                 (slopes.rows.empty() ? "" : html_of(slopes));
-                        });
+         of_each_folder(
+             input, "<p>No folder has two sizes of a kind of scene.</p>\n",
+             [&](const ReportFolder& folder, const std::string& id) {
+               const Table slopes = slope_table(folder.rows, input.legend, input.published);
+               return figures_of(with_looks_of_backends(
+                          scaling_charts(folder.rows, input.legend, input.published, id), input.legend)) +
+                      (slopes.rows.empty() ? "" : html_of(slopes));
+             });
 }
 
 std::string roofline_section(const ReportInput& input) {
@@ -338,7 +349,8 @@ std::string roofline_section(const ReportInput& input) {
          of_each_folder(input, "<p>No folder has rows with a roofline; garments have none.</p>\n",
                         [&](const ReportFolder& folder, const std::string& id) {
                           const auto chart = roofline_chart(folder.rows, id);
-                          return chart ? figures_of({*chart}) : std::string();
+                          return chart ? figures_of(with_looks_of_backends({*chart}, input.legend))
+                                       : std::string();
                         });
 }
 
@@ -426,7 +438,7 @@ std::string guide_of_scene(const Document& scene, const std::vector<Chart>& char
   return text;
 }
 
-std::string guide_of(const FoundGuide& guide, const std::string& id, int level) {
+std::string guide_of(const FoundGuide& guide, const PaperLegend& legend, const std::string& id, int level) {
   std::vector<Document> parts = parts_of(guide.page, 2);
   // The title is the section's.
   std::erase_if(parts.front(), [](const auto& block) { return std::holds_alternative<Heading>(block); });
@@ -441,7 +453,8 @@ std::string guide_of(const FoundGuide& guide, const std::string& id, int level) 
         std::ranges::find_if(scenes, [&](const std::string& name) { return is_about(parts[i], name); });
     std::vector<Chart> charts;
     if (scene != scenes.end())
-      charts = guide_charts(guide, *scene, fmt::format("{}-guide-{}", id, scene - scenes.begin() + 1));
+      charts = with_looks_of_backends(
+          guide_charts(guide, *scene, fmt::format("{}-guide-{}", id, scene - scenes.begin() + 1)), legend);
     text += guide_of_scene(parts[i], charts, level);
   }
   return text;
@@ -451,7 +464,7 @@ std::string guide_of(const FoundGuide& guide, const std::string& id, int level) 
 std::string guide_section(const ReportInput& input) {
   const int level = input.folders.size() < 2 ? 3 : 4;
   return of_each_folder(input, "", [&](const ReportFolder& folder, const std::string& id) {
-    return folder.guide ? guide_of(*folder.guide, id, level) : std::string();
+    return folder.guide ? guide_of(*folder.guide, input.legend, id, level) : std::string();
   });
 }
 
