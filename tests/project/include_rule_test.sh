@@ -10,7 +10,6 @@ rule='
 kernels
 text
 statistics
-cluster
 picture               text
 platform              text
 geometry              text platform
@@ -67,7 +66,7 @@ garment/bench         text statistics integrators model backends/interface garme
 bench                 text platform statistics backends garment/stepping bench/roofline bench/verification bench/windows bench/job garment/bench
 guide                 text statistics platform laws integrators model backends/interface bench/verification backends
 
-output/tables         text statistics platform cluster bench/machine bench/results
+output/tables         text statistics platform bench/machine bench/results
 output/guide          text integrators backends guide output/tables
 garment/output        text garment bench/results hdf5 output/tables
 output/traces         text platform geometry model hdf5 garment/output
@@ -91,7 +90,6 @@ mssim_mpi.cpp         platform ranks
 shown='
 text                  text error
 statistics            statistics
-cluster               step_model
 charts                chart
 picture               picture legend movie
 render                draw

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cluster/step_model.h"
 #include "output/tables/suite_tables.h"
 #include "text/text.h"
 
@@ -59,8 +58,10 @@ class ClusterRows {
   std::optional<double> efficiency_of_copies(const ClusterRow& row) const {
     return efficiency(row, copies_backend, row.ranks);
   }
-  /// Milliseconds of a step by the model of cluster/step_model.h, of a cloth in several ranks: from the time
-  /// of copies, and from the speed of messages, their bytes and their number as the row has them.
+  /// Milliseconds of a step of a cloth in several ranks, if it takes what computing takes copies, and what
+  /// messages take with the latency and bandwidth of the row: the processor brings them across and computes
+  /// nothing meanwhile. Each rank has some of the columns. None where a number for that is missing, or where
+  /// a rank has fewer columns than its neighbours repeat.
   std::optional<double> modelled_ms(const ClusterRow& row) const {
     const ResultRow& measured = *row.row;
     const ResultRow* copies = counted_row(row, copies_backend, row.ranks);
@@ -68,47 +69,24 @@ class ClusterRows {
     if (!copies || row.program == copies_backend || row.ranks < 2 || !steps || !measured.latency_us ||
         !measured.link_gigabytes_per_second || measured.bytes_per_step.value_or(0) <= 0)
       return std::nullopt;
-    const int stages = stages_of(measured);
-    const ClothCut cut{1, row.ranks, *steps};
-    ClothStep cloth{1, 0, stages};
-    const double ghosts = ghost_nodes(cloth, cut);
+    constexpr double reach = 2;        // of a spring, nodes (BandLayout::halo)
+    constexpr double node_bytes = 24;  // of a message: position and velocity in single precision
+    const double stages = stages_.at(measured.integrator) * *steps;
+    const double ghosts = reach * stages;  // columns on each side that repeat a neighbour's
     const double neighbours = std::min(row.ranks - 1, 2);
-    const double message_bytes = *measured.bytes_per_step * *steps / neighbours;
-    cloth.rows = std::round(message_bytes / (ghosts * message_node_bytes));
-    cloth.columns = static_cast<double>(measured.nodes) / cloth.rows;
-    const std::optional<ExchangeWork> work = work_of(cloth, cut);
-    if (!work) return std::nullopt;
-    const ClusterRates rates{
-        .node_stage_s = *copies->ms_per_step / 1000 / static_cast<double>(copies->nodes) / stages,
-        .latency_s = *measured.latency_us * 1e-6,
-        .bytes_per_second = *measured.link_gigabytes_per_second * 1e9,
-        .processor_copies = true};
-    return 1000 * exchange_seconds(*work, rates) / *steps;
+    const double bytes = *measured.bytes_per_step * *steps;
+    const double rows = std::round(bytes / (neighbours * ghosts * node_bytes));
+    const double columns = static_cast<double>(measured.nodes) / rows / row.ranks;
+    if (columns < ghosts) return std::nullopt;
+    // The first stage needs all ghosts but those that a spring reaches, the last one none: half of that on
+    // average.
+    const double computed = std::ceil(columns) + neighbours * (ghosts - reach) / 2;
+    const double stages_of_copies = static_cast<double>(copies->nodes) * stages_.at(measured.integrator);
+    const double computing_ms = stages * rows * computed * *copies->ms_per_step / stages_of_copies;
+    const double messages_ms =
+        *measured.latency_us / 1000 + bytes / (*measured.link_gigabytes_per_second * 1e6);
+    return (computing_ms + messages_ms) / *steps;
   }
-
-  /// What all processes of a machine together take for a stage of a node.
-  struct MachineRate {
-    const ResultRow* row = nullptr;  ///< that says so
-    double node_stage_s = 0;
-  };
-  /// That of the row with most copies of the largest cloth of which there is a model; none where there is
-  /// no such row.
-  std::optional<MachineRate> machine_rate() const {
-    const ClusterRow* best = nullptr;
-    for (const ClusterRow& row : rows_) {
-      const bool is_modelled = std::ranges::any_of(rows_, [&](const ClusterRow& other) {
-        return other.ranks == row.ranks && other.row->scene == row.row->scene && modelled_ms(other);
-      });
-      if (row.program != copies_backend || !counts(*row.row) || !is_modelled) continue;
-      if (!best || std::pair(row.row->nodes, row.ranks) > std::pair(best->row->nodes, best->ranks))
-        best = &row;
-    }
-    if (!best) return std::nullopt;
-    return MachineRate{best->row, *best->row->ms_per_step / 1000 / static_cast<double>(best->row->nodes) /
-                                      (best->ranks * stages_of(*best->row))};
-  }
-
-  int stages_of(const ResultRow& row) const { return stages_.at(row.integrator); }
 
  private:
   /// The row that has a time, of that program and so many ranks on the base of the scene; null: none.
@@ -305,174 +283,6 @@ Document page_of(const ClusterRows& rows, RowPointers pointers, const Provenance
   return page;
 }
 
-/// A network as clusters have them: what is usual, not what any one of them does.
-struct Network {
-  std::string_view name;
-  double latency_s = 0;
-  double bytes_per_second = 0;
-};
-constexpr std::array<Network, 2> networks{
-    {{"InfiniBand 100 Gbit/s", 1.5e-6, 11e9}, {"Ethernet 10 Gbit/s", 25e-6, 1.1e9}}};
-constexpr std::array<double, 3> cloth_sides{1e4, 31'623, 1e5};  ///< of about 10^8, 10^9 and 10^10 nodes
-constexpr std::array<int, 7> machine_counts{10, 30, 100, 300, 1000, 3000, 10'000};
-
-/// Processors of a machine of a cluster; more where more were measured.
-constexpr int usual_processors = 64;
-
-struct Estimate {
-  const Network* network = nullptr;
-  double side = 0;
-  int machines = 0;
-  double perfect_s = 0;  ///< of a step without messages
-  std::optional<CutTime> columns = {};
-  std::optional<CutTime> blocks = {};
-  std::optional<CutTime> shallow = {};  ///< the better one of both with an exchange every step
-};
-
-std::optional<CutTime> better(const std::optional<CutTime>& a, const std::optional<CutTime>& b) {
-  if (!a || !b) return a ? a : b;
-  return a->step_s <= b->step_s ? a : b;
-}
-
-std::vector<Estimate> estimates_of(const ClusterRows::MachineRate& machine, int stages) {
-  std::vector<Estimate> all;
-  for (const Network& network : networks)
-    for (const double side : cloth_sides)
-      for (const int machines : machine_counts) {
-        const ClothStep cloth{side, side, stages};
-        const ClusterRates rates{machine.node_stage_s, network.latency_s, network.bytes_per_second, false};
-        all.push_back(
-            {&network, side, machines, side * side * stages * machine.node_stage_s / machines,
-             best_columns(cloth, machines, rates), best_blocks(cloth, machines, rates),
-             better(best_columns(cloth, machines, rates, 1), best_blocks(cloth, machines, rates, 1))});
-      }
-  return all;
-}
-
-/// A text that is shown as 10^8.
-std::string power_of_ten(double nodes) { return fmt::format("10^{}", std::lround(std::log10(nodes))); }
-
-Cell efficiency_cell(const Estimate& estimate, const std::optional<CutTime>& cut) {
-  return cut ? Cell(estimate.perfect_s / cut->step_s) : Cell();
-}
-
-Table data_of(const std::vector<Estimate>& estimates) {
-  Table table;
-  for (const Estimate& estimate : estimates) {
-    const auto ms = [](const std::optional<CutTime>& cut) { return cut ? Cell(1000 * cut->step_s) : Cell(); };
-    const auto part = [](const std::optional<CutTime>& cut, int ClothCut::*member) {
-      return cut ? Cell(cut->cut.*member) : Cell();
-    };
-    table.add({{"network", estimate.network->name},
-               {"latency_us", 1e6 * estimate.network->latency_s},
-               {"gigabytes_per_second", 1e-9 * estimate.network->bytes_per_second},
-               {"rows", std::lround(estimate.side)},
-               {"columns", std::lround(estimate.side)},
-               {"machines", estimate.machines},
-               {"estimated_ms_one_step_an_exchange", ms(estimate.shallow)},
-               {"estimated_ms_columns", ms(estimate.columns)},
-               {"steps_an_exchange_columns", part(estimate.columns, &ClothCut::steps_an_exchange)},
-               {"estimated_efficiency_columns", efficiency_cell(estimate, estimate.columns)},
-               {"estimated_ms_blocks", ms(estimate.blocks)},
-               {"blocks_down", part(estimate.blocks, &ClothCut::down)},
-               {"blocks_across", part(estimate.blocks, &ClothCut::across)},
-               {"steps_an_exchange_blocks", part(estimate.blocks, &ClothCut::steps_an_exchange)},
-               {"estimated_efficiency_blocks", efficiency_cell(estimate, estimate.blocks)}});
-  }
-  return table;
-}
-
-/// A difference that pays.
-constexpr double clearly_faster = 0.98;
-
-bool halos_pay(const Estimate& estimate) {
-  const std::optional<CutTime> best = better(estimate.columns, estimate.blocks);
-  return best && best->step_s < clearly_faster * estimate.shallow->step_s;
-}
-
-bool blocks_pay(const Estimate& estimate) {
-  return estimate.blocks &&
-         (!estimate.columns || estimate.blocks->step_s < clearly_faster * estimate.columns->step_s);
-}
-
-/// "from 300 machines on", for the estimates of a network and a cloth.
-template <class Pays>
-std::string where(const std::vector<Estimate>& estimates, const Network& network, double side,
-                  const Pays& pays) {
-  for (const Estimate& estimate : estimates)
-    if (estimate.network == &network && estimate.side == side && pays(estimate))
-      return fmt::format("from {} machines on", grouped(static_cast<std::uint64_t>(estimate.machines)));
-  return "nowhere up to " + grouped(machine_counts.back());
-}
-
-Cell percent(const Estimate& estimate, const std::optional<CutTime>& cut) {
-  return cut ? Cell(three_digits(100 * estimate.perfect_s / cut->step_s)) : Cell("-");
-}
-
-Table table_of(const std::vector<Estimate>& estimates, const Network& network) {
-  Table table{{{"nodes"},
-               {"machines", Align::right},
-               {"columns, ms, estimated", Align::right},
-               {"steps an exchange", Align::right},
-               {"efficiency", Align::right, " %"},
-               {"blocks, ms, estimated", Align::right},
-               {"cut", Align::right},
-               {"steps an exchange", Align::right},
-               {"efficiency", Align::right, " %"}},
-              {}};
-  for (const Estimate& estimate : estimates) {
-    if (estimate.network != &network) continue;
-    const auto ms = [](const std::optional<CutTime>& cut) {
-      return cut ? Cell(three_digits(1000 * cut->step_s)) : Cell("-");
-    };
-    const auto steps = [](const std::optional<CutTime>& cut) {
-      return cut ? Cell(cut->cut.steps_an_exchange) : Cell("-");
-    };
-    const std::string cut =
-        estimate.blocks ? fmt::format("{} x {}", estimate.blocks->cut.down, estimate.blocks->cut.across)
-                        : "-";
-    table.rows.push_back({power_of_ten(estimate.side * estimate.side),
-                          grouped(static_cast<std::uint64_t>(estimate.machines)), ms(estimate.columns),
-                          steps(estimate.columns), percent(estimate, estimate.columns), ms(estimate.blocks),
-                          cut, steps(estimate.blocks), percent(estimate, estimate.blocks)});
-  }
-  return table;
-}
-
-ResultTable cluster_estimates(const ClusterRows& rows, const ClusterRows::MachineRate& measured,
-                              const Provenance& provenance) {
-  const int stages = rows.stages_of(*measured.row);
-  const int processors = std::max(usual_processors, measured.row->threads);
-  ClusterRows::MachineRate machine = measured;
-  machine.node_stage_s *= static_cast<double>(measured.row->threads) / processors;
-  const std::vector<Estimate> estimates = estimates_of(machine, stages);
-  Document page{
-      Heading{1, "Estimated: many machines, larger cloths"},
-      Paragraph{fmt::format(
-          "Nothing on this page was measured but the speed of one machine: {}. Its {} together took {} ns a "
-          "node and step of `{}` (`{}`, `{}`). A machine of this page has {} processors, each as fast, and "
-          "sends to its neighbours as such a network usually does. The model is that of cluster.md, which "
-          "holds it against measured times. *Columns*: each machine has some columns of the cloth, as `mpi` "
-          "does. *Blocks*: some rows and columns. Both with as many steps between two exchanges, up to four "
-          "stages, as take the least time. *Efficiency*: against a step without messages. A line - is where "
-          "a part would be narrower than what its neighbours repeat of it.",
-          made_by(provenance), pluralize(static_cast<std::uint64_t>(measured.row->threads), "processor"),
-          three_digits(1e9 * measured.node_stage_s * stages), measured.row->integrator, measured.row->backend,
-          measured.row->scene, processors)}};
-  for (const Network& network : networks) {
-    BulletList list;
-    for (const double side : cloth_sides)
-      list.items.push_back(power_of_ten(side * side) + " nodes: several steps an exchange pay " +
-                           where(estimates, network, side, halos_pay) + ", blocks of rows and columns " +
-                           where(estimates, network, side, blocks_pay));
-    page.insert(page.end(),
-                {Heading{2, std::string(network.name) + ": " + three_digits(1e6 * network.latency_s) +
-                                " µs, " + three_digits(1e-9 * network.bytes_per_second) + " GB/s"},
-                 table_of(estimates, network), std::move(list)});
-  }
-  return {"cluster-estimates", data_of(estimates), std::move(page)};
-}
-
 }  // namespace
 
 std::string name_in_ranks(std::string_view backend, int ranks) {
@@ -487,14 +297,10 @@ WideScene wide_scene(std::string_view scene) {
 
 TableMaker cluster_tables(StageCounts stages) {
   return [stages = std::move(stages)](std::span<const ResultRow> rows, const Provenance& provenance) {
-    std::vector<ResultTable> tables;
-    if (rows.empty()) return tables;
+    if (rows.empty()) return std::vector<ResultTable>();
     const std::vector<const ResultRow*> pointers = pointers_to(rows);
     const ClusterRows cluster(pointers, provenance, stages);
-    tables.push_back({"cluster", data_of(cluster), page_of(cluster, pointers, provenance)});
-    if (const auto machine = cluster.machine_rate())
-      tables.push_back(cluster_estimates(cluster, *machine, provenance));
-    return tables;
+    return std::vector<ResultTable>{{"cluster", data_of(cluster), page_of(cluster, pointers, provenance)}};
   };
 }
 

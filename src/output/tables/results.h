@@ -112,8 +112,8 @@ std::string to_text(const RunComparison& comparison, ComparisonFormat format);
 /// The TABLE of tables of results, those of guides too: nothing makes another one (TableName), and a result
 /// folder that is emptied loses these.
 inline constexpr auto table_names = std::to_array<std::string_view>(
-    {"table1", "table2", "table3", "races", "scaling", "peers", "cluster", "cluster-estimates", "figure6",
-     "guide", "guide-steps", "guide-errors", "guide-sizes", "guide-frames", "guide-crossovers"});
+    {"table1", "table2", "table3", "races", "scaling", "peers", "cluster", "figure6", "guide", "guide-steps",
+     "guide-errors", "guide-sizes", "guide-frames", "guide-crossovers"});
 
 /// One of these names; another one does not compile.
 class TableName {

@@ -172,8 +172,7 @@ using StageCounts = std::map<std::string, int, std::less<>>;
 
 /// Makes the table `cluster`: for every scene in 1, 2, 4, ... processes the time of a step, how it is shared
 /// between computing, packing and waiting, what is sent, two efficiencies, and what a model of computing,
-/// latency and volume says. Behind it, where this machine's speed is known, `cluster-estimates`: what that
-/// model says of many machines and larger cloths.
+/// latency and volume says.
 TableMaker cluster_tables(StageCounts stages);
 
 }  // namespace mssim
