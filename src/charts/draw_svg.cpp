@@ -37,20 +37,6 @@ constexpr std::array<std::string_view, 4> reference_dashes{"", "2,3", "10,3,2,3"
 /// A coordinate, to a hundredth of a unit.
 std::string number(double value) { return decimal(std::round(100 * value) / 100 + 0.0); }
 
-/// The text in an element or a quoted attribute.
-std::string xml_text(std::string_view shown) {
-  std::string text;
-  for (const char character : shown) {
-    const std::string_view entity = character == '&'   ? "&amp;"
-                                    : character == '<' ? "&lt;"
-                                    : character == '>' ? "&gt;"
-                                    : character == '"' ? "&quot;"
-                                                       : "";
-    entity.empty() ? text.append(1, character) : text.append(entity);
-  }
-  return text;
-}
-
 /// " NAME="VALUE"", or nothing for an empty value.
 std::string attribute(std::string_view name, std::string_view value) {
   return value.empty() ? "" : fmt::format(" {}=\"{}\"", name, value);

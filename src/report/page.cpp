@@ -51,20 +51,7 @@ std::string html_text(std::string_view text) {
   std::string result;
   for (std::string_view rest = text; !rest.empty();) {
     const std::size_t line = std::min(rest.find('\n'), rest.size());
-    for (const char character : escaped(rest.substr(0, line))) {
-      if (character == '&')
-        result += "&amp;";
-      else if (character == '<')
-        result += "&lt;";
-      else if (character == '>')
-        result += "&gt;";
-      else if (character == '"')
-        result += "&quot;";
-      else if (character == '\'')
-        result += "&#39;";
-      else
-        result += character;
-    }
+    result += xml_text(escaped(rest.substr(0, line)));
     if (line == rest.size()) break;
     result += '\n';
     rest.remove_prefix(line + 1);

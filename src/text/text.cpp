@@ -126,6 +126,17 @@ std::string join(std::span<const std::string> texts, std::string_view separator)
   return fmt::format("{}", fmt::join(texts, separator));
 }
 
+std::string xml_text(std::string_view text) {
+  constexpr auto entities = std::to_array<std::pair<char, std::string_view>>(
+      {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}});
+  std::string result;
+  for (const char character : text) {
+    const auto found = std::ranges::find(entities, character, &std::pair<char, std::string_view>::first);
+    found == entities.end() ? result.append(1, character) : result.append(found->second);
+  }
+  return result;
+}
+
 void append_sentence(std::string& note, std::string_view sentence) {
   if (!note.empty() && !sentence.empty()) note += "; ";
   note += sentence;

@@ -68,6 +68,9 @@ std::string pluralize(std::uint64_t number, std::string_view noun);
 /// The texts one behind the other, with `separator` between each two.
 std::string join(std::span<const std::string> texts, std::string_view separator);
 
+/// With entities in place of what ends a text or a quoted attribute in XML and HTML: & < > " '.
+std::string xml_text(std::string_view text);
+
 /// The candidate that `name` is most likely a misspelling of, or empty when none is near: at most a third of
 /// its letters (and always up to one) inserted, deleted, replaced or swapped with a neighbour, capitals
 /// counting as small letters.

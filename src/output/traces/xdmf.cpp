@@ -10,27 +10,6 @@
 namespace mssim {
 namespace {
 
-std::string escape_xml(std::string_view text) {
-  std::string escaped;
-  for (const char character : text) switch (character) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += character;
-    }
-  return escaped;
-}
-
 /// The extents, separated by blanks.
 std::string dimensions_of(std::span<const hsize_t> shape) {
   std::string text;
@@ -71,7 +50,7 @@ std::string attribute(const std::string& name, const std::string& type, const st
 /// One mesh of the elements given.
 std::string uniform_grid(const std::string& indent, const std::string& name,
                          const std::vector<std::string>& elements) {
-  std::string text = indent + "<Grid Name=\"" + escape_xml(printable(name)) + "\" GridType=\"Uniform\">\n";
+  std::string text = indent + "<Grid Name=\"" + xml_text(printable(name)) + "\" GridType=\"Uniform\">\n";
   for (const std::string& element : elements) text.append(indent).append("  ").append(element).append("\n");
   return text + indent + "</Grid>\n";
 }
@@ -200,7 +179,7 @@ std::filesystem::path xdmf_of(const std::filesystem::path& trace) {
 }
 
 void write_xdmf(const std::filesystem::path& trace, const XdmfMesh& mesh, std::span<const double> times_s) {
-  std::string name = escape_xml(trace.filename().string());
+  std::string name = xml_text(trace.filename().string());
   // VTK drops bytes beyond ASCII before a name as it does blanks, and then finds no file.
   constexpr unsigned char last_ascii = 0x7f;
   if (static_cast<unsigned char>(name.front()) > last_ascii) name.insert(0, "./");
