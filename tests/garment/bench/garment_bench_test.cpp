@@ -21,6 +21,7 @@
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "scene/scene_kinds.h"
+#include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
 
 namespace mssim {
@@ -28,20 +29,12 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Where the steps of a backend began, in the order of the calls.
-std::vector<std::pair<bool, int>> steps_by_draped;
-
-class TellsWhereItBegins final : public DressingBackend {
+/// A backend that passes all on to another one.
+class PassesOn : public DressingBackend {
  public:
-  explicit TellsWhereItBegins(std::unique_ptr<DressingBackend> inner) : inner_(std::move(inner)) {}
-  void set_state(const State& state) override {
-    draped_ = state.draped;
-    inner_->set_state(state);
-  }
-  void step(int count) override {
-    steps_by_draped.emplace_back(draped_, count);
-    inner_->step(count);
-  }
+  explicit PassesOn(std::unique_ptr<DressingBackend> inner) : inner_(std::move(inner)) {}
+  void set_state(const State& state) override { inner_->set_state(state); }
+  void step(int count) override { inner_->step(count); }
   State state() const override { return inner_->state(); }
   std::string device() const override { return "made up"; }
   int threads() const override { return 1; }
@@ -49,6 +42,24 @@ class TellsWhereItBegins final : public DressingBackend {
 
  private:
   std::unique_ptr<DressingBackend> inner_;
+};
+
+/// Where the steps of a backend began, in the order of the calls.
+std::vector<std::pair<bool, int>> steps_by_draped;
+
+class TellsWhereItBegins final : public PassesOn {
+ public:
+  using PassesOn::PassesOn;
+  void set_state(const State& state) override {
+    draped_ = state.draped;
+    PassesOn::set_state(state);
+  }
+  void step(int count) override {
+    steps_by_draped.emplace_back(draped_, count);
+    PassesOn::step(count);
+  }
+
+ private:
   bool draped_ = false;
 };
 
@@ -62,13 +73,6 @@ constexpr BackendInfo teller{"serial", "", "tells where it begins", false,      
 class BenchGarment : public testing::Test {
  protected:
   BenchGarment() {
-    std::vector<std::uint32_t> right, left;
-    for (std::uint32_t row = 0; row < 10; ++row) {
-      right.push_back(garment_in(system_).panels[0].node(row, 9));
-      left.push_back(garment_in(system_).panels[1].node(row, 0));
-    }
-    sew(system_, right, left, 0.1);
-    system_.viscous_damping = 16;
     job_.name = "squares";
     job_.system = &system_;
     job_.dt_s = 1.5e-4;
@@ -89,7 +93,7 @@ class BenchGarment : public testing::Test {
                               .stop = [&] { return asked_++ >= stop_after_; }});
   }
 
-  System system_ = garment_of({{10, 10, 0.01, {0, 0, 0}}, {10, 10, 0.01, {0.12, 0.004, 0.005}}});
+  System system_ = two_squares();
   SceneJob job_;
   int asked_ = 0, stop_after_ = std::numeric_limits<int>::max();
 };
@@ -280,24 +284,18 @@ TEST(GarmentVerification, FindsEveryMistake) {
   }
 }
 
-/// Forwards all, but one step of each call is done wrong.
-class PushesOneNodeAway final : public DressingBackend {
+/// One node is pushed away in every state that it gives.
+class PushesOneNodeAway final : public PassesOn {
  public:
   PushesOneNodeAway(const Jeans& scene, double metres)
-      : inner_(make_serial_dressing(scene.system, semi_euler, scene.dt_s)), metres_(metres) {}
-  void set_state(const State& state) override { inner_->set_state(state); }
-  void step(int count) override { inner_->step(count); }
+      : PassesOn(make_serial_dressing(scene.system, semi_euler, scene.dt_s)), metres_(metres) {}
   State state() const override {
-    State state = inner_->state();
-    if (inner_->progress().draping) state.position[17].z += metres_;
+    State state = PassesOn::state();
+    if (progress().draping) state.position[17].z += metres_;
     return state;
   }
-  std::string device() const override { return "made up"; }
-  int threads() const override { return 1; }
-  DressingProgress progress() const override { return inner_->progress(); }
 
  private:
-  std::unique_ptr<DressingBackend> inner_;
   double metres_;
 };
 

@@ -9,7 +9,6 @@
 #include <limits>
 #include <numbers>
 
-#include "garment/body/mannequin.h"
 #include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
@@ -17,7 +16,6 @@
 namespace mssim {
 namespace {
 
-using testing::Each;
 using testing::StartsWith;
 
 Surface moved(Surface surface, const Vec3d& by) {

@@ -12,6 +12,7 @@
 #include "garment/stepping/dressing_backend.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/dressed_jeans.h"
+#include "tests/support/dressing_systems.h"
 #include "tests/support/garment_system.h"
 
 namespace mssim {
@@ -134,17 +135,9 @@ TEST(DressedJeans, SewnBeforeTheBodyDoNotGoAroundIt) {
 
 /// Two squares that are sewn, side by side, and hung by a corner.
 System hung_squares() {
-  System system = garment_of({{10, 10, 0.01, {0, 0, 0}}, {10, 10, 0.01, {0.12, 0.004, 0.005}}});
-  const Garment& garment = garment_in(system);
-  std::vector<std::uint32_t> right, left;
-  for (std::uint32_t row = 0; row < 10; ++row) {
-    right.push_back(garment.panels[0].node(row, 9));
-    left.push_back(garment.panels[1].node(row, 0));
-  }
-  sew(system, right, left, 0.1);
-  system.pins = {garment.panels[0].node(9, 0)};
+  System system = two_squares();
+  system.pins = {garment_in(system).panels[0].node(9, 0)};
   system.gravity = 9.81;
-  system.viscous_damping = 16;
   return system;
 }
 

@@ -219,10 +219,7 @@ TEST(FitBounds, StandBesideTheNumbersInTheirUnits) {
   EXPECT_DOUBLE_EQ(find("elongation_99").bound.value(), 0.06);
   EXPECT_FALSE(find("elongation_99").within.value());
   EXPECT_FALSE(find("elongation_max").bound);
-  EXPECT_EQ(find("elongation_max").shown_bound, "");
-  EXPECT_EQ(find("largest_gap_mm").shown_bound, "1");
   EXPECT_EQ(find("upper_edge_rise_mm").shown_bound, "±20");
-  EXPECT_EQ(find("crotch_rise_mm").shown_bound, "±30");
   EXPECT_FALSE(find("elongation_max").within);
 }
 

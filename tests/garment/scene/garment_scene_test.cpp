@@ -5,12 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cstdint>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <sstream>
 #include <string>
 
 #include "application/prepared_scene.h"
@@ -18,7 +13,6 @@
 #include "scene/fields/fields.h"
 #include "scene/scene_kinds.h"
 #include "tests/support/body_with_arms.h"
-#include "tests/support/contact_fixture.h"
 #include "tests/support/dressed_jeans.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/obj_text.h"
@@ -28,18 +22,20 @@
 namespace mssim {
 namespace {
 
-using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
 class DressedPerson : public TemporaryFolderTest {
  protected:
-  /// The scene, with this person instead of its mannequin.
   SceneSpec scene_for(const std::string& name, const PersonForm& form) const {
+    return scene_with(name, body_with_arms(form));
+  }
+  /// The scene, with this body from a file instead of its mannequin.
+  SceneSpec scene_with(const std::string& name, const Surface& surface) const {
     SceneSpec spec = find_scene(name);
     BodyFile body;
-    body.file = put("person.obj", obj_text(body_with_arms(form))).string();
+    body.file = put("body.obj", obj_text(surface)).string();
     auto& garment = std::get<GarmentSpec>(spec.content);
     garment.body = body;
     garment.expected.reset();
@@ -52,7 +48,6 @@ TEST_F(DressedPerson, IsCutJeansForWhateverHeightsTheSceneGives) {
     SceneSpec spec = scene_for("jeans1k", {.triangles = triangles});
     const BodyProfile profile = measured_body(spec).profile;
     JeansMeasures& jeans = std::get<GarmentSpec>(spec.content).jeans.value().measures;
-    int accepted = 0;
     for (const double waist : {0.96, 0.985, 1.005, 1.04})
       for (const double hip : {0.84, 0.86, 0.88})
         for (const double knee : {0.44, 0.46, 0.48})
@@ -66,9 +61,7 @@ TEST_F(DressedPerson, IsCutJeansForWhateverHeightsTheSceneGives) {
               ASSERT_LT(std::abs(node.z), 0.25) << "drawn to where the hands are";
               ASSERT_LT(std::abs(node.x), 0.40);
             }
-            ++accepted;
           }
-    EXPECT_EQ(accepted, 144);
   }
 }
 
@@ -83,15 +76,11 @@ TEST_P(DressedPersonBy, WithinAllBoundsWithTheDefaultSkin) {
   EXPECT_THAT(dressed(jeans, {}, GetParam()).found, IsEmpty());
 }
 
-TEST_F(DressedPerson, OfFewTrianglesIsDressedWithinAllBounds) {
-  EXPECT_THAT(dressed(DressingCase(scene_for("jeans4k", {.triangles = 1'600})), {}, "openmp").found,
-              IsEmpty());
-}
-
-TEST_F(DressedPerson, WhoseHandsRestAgainstTheHipsIsDressedWithinAllBounds) {
-  for (const PersonForm& form : {PersonForm{.triangles = 1'600, .arm_angle_degrees = 6},
-                                 PersonForm{.triangles = 6'000, .arm_angle_degrees = 4},
-                                 PersonForm{.triangles = 12'000, .arm_angle_degrees = 5}})
+TEST_F(DressedPerson, IsDressedWithinAllBoundsWithFewTrianglesAndWithHandsAgainstTheHips) {
+  for (const PersonForm& form :
+       {PersonForm{.triangles = 1'600}, PersonForm{.triangles = 1'600, .arm_angle_degrees = 6},
+        PersonForm{.triangles = 6'000, .arm_angle_degrees = 4},
+        PersonForm{.triangles = 12'000, .arm_angle_degrees = 5}})
     EXPECT_THAT(dressed(DressingCase(scene_for("jeans4k", form)), {}, "openmp").found, IsEmpty())
         << form.triangles << " triangles, " << form.arm_angle_degrees << " degrees";
 }
@@ -105,7 +94,7 @@ TEST_F(DressedPerson, IsSaidToHaveArmsThatTheGarmentIgnores) {
           HasSubstr(" to 1.1")));
   EXPECT_EQ(build_scene(find_scene("jeans1k")).note, "");
   // As a command says it; the person is read and measured once.
-  OpenCount count(folder() / "person.obj");
+  OpenCount count(folder() / "body.obj");
   const PreparedScene scene = prepare_scene(spec);
   EXPECT_THAT(scene.note, HasSubstr("garments ignore"));
   // What is drawn is the whole person.
@@ -113,112 +102,23 @@ TEST_F(DressedPerson, IsSaidToHaveArmsThatTheGarmentIgnores) {
   EXPECT_EQ(count.value(), 1);
 }
 
-// Jeans for bodies from files: whatever their format, unit, order of points and place before or behind z = 0.
-
-/// The corners of two triangles that share an edge, as a polygon which is cut into them from its first
-/// corner.
-std::optional<std::array<std::uint32_t, 4>> as_quad(std::array<std::uint32_t, 3> first,
-                                                    std::array<std::uint32_t, 3> second) {
-  for (int turn = 0; turn < 3; ++turn, std::rotate(first.begin(), first.begin() + 1, first.end()))
-    for (int other = 0; other < 3; ++other, std::rotate(second.begin(), second.begin() + 1, second.end()))
-      if (first[0] == second[0] && first[2] == second[1])
-        return std::array{first[0], first[1], first[2], second[2]};
-  return std::nullopt;
+/// The mannequin of jeans1k, coarser than there, moved.
+Surface moved_mannequin(const Vec3d& by) {
+  const SceneSpec spec = find_scene("jeans1k");
+  const auto& garment = std::get<GarmentSpec>(spec.content);
+  Surface surface = mannequin(std::get<MannequinBody>(garment.body).measures, {.cells_around = 48});
+  for (Vec3d& point : surface.points) point += by;
+  return surface;
 }
 
-struct ObjText {
-  std::string text;
-  std::size_t quads = 0;
-};
-
-ObjText as_obj(const Surface& surface, double unit_m) {
-  std::ostringstream text;
-  text.precision(12);
-  ObjText obj;
-  for (const Vec3d& point : surface.points)
-    text << "v " << point.x / unit_m << ' ' << point.y / unit_m << ' ' << point.z / unit_m << '\n';
-  const auto& triangles = surface.triangles;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto quad = t + 1 < triangles.size() ? as_quad(triangles[t], triangles[t + 1]) : std::nullopt;
-    text << 'f';
-    if (quad) {
-      for (const std::uint32_t corner : *quad) text << ' ' << corner + 1;
-      ++obj.quads;
-      ++t;
-    } else {
-      for (const std::uint32_t corner : triangles[t]) text << ' ' << corner + 1;
-    }
-    text << '\n';
-  }
-  obj.text = text.str();
-  return obj;
+TEST_F(DressedPerson, WhoStandsFurtherBackIsDressedThere) {
+  EXPECT_THAT(dressed(DressingCase(scene_with("jeans1k", moved_mannequin({0, 0, -0.3})))).found, IsEmpty());
 }
 
-std::string as_stl(const Surface& surface) {
-  std::ostringstream text;
-  text.precision(9);
-  text << "solid body\n";
-  for (const auto& triangle : surface.triangles) {
-    text << "facet normal 0 0 0\nouter loop\n";
-    for (const std::uint32_t corner : triangle) {
-      const Vec3d& point = surface.points[corner];
-      text << "vertex " << point.x << ' ' << point.y << ' ' << point.z << '\n';
-    }
-    text << "endloop\nendfacet\n";
-  }
-  text << "endsolid body\n";
-  return text.str();
-}
-
-class ScannedBody : public TemporaryFolderTest {
- protected:
-  /// The mannequin of jeans1k, coarser than there.
-  static Surface body() {
-    const json scene = json::parse(text_of(source_file("scenes/jeans1k.json")));
-    MannequinResolution resolution;
-    resolution.cells_around = 48;
-    BodyMeasures measures;
-    measures.stance = scene["garment"]["mannequin"]["stance_m"];
-    return mannequin(measures, resolution);
-  }
-  /// jeans1k for the body of a file beside it.
-  SceneSpec scene_for(const std::string& file, double unit_m) const {
-    json scene = json::parse(text_of(source_file("scenes/jeans1k.json")));
-    json& garment = scene["garment"];
-    garment.erase("mannequin");
-    garment.erase("expected");
-    garment["body"] = "surface_file";
-    garment["surface_file"] = {{"file", file}, {"unit_m", unit_m}};
-    return find_scene(put("jeans.json", scene.dump()).string());
-  }
-};
-
-TEST_F(ScannedBody, AsAnObjFileOfQuadsInCentimetresInAnyOrderIsDressed) {
-  const ObjText obj = as_obj(body(), 0.01);
-  EXPECT_GT(obj.quads, body().triangles.size() / 3);
-  const ObjText shuffled_obj = as_obj(renumbered(body()), 0.01);
-  put("body.obj", shuffled_obj.text);
-  const DressingCase jeans(scene_for("body.obj", 0.01));
-  EXPECT_EQ(jeans.body->surface.triangles.size(), body().triangles.size());
-  EXPECT_THAT(dressed(jeans).found, IsEmpty());
-}
-
-TEST_F(ScannedBody, AsAnStlFileIsDressed) {
-  put("body.stl", as_stl(shuffled(body())));
-  EXPECT_THAT(dressed(DressingCase(scene_for("body.stl", 1))).found, IsEmpty());
-}
-
-TEST_F(ScannedBody, ThatStandsFurtherBackIsDressedWhereItStands) {
-  Surface surface = body();
-  for (Vec3d& point : surface.points) point.z -= 0.3;
-  put("body.obj", as_obj(surface, 1).text);
-  EXPECT_THAT(dressed(DressingCase(scene_for("body.obj", 1))).found, IsEmpty());
-}
-
-TEST_F(ScannedBody, OfAPersonIsDressedByTheSceneThatMeasureWritesForIt) {
+TEST_F(DressedPerson, IsDressedByTheSceneThatMeasureWritesForItsScan) {
   const Surface person =
       posed(body_with_arms(), {.unit_m = 0.001, .turn_degrees = 90, .shift = {0.4, 0.1, -2}, .z_up = true});
-  const std::string body = put("scan.obj", as_obj(person, 1).text).string();
+  const std::string body = put("scan.obj", obj_text(person)).string();
   const std::string scene = (folder() / "my.json").string();
   std::array arguments{"mssim", "measure", body.c_str(), "--scene", scene.c_str()};
   testing::internal::CaptureStdout();
@@ -234,12 +134,11 @@ TEST_F(ScannedBody, OfAPersonIsDressedByTheSceneThatMeasureWritesForIt) {
   EXPECT_THAT(dressed(jeans).found, IsEmpty());
 }
 
-TEST_F(ScannedBody, ThatStandsAsideIsRefused) {
-  Surface surface = body();
-  for (Vec3d& point : surface.points) point.x += 0.3;
-  put("body.obj", as_obj(surface, 1).text);
+TEST_F(DressedPerson, WhoStandsAsideIsRefused) {
   EXPECT_THAT(
-      sentence_of<SceneError>([&] { build_system(scene_for("body.obj", 1)); }),
+      sentence_of<SceneError>([&] {
+        build_system(scene_with("jeans1k", moved_mannequin({0.3, 0, 0})));
+      }),
       HasSubstr("/garment/surface_file has no leg on either side of x = 0, where jeans need one: let "));
 }
 

@@ -218,7 +218,6 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, BadGarmentPieces,
     testing::Values(
         // What the reader sees.
-        BadPieces{R"("name": "apron",)", "", "/garment/pieces/panels/0/name", "is missing", "add it"},
         BadPieces{R"("name": "apron")", R"("name": "")", "/garment/pieces/panels/0/name", "is empty",
                   "give the panel a name"},
         BadPieces{R"("rows": 6, "columns": 5, "layer": 0)", R"("rows": 1, "columns": 5, "layer": 0)",
@@ -233,8 +232,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05]]})",
                   "/garment/pieces/panels/0/top/points_m",
                   "has 1 element:", "give a list, [ ... ], of 2 to 100 points [x, y]"},
-        BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": {"x": 1}})",
-                  "/garment/pieces/panels/0/top/points_m", "is an object", "give a list"},
         BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.2, 1.05, 0]]})",
                   "/garment/pieces/panels/0/top/points_m/1", "is a list", "give a point, two numbers [x, y]"},
         BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.2, 11]]})",
@@ -242,9 +239,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadPieces{
             apron_top, R"("top": {"curve": "bezier", "points_m": [[-0.2, 1.05], [0, 1.1], [0.2, 1.05]]})",
             "/garment/pieces/panels/0/top", "a chain of cubic Bezier segments has 3 points", "give 4, 7, 10"},
-        BadPieces{apron_top,
-                  R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [-0.2, 1.05], [0.2, 1.05]]})",
-                  "/garment/pieces/panels/0/top", "point 1 of a boundary curve", "leave one of them out"},
         BadPieces{R"("side": "back")", R"("side": "behind")", "/garment/pieces/panels/1/placement/side",
                   "is the text \"behind\"", "give the text front or back"},
         BadPieces{R"("distance_m": 0.08)", R"("distance_m": 0)",
@@ -260,16 +254,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "two panels have this name", "rename one of them"},
         BadPieces{apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0.21, 1.05]]})",
                   "/garment/pieces/panels/0", "apron: at the top right corner", "make them meet"},
-        BadPieces{
-            apron_top, R"("top": {"curve": "polyline", "points_m": [[-0.2, 1.05], [0, 0.7], [0.2, 1.05]]})",
-            "/garment/pieces/panels/0", "the top and the bottom boundary meet", "neither cross nor touch"},
         BadPieces{first_stretch, R"("first": {"panel": "aprn", "edge": "right", "from": 0, "to": 1})",
                   "/garment/pieces/seams/0", "there is no panel aprn", "use one of apron, seat"},
         BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0.4, "to": 1})",
-                  "/garment/pieces/seams/0", "is 0.15 m long", "raise the seam's tolerance of 0.03"},
-        BadPieces{first_stretch, R"("first": {"panel": "apron", "edge": "right", "from": 0.5, "to": 0.5})",
-                  "/garment/pieces/seams/0", "from 0.5 to 0.5 is not a valid stretch",
-                  "two different fractions"}));
+                  "/garment/pieces/seams/0", "is 0.15 m long", "raise the seam's tolerance of 0.03"}));
 
 TEST(GarmentPieces, NeedABodyAtTheirHeights) {
   std::string text = two_pieces;
