@@ -98,15 +98,6 @@ INSTANTIATE_TEST_SUITE_P(Tables, EachBackendAndIntegratorOnBodies,
                                           testing::ValuesIn(names_of(integrators))),
                          ByName());
 
-/// A small body with a node that hangs on nothing.
-System block_and_lone_node() {
-  System system = solid_block(3, 3, 3);
-  system.start.position.push_back({0.25, 0.75, 0.125});
-  system.start.velocity.push_back({});
-  system.node_mass.push_back(0.003);
-  return system;
-}
-
 /// Bodies where layouts go wrong: less than a vector, a node short of full vectors (63), many windows, bodies
 /// of unlike materials.
 std::vector<System> bodies_of_any_shape() {

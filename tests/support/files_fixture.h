@@ -5,9 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "platform/files.h"
 
@@ -36,6 +40,25 @@ class TemporaryFolderTest : public testing::Test {
 
  private:
   std::filesystem::path folder_;
+};
+
+/// Variables of the environment that a test changes: puts them back.
+class KeptVariables {
+ public:
+  explicit KeptVariables(std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      const char* value = ::getenv(name);
+      before_.emplace_back(name, value ? std::optional<std::string>(value) : std::nullopt);
+    }
+  }
+  ~KeptVariables() {
+    for (const auto& [name, value] : before_) value ? ::setenv(name, value->c_str(), 1) : ::unsetenv(name);
+  }
+  KeptVariables(const KeptVariables&) = delete;
+  KeptVariables& operator=(const KeptVariables&) = delete;
+
+ private:
+  std::vector<std::pair<const char*, std::optional<std::string>>> before_;
 };
 
 /// Throws ReadError when there is no such file.

@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
-#include <array>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "mesh/meshing.h"
 #include "tests/support/files_fixture.h"
@@ -21,18 +18,7 @@ namespace mssim {
 /// and folders: they are put back.
 class MeshTest : public TemporaryFolderTest {
  protected:
-  MeshTest() {
-    for (const char* name : variables)
-      before_.push_back(::getenv(name) ? std::optional<std::string>(::getenv(name)) : std::nullopt);
-    ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1);
-  }
-  ~MeshTest() override {
-    for (std::size_t i = 0; i < variables.size(); ++i)
-      if (before_[i])
-        ::setenv(variables[i], before_[i]->c_str(), 1);
-      else
-        ::unsetenv(variables[i]);
-  }
+  MeshTest() { ::setenv("XDG_CACHE_HOME", (folder() / "cache").c_str(), 1); }
   std::filesystem::path cache() const { return folder() / "cache" / "mssim" / "meshes"; }
 
   /// Puts a program named tetgen that runs this shell script before all others.
@@ -43,8 +29,7 @@ class MeshTest : public TemporaryFolderTest {
   }
 
  private:
-  static constexpr std::array variables{"HOME", "PATH", "TMPDIR", "XDG_CACHE_HOME"};
-  std::vector<std::optional<std::string>> before_;
+  KeptVariables kept_{"HOME", "PATH", "TMPDIR", "XDG_CACHE_HOME"};
 };
 
 /// What a InputError that `body` throws says, or "" when it throws none.

@@ -140,6 +140,34 @@ inline System two_solid_blocks() {
   return system;
 }
 
+/// A small body with a node that hangs on nothing.
+inline System block_and_lone_node() {
+  System system = solid_block(3, 3, 3);
+  system.start.position.push_back({0.25, 0.75, 0.125});
+  system.start.velocity.push_back({});
+  system.node_mass.push_back(0.003);
+  return system;
+}
+
+/// Cloths and bodies where layouts go wrong: fewer rows or columns than lanes, single rows and columns, rows
+/// and slices that are not full, several chunks, bodies of unlike nodes and materials.
+inline std::vector<System> odd_systems() {
+  std::vector<System> systems;
+  for (const auto& [rows, columns] : {std::pair{50U, 50U},
+                                      {37U, 23U},
+                                      {17U, 30U},
+                                      {9U, 11U},
+                                      {3U, 40U},
+                                      {40U, 3U},
+                                      {2U, 2U},
+                                      {1U, 7U},
+                                      {7U, 1U}})
+    systems.push_back(cloth_system(rows, columns));
+  systems.insert(systems.end(),
+                 {solid_block(2, 2, 2), solid_block(3, 3, 7), solid_block(9, 9, 9), two_solid_blocks()});
+  return systems;
+}
+
 /// `count` bodies like this one in one system, each in its own place and with velocities of its own.
 inline System alike_bodies(const System& body, std::size_t count) {
   System system = body;

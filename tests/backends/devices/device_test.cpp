@@ -13,10 +13,8 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "backends/backends.h"
@@ -32,6 +30,7 @@
 namespace mssim {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// Two processors and a card.
@@ -59,18 +58,15 @@ TEST(OpenclDevice, IsChosenByNumberOrByAPartOfItsNameOrPlatformInAnyCase) {
 }
 
 TEST(OpenclDevice, ThatDoesNotExistIsAnsweredWithWhatThereIs) {
-  const std::string all =
-      "0 (Example Processor 7, Example(R) OpenCL), 1 (Example Graphics 9000, Example(R) OpenCL), 2 (Another "
-      "Processor, Free OpenCL)";
-  EXPECT_EQ(complaint(some_devices(), "3"), "no OpenCL device has the number 3; there are: " + all);
-  EXPECT_EQ(complaint(some_devices(), "99999999999999999999"),
-            "no OpenCL device has the number 99999999999999999999; there are: " + all);
-  EXPECT_EQ(complaint(some_devices(), "tpu"),
-            "no OpenCL device has \"tpu\" in its name or its platform's; there are: " + all);
-  EXPECT_EQ(
-      complaint(some_devices(), "processor"),
-      "several OpenCL devices have \"processor\" in their names or platforms, choose one by its number: "
-      "0 (Example Processor 7, Example(R) OpenCL), 2 (Another Processor, Free OpenCL)");
+  const auto offers_all =
+      AllOf(HasSubstr("; there are: 0 (Example Processor 7, Example(R) OpenCL), 1 (Example "),
+            HasSubstr("), 2 (Another Processor, Free OpenCL)"));
+  for (const char* wanted : {"3", "99999999999999999999"})
+    EXPECT_THAT(complaint(some_devices(), wanted),
+                AllOf(HasSubstr(std::string("has the number ") + wanted), offers_all));
+  EXPECT_THAT(complaint(some_devices(), "tpu"), AllOf(HasSubstr("has \"tpu\" in its name"), offers_all));
+  EXPECT_THAT(complaint(some_devices(), "processor"),
+              HasSubstr("choose one by its number: 0 (Example Processor 7, Example(R) OpenCL), 2 ("));
 }
 
 TEST(OpenclDevice, MissingAltogetherIsAnsweredWithWhatToInstall) {
@@ -198,26 +194,13 @@ TEST(SubDevice, KeepsTheBackendsToTheThreadsThatWereAskedFor) {
 
 /// Two files that register drivers in a folder, and one that does not.
 class RegisteredDrivers : public TemporaryFolderTest {
- public:
-  RegisteredDrivers(const RegisteredDrivers&) = delete;
-  RegisteredDrivers& operator=(const RegisteredDrivers&) = delete;
-
  protected:
   RegisteredDrivers() {
-    for (const char* variable : {"OCL_ICD_VENDORS", "OPENCL_VENDOR_PATH"}) {
-      const char* value = std::getenv(variable);
-      before_.emplace_back(variable, value == nullptr ? std::nullopt : std::optional<std::string>(value));
-      unsetenv(variable);
-    }
+    for (const char* variable : {"OCL_ICD_VENDORS", "OPENCL_VENDOR_PATH"}) unsetenv(variable);
     put("b.icd", "libpocl.so.2\n");
     put("a.icd", "/opt/card/libcard.so");
     put("c.icd.old", "libold.so");
   }
-  ~RegisteredDrivers() override {
-    for (const auto& [variable, value] : before_)
-      value ? setenv(variable, value->c_str(), 1) : unsetenv(variable);
-  }
-
   std::vector<std::string> libraries() const {
     std::vector<std::string> found;
     for (const RegisteredDriver& driver : registered_drivers()) found.push_back(driver.shared_library);
@@ -226,7 +209,7 @@ class RegisteredDrivers : public TemporaryFolderTest {
   using Names = std::vector<std::string>;
 
  private:
-  std::vector<std::pair<const char*, std::optional<std::string>>> before_;
+  KeptVariables kept_{"OCL_ICD_VENDORS", "OPENCL_VENDOR_PATH"};
 };
 
 TEST_F(RegisteredDrivers, AreThoseOfAFolderByName) {
@@ -259,8 +242,7 @@ TEST_F(RegisteredDrivers, AreNoneWhereThereIsNoFolder) {
 }
 
 TEST(Pocl, HasItsThreadsBoundUnlessTheUserSaysOtherwise) {
-  const char* const before = std::getenv("POCL_AFFINITY");
-  const std::string kept = before != nullptr ? before : "";
+  const KeptVariables kept{"POCL_AFFINITY"};
   const auto after_binding = [](const char* chosen) {
     chosen != nullptr ? setenv("POCL_AFFINITY", chosen, 1) : unsetenv("POCL_AFFINITY");
     bind_pocl_threads();
@@ -281,7 +263,6 @@ TEST(Pocl, HasItsThreadsBoundUnlessTheUserSaysOtherwise) {
     EXPECT_EQ(after_binding(nullptr), "");
     ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
   }
-  before != nullptr ? setenv("POCL_AFFINITY", kept.c_str(), 1) : unsetenv("POCL_AFFINITY");
 }
 
 }  // namespace

@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "backends/layouts/node_arrays.h"
@@ -92,43 +90,6 @@ INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachNodeKernel,
                            return std::string(node_kernels()[test.param].instruction_set);
                          });
 
-TEST_P(EachNodeKernel, AddsAForceAtTheFirstEndSubtractsItAtTheSecondAndTakesTheStep) {
-  for (System system : systems()) {
-    system.floor.height = -10;
-    RandomStage stage(system, integrators[0]);
-    const PackedSprings& packed = stage.nodes.packed;
-    std::vector<Vec3d> force(packed.slots());
-    for (std::size_t entry = 0; entry < packed.entries.size(); ++entry)
-      for (std::size_t i = 0; i < PackedSprings::slice_nodes; ++i) {
-        const float* f = stage.force(entry, i);
-        const Vec3d on_first{f[0], f[1], f[2]};
-        Vec3d& first = force[packed.entries[entry].slice * PackedSprings::slice_nodes + i];
-        Vec3d& second = force[packed.units[2 * entry * PackedSprings::slice_nodes + i]];
-        first = first + on_first;
-        second = second - on_first;
-      }
-    const AlignedArray before = std::move(stage.pairs[index(Pair::state)]);
-    stage.pairs[index(Pair::state)] = AlignedArray(before.size());
-    std::copy_n(before.data(), before.size(), stage.pairs[index(Pair::state)].data());
-    stage.mapped.pairs[index(Pair::state)] = stage.pairs[index(Pair::state)].data();
-    kernel.integrate(stage.nodes, stage.mapped, 0, 0, packed.slices());
-    for (std::uint32_t node = 0; node < system.nodes(); ++node) {
-      const std::size_t at = packed.slot[node] * record_floats;
-      const bool held = std::find(system.pins.begin(), system.pins.end(), node) != system.pins.end();
-      const float *old = before.data() + at, *next = stage.mapped.pairs[index(Pair::next)] + at;
-      const Vec3d f = force[packed.slot[node]];
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double spring = (i == 0 ? f.x : i == 1 ? f.y : f.z) / system.node_mass[node];
-        const double a =
-            held ? 0 : spring - system.viscous_damping * old[4 + i] - (i == 1 ? system.gravity : 0);
-        const double v = old[4 + i] + dt_s * a;
-        EXPECT_NEAR(next[4 + i], v, 1e-5 * (1 + std::abs(dt_s * spring))) << system.nodes() << ": " << node;
-        EXPECT_NEAR(next[i], old[i] + dt_s * v, 1e-6) << system.nodes() << " nodes, node " << node;
-      }
-    }
-  }
-}
-
 TEST_P(EachNodeKernel, GivesInPartsWhatTheBestOneGivesAtOnceInEveryStageOfEveryIntegrator) {
   for (const System& system : systems())
     for (const Integrator& integrator : integrators)
@@ -164,11 +125,6 @@ struct StageOfAlikeNodes {
     }
     mapped.forces = forces.data();
   }
-  /// Of a lane.
-  Vec3d force(std::size_t spring, std::size_t lane) const {
-    const float* of = forces.data() + spring * 3 * AlikeSprings::slice_nodes + lane;
-    return {of[0], of[AlikeSprings::slice_nodes], of[2 * AlikeSprings::slice_nodes]};
-  }
 };
 
 class EachAlikeNodeKernel : public testing::TestWithParam<std::size_t> {
@@ -179,39 +135,6 @@ INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachAlikeNodeKernel,
                          testing::Range(std::size_t{0}, alike_node_kernels().size()), [](const auto& test) {
                            return std::string(alike_node_kernels()[test.param].instruction_set);
                          });
-
-TEST_P(EachAlikeNodeKernel, AddsAForceAtTheFirstEndSubtractsItAtTheSecondAndTakesTheStep) {
-  const System system = pinned_bodies();
-  const StageOfAlikeNodes stage(system, integrators[0]);
-  const AlikeSlices& slices = stage.nodes.springs.slices;
-  std::vector<Vec3d> a(system.nodes());
-  for (std::size_t s = 0; s < stage.nodes.springs.springs.size(); ++s) {
-    const AlikeSprings::SpringOfSlices& spring = stage.nodes.springs.springs[s];
-    for (std::size_t lane = 0; lane < AlikeSprings::slice_nodes; ++lane) {
-      const std::size_t slot = spring.first * AlikeSprings::slice_nodes + lane;
-      if (lane > 0 && slices.scene_node[slot] == slices.scene_node[slot - lane]) continue;  // repeats
-      a[slices.scene_node[slot]] += stage.force(s, lane);
-      a[slices.scene_node[spring.second * AlikeSprings::slice_nodes + lane]] -= stage.force(s, lane);
-    }
-  }
-  kernel.integrate(stage.nodes, stage.mapped, 0, 0, slices.count);
-  // What repeats the first body of a group has other forces here: read() takes the lane behind the others.
-  const float* next = stage.mapped.pairs[index(Pair::next)];
-  std::vector<bool> seen(system.nodes(), false);
-  for (std::size_t slot = 0; slot < slices.scene_node.size(); ++slot) {
-    const std::uint32_t node = slices.scene_node[slot];
-    if (seen[node]) continue;
-    seen[node] = true;
-    const float* of = next + slot / 16 * 96 + slot % 16;
-    const Vec3d x = system.start.position[node], v = system.start.velocity[node];
-    Vec3d expected = v + dt_s * (a[node] - system.viscous_damping * v - Vec3d{0, system.gravity, 0});
-    if (std::ranges::count(system.pins, node) > 0) expected = {};
-    const Vec3d found{of[48], of[64], of[80]};
-    EXPECT_LT(length(found - expected), 1e-6) << node;
-    EXPECT_LT(length(Vec3d{of[0], of[16], of[32]} - (x + dt_s * expected)), 1e-6) << node;
-  }
-  EXPECT_EQ(std::ranges::count(seen, true), system.nodes());
-}
 
 TEST_P(EachAlikeNodeKernel, GivesInPartsWhatTheBestOneGivesAtOnceInEveryStageOfEveryIntegrator) {
   for (const Integrator& integrator : integrators)

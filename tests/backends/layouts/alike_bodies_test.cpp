@@ -29,30 +29,6 @@ TEST(AlikeBodies, AreThoseOfTheSameSprings) {
   EXPECT_EQ(found->back().bodies.size(), 1U);
 }
 
-TEST(AlikeBodies, HaveEverySpringOfEachBodyFromTheFirstOfItsEnds) {
-  const System system = alike_bodies(solid_block(3, 4, 3), 3);
-  const AlikeBodies alike = find_alike_bodies(system)->front();
-  std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
-  for (const Spring& spring : system.springs)
-    expected[std::minmax(spring.first, spring.second)] = static_cast<float>(
-        system.materials[spring.kind].stiffness * static_cast<double>(spring.rest_length) / 0.004);
-  std::vector<bool> seen(system.nodes(), false);
-  for (const std::vector<std::uint32_t>& body : alike.bodies) {
-    ASSERT_EQ(body.size(), alike.nodes());
-    for (const std::uint32_t node : body) seen[node] = true;
-    for (std::uint32_t node = 0; node < alike.nodes(); ++node)
-      for (std::uint32_t s = alike.first_spring[node]; s < alike.first_spring[node + 1]; ++s) {
-        const AlikeBodies::SpringAhead& spring = alike.springs[s];
-        EXPECT_GT(spring.other, s > alike.first_spring[node] ? alike.springs[s - 1].other : node);
-        found[std::minmax(body[node], body[spring.other])] = spring.stiffness_rest;
-      }
-  }
-  EXPECT_EQ(found, expected);
-  EXPECT_EQ(std::ranges::count(seen, true), system.nodes());
-  EXPECT_EQ(alike.constants.stiffness, static_cast<float>(200 / 0.004));
-  EXPECT_EQ(alike.constants.damping, static_cast<float>(0.05 / 0.004));
-}
-
 TEST(AlikeBodies, AreToldApartByAnythingThatSpringsOrNodesHave) {
   const System block = solid_block(3, 3, 3);
   const std::pair<const char*, std::function<void(System&)>> changes[] = {
@@ -104,41 +80,6 @@ TEST(AlikeBodies, AreForLanesWhereTheyAreMany) {
   System unlike = alike_bodies(block, 16);
   unlike.node_mass[3] *= 2;
   EXPECT_FALSE(alike_bodies_for(unlike, 16, 3));
-}
-
-TEST(AlikeSlices, HoldEveryNodeInTheLaneOfItsBody) {
-  System system = alike_bodies(solid_block(3, 4, 3), 11);
-  append_body(system, solid_block(2, 2, 2), {9, 0, 0});
-  const std::vector<AlikeBodies> bodies = *find_alike_bodies(system);
-  for (const std::size_t lanes : {1U, 4U, 8U, 16U}) {
-    const AlikeSlices slices(bodies, lanes);
-    EXPECT_EQ(slices.nodes, system.nodes());
-    ASSERT_EQ(slices.groups.size(), (11 + lanes - 1) / lanes + 1);
-    std::size_t next = 0;
-    for (const AlikeSlices::Group& group : slices.groups) {
-      EXPECT_EQ(group.first_slice, next);
-      next += bodies[group.shape].nodes();
-    }
-    EXPECT_EQ(next, slices.count);
-    for (std::size_t group = 0; group + 1 < slices.groups.size(); ++group)
-      for (std::size_t node = 0; node < 36; ++node)
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-          const std::size_t body = group * lanes + lane;
-          EXPECT_EQ(slices.scene_node[(slices.groups[group].first_slice + node) * lanes + lane],
-                    bodies[0].bodies[body < 11 ? body : group * lanes][node]);
-        }
-    std::vector<float> pair(slices.floats(), -1);
-    slices.write(system.start, pair.data());
-    for (std::size_t i = 0; i < slices.scene_node.size(); ++i) {
-      const Vec3d x = system.start.position[slices.scene_node[i]],
-                  v = system.start.velocity[slices.scene_node[i]];
-      const float* of_slice = pair.data() + i / lanes * 6 * lanes + i % lanes;
-      EXPECT_EQ((Vec3d{of_slice[0], of_slice[lanes], of_slice[2 * lanes]}), x);
-      EXPECT_EQ((Vec3d{of_slice[3 * lanes], of_slice[4 * lanes], of_slice[5 * lanes]}), v);
-    }
-    const State state = slices.read(pair.data());
-    EXPECT_TRUE(same_state(state, system.start));
-  }
 }
 
 constexpr std::size_t slice_nodes = PackedSprings::slice_nodes;
@@ -225,61 +166,11 @@ TEST_P(EachSystem, ListsEveryForceAtItsSecondEndOnce) {
   EXPECT_EQ(static_cast<std::size_t>(std::count(listed.begin(), listed.end(), 1)), system.springs.size());
 }
 
-TEST_P(EachSystem, NumbersEveryNodeOnce) {
-  ASSERT_EQ(packed.slots() % slice_nodes, 0U);
-  ASSERT_LT(packed.slots(), system.nodes() + slice_nodes);
-  for (std::size_t slot = system.nodes(); slot < packed.slots(); ++slot)
-    EXPECT_EQ(packed.scene_node[slot], PackedSprings::no_node);
-  for (std::uint32_t node = 0; node < system.nodes(); ++node)
-    EXPECT_EQ(packed.scene_node[packed.slot[node]], node);
-}
-
 TEST(PackedSprings, HaveFewEmptyUnitsInABody) {
   const System system = solid_block(13, 13, 13);
   const PackedSprings packed(system);
   EXPECT_LT(static_cast<double>(packed.unit_count()), 1.12 * static_cast<double>(system.springs.size()));
   EXPECT_LT(static_cast<double>(packed.subtracted.size()), 1.12 * static_cast<double>(system.springs.size()));
-}
-
-TEST(AlikeSprings, GiveEachSpringOfEachBodyToBothOfItsEndsOnce) {
-  System block = solid_block(3, 4, 3);
-  block.pins = {5};
-  block.start.velocity[5] = {};
-  System system = alike_bodies(block, 19);
-  append_body(system, alike_bodies(solid_block(2, 2, 2), 3), {0, 0, 1});
-  const AlikeSprings springs(*find_alike_bodies(system));
-  const AlikeSlices& slices = springs.slices;
-  ASSERT_EQ(springs.pinned.size(), slices.count);
-  ASSERT_EQ(springs.first_end.size(), slices.count + 1);
-  ASSERT_EQ(springs.first_subtracted.size(), slices.count + 1);
-  EXPECT_EQ(std::ranges::count(springs.pinned, 1), 2) << "a node of two groups";
-
-  std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
-  for (const Spring& spring : system.springs)
-    expected[std::minmax(spring.first, spring.second)] =
-        static_cast<float>(200 * static_cast<double>(spring.rest_length) / 0.004);
-  std::vector<int> subtracted(springs.springs.size(), 0);
-  for (std::uint32_t slice = 0; slice < slices.count; ++slice) {
-    const std::uint32_t pin = slices.scene_node[slice * AlikeSprings::slice_nodes];
-    EXPECT_EQ(springs.pinned[slice], std::ranges::count(system.pins, pin));
-    for (std::uint32_t s = springs.first_end[slice]; s < springs.first_end[slice + 1]; ++s) {
-      const AlikeSprings::SpringOfSlices& spring = springs.springs[s];
-      EXPECT_EQ(spring.first, slice);
-      for (std::size_t lane = 0; lane < AlikeSprings::slice_nodes; ++lane)
-        found[std::minmax(slices.scene_node[spring.first * AlikeSprings::slice_nodes + lane],
-                          slices.scene_node[spring.second * AlikeSprings::slice_nodes + lane])] =
-            spring.stiffness_rest;
-      EXPECT_EQ(springs.shapes[spring.shape].stiffness, static_cast<float>(200 / 0.004));
-      EXPECT_EQ(springs.shapes[spring.shape].damping, static_cast<float>(0.05 / 0.004));
-    }
-    for (std::uint32_t i = springs.first_subtracted[slice]; i < springs.first_subtracted[slice + 1]; ++i) {
-      EXPECT_EQ(springs.springs[springs.subtracted[i]].second, slice);
-      ++subtracted[springs.subtracted[i]];
-    }
-  }
-  EXPECT_EQ(found, expected);
-  EXPECT_EQ(springs.first_end.back(), springs.springs.size());
-  EXPECT_EQ(std::ranges::count(subtracted, 1), springs.springs.size());
 }
 
 }  // namespace

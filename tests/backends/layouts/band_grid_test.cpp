@@ -29,59 +29,6 @@ std::vector<SpringPerMass> constants() {
   return all;
 }
 
-/// Expects the constants of every spring that is there, and zeros for the others.
-void expect_springs_of_cloth(const BandLayout& layout, ColumnsToEnd to_end) {
-  const std::vector<SpringPerMass> springs = constants();
-  const BandRows band_rows(layout, springs, gravity, to_end);
-  const std::size_t lanes = layout.lanes;
-  const auto halo = static_cast<std::ptrdiff_t>(BandLayout::halo);
-  const auto height = static_cast<std::ptrdiff_t>(layout.height);
-  const auto is_there = [&](std::ptrdiff_t row, std::size_t columns_behind, std::size_t half) {
-    return row >= 0 && row < static_cast<std::ptrdiff_t>(layout.rows) && columns_behind < to_end[half];
-  };
-  for (std::ptrdiff_t row = -halo; row < height + halo; ++row) {
-    const float* of_row = band_rows.values() + band_rows.offset_of_row()[row];
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t half = lane / layout.bands;
-      const std::ptrdiff_t of_cloth = static_cast<std::ptrdiff_t>(lane % layout.bands) * height + row;
-      EXPECT_EQ(of_row[BandRows::gravity_vector * lanes + lane], is_there(of_cloth, 0, half) ? gravity : 0);
-      for (std::size_t i = 0; i < grid_stencil.size(); ++i) {
-        const auto columns = static_cast<std::size_t>(grid_stencil[i].columns);
-        const bool exists =
-            is_there(of_cloth, 0, half) && is_there(of_cloth + grid_stencil[i].rows, columns, half);
-        const SpringPerMass& spring = springs[grid_stencil[i].kind];
-        const float* found = of_row + i * BandRows::spring_vectors * lanes + lane;
-        for (const float number :
-             {spring.constants.stiffness, spring.constants.damping, spring.stiffness_rest}) {
-          EXPECT_EQ(*found, exists ? number : 0) << "row " << row << ", spring " << i;
-          found += lanes;
-        }
-      }
-    }
-  }
-}
-
-TEST(BandRows, HaveConstantsWhereThereIsASpring) {
-  for (const std::uint32_t rows : {1U, 2U, 9U, 50U, 100U, 500U})
-    for (const std::size_t lanes : {1U, 4U, 8U, 16U}) {
-      SCOPED_TRACE(std::to_string(rows) + " rows, " + std::to_string(lanes) + " lanes");
-      expect_springs_of_cloth(BandLayout(GridPatch{rows, 3, 0.1}, lanes),
-                              {BandRows::far_from_end, BandRows::far_from_end});
-    }
-}
-
-TEST(BandRows, OfAFoldedClothHaveNoneWhereOneHalfEnds) {
-  for (const std::uint32_t rows : {1U, 9U, 100U})
-    for (const std::size_t lanes : {2U, 4U, 16U})
-      for (std::size_t to_end = 0; to_end <= BandRows::far_from_end; ++to_end) {
-        SCOPED_TRACE(std::to_string(rows) + " rows, " + std::to_string(lanes) +
-                     " lanes, columns to the end: " + std::to_string(to_end));
-        const BandLayout folded(GridPatch{rows, 9, 0.1}, lanes, 2);
-        expect_springs_of_cloth(folded, {BandRows::far_from_end, to_end});
-        expect_springs_of_cloth(folded, {to_end, BandRows::far_from_end});
-      }
-}
-
 TEST(BandRows, ShareTheirValues) {
   const BandLayout layout(GridPatch{2000, 3, 0.1}, 16);
   const BandRows band_rows(layout, constants(), gravity);
@@ -238,29 +185,6 @@ TEST_P(EachIntegratorInPieces, GivesTheBitsOfTheWhole) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, EachIntegratorInPieces, testing::ValuesIn(names_of(integrators)), ByName());
-
-TEST(ColumnRange, PartsCoverAllColumnsOnce) {
-  for (const std::size_t parts : {1U, 2U, 3U, 7U, 10U}) {
-    std::size_t next = 5;
-    for (std::size_t part = 0; part < parts; ++part) {
-      const ColumnRange range = part_of({5, 10}, part, parts);
-      EXPECT_EQ(range.first, next);
-      EXPECT_GE(range.count, 10 / parts);
-      EXPECT_LE(range.count, (10 + parts - 1) / parts);
-      next = range.end();
-    }
-    EXPECT_EQ(next, 15U);
-  }
-}
-
-TEST(ColumnRange, GhostsEndWhereTheClothEnds) {
-  const ColumnRange left = with_ghosts({0, 10}, 4, 30), inner = with_ghosts({10, 10}, 4, 30);
-  EXPECT_EQ(left.first, 0U);
-  EXPECT_EQ(left.count, 14U);
-  EXPECT_EQ(inner.first, 6U);
-  EXPECT_EQ(inner.count, 18U);
-  EXPECT_EQ(with_ghosts({20, 10}, 4, 30).end(), 30U);
-}
 
 }  // namespace
 }  // namespace mssim

@@ -4,17 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
-#include <map>
 #include <numeric>
 #include <random>
 #include <vector>
 
 #include "backends/interface/backend.h"
-#include "backends/layouts/node_arrays.h"
 #include "backends/layouts/spring_graph.h"
 #include "backends/openmp/bodies.h"
 #include "backends/openmp/openmp.h"
@@ -28,104 +24,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Bodies of many shapes: among them less than a slice, one node short of a slice, several windows.
-std::vector<System> bodies() {
-  std::vector<System> systems{solid_block(2, 2, 2), solid_block(3, 4, 5), solid_block(3, 3, 7),
-                              solid_block(9, 9, 9), two_solid_blocks()};
-  systems.push_back(solid_block(3, 3, 3));  // with a node that hangs on nothing, and pins
-  System& lone = systems.back();
-  lone.start.position.push_back({1, 1, 1});
-  lone.start.velocity.push_back({});
-  lone.node_mass.push_back(0.001);
-  lone.pins = {0, 13, 26};
-  return systems;
-}
-
 class SlicedGraphOfLanes : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Widths, SlicedGraphOfLanes, testing::Values(1, 4, 8, 16, 64));
-
-TEST_P(SlicedGraphOfLanes, NamesEverySpringOnceFromEachEndWithTheConstantsOfThatEnd) {
-  for (const System& system : bodies()) {
-    const SlicedGraph graph(system, GetParam());
-    const std::vector<std::uint32_t> place = places_in(reverse_cuthill_mckee(system.nodes(), system.springs));
-    ASSERT_EQ(graph.nodes(), system.nodes());
-    std::map<std::pair<std::uint32_t, std::uint32_t>, float> expected, found;
-    for (const Spring& spring : system.springs)
-      for (const auto& [node, other] :
-           {std::pair{spring.first, spring.second}, {spring.second, spring.first}})
-        expected[{node, other}] =
-            static_cast<float>(system.materials[spring.kind].stiffness *
-                               static_cast<double>(spring.rest_length) / system.node_mass[node]);
-    for (std::size_t slice = 0; slice < graph.slices(); ++slice)
-      for (std::size_t lane = 0; lane < graph.lanes; ++lane) {
-        const std::size_t slot = slice * graph.lanes + lane;
-        std::uint32_t last = 0;
-        for (std::size_t e = graph.first_entry[slice]; e < graph.first_entry[slice + 1]; ++e) {
-          const std::size_t element = e * graph.lanes + lane;
-          if (graph.stiffness_rest[element] < 0) continue;
-          ASSERT_LT(graph.neighbour[element], graph.nodes());
-          ASSERT_NE(graph.scene_node[slot], SlicedGraph::no_node);
-          const std::pair spring{graph.scene_node[slot], graph.scene_node[graph.neighbour[element]]};
-          EXPECT_TRUE(found.emplace(spring, graph.stiffness_rest[element]).second)
-              << "a spring appears twice";
-          EXPECT_GE(place[spring.second], last) << "the order of sums is that of the places";
-          last = place[spring.second];
-        }
-      }
-    EXPECT_EQ(found, expected);
-    for (const Spring& spring : system.springs)
-      for (const std::uint32_t node : {spring.first, spring.second}) {
-        const SpringMaterial& material = system.materials[spring.kind];
-        const SpringConstants<float>& constants = graph.constants[graph.slot[node]];
-        EXPECT_EQ(constants.stiffness, static_cast<float>(material.stiffness / system.node_mass[node]));
-        EXPECT_EQ(constants.damping, static_cast<float>(material.damping / system.node_mass[node]));
-      }
-  }
-}
-
-TEST_P(SlicedGraphOfLanes, FillsUpSlicesWithWhatFeelsNothingAndDoesNotMove) {
-  for (const System& system : bodies()) {
-    const SlicedGraph graph(system, GetParam());
-    EXPECT_EQ(graph.slots(), graph.slices() * graph.lanes);
-    EXPECT_LT(graph.slots() - graph.nodes(), graph.lanes);
-    std::vector<std::size_t> degree(graph.slots(), 0);
-    for (std::size_t slice = 0; slice < graph.slices(); ++slice) {
-      std::size_t largest = 0;
-      for (std::size_t lane = 0; lane < graph.lanes; ++lane) {
-        const std::size_t slot = slice * graph.lanes + lane;
-        bool empty = false;
-        for (std::size_t e = graph.first_entry[slice]; e < graph.first_entry[slice + 1]; ++e) {
-          const std::size_t element = e * graph.lanes + lane;
-          if (graph.stiffness_rest[element] < 0) {
-            empty = true;
-            EXPECT_EQ(graph.stiffness_rest[element], SlicedGraph::empty_entry);
-            EXPECT_EQ(graph.neighbour[element], slot);
-          } else {
-            EXPECT_FALSE(empty) << "empty entries come last";
-            ++degree[slot];
-          }
-        }
-        largest = std::max(largest, degree[slot]);
-      }
-      EXPECT_EQ(largest, graph.first_entry[slice + 1] - graph.first_entry[slice]) << "no entry for nobody";
-    }
-    std::vector<std::uint32_t> held(graph.slots(), 0);
-    for (const std::uint32_t pin : system.pins) held[graph.slot[pin]] = 1;
-    std::size_t nodes = 0;
-    for (std::size_t slot = 0; slot < graph.slots(); ++slot) {
-      if (graph.scene_node[slot] != SlicedGraph::no_node) {
-        ++nodes;
-        EXPECT_EQ(graph.slot[graph.scene_node[slot]], slot);  // so no other slot has it
-        continue;
-      }
-      EXPECT_GE(slot, graph.nodes());
-      EXPECT_EQ(degree[slot], 0U);
-      held[slot] = 1;
-    }
-    EXPECT_EQ(nodes, system.nodes());
-    EXPECT_EQ(graph.held, held);
-  }
-}
 
 /// The part of a block that has its nodes below `own`, the neighbours of these behind them.
 std::pair<System, GraphPart> lower_part(const System& block, std::uint32_t own) {
@@ -200,42 +100,6 @@ TEST(SlicedBodies, GiveEverySliceToOneLotInFairShares) {
     }
     EXPECT_EQ(next, bodies.slices());
   }
-}
-
-TEST(SlicedBodies, OfAPartGiveEverySliceToOneLotOfItsKind) {
-  const auto [system, part] = lower_part(solid_block(9, 9, 9), 300);
-  const SlicedGraph graph(system, 16, part);
-  for (const std::size_t threads : {1U, 2U, 3U, 1000U}) {
-    const SlicedBodies bodies(system, graph, integrators[0], 1e-4, threads);
-    ASSERT_EQ(bodies.chunks.size(), bodies.edge_chunks.size());
-    ASSERT_EQ(bodies.slot.size(), 300U);
-    std::size_t next = 0;
-    for (const auto* chunks : {&bodies.chunks, &bodies.edge_chunks}) {
-      for (const SlicedBodies::Chunk& chunk : *chunks) {
-        EXPECT_EQ(chunk.begin, next);
-        next = chunk.end;
-      }
-      EXPECT_EQ(next, chunks == &bodies.chunks ? graph.first_edge_slice : bodies.slices());
-    }
-  }
-}
-
-TEST(SliceEntries, NameNeighboursAndRestLengthsAndBehindThemTheFirstRecord) {
-  constexpr std::size_t lanes = 4;
-  const SlicedGraph graph(solid_block(3, 4, 5), lanes);
-  const auto record_of = [](std::uint32_t slot) { return slot + 7; };
-  const AlignedArray entries = slice_entries(graph, record_floats, record_of);
-  const auto offset = [&](std::size_t entry, std::size_t lane) {
-    return std::bit_cast<std::uint32_t>(entries.data()[entry * 2 * lanes + lane]) * slice_offset_floats;
-  };
-  ASSERT_EQ(entries.size(), (graph.entries() + 1) * 2 * lanes);
-  for (std::size_t entry = 0; entry < graph.entries(); ++entry)
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t element = entry * lanes + lane;
-      EXPECT_EQ(offset(entry, lane), record_of(graph.neighbour[element]) * record_floats);
-      EXPECT_EQ(entries.data()[entry * 2 * lanes + lanes + lane], graph.stiffness_rest[element]);
-    }
-  for (std::size_t lane = 0; lane < lanes; ++lane) EXPECT_EQ(offset(graph.entries(), lane), 0U);
 }
 
 /// The same springs between nodes numbered at random, as a mesher might number them.

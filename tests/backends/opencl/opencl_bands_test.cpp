@@ -79,25 +79,6 @@ TEST(OpenclBands, GiveTheSameBitsForAnyNumberOfStepsALaunchAndOfWorkItems) {
   }
 }
 
-TEST(OpenclBands, AgreeWithLaunchesOfOneStage) {
-  const OpenclDevice device = choose_opencl_device(opencl_offer().devices, "");
-  for (const auto& [rows, columns] : {std::pair{1U, 1U}, {17U, 5U}, {35U, 61U}}) {
-    const System system = pinned_cloth_on_a_floor(rows, columns);
-    for (const Integrator& integrator : integrators) {
-      const auto stages = make_opencl(system, integrator, backend_dt_s, device, 1);
-      EXPECT_EQ(stages->steps_per_pass(), 0);
-      stages->step(23);
-      const auto bands = bands_of(system, integrator, 3, 2);
-      bands->step(23);
-      // The springs of a node are summed in another order.
-      EXPECT_LT(largest_distance(bands->state().position, stages->state().position), 1e-6)
-          << integrator.name << ", " << rows << " x " << columns;
-      EXPECT_LT(largest_distance(bands->state().velocity, stages->state().velocity), 5e-4)
-          << integrator.name << ", " << rows << " x " << columns;
-    }
-  }
-}
-
 TEST(OpenclBands, StartAgainFromTheStateTheyAreGivenAfterAnyNumberOfLaunches) {
   const System system = pinned_cloth_on_a_floor(21, 61);
   for (const DeviceMemory memory : {DeviceMemory::shared, DeviceMemory::copy})

@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <set>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "backends/openmp/bodies.h"
@@ -73,34 +70,6 @@ TEST_P(BodyLanesOf, TakesTheStepsOfSlicesToTheLastBitForAnyThreadsAndInstruction
   }
 }
 
-TEST(BodyLanes, GiveEveryNodeOfEveryGroupToOnePieceAndEveryPieceToOneChunk) {
-  const System system = many_bodies();
-  const auto alike = find_alike_bodies(system);
-  for (const std::size_t lanes : {1U, 4U, 8U, 16U})
-    for (const std::size_t threads : {1U, 2U, 3U, 5U, 1000U}) {
-      const BodyLanes bodies(system, *alike, integrators[0], 1e-4, lanes, threads);
-      std::set<std::pair<std::size_t, std::size_t>> seen;  // group's offset, node
-      for (const BodyLanes::Piece& piece : bodies.pieces) {
-        EXPECT_LT(piece.begin, piece.end);
-        EXPECT_LE(piece.end, piece.reach);
-        EXPECT_LE(piece.reach, bodies.shapes[piece.shape].pinned.size());
-        for (std::size_t node = piece.begin; node < piece.end; ++node)
-          EXPECT_TRUE(seen.emplace(piece.offset, node).second);
-      }
-      std::size_t nodes = 0;
-      for (const AlikeBodies& of : *alike) nodes += (of.bodies.size() + lanes - 1) / lanes * of.nodes();
-      EXPECT_EQ(seen.size(), nodes);
-      std::size_t next = 0;
-      for (const BodyLanes::Chunk& chunk : bodies.chunks) {
-        EXPECT_EQ(chunk.begin, next);
-        EXPECT_LT(chunk.begin, chunk.end);
-        next = chunk.end;
-      }
-      EXPECT_EQ(next, bodies.pieces.size());
-      EXPECT_LE(bodies.threads, threads);
-    }
-}
-
 TEST(BodyLanes, AreCutIntoFairShares) {
   const System system = alike_bodies(solid_block(9, 9, 9), 16);
   const BodyLanes bodies(system, *find_alike_bodies(system), integrators[0], 1e-4, 16, 3);
@@ -141,27 +110,6 @@ TEST(OpenMpOnAClothWithoutAFloor, KeepsWhatIsNotThereFromTheNodes) {
   System system = without_floor(cloth_system(37, 23));
   round_start_to_single(system);
   expect_openmp_near_serial(system);
-}
-
-// Empty entries and places without a node have the length zero: no mask takes their force away.
-TEST(SliceEntries, OfANodeWithoutSpringsGiveItNoForce) {
-  System system = solid_block(3, 3, 3);
-  const std::size_t alone = system.nodes();
-  system.start.position.push_back({5, 5, 5});
-  system.start.velocity.push_back({1, 0, 0});
-  system.node_mass.push_back(1);
-  system.gravity = 0;
-  system.viscous_damping = 0;
-  constexpr double dt_s = 1e-4;
-  constexpr int steps = 10;
-  for (const std::string_view set : openmp_instruction_sets()) {
-    const auto backend = make_openmp(system, *find_integrator("semi-euler"), dt_s, {1, ""}, set);
-    backend->step(steps);
-    const State state = backend->state();
-    EXPECT_NEAR(state.position[alone].x, 5 + steps * dt_s, 1e-5) << set;
-    EXPECT_EQ(state.position[alone].y, 5) << set;
-    EXPECT_EQ(state.position[alone].z, 5) << set;
-  }
 }
 
 }  // namespace

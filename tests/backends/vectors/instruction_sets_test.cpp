@@ -76,19 +76,6 @@ TEST(InstructionSets, AreTakenAsNamedTheBestWhereNoneIs) {
   }
 }
 
-/// Cloths and bodies where layouts go wrong: fewer rows than lanes, single rows and columns, dummy rows, less
-/// than a slice, several windows.
-std::vector<System> systems_of_any_shape() {
-  std::vector<System> systems;
-  for (const auto& [rows, columns] :
-       {std::pair{50U, 50U}, {37U, 23U}, {17U, 30U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {1U, 7U}, {7U, 1U}})
-    systems.push_back(cloth_system(rows, columns));
-  for (System& system : std::vector<System>{solid_block(2, 2, 2), solid_block(3, 3, 7), solid_block(9, 9, 9),
-                                            two_solid_blocks()})
-    systems.push_back(std::move(system));
-  return systems;
-}
-
 class EachInstructionSetAndIntegrator
     : public testing::TestWithParam<std::tuple<std::string_view, std::size_t>> {
  protected:
@@ -104,7 +91,9 @@ INSTANTIATE_TEST_SUITE_P(OfThisProcessor, EachInstructionSetAndIntegrator,
                          });
 
 TEST_P(EachInstructionSetAndIntegrator, AgreesWithTheReferenceOnSystemsOfAnyShape) {
-  for (const System& system : systems_of_any_shape()) {
+  std::vector<System> systems = odd_systems();
+  systems.push_back(block_and_lone_node());
+  for (const System& system : systems) {
     const auto simulation =
         make_openmp(system, integrator(), backend_dt_of(integrator()), {2, ""}, instruction_set());
     EXPECT_TRUE(agrees(*simulation, system, integrator(), backend_dt_of(integrator())));
@@ -117,7 +106,7 @@ TEST_P(EachInstructionSetAndIntegrator, GivesTheSameBitsAsTheBestThatRoundsAlike
     return fuses(other) == fuses(instruction_set()) &&
            has_exact_roots(other) == has_exact_roots(instruction_set());
   });
-  for (System system : systems_of_any_shape()) {
+  for (System system : odd_systems()) {
     system.floor.height = system.start.position[0].y - 0.001;  // it is met on the way
     const auto expected = make_openmp(system, integrator(), backend_dt_of(integrator()), {1, ""}, best);
     const auto simulation =

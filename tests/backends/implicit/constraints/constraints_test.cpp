@@ -63,13 +63,6 @@ TEST(SpringOrder, GivesEachSpringTheColourOfItsPlace) {
   EXPECT_EQ(ends(rows, rising_below_odd_rows), (Ends{{3, 4}}));
 }
 
-TEST(SpringOrder, FillsAllTwelveColoursOfAClothWithEqualSharesOfEachKind) {
-  const System system = cloth_system(49, 49);
-  const SpringColouring order = spring_order(system);
-  for (std::size_t colour = 0; colour < order.colours(); ++colour)
-    EXPECT_NEAR(static_cast<double>(order.of_colour(colour).size()), 49.0 * 48 / 2, 49) << colour;
-}
-
 TEST(SpringOrder, OfBodiesIsThatOfTheGreedyColouring) {
   for (const System& system : {solid_block(5, 6, 7), two_solid_blocks()}) {
     const SpringColouring order = spring_order(system);
@@ -256,6 +249,9 @@ const Integrator& xpbd = *find_integrator("xpbd");
 const std::vector<std::pair<std::uint32_t, std::uint32_t>> cloth_sizes{
     {1, 7}, {7, 1}, {2, 2}, {3, 40}, {40, 3}, {37, 23}, {50, 50}, {66, 131}, {113, 65}};
 
+/// Each large enough to be a part of its own.
+System three_blocks(double height_m) { return alike_bodies(solid_block(7, 7, 7, height_m), 3); }
+
 std::vector<System> solids() { return {solid_block(2, 2, 2), solid_block(9, 8, 7), two_solid_blocks()}; }
 
 std::vector<StepKernel<QuarteredRows>> cloth_kernels() { return compiled_kernels<QuarteredRows>(); }
@@ -304,6 +300,7 @@ TEST_P(EachXpbdKernel, AgreesWithTheReferenceOnClothsOfAnyShape) {
 
 TEST_P(EachXpbdKernel, AgreesWithTheReferenceOnBodies) {
   for (const System& system : solids()) expect_reference(system, std::to_string(system.nodes()) + " nodes");
+  expect_reference(three_blocks(0.5), "three blocks");
 }
 
 TEST_P(EachXpbdKernel, TakesSpringsInTheOrderOfTheMethod) {
@@ -331,6 +328,7 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfThreads) {
     expect_same_bits(system, std::to_string(rows) + " x " + std::to_string(columns));
   }
   for (const System& system : solids()) expect_same_bits(system, std::to_string(system.nodes()) + " nodes");
+  expect_same_bits(three_blocks(0.001), "three blocks");
 }
 
 TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfSmallStepsInAPass) {
@@ -350,27 +348,8 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsForAnyNumberOfSmallStepsInAPass) {
   EXPECT_EQ(after(3, 2).position, expected.position);
 }
 
-/// Three equal blocks beside each other, each large enough to be a part.
-System three_blocks() {
-  const System block = solid_block(7, 7, 7, 0.001);
-  System system = block;
-  const auto nodes = static_cast<std::uint32_t>(block.nodes());
-  for (std::uint32_t copy = 1; copy < 3; ++copy) {
-    for (const Vec3d& x : block.start.position) system.start.position.push_back(x + Vec3d{0.5 * copy, 0, 0});
-    for (const Vec3d& v : block.start.velocity) system.start.velocity.push_back(v);
-    for (Spring spring : block.springs) {
-      spring.first += copy * nodes;
-      spring.second += copy * nodes;
-      system.springs.push_back(spring);
-    }
-    system.node_mass.insert(system.node_mass.end(), block.node_mass.begin(), block.node_mass.end());
-  }
-  round_to_single(system.start);
-  return system;
-}
-
 TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
-  const System system = three_blocks();
+  const System system = three_blocks(0.001);
   const StepKernel<SpringBatches> kernel = compiled_kernels<SpringBatches>()[GetParam()];
   const auto after = [&](std::size_t threads, std::size_t shared) {
     SpringBatches bodies(system, backend_dt_s, kernel.lanes, threads);
@@ -393,16 +372,6 @@ TEST_P(EachXpbdKernel, GivesTheSameBitsWhetherThreadsShareBodiesOrNot) {
       const State state = after(threads, shared);
       EXPECT_TRUE(same_state(state, expected)) << threads << ", " << shared;
     }
-}
-
-TEST_P(EachXpbdKernel, DoesEachBodyOnce) {
-  for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
-    const SpringBatches bodies(three_blocks(), backend_dt_s, cloth_kernels()[GetParam()].lanes, threads);
-    std::vector<std::size_t> done(bodies.shared_parts);
-    for (const auto& parts : bodies.own_parts) done.insert(done.end(), parts.begin(), parts.end());
-    std::ranges::sort(done);
-    EXPECT_EQ(done, (std::vector<std::size_t>{0, 1, 2})) << threads;
-  }
 }
 
 TEST_P(EachXpbdKernel, TreatsTheFloorLikeTheReference) {

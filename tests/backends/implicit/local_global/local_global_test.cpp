@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 #include "backends/implicit/local_global/factor.h"
@@ -19,7 +18,6 @@
 #include "model/system.h"
 #include "tests/support/backend_checks.h"
 #include "tests/support/backward_euler.h"
-#include "tests/support/dense_solve.h"
 #include "tests/support/systems.h"
 
 namespace mssim {
@@ -132,18 +130,16 @@ TEST(FastSprings, TakeFewerThreadsWhereOpenMpGivesFewer) {
   }
 }
 
-/// Odd sizes, fewer rows than lanes, single rows and columns, blocks: where layouts go wrong.
-std::vector<System> odd_systems() {
-  std::vector<System> systems{pinned_block(), two_solid_blocks(), solid_block(1, 1, 2), solid_block(9, 8, 7)};
-  for (const auto& [rows, columns] :
-       {std::pair{50U, 50U}, {37U, 23U}, {9U, 11U}, {3U, 40U}, {40U, 3U}, {2U, 2U}, {1U, 7U}, {7U, 1U}})
-    systems.push_back(cloth_system(rows, columns));
+std::vector<System> systems_to_follow() {
+  std::vector<System> systems = odd_systems();
+  systems.push_back(pinned_block());
+  systems.push_back(solid_block(1, 1, 2));
   return systems;
 }
 
 TEST(FastSprings, FollowsTheReferenceInSinglePrecision) {
   constexpr double dt_s = 1e-4;
-  for (const System& system : odd_systems()) {
+  for (const System& system : systems_to_follow()) {
     const Reference reference = run_reference(system, fast_springs, dt_s);
     EXPECT_TRUE(agrees(*make_serial_local_global(system, dt_s), system, reference, dt_s));
     EXPECT_TRUE(agrees(*make_vectors(system, dt_s, 2), system, reference, dt_s));
@@ -152,7 +148,7 @@ TEST(FastSprings, FollowsTheReferenceInSinglePrecision) {
 
 TEST(FastSprings, DoesTheSameWithEachInstructionSet) {
   constexpr double dt_s = 1e-3;
-  for (const System& system : odd_systems()) {
+  for (const System& system : systems_to_follow()) {
     const auto reference = make_local_global_reference(system, dt_s);
     reference->step(10);
     const State expected = reference->state();
@@ -185,12 +181,6 @@ DenseMatrix dense(const StepMatrix& matrix) {
     all[second][first] -= weight;
   }
   return all;
-}
-
-std::vector<Vec3d> places_of(const System& system, const StepMatrix& matrix) {
-  std::vector<Vec3d> places;
-  for (const std::uint32_t node : matrix.node) places.push_back(system.start.position[node]);
-  return places;
 }
 
 TEST(StepMatrix, HasTheMassesOfFreeNodesAndTheirSprings) {
@@ -246,78 +236,6 @@ TEST(Factorise, RefusesWhatMemoryCannotHold) {
   } catch (const Unsupported& reason) {
     EXPECT_TRUE(std::string(reason.what()).starts_with("the factor of its global step needs at least "))
         << reason.what();
-  }
-}
-
-TEST(Dissection, EliminatesEveryRowOnceAndCouplesPartsWithTheirAncestorsAlone) {
-  for (const System& system : {cloth_system(31, 18), two_solid_blocks(), cloth_system(1, 9)}) {
-    const StepMatrix matrix(system, 1e-3);
-    const Dissection dissection(matrix, places_of(system, matrix), 6);
-    std::vector<std::uint32_t> part_of(matrix.rows(), Dissection::no_part);
-    ASSERT_EQ(dissection.order.size(), matrix.rows());
-    std::uint32_t end = 0;
-    for (std::uint32_t part = 0; part < dissection.parts.size(); ++part) {
-      EXPECT_EQ(dissection.parts[part].begin, end);
-      EXPECT_LT(end, dissection.parts[part].end);
-      end = dissection.parts[part].end;
-      EXPECT_GT(dissection.parts[part].parent, part);
-      for (std::uint32_t i = dissection.parts[part].begin; i < end; ++i) part_of[dissection.order[i]] = part;
-    }
-    EXPECT_EQ(end, matrix.rows());
-    for (const std::uint32_t part : part_of) EXPECT_NE(part, Dissection::no_part);
-    for (const auto& coupling : matrix.couplings) {
-      auto [low, high] = std::minmax(part_of[coupling.first], part_of[coupling.second]);
-      std::uint32_t at = low;
-      while (at < high) at = dissection.parts[at].parent;
-      EXPECT_EQ(at, high);
-    }
-  }
-}
-
-/// s of A s = e by the blocks, one coordinate, as BlockFactor says it.
-std::vector<double> solve(const BlockFactor& factor, const std::vector<double>& right) {
-  const Fronts& fronts = factor.fronts;
-  std::vector<std::vector<double>> front(fronts.parts.size());
-  const auto entry = [&](std::size_t part, std::size_t i, std::size_t j) {
-    return static_cast<double>(
-        factor.panels.data()[factor.blocks[part].panel + j * factor.blocks[part].rows + i]);
-  };
-  for (std::size_t part = 0; part < front.size(); ++part) {
-    const std::size_t border = fronts.border_size(part), pivots = fronts.pivots(part);
-    front[part].resize(border + pivots);
-    for (std::size_t i = 0; i < pivots; ++i)
-      front[part][border + i] = right[factor.order[fronts.parts[part].begin + i]];
-    for (const std::uint32_t child : fronts.children_of(part))
-      for (std::size_t i = 0; i < fronts.border_size(child); ++i)
-        front[part][fronts.at_parent[fronts.first_border[child] + i]] += front[child][i];
-    const std::vector<double> e(front[part].begin() + static_cast<std::ptrdiff_t>(border), front[part].end());
-    std::fill(front[part].begin() + static_cast<std::ptrdiff_t>(border), front[part].end(), 0);
-    for (std::size_t i = 0; i < front[part].size(); ++i)
-      for (std::size_t j = 0; j < pivots; ++j) front[part][i] += entry(part, i, j) * e[j];
-  }
-  std::vector<double> solution(right.size());
-  for (std::size_t part = front.size(); part-- > 0;) {
-    const std::size_t border = fronts.border_size(part);
-    for (std::size_t i = 0; i < border; ++i)
-      front[part][i] = front[fronts.parts[part].parent][fronts.at_parent[fronts.first_border[part] + i]];
-    for (std::size_t j = 0; j < fronts.pivots(part); ++j) {
-      for (std::size_t i = 0; i < border; ++i) front[part][border + j] += entry(part, i, j) * front[part][i];
-      solution[factor.order[fronts.parts[part].begin + j]] = front[part][border + j];
-    }
-  }
-  return solution;
-}
-
-TEST(BlockFactor, SolvesLikeADenseMatrix) {
-  for (const System& system : {cloth_system(17, 12), two_solid_blocks(), cloth_system(1, 9)}) {
-    const StepMatrix matrix(system, 1e-2);
-    std::vector<double> right(matrix.rows());
-    for (std::size_t i = 0; i < right.size(); ++i) right[i] = std::sin(3.0 * static_cast<double>(i));
-    const std::vector<double> expected = dense_solve(dense(matrix), right);
-    const std::vector<double> solution = solve(BlockFactor(matrix, places_of(system, matrix), 4), right);
-    double largest = 0;
-    for (const double value : expected) largest = std::max(largest, std::abs(value));
-    for (std::size_t i = 0; i < right.size(); ++i) EXPECT_NEAR(solution[i], expected[i], 2e-6 * largest) << i;
   }
 }
 
