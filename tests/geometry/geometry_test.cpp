@@ -30,18 +30,10 @@ TEST(MonotoneCurve, ALineIsALine) {
   for (double x = 0; x <= 4; x += 0.125) EXPECT_NEAR(curve(x), 1 + 2 * x, 1e-14);
 }
 
-TEST(MonotoneCurve, SlopesAreWeightedHarmonicMeans) {
-  // Equal widths and secants of 1 and 3: a slope of 2 / (1 + 1/3) = 1.5 in the middle, 1 and 3 at the ends.
-  // The cubic halfway is the mean of the values plus an eighth of the width times the difference of the
-  // slopes.
-  const MonotoneCurve curve({0, 1, 2}, {0, 1, 4});
-  EXPECT_NEAR(curve(0.5), 0.5 + (1 - 1.5) / 8, 1e-15);
-  EXPECT_NEAR(curve(1.5), 2.5 + (1.5 - 3) / 8, 1e-15);
-}
-
-TEST(MonotoneCurve, SlopesWeighTheNarrowerSideMore) {
+TEST(MonotoneCurve, SlopesAreHarmonicMeansThatWeighTheNarrowerSideMore) {
   // Fritsch and Butland: widths 1 and 3, secants 1 and 2 weigh 2 * 3 + 1 = 7 and 3 + 2 * 1 = 5: a slope of
-  // 12 / (7 / 1 + 5 / 2) = 24 / 19.
+  // 12 / (7 / 1 + 5 / 2) = 24 / 19, and those of the secants at the ends. The cubic halfway is the mean of
+  // the values plus an eighth of the width times the difference of the slopes.
   const MonotoneCurve curve({0, 1, 4}, {0, 1, 7});
   EXPECT_NEAR(curve(0.5), 0.5 + (1 - 24. / 19) / 8, 1e-15);
   EXPECT_NEAR(curve(2.5), 4 + 3 * (24. / 19 - 2) / 8, 1e-15);
@@ -149,22 +141,6 @@ TEST(DepthRaster, AClosedSurfaceHasNoGaps) {
       }
     }
   EXPECT_LT(in_doubt, 1000);
-}
-
-TEST(DepthRaster, ThreadsDoNotMatter) {
-  const Surface sphere = surface_of(SphereShape{1, 9});
-  const PixelGrid grid{-0.9, -1.2, 0.011, 150, 203};
-  for (const ViewFrom view : {ViewFrom::front, ViewFrom::back}) {
-    const std::vector<Fragment> once = rasterise(sphere, grid, view, 1);
-    for (const int threads : {2, 3, 0}) {
-      const std::vector<Fragment> again = rasterise(sphere, grid, view, threads);
-      for (std::size_t pixel = 0; pixel < once.size(); ++pixel) {
-        ASSERT_EQ(again[pixel].triangle, once[pixel].triangle);
-        ASSERT_EQ(again[pixel].z, once[pixel].z);
-        ASSERT_EQ(again[pixel].weights, once[pixel].weights);
-      }
-    }
-  }
 }
 
 std::string grid_complaint(const PixelGrid& grid) {

@@ -10,6 +10,7 @@
 #include "geometry/geometry.h"
 #include "mesh/meshing.h"
 #include "tests/support/mesh_fixture.h"
+#include "tests/support/obj_text.h"
 #include "text/text.h"
 
 namespace mssim {
@@ -321,13 +322,8 @@ TEST_F(SurfaceFile, IsMeshedInItsUnitAndNotTooCoarsely) {
 TEST_F(SurfaceFile, OfASheetThatIsTooThinToBeMeshedIsRefused) {
   const auto sheet = [&](double thickness) {
     Surface box = unit_cube();
-    std::string text;
-    for (const Vec3d& p : box.points)
-      text += "v " + decimal(p.x) + ' ' + decimal(p.y * thickness) + ' ' + decimal(p.z) + '\n';
-    for (const auto& [a, b, c] : box.triangles)
-      text += "f " + std::to_string(a + 1) + ' ' + std::to_string(b + 1) + ' ' + std::to_string(c + 1) + '\n';
-    put("sheet.obj", text);
-    return folder() / "sheet.obj";
+    for (Vec3d& p : box.points) p.y *= thickness;
+    return put("sheet.obj", obj_text(box));
   };
   EXPECT_THAT(input_error_of([&] { surface_mesh({sheet(0.0001)}); }),
               AllOf(HasSubstr("sheet.obj: it is 0.0001 m thick at (0."), HasSubstr("at most 4000000"),

@@ -5,9 +5,11 @@
 #include <array>
 #include <numbers>
 
-#include "geometry/geometry.h"
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
+#include "output/tables/suite_tables.h"
+#include "scene/scene_file.h"
+#include "tests/support/backend_checks.h"
 #include "tests/support/mesh_fixture.h"
 
 namespace mssim {
@@ -85,7 +87,6 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenFile{"five 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is \"five\""},
         BrokenFile{"\x01\x7f\xff\n", nullptr, "a.node, line 1: ", "is \"\\u0001\\u007f\xef\xbf\xbd\""},
         BrokenFile{"0 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is 0"},
-        BrokenFile{"-5 3 0 0\n", nullptr, "a.node, line 1: ", "the number of nodes is -5"},
         BrokenFile{"99999999999999999999 3 0 0\n", nullptr, "a.node, line 1: ", "99999999999999999999"},
         BrokenFile{"9000000000000000000 3 0 0\n0 0 0 0\n", nullptr,
                    "a.node, line 1: ", "more than a file of 34 bytes"},
@@ -100,7 +101,6 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenFile{FOUR_NODES "3 0 0 0 0", nullptr, "a.node, line 5: ", "there are 5 numbers"},
         BrokenFile{FOUR_NODES "3 0 0 x", nullptr, "a.node, line 5: ", "z is \"x\""},
         BrokenFile{FOUR_NODES "3 0 nan 1", nullptr, "a.node, line 5: ", "y is \"nan\""},
-        BrokenFile{FOUR_NODES "3 1e999 0 1", nullptr, "a.node, line 5: ", "x is \"1e999\""},
         BrokenFile{FOUR_NODES "3 -2e9 0 1", nullptr,
                    "a.node, line 5: ", "x is \"-2e9\"; give a number from -1e9 to 1e9"},
         BrokenFile{FOUR_NODES "4 0 0 1", nullptr, "a.node, line 5: ", "node 4 is where node 3 is expected"},
@@ -158,14 +158,6 @@ TEST(TetMesh, OfTwoTetrahedraIsCountedRight) {
   EXPECT_DOUBLE_EQ(volume_of(mesh), 1.0 / 6 + 1.0 / 3);
 }
 
-TEST(TetMesh, TheSmallestDihedralAngleIsTheKnownOne) {
-  const TetMesh regular = parse("4 3\n0 1 1 1\n1 1 -1 -1\n2 -1 1 -1\n3 -1 -1 1\n", "1 4\n0 0 1 3 2\n");
-  EXPECT_NEAR(smallest_dihedral_angle(regular), 70.528779, 1e-6);
-  // At the edges of its large face a corner of a cube has the angle whose cosine is 1 / sqrt(3).
-  const TetMesh corner = parse("4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "1 4\n0 0 1 2 3\n");
-  EXPECT_NEAR(smallest_dihedral_angle(corner), 54.735610, 1e-6);
-}
-
 TEST(TetMesh, TheSmallestDihedralAngleIsFoundAtWhicheverEdgeItIs) {
   // Legs of 1, 2 and 3 along the axes. Three angles are right; the large face, whose normal is (1, 1/2, 1/3)
   // of length 7/6, has those of cosines 6/7, 3/7 and 2/7 to the others. Either sense of the nodes has the
@@ -195,52 +187,48 @@ TEST(MeshDefect, OfAFlatTetrahedronIsByItsLongestEdgeCubed) {
   }
 }
 
-/// A body of Hong et al., Table 2: its published numbers (a third of the published springs) and the
-/// parameters that a search found to give a mesh with exactly these.
-struct Body {
-  const char* name;
-  std::size_t nodes, edges;
-  std::int64_t euler_characteristic;
-  Shape shape;
-  InteriorPoints interior;
+/// A body of Hong et al., Table 2: its published numbers, and the shape in its scene, whose parameters a
+/// search found to give a mesh with exactly these.
+class TableTwoBody : public MeshTest, public testing::WithParamInterface<const char*> {
+ protected:
+  TableTwoBody() {
+    const auto bodies = published_bodies();
+    published_ = *std::ranges::find(bodies, GetParam(), &PublishedBody::scene);
+    const SceneSpec spec = find_scene(GetParam());
+    const auto take = [&](const auto& shape) {
+      if constexpr (requires { shape.interior; }) {
+        shape_ = shape.solid;
+        interior_ = shape.interior;
+      }
+    };
+    std::visit(take, std::get<BodiesSpec>(spec.content).list.at(0).shape);
+  }
+  TetMesh mesh() const { return shape_mesh(shape_, interior_); }
+
+  PublishedBody published_;
+  Shape shape_;
+  InteriorPoints interior_;
 };
 
-const std::array<Body, 9> bodies{{
-    {"box_small", 700, 4307, 1, BoxShape{{0.13, 0.13, 0.13}, {7, 7, 7}}, {404, 1352, 0.1, 0.6}},
-    {"box_medium", 1579, 10005, 1, BoxShape{{0.18, 0.18, 0.18}, {9, 10, 10}}, {1017, 710, 0.1, 0.65}},
-    {"box_large", 2941, 19470, 1, BoxShape{{0.22, 0.22, 0.22}, {10, 10, 10}}, {2339, 1047, 0.08, 0.6}},
-    {"sphere_small", 726, 4715, 1, SphereShape{0.09, 4}, {564, 1453, 0.1, 0.65}},
-    {"sphere_medium", 1599, 10837, 1, SphereShape{0.12, 5}, {1347, 1061, 0.25, 0.65}},
-    {"sphere_large", 3002, 20217, 1, SphereShape{0.145, 6}, {2640, 1182, 0.1, 0.6}},
-    {"torus_small", 620, 3690, 0, TorusShape{0.105, 0.031, 30, 9}, {350, 1494, 0.1, 0.6}},
-    {"torus_medium", 962, 5847, 0, TorusShape{0.12, 0.036, 36, 11}, {566, 114, 0.1, 0.6}},
-    {"torus_large", 1977, 13011, 0, TorusShape{0.155, 0.05, 32, 11}, {1625, 1485, 0.16, 0.65}},
-}};
-
-void PrintTo(const Body& body, std::ostream* out) { *out << body.name; }
-
-class TableTwoBody : public MeshTest, public testing::WithParamInterface<Body> {};
-
 TEST_P(TableTwoBody, HasThePublishedNodesAndAThirdOfThePublishedSprings) {
-  const Body& body = GetParam();
-  const ShapePoints points = points_of(body.shape, body.interior);
-  const TetMesh mesh = shape_mesh(body.shape, body.interior);
-  EXPECT_EQ(mesh.nodes.size(), body.nodes);
-  EXPECT_EQ(edges_of(mesh).size(), body.edges);
-  EXPECT_EQ(euler_characteristic(mesh), body.euler_characteristic);
+  const ShapePoints points = points_of(shape_, interior_);
+  const TetMesh mesh = this->mesh();
+  EXPECT_EQ(mesh.nodes.size(), published_.nodes);
+  EXPECT_EQ(3 * edges_of(mesh).size(), published_.springs);
+  EXPECT_EQ(euler_characteristic(mesh), published_.object == "torus" ? 0 : 1);
   EXPECT_FALSE(find_defect(mesh));
   EXPECT_NEAR(volume_of(mesh), volume_of(points.surface), 1e-9 * volume_of(points.surface));
 
-  EXPECT_EQ(point_count(body.shape, body.interior), body.nodes);
+  EXPECT_EQ(point_count(shape_, interior_), published_.nodes);
 
   // The order of the nodes: surface points, then interior points.
-  ASSERT_EQ(points.surface.points.size() + points.interior.size(), body.nodes);
+  ASSERT_EQ(points.surface.points.size() + points.interior.size(), published_.nodes);
   EXPECT_TRUE(std::equal(points.surface.points.begin(), points.surface.points.end(), mesh.nodes.begin()));
   EXPECT_TRUE(std::equal(points.interior.rbegin(), points.interior.rend(), mesh.nodes.rbegin()));
 }
 
 TEST_P(TableTwoBody, HasNoVeryShortEdgesAndNoVeryFlatTetrahedra) {
-  const TetMesh mesh = shape_mesh(GetParam().shape, GetParam().interior);
+  const TetMesh mesh = this->mesh();
   double shortest = 1;
   double sum = 0;
   const auto edges = edges_of(mesh);
@@ -266,14 +254,17 @@ TEST_P(TableTwoBody, HasNearlyTheVolumeOfItsShape) {
              torus.minor_radius_m;
     }
   };
-  const double volume = std::visit(Volume{}, GetParam().shape);
-  const double meshed = volume_of(points_of(GetParam().shape, GetParam().interior).surface);
+  const double volume = std::visit(Volume{}, shape_);
+  const double meshed = volume_of(points_of(shape_, interior_).surface);
   EXPECT_LE(meshed, volume * (1 + 1e-9));
   EXPECT_GT(meshed, 0.9 * volume);
 }
 
-INSTANTIATE_TEST_SUITE_P(HongEtAl, TableTwoBody, testing::ValuesIn(bodies),
-                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(HongEtAl, TableTwoBody,
+                         testing::Values("box-small", "box-medium", "box-large", "sphere-small",
+                                         "sphere-medium", "sphere-large", "torus-small", "torus-medium",
+                                         "torus-large"),
+                         ByName());
 
 TEST(ShapeMesh, OfMorePointsThanTetGenMeshesIsRefusedBeforeItIsMade) {
   const auto complaint = [](const Shape& shape, const InteriorPoints& interior) {

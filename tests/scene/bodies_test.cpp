@@ -9,10 +9,8 @@
 #include <tuple>
 #include <vector>
 
-#include "geometry/geometry.h"
 #include "mesh/meshing.h"
 #include "mesh/tetgen.h"
-#include "output/tables/suite_tables.h"
 #include "output/tables/table.h"
 #include "scene/builders.h"
 #include "scene/fields/fields.h"
@@ -49,17 +47,6 @@ std::vector<BodyNodes> bodies_in(const SceneSpec& spec) {
   return bodies;
 }
 
-TEST(BodyScenes, OfOneBodyHaveExactlyThePublishedCounts) {
-  const std::vector<PublishedBody> published = published_bodies();
-  ASSERT_EQ(published.size(), 9U);
-  for (const PublishedBody& body : published) {
-    const SceneCounts counts = counts_of(find_scene(body.scene()));
-    EXPECT_EQ(counts.nodes, body.nodes) << body.scene();
-    EXPECT_EQ(counts.springs_published, body.springs) << body.scene();
-    EXPECT_EQ(3 * counts.springs_unique, body.springs) << body.scene();
-  }
-}
-
 TEST(BodyScenes, OfSeveralBodiesHaveExactlyThePublishedCounts) {
   std::set<std::tuple<std::uint64_t, std::uint64_t>> published, ours;
   const CsvTable table(source_file("results/published/hong2016_table3.csv"));
@@ -93,6 +80,7 @@ TEST(LeastCounts, AreTheNodesOfAMeshBeforeItIsMadeAndNoMoreThanItsSprings) {
 TEST(BodyScenes, AreBuiltAsStatedAndCounted) {
   for (const SceneSpec& spec : body_scenes()) {
     const SceneCounts counts = counts_of(spec);
+    EXPECT_EQ(counts.springs_published, 3 * counts.springs_unique) << spec.name;
     const auto stated = stated_counts(spec);
     ASSERT_TRUE(stated) << spec.name;
     EXPECT_EQ(stated->nodes, counts.nodes) << spec.name;
@@ -251,19 +239,15 @@ INSTANTIATE_TEST_SUITE_P(
                     BadBodies{"\"shape\": \"tetgen\",", "", "/bodies/list/0/shape", "is missing"},
                     BadBodies{"[1, 2, 3]", "[1, 2]", "/bodies/list/0/centre_m",
                               "is a list: give a list of three numbers"},
-                    BadBodies{"[1, 2, 3]", "[1, 2, 3, 4]", "/bodies/list/0/centre_m", "three numbers"},
                     BadBodies{"[1, 2, 3]", "[1, \"2\", 3]", "/bodies/list/0/centre_m/1",
                               "is the text \"2\": give a number"},
                     BadBodies{"[1, 2, 3]", "[1, 2e7, 3]", "/bodies/list/0/centre_m/1", "is 20000000.0"},
-                    BadBodies{"[1, 2, 3]", "{}", "/bodies/list/0/centre_m", "is an object"},
                     BadBodies{"[1, 2, 3]", "[1, 0.005, 3]", "/bodies/list/0/centre_m/1",
                               "not above the floor at 0: raise it"},
                     BadBodies{"[1, 2, 3]", "[-1e6, 2, 3]", "/bodies/list/0/centre_m",
                               "start at the same place in single precision"},
                     BadBodies{"\"unit_m\": 0.01", "\"unit_m\": 1e-12", "/bodies/list/0",
                               "has a spring of 3e-12 m: springs are from 1e-07 to 1000000 m long"},
-                    BadBodies{"\"unit_m\": 0.01", "\"unit_m\": 1e6", "/bodies/list/0",
-                              "has a spring of 3000000 m"},
                     BadBodies{"[0, 0, 0.5]", "[0, 0, 0]", "/bodies/list/0/turn/axis", "has no direction"},
                     BadBodies{"[{\n", "[{}, {\n", "/bodies/list/0/shape", "is missing"},
                     BadBodies{"[{\n", "[5, {\n", "/bodies/list/0", "is 5: give an object"},

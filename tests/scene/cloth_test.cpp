@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "platform/files.h"
+#include "output/tables/table.h"
 #include "scene/builders.h"
 #include "scene/fields/fields.h"
 #include "scene/scene_file.h"
@@ -27,21 +27,15 @@
 namespace mssim {
 namespace {
 
+using nlohmann::json;
+
 using Size = std::pair<std::uint64_t, std::uint64_t>;  // nodes, published springs
 
 std::set<Size> published_sizes() {
-  std::ifstream file(data_folder() / "published/hong2016_table1.csv");
   std::set<Size> sizes;
-  std::string line;
-  std::getline(file, line);  // integrator,configuration,nodes,springs,ms_per_step
-  while (std::getline(file, line)) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream words(line);
-    std::string integrator, configuration;
-    Size size;
-    words >> integrator >> configuration >> size.first >> size.second;
-    sizes.insert(size);
-  }
+  const CsvTable table(source_file("results/published/hong2016_table1.csv"));
+  for (std::size_t record = 0; record < table.size(); ++record)
+    sizes.emplace(table.count(record, 2), table.count(record, 3));
   return sizes;
 }
 
@@ -81,32 +75,21 @@ TEST(ClothScenes, HaveExactlyTheNodesAndSpringsOfTheSixPublishedOnesAndThreeAreL
             (std::set<Size>{{1'000'000, 11'980'004}, {4'000'000, 47'960'004}, {16'000'000, 191'920'004}}));
 }
 
-/// Expects two cloths to be the same but for their rows and columns.
-void expect_the_same_cloth(const SceneSpec& spec, const SceneSpec& published) {
-  const ClothSpec& cloth = std::get<ClothSpec>(spec.content);
-  const ClothSpec& smaller = std::get<ClothSpec>(published.content);
-  EXPECT_EQ(spec.dt_s, published.dt_s) << spec.name;
-  EXPECT_EQ(cloth.spacing_m, smaller.spacing_m) << spec.name;
-  EXPECT_EQ(cloth.areal_density_kg_per_m2, smaller.areal_density_kg_per_m2) << spec.name;
-  EXPECT_EQ(cloth.ceiling_height_m, smaller.ceiling_height_m) << spec.name;
-  EXPECT_EQ(cloth.ripple.speed_m_per_s, smaller.ripple.speed_m_per_s) << spec.name;
-  EXPECT_EQ(cloth.ripple.height_m, smaller.ripple.height_m) << spec.name;
-  EXPECT_EQ(cloth.ripple.wavelength_m, smaller.ripple.wavelength_m) << spec.name;
-  for (std::size_t kind = 0; kind < cloth.springs.size(); ++kind) {
-    EXPECT_EQ(cloth.springs[kind].stiffness, smaller.springs[kind].stiffness) << spec.name;
-    EXPECT_EQ(cloth.springs[kind].damping, smaller.springs[kind].damping) << spec.name;
-  }
+/// The fields of a cloth's file but what it says of its size.
+json without_size(const SceneSpec& spec) {
+  json fields = json::parse(spec.source);
+  fields.erase("description");
+  fields.at("cloth").erase("rows");
+  fields.at("cloth").erase("columns");
+  return fields;
 }
 
 TEST(ClothScenes, ThatAreLargerThanTheLargestPublishedOneDifferFromItInRowsAndColumnsAlone) {
   const SceneSpec published = find_scene("cloth350k");
-  int larger = 0;
-  for (const SceneSpec& spec : cloths_of_their_own()) {
-    if (counts_of(spec).nodes <= counts_of(published).nodes) continue;
-    ++larger;
-    expect_the_same_cloth(spec, published);
-  }
-  EXPECT_EQ(larger, 3);
+  for (const SceneSpec& spec : cloths_of_their_own())
+    if (counts_of(spec).nodes > counts_of(published).nodes) {
+      EXPECT_EQ(without_size(spec), without_size(published)) << spec.name;
+    }
 }
 
 TEST(ClothScenes, ThatAreSoManyTimesAsWideDifferInColumnsAlone) {
@@ -120,25 +103,17 @@ TEST(ClothScenes, ThatAreSoManyTimesAsWideDifferInColumnsAlone) {
     const ClothSpec &cloth = std::get<ClothSpec>(spec.content), &narrow = std::get<ClothSpec>(base.content);
     EXPECT_EQ(cloth.rows, narrow.rows) << spec.name;
     EXPECT_EQ(cloth.columns, times * narrow.columns) << spec.name;
-    expect_the_same_cloth(spec, base);
+    EXPECT_EQ(without_size(spec), without_size(base)) << spec.name;
   }
-  EXPECT_EQ(wide, 6);
+  EXPECT_GT(wide, 0);
 }
 
-TEST(ClothScenes, AreBuiltWithAsManyNodesAndSpringsAsCounted) {
-  for (const SceneSpec& spec : cloth_scenes_to_build()) {
-    const std::string& name = spec.name;
-    const SceneCounts counts = counts_of(spec);
-    const System system = build_system(spec);
-    EXPECT_EQ(system.nodes(), counts.nodes) << name;
-    EXPECT_EQ(system.springs.size(), counts.springs_unique) << name;
-  }
-}
-
-TEST(ClothScenes, StartInMotionAndStrainedByAFewPercentAtMost) {
+TEST(ClothScenes, AreBuiltAsCountedAndStartInMotionAndStrainedByAFewPercentAtMost) {
   for (const SceneSpec& spec : cloth_scenes_to_build()) {
     const std::string& name = spec.name;
     const System system = build_system(spec);
+    EXPECT_EQ(system.nodes(), counts_of(spec).nodes) << name;
+    EXPECT_EQ(system.springs.size(), counts_of(spec).springs_unique) << name;
     std::set<std::uint32_t> pins(system.pins.begin(), system.pins.end());
     EXPECT_GT(pins.size(), 1U) << name;
     double slowest = 1;
@@ -222,12 +197,6 @@ TEST(BuildCloth, PinsEverySoManyColumnsAndTheLastOfOneRow) {
   EXPECT_THAT(build_cloth(spec).pins, testing::IsEmpty());
 }
 
-TEST(BuildCloth, IsTheSameEveryTime) {
-  const System one = build_system(cloth_spec(20, 30)), other = build_system(cloth_spec(20, 30));
-  EXPECT_EQ(one.start.position, other.start.position);
-  EXPECT_EQ(one.start.velocity, other.start.velocity);
-}
-
 std::string refusal(const SceneSpec& spec) {
   return sentence_of<SceneError>([&] { build_system(spec); });
 }
@@ -260,12 +229,6 @@ TEST(BuildCloth, ObeysTheAddressSpaceLimit) {
   EXPECT_THAT(error,
               testing::MatchesRegex(".*needs at least 0.38 GB of memory, but 0.2[01] GB are available.*"));
   EXPECT_EQ(refusal(spec), "");
-}
-
-TEST(MemoryNeeded, IsAtLeastWhatTheSystemTakes) {
-  const System system = build_system(cloth_spec(40, 50));
-  EXPECT_GT(memory_needed(system.nodes(), system.springs.size()),
-            system.springs.size() * sizeof(Spring) + 2 * system.nodes() * sizeof(Vec3d));
 }
 
 }  // namespace
