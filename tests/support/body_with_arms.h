@@ -272,7 +272,6 @@ struct PersonForm {
 /// How a file says where the person stands.
 struct PersonPose {
   double unit_m = 1;        ///< metres in one unit of the file
-  double size = 1;          ///< factor on all of the person's lengths
   double turn_degrees = 0;  ///< about the upright axis, from facing +z towards +x
   Vec3d shift{};            ///< m, after the turn
   bool z_up = false;        ///< (x, y, z) becomes (x, -z, y): who faced +z faces -y
@@ -486,7 +485,7 @@ inline Surface posed(Surface surface, const PersonPose& pose) {
   for (Vec3d& point : surface.points) {
     point = {std::cos(turn) * point.x + std::sin(turn) * point.z, point.y,
              std::cos(turn) * point.z - std::sin(turn) * point.x};
-    point = pose.size * point + pose.shift;
+    point += pose.shift;
     if (pose.z_up) point = {point.x, -point.z, point.y};
     point = 1 / pose.unit_m * point;
   }

@@ -41,11 +41,6 @@ struct LayeredCloth {
     }
     layers.pairs = layer_pairs(garment);
   }
-  void set_velocity(std::uint32_t panel, const Vec3<float>& speed) {
-    const GarmentPanel& moved = garment.panels[panel];
-    for (std::uint32_t node = moved.first_node; node < moved.first_node + moved.nodes(); ++node)
-      set_node_velocity(node, speed);
-  }
   void set_node_velocity(std::uint32_t node, const Vec3<float>& speed) {
     velocity[0][node] = speed.x;
     velocity[1][node] = speed.y;

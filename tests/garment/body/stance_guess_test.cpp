@@ -66,7 +66,7 @@ TEST(StanceGuess, ArmsThatAreHeldSidewaysAreNoUprightAxis) {
   form.arm_angle_degrees = 88;
   for (const bool z_up : {false, true})
     for (const double degrees : {0.0, 90.0}) {
-      const StanceGuess guess = guess_stance(posed(body_with_arms(form), {1, 1, degrees, {}, z_up}), {});
+      const StanceGuess guess = guess_stance(posed(body_with_arms(form), {1, degrees, {}, z_up}), {});
       const Facing ahead = z_up ? Facing::minus_y : Facing::plus_z;
       EXPECT_EQ(guess.stance.up, z_up ? UpAxis::z : UpAxis::y);
       EXPECT_EQ(guess.stance.facing, degrees == 0 ? ahead : Facing::plus_x);
@@ -79,17 +79,17 @@ TEST(StanceGuess, ABodyThatLooksBetweenTheAxesIsTurned) {
   form.triangles = 4'000;
   const Surface person = body_with_arms(form);
   for (const double degrees : {-44.0, -20.0, 37.0, 135.0, 200.0, 300.0}) {
-    const StanceGuess guess = guess_stance(posed(person, {1, 1, degrees, {0.1, 0, 2}, degrees > 0}), {});
+    const StanceGuess guess = guess_stance(posed(person, {1, degrees, {0.1, 0, 2}, degrees > 0}), {});
     SCOPED_TRACE(degrees);
     EXPECT_THAT(guess.doubts,
                 ElementsAre(HasSubstr("facing: its legs stand off the axes, so it is turned by")));
-    const Surface found = stood_up(posed(person, {1, 1, degrees, {0.1, 0, 2}, degrees > 0}), guess.stance);
+    const Surface found = stood_up(posed(person, {1, degrees, {0.1, 0, 2}, degrees > 0}), guess.stance);
     for (std::size_t p = 0; p < found.points.size(); p += 100) {
       EXPECT_NEAR(found.points[p].x, person.points[p].x, 0.02);
       EXPECT_NEAR(found.points[p].z - found.points[0].z, person.points[p].z - person.points[0].z, 0.03);
     }
   }
-  const Surface askew = posed(person, {1, 1, 30, {}, false});
+  const Surface askew = posed(person, {1, 30, {}, false});
   const StanceGuess given = guess_stance(askew, {{}, {}, Facing::plus_z});
   EXPECT_EQ(given.stance.turn_deg, 0);
   EXPECT_THAT(given.doubts, ElementsAre(HasSubstr("its legs stand 30 degrees off the axis; turn_deg")));

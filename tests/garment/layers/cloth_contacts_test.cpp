@@ -346,20 +346,5 @@ TEST(CountCrossings, CountsTheSameWhicheverWayItIsAsked) {
   EXPECT_GT(all, 100U);
 }
 
-TEST(ClothContactSearch, TellsTheNodesThatHaveGoneThrough) {
-  LayeredCloth cloth;
-  cloth.add(0, 6, 6, level(0, 1));
-  cloth.add(1, 3, 4, level(-0.1, 0.5, 1.2, -1.3));
-  const auto wrong = [&](double reach) { return nodes_on_wrong_side(cloth, reach); };
-  // Outer nodes below the inner panel; inner nodes above the outer one, which reaches from x = 1.2 to 2.7 and
-  // from z = -1.3 to -2.3: one.
-  EXPECT_EQ(wrong(0.11), 12U + 1U);
-  EXPECT_EQ(wrong(0.09), 0U);
-  cloth.layers.mirrored = {0, 1};
-  EXPECT_EQ(wrong(0.11), 0U);
-  cloth.layers.mirrored = {0};
-  EXPECT_EQ(wrong(0.11), 1U);
-}
-
 }  // namespace
 }  // namespace mssim
