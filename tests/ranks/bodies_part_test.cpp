@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <functional>
 #include <random>
 #include <string>
@@ -158,34 +157,6 @@ TEST(BodiesPieces, MeetTheFloorWithinTheStepsOfTheseTests) {
     whole->step(151);
     falling->step(151);
     EXPECT_NE(whole->state().position, falling->state().position) << integrator.name;
-  }
-}
-
-TEST(BodiesPieces, AgreeOnWhoSendsWhat) {
-  for (const Divided& divided : divided_bodies()) {
-    std::vector<BodiesPart> parts;
-    for (int rank = 0; rank < divided.ranks; ++rank) parts.push_back(part_of(divided, rank));
-    std::size_t own = 0, springs = 0;
-    for (int rank = 0; rank < divided.ranks; ++rank) {
-      const BodiesPart& part = parts[static_cast<std::size_t>(rank)];
-      own += part.graph.own;
-      std::size_t ghost = part.graph.own;
-      for (const BodiesPart::Neighbour& here : part.neighbours) {
-        const BodiesPart& other = parts[static_cast<std::size_t>(here.rank)];
-        const auto there = std::ranges::find(other.neighbours, rank, &BodiesPart::Neighbour::rank);
-        ASSERT_NE(there, other.neighbours.end()) << divided.name;
-        ASSERT_EQ(there->edge.size(), here.ghosts);
-        for (std::size_t i = 0; i < here.ghosts; ++i, ++ghost)
-          EXPECT_EQ(part.system.start.position[ghost], other.system.start.position[there->edge[i]]);
-      }
-      EXPECT_EQ(ghost, part.system.nodes());
-      for (const Spring& spring : part.system.springs) {
-        EXPECT_LT(std::min(spring.first, spring.second), part.graph.own) << "between ghosts";
-        springs += (spring.first < part.graph.own ? 1U : 0U) + (spring.second < part.graph.own ? 1U : 0U);
-      }
-    }
-    EXPECT_EQ(own, divided.bodies.nodes());
-    EXPECT_EQ(springs, 2 * divided.bodies.springs.size()) << "each is felt at both ends, once";
   }
 }
 
