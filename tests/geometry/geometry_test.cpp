@@ -150,11 +150,10 @@ std::string grid_complaint(const PixelGrid& grid) {
 TEST(DepthRaster, GridsThatCannotBeAreNamed) {
   EXPECT_EQ(grid_complaint({0, 0, 1, 1, most_pixels_a_side}), "");
   EXPECT_THAT(grid_complaint({0, 0, 0, 8, 8}), HasSubstr("pixels of 0 m; give a positive size"));
-  EXPECT_THAT(grid_complaint({0, 0, -1, 8, 8}), HasSubstr("pixels of -1 m"));
   EXPECT_THAT(grid_complaint({0, std::numeric_limits<double>::infinity(), 1, 8, 8}),
               HasSubstr("begins at x = 0 m, y = inf m; give finite numbers"));
   EXPECT_THAT(grid_complaint({0, 0, 1, 0, 8}), HasSubstr("0 x 8 pixels; give 1 to 8192 each way"));
-  EXPECT_THAT(grid_complaint({0, 0, 1, 8, 8193}), HasSubstr("8 x 8193 pixels"));
+  EXPECT_THAT(grid_complaint({0, 0, 1, 8, most_pixels_a_side + 1}), HasSubstr("8 x 8193 pixels"));
 }
 
 }  // namespace
