@@ -48,6 +48,10 @@ class Expected:
             np.add.at(count, trace.springs[:, end], 1)
         return np.concatenate(((total / count)[self.node if node is None else node], np.zeros(len(self.body[0]))))
 
+    def part(self, node):
+        parts = [part for part, (_, rows, columns) in enumerate(self.trace.grids) for _ in range(rows * columns)] or [0] * self.trace.nodes()
+        return [*np.array(parts)[node], *[-1] * len(self.body[0])]
+
     def require_triangles(self, triangles, points, what):
         """The same, whatever corner each begins with; those of bodies point outwards."""
         ordered = lambda list: np.array(sorted(map(tuple, np.sort(list, axis=1).tolist())))
@@ -73,6 +77,7 @@ def check_meshio(meshio, expected):
         require(np.array_equal(velocity, expected.velocity(frame)), f"meshio: {name}.ply: velocity")
         require(np.allclose(ply.point_data["strain"], expected.strain(frame), rtol=1e-5, atol=1e-9), f"meshio: {name}.ply: strain")
         require(np.array_equal(ply.point_data["node"], [*expected.node, *[-1] * len(expected.body[0])]), f"meshio: {name}.ply: node")
+        require(np.array_equal(ply.point_data["part"], expected.part(expected.node)), f"meshio: {name}.ply: part")
 
 
 def check_vtk(vtk, expected):
@@ -98,8 +103,7 @@ def check_vtk(vtk, expected):
             require(np.array_equal(values["velocity"], expected.velocity(frame, node)), f"{what}: velocity")
             require(np.allclose(values["strain"], expected.strain(frame, node), rtol=1e-5, atol=1e-9), f"{what}: strain")
             require(np.array_equal(values["node"][:trace.nodes()], np.arange(trace.nodes())), f"{what}: node")
-            parts = [part for part, (_, rows, columns) in enumerate(trace.grids) for _ in range(rows * columns)] or [0] * trace.nodes()
-            require(np.array_equal(values["part"], parts + [-1] * len(expected.body[0])), f"{what}: part")
+            require(np.array_equal(values["part"], expected.part(np.arange(trace.nodes()))), f"{what}: part")
             kinds = {grid.GetCellType(cell) for cell in range(grid.GetNumberOfCells())}
             require(kinds == {vtk.VTK_TRIANGLE if solid is None else vtk.VTK_TETRA}, f"{what}: kinds of cells")
             cells = arrays(grid.GetCells().GetConnectivityArray())

@@ -102,11 +102,14 @@ class Trace : public TemporaryFolderTest {
  protected:
   std::filesystem::path file() const { return folder() / "run.h5"; }
   std::filesystem::path part() const { return temporary_of(file()); }
-  void write(int frames) const {
-    H5mdTrace trace(file(), system_, header());
-    for (int frame = 0; frame < frames; ++frame) write_frame(trace, system_, frame);
+  void write(const System& system, int frames, const Surface& body = {}, bool in_double = false) const {
+    TraceHeader head = header();
+    head.in_double = in_double;
+    H5mdTrace trace(file(), system, head, body);
+    for (int frame = 0; frame < frames; ++frame) write_frame(trace, system, frame);
     trace.close();
   }
+  void write(int frames) const { write(system_, frames); }
   const System system_ = small_cloth(cloth_rows, cloth_columns);
 };
 

@@ -207,58 +207,6 @@ TEST_F(ResultFiles, StayAsTheyWereWhenANumberIsNotFinite) {
   EXPECT_EQ(text_of(folder() / "timings.csv") + text_of(folder() / "benchmark.json"), before);
 }
 
-TEST_F(ResultFiles, AreWrittenByOneAtATime) {
-  const auto open = [&] {
-    return ResultFolder(folder() / "out", made_up_provenance(), paper_tables(legend, published_tables()));
-  };
-  {
-    ResultFolder first = open();
-    const ResultFolder moved = std::move(first);
-    EXPECT_THAT(sentence_of<WriteError>([&] { open(); }),
-                HasSubstr("another mssim is writing into " + (folder() / "out").string()));
-  }
-  EXPECT_FALSE(open().has_rows());
-}
-
-TEST_F(ResultFiles, AreReplacedWhenThereIsARowAndWithNothingElse) {
-  {
-    ResultFolder results(folder(), made_up_provenance(), paper_tables(legend, published_tables()));
-    ResultRow program = failed_row("mine.py", "failed: out of cake");
-    program.program_output = "cake";
-    results.begin();
-    results.write(std::vector{measured_row("serial", 0.5, 1.0), program});
-  }
-  const fs::path output = folder() / programs_name / "cloth2500-mine.py-semi-euler.txt";
-  EXPECT_EQ(text_of(output), "cake");
-  for (const std::string_view table : table_names) put(std::string(table) + ".csv", "old");
-  const fs::path notes = put("notes.txt", "mine"), theirs = put("programs/mine/more.txt", "mine");
-  Provenance provenance = made_up_provenance();
-  provenance.started_utc = "2026-02-01T12:00:00Z";
-  const auto replace = [&](std::vector<ResultRow> rows) {
-    ResultFolder results(folder(), provenance, paper_tables(legend, published_tables()));
-    results.replace_results();
-    results.begin();
-    EXPECT_EQ(text_of(folder() / "provenance.json"), provenance_text(made_up_provenance()) + '\n');
-    EXPECT_EQ(read_results(folder()).size(), 2U);
-    rows[0].scene = "my-own";
-    rows[0].nodes = 2501;  // which no table has
-    results.write(rows);
-  };
-  ResultRow bad = measured_row("openmp", 0.25, 1.0);
-  bad.energy_drift = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(replace({bad}), std::invalid_argument);
-  EXPECT_EQ(read_results(folder()).size(), 2U);
-  replace({measured_row("openmp", 0.25, 1.0)});
-  EXPECT_EQ(read_results(folder()).size(), 1U);
-  EXPECT_EQ(text_of(folder() / "provenance.json"), provenance_text(provenance) + '\n');
-  EXPECT_FALSE(fs::exists(output));
-  EXPECT_FALSE(fs::exists(folder() / "table1.md"));
-  for (const std::string_view table : table_names)
-    EXPECT_FALSE(fs::exists(folder() / (std::string(table) + ".csv"))) << table;
-  EXPECT_EQ(text_of(notes), "mine");
-  EXPECT_EQ(text_of(theirs), "mine");
-}
-
 TEST_F(ResultFiles, GoIntoNoFolderThatALinkLeadsTo) {
   fs::create_directory(folder() / "elsewhere");
   fs::create_directory(folder() / "out");
@@ -300,14 +248,6 @@ TEST(FileStems, AreTheNamesOfARowAndUnambiguousAndShortEnough) {
     EXPECT_LE(stem.size(), 240U);
     EXPECT_NO_THROW(nlohmann::json(stem).dump()) << "a letter is cut";
   }
-}
-
-TEST_F(ResultFiles, CannotGoWhereAFileIs) {
-  put("taken", "a file");
-  EXPECT_THROW(
-      ResultFolder(folder() / "taken", made_up_provenance(), paper_tables(legend, published_tables())),
-      WriteError);
-  EXPECT_EQ(text_of(folder() / "taken"), "a file");
 }
 
 }  // namespace

@@ -66,39 +66,6 @@ TEST(Painter, ShowsAllForWhichThereIsRoomFromTheSamePlace) {
   EXPECT_NE(painter.picture_of(start), close_up);
 }
 
-TEST(Painter, GivesEachBodyAColour) {
-  const System system = two_solid_blocks();
-  const TraceContent content = content_of(system);
-  Painter painter(content, system.start.position, options());
-  painter.make_room_for(system.start.position);
-  const Picture both = painter.picture_of(system.start.position);
-  const System alone = solid_block(4, 5, 3);
-  const TraceContent content_alone = content_of(alone);
-  Painter painter_alone(content_alone, alone.start.position, options());
-  painter_alone.make_room_for(alone.start.position);
-  EXPECT_GT(differing(both, painter_alone.picture_of(alone.start.position)), 100U);
-}
-
-TEST(Painter, ShowsStrainWhereSpringsAreStretched) {
-  const System system = cloth_system(12, 15);
-  const TraceContent content = content_of(system);
-  const std::vector<Vec3d>& start = system.start.position;
-  std::vector<Vec3d> stretched = start;
-  for (Vec3d& position : stretched) position.x *= 1.05;
-  Painter painter(content, start, options(ColourBy::strain));
-  painter.make_room_for(start);
-  painter.make_room_for(stretched);
-  // The red of stretched springs is hardly there at rest. The legend, above to the right, has both colours.
-  const auto red = [](const Picture& picture) {
-    std::size_t count = 0;
-    for (std::uint32_t y = 0; y < picture.height; ++y)
-      for (std::uint32_t x = 0; x < picture.width / 2; ++x)
-        count += picture.at(x, y).red > picture.at(x, y).blue + 40 ? 1U : 0U;
-    return count;
-  };
-  EXPECT_GT(red(painter.picture_of(stretched)), 10 * (1 + red(painter.picture_of(start))));
-}
-
 TEST(Painter, StandsThingsOnTheFloorThatTheSceneStates) {
   const System system = solid_block(4, 4, 4);
   TraceContent content = content_of(system);
@@ -185,17 +152,6 @@ Surface surface_of(const Skin& skin, const std::vector<Vec3d>& position) {
   return surface;
 }
 
-TEST(Skin, OfAClothIsTwoTrianglesACell) {
-  const System system = cloth_system(4, 6);
-  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
-  EXPECT_EQ(skin.node.size(), 24U);
-  EXPECT_EQ(skin.triangles.size(), 2U * 3 * 5);
-  EXPECT_EQ(skin.parts, std::vector<std::string>{"cloth"});
-  std::set<std::uint32_t> used;
-  for (const auto& triangle : skin.triangles) used.insert(triangle.begin(), triangle.end());
-  EXPECT_EQ(used.size(), 24U);
-}
-
 TEST(Skin, OfBodiesClosesAroundThem) {
   const System system = solid_block(3, 4, 5);
   const Skin skin = skin_of(shape_of(system.topology), system.start.position);
@@ -223,14 +179,6 @@ TEST(Skin, HasAPointForEachSideOfASharpEdge) {
   for (const auto& [node, count] : points) ++nodes_with[count];
   EXPECT_EQ(nodes_with[3], 8U) << "corners of the block";
   EXPECT_EQ(skin.node.size(), 3U * 8 + 2 * nodes_with[2] + nodes_with[1]);
-}
-
-TEST(Skin, KeepsBodiesApart) {
-  const System system = two_solid_blocks();
-  const Skin skin = skin_of(shape_of(system.topology), system.start.position);
-  EXPECT_EQ(skin.parts, (std::vector<std::string>{"body 1", "body 2"}));
-  for (std::size_t point = 0; point < skin.node.size(); ++point)
-    EXPECT_EQ(skin.part[point], skin.node[point] < solid_block(4, 5, 3).nodes() ? 0U : 1U);
 }
 
 // Pictures of small scenes, pixel by pixel: they look as they did, and within one level of a channel alike on

@@ -34,15 +34,10 @@ std::string problem_of(const std::filesystem::path& trace) {
 
 class TraceDamage : public Trace {
  protected:
-  void write_system(const System& system, const Surface& body = {}) const {
-    H5mdTrace trace(file(), system, header(), body);
-    for (int frame = 0; frame < 3; ++frame) write_frame(trace, system, frame);
-    trace.close();
-  }
   /// The problem of the trace of a system after a change to its file.
   template <class Change>
   std::string after(const System& system, const Change& change, const Surface& body = {}) const {
-    write_system(system, body);
+    write(system, 3, body);
     {
       const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
       change(h5.get());
@@ -72,7 +67,7 @@ class TraceDamage : public Trace {
 };
 
 TEST_F(TraceDamage, IsSaidOfFilesThatEndEarly) {
-  write_system(two_panels(), small_tetrahedron());
+  write(two_panels(), 3, small_tetrahedron());
   const std::string bytes = text_of(file());
   constexpr std::size_t step = 997;
   for (std::size_t length = 0; length < bytes.size(); length += step) {
@@ -83,7 +78,7 @@ TEST_F(TraceDamage, IsSaidOfFilesThatEndEarly) {
 
 TEST_F(TraceDamage, OfAnyByteGivesASentenceOrNothingElseThanWasWritten) {
   for (const System& system : {system_, solid_block(2, 2, 2), two_panels()}) {
-    write_system(system);
+    write(system, 3);
     const std::string bytes = text_of(file());
     std::mt19937 random(1);
     for (int trial = 0; trial < 60; ++trial) {
@@ -105,7 +100,7 @@ TEST_F(TraceDamage, OfAnyByteGivesASentenceOrNothingElseThanWasWritten) {
 }
 
 TEST_F(TraceDamage, OfAChecksumIsSaid) {
-  write_system(system_);
+  write(3);
   std::string bytes = text_of(file());
   haddr_t address = 0;
   {

@@ -16,34 +16,20 @@ using testing::HasSubstr;
 
 class TraceReading : public Trace {
  protected:
-  void write_system(const System& system, int frames, bool in_double, const Surface& body = {}) const {
-    TraceHeader head = header();
-    head.in_double = in_double;
-    H5mdTrace trace(file(), system, head, body);
-    for (int frame = 0; frame < frames; ++frame) write_frame(trace, system, frame);
-    trace.close();
-  }
+  static constexpr int frames = 3;
 
   /// Writes frames and expects all that a trace says of any system to come back.
   TraceReader read_back(const System& system, bool in_double, const Surface& body = {}) const {
-    constexpr int frames = 3;
-    write_system(system, frames, in_double, body);
+    write(system, frames, body, in_double);
     TraceReader reader(file());
+    expect_content(reader, system, in_double);
+    return reader;
+  }
+  static void expect_content(const TraceReader& reader, const System& system, bool in_double) {
     const TraceContent& content = reader.content();
-    TraceHeader head = header();
-    head.in_double = in_double;
-    const TraceContent written = trace_content_of(system, head, body);
-    EXPECT_EQ(content.shape.kind, written.shape.kind);
-    EXPECT_EQ(content.springs, written.springs);
-    EXPECT_EQ(content.rest_length, written.rest_length);
-    EXPECT_EQ(content.body.triangles, written.body.triangles);
-    EXPECT_EQ(content.body.points.size(), written.body.points.size());
-    EXPECT_EQ(content.nodes, written.nodes);
-    EXPECT_EQ(content.scene_json, written.scene_json);
-    EXPECT_EQ(content.backend, written.backend);
-    EXPECT_EQ(content.integrator, written.integrator);
-    EXPECT_EQ(content.dt_s, written.dt_s);
-    EXPECT_EQ(content.in_double, written.in_double);
+    EXPECT_EQ(content.backend, "openmp");
+    EXPECT_EQ(content.dt_s, header().dt_s);
+    EXPECT_EQ(content.in_double, in_double);
     EXPECT_EQ(content.nodes, system.nodes());
     EXPECT_EQ(content.scene_json, header().scene_json);
     EXPECT_EQ(content.integrator, "rk4");
@@ -62,7 +48,6 @@ class TraceReading : public Trace {
       EXPECT_EQ(reader.positions(static_cast<std::size_t>(frame)), state.position);
       EXPECT_EQ(reader.velocities(static_cast<std::size_t>(frame)), state.velocity);
     }
-    return reader;
   }
 
   std::string refusal(const std::filesystem::path& trace, bool by_system = false) const {
@@ -204,8 +189,7 @@ TEST_F(TraceReading, RefusesWhatOtherProgramsWrote) {
 }
 
 TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
-  constexpr int frames = 3;
-  write_system(system_, frames, false);
+  write(frames);
   const std::string particles = "/particles/cloth";
   const auto repack = [&](const std::string& path, hid_t type, std::vector<hsize_t> chunk, bool deflated) {
     const Hdf5File h5(H5Fopen(file().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
@@ -247,20 +231,8 @@ TEST_F(TraceReading, TakesWhatOtherProgramsRepacked) {
   others("/h5md/creator", "name", text.get(), text.get(), &creator);
 
   const TraceReader reader(file());
-  EXPECT_EQ(reader.content().step, (std::vector<std::int64_t>{0, 10, 20}));
-  EXPECT_EQ(reader.content().dt_s, dt_s);
+  expect_content(reader, system_, false);
   EXPECT_EQ(reader.content().shape.sheets.at(0).rows, cloth_rows);
-  ASSERT_EQ(reader.content().springs.size(), system_.springs.size());
-  for (std::size_t s = 0; s < system_.springs.size(); ++s) {
-    EXPECT_EQ(reader.content().springs[s], (std::array{system_.springs[s].first, system_.springs[s].second}));
-    EXPECT_EQ(reader.content().rest_length[s], system_.springs[s].rest_length);
-  }
-  for (int frame = 0; frame < frames; ++frame) {
-    State state = state_at(system_, frame);
-    round_to_single(state);
-    EXPECT_EQ(reader.positions(static_cast<std::size_t>(frame)), state.position);
-    EXPECT_EQ(reader.velocities(static_cast<std::size_t>(frame)), state.velocity);
-  }
 }
 
 TEST_F(TraceReading, RefusesATraceWithoutFrames) {
