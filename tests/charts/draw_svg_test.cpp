@@ -93,31 +93,6 @@ TEST_F(DrawSvg, HasNoColourOfLightPagesAndNoSize) {
   }
 }
 
-TEST_F(DrawSvg, ChartsOfOnePageShareNoId) {
-  Chart other = small_chart(ChartForm::bars);
-  other.id = "other";
-  const std::string page =
-      drawn(small_chart(ChartForm::bars)) + drawn(small_chart(ChartForm::lines)) + drawn(other);
-  std::multiset<std::string> ids;
-  const std::string before = " id=\"";
-  for (std::size_t at = 0; (at = page.find(before, at)) != std::string::npos;) {
-    at += before.size();
-    ids.insert(page.substr(at, page.find('"', at) - at));
-  }
-  EXPECT_GE(ids.size(), 13U);
-  for (const std::string& id : ids) {
-    EXPECT_TRUE(id.starts_with("small") || id.starts_with("other")) << id;
-    if (id.starts_with("small")) continue;  // there are two of these
-    EXPECT_EQ(ids.count(id), 1U) << id;
-  }
-  // What is referred to is there.
-  for (const std::string reference : {"href=\"#", "url(#"})
-    for (std::size_t at = 0; (at = page.find(reference, at)) != std::string::npos;) {
-      at += reference.size();
-      EXPECT_NE(ids.count(page.substr(at, page.find_first_of("\")", at) - at)), 0U);
-    }
-}
-
 TEST_F(DrawSvg, MarksAreSignsInTheColourOfTheText) {
   Chart chart = small_chart(ChartForm::lines);
   chart.remarks = {"What <crosses> are"};
@@ -192,11 +167,6 @@ TEST_F(DrawSvg, ALineHasAGapWhereAValueIsMissing) {
   const std::string d = svg.substr(line, svg.find("/>", line) - line);
   EXPECT_EQ(count(d, "M"), 3U) << "the sample, and two pieces";
   EXPECT_EQ(count(d, "L"), 1U);
-}
-
-TEST_F(DrawSvg, IsTheSameEachTime) {
-  const Chart chart = small_chart(ChartForm::lines);
-  EXPECT_EQ(drawn(chart), drawn(chart));
 }
 
 TEST_F(DrawSvg, NoTextIsAnElement) {

