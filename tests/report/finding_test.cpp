@@ -209,20 +209,6 @@ TEST(RowFindings, NameSpeedUpsThatMayBeOne) {
   EXPECT_EQ(outcome(row_findings(rows, {}), "There are no speed-ups"), Outcome::fact);
 }
 
-TEST(RowFindings, NameDevices) {
-  std::vector<ResultRow> rows{small("serial", 1), small("opencl", 0.5)};
-  const auto names = [&] {
-    const std::vector<Finding> findings = row_findings(rows, made_up_provenance());
-    return std::ranges::any_of(findings, [](const Finding& finding) {
-      return finding.sentence.find("`opencl` on pthread-A Processor, the same processor") !=
-             std::string::npos;
-    });
-  };
-  EXPECT_FALSE(names());
-  rows[1].device = "pthread-A Processor";
-  EXPECT_TRUE(names());
-}
-
 TEST(GarmentFindings, SayWhetherParallelisationIsFaster) {
   std::vector<ResultRow> rows{small("serial", 1), small("openmp", 0.5)};
   EXPECT_TRUE(garment_findings(rows).empty());

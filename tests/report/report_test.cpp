@@ -14,8 +14,10 @@
 namespace mssim {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 class ReportFolderTest : public TemporaryFolderTest {
  protected:
@@ -260,13 +262,11 @@ TEST(Html, TurnsMarksIntoElements) {
 TEST(Html, PutsTablesIntoBoxes) {
   Table table{{{"na<me"}, {"ms", Align::by_content, " ms"}}, {}};
   table.rows = {{"a&b", 1.5}, {"c", Cell()}};
-  EXPECT_EQ(
-      html_of(table),
-      "<div class=\"wide\" tabindex=\"0\"><table>\n<thead><tr><th scope=\"col\">na&lt;me</th><th "
-      "scope=\"col\" "
-      "class=\"number\">ms</th></tr></thead>\n<tbody>\n<tr><th scope=\"row\">a&amp;b</th><td "
-      "class=\"number\">1.50 ms</td></tr>\n<tr><th scope=\"row\">c</th><td class=\"number\">–</td></tr>\n"
-      "</tbody>\n</table></div>\n");
+  EXPECT_THAT(html_of(table),
+              AllOf(StartsWith("<div class=\"wide\" tabindex=\"0\"><table>\n"),
+                    HasSubstr("<th scope=\"col\">na&lt;me</th>"),
+                    HasSubstr("<th scope=\"row\">a&amp;b</th><td class=\"number\">1.50 ms</td>"),
+                    HasSubstr("<td class=\"number\">–</td>")));
 }
 
 TEST(Html, ShiftsHeadings) {
@@ -312,18 +312,6 @@ TEST(ReportPage, EscapesNamesOfScenesAndFolders) {
   const std::string page = report_page(input_of(folder));
   EXPECT_FALSE(has(page, "<script>"));
   for (int i = 1; i <= 6; ++i) EXPECT_TRUE(has(page, "&lt;script&gt;alert(" + std::to_string(i) + ")")) << i;
-}
-
-TEST(ReportPage, SaysWhatIsNotThere) {
-  ReportFolder folder;
-  folder.name = "empty";
-  const std::string page = report_page(input_of(folder));
-  for (const char* sentence :
-       {"No folder says on which machine", "There is no row to judge", "There are no rows",
-        "No row of this folder belongs into a published table", "No folder has a scene of the papers",
-        "No folder has two sizes", "No folder has rows with a roofline", "No folder has an energy curve",
-        "No folder has a picture", "provenance.json is missing"})
-    EXPECT_TRUE(has(page, sentence)) << sentence;
 }
 
 TEST(ReportPage, ShowsAGuideSceneByScene) {
