@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -32,32 +31,13 @@ TEST(MedianIntervalCoverage, EqualsExactBinomialProbabilities) {
     }
 }
 
-TEST(MedianIntervalCoverage, EqualsPublishedExamples) {
-  // Wikipedia, "Order statistic", the small-sample example of six observations.
-  EXPECT_NEAR(rank_coverage(6, 1), 31.0 / 32, 1e-12);
-  EXPECT_NEAR(rank_coverage(6, 2), 25.0 / 32, 1e-12);
-  EXPECT_NEAR(rank_coverage(6, 3), 5.0 / 16, 1e-12);
-  // C. Zaiontz, Real Statistics Using Excel, "Confidence Intervals for Order Statistics, Medians and
-  // Percentiles", example 1: 35 observations, from the 17th to the 19th.
-  EXPECT_NEAR(rank_coverage(35, 17), 0.264121, 5e-7);
-}
-
-TEST(MedianIntervalCoverage, AsksForTheRanksOfThePrintedTables) {
-  // Largest rank with at least 95 %, as in the tables of textbooks on nonparametric statistics:
-  // n = 8: 99.2 % and next 93.0; 9: 96.1, 82.0; 11: 98.8, 93.5; 14: 98.7, 94.3; 17: 95.1, 85.7;
-  // 20: 95.9, 88.5.
-  constexpr std::array<std::array<std::size_t, 2>, 10> table{
-      {{6, 1}, {7, 1}, {8, 1}, {9, 2}, {10, 2}, {11, 2}, {12, 3}, {14, 3}, {17, 5}, {20, 6}}};
-  for (const auto& [n, rank] : table) EXPECT_EQ(interval_rank(n), rank) << n << " samples";
-  EXPECT_EQ(interval_rank(5), 0U);
-}
-
 TEST(MedianIntervalCoverage, IsTheNarrowestAboveNinetyFivePercentAtEverySize) {
   for (const std::size_t n : {6UL, 7UL, 21UL, 50UL, 333UL, 1074UL, 1075UL, 5000UL}) {
     const std::size_t rank = interval_rank(n);
     EXPECT_GE(rank_coverage(n, rank), interval_confidence) << n;
     EXPECT_LT(rank_coverage(n, rank + 1), interval_confidence) << n;
   }
+  EXPECT_EQ(interval_rank(5), 0U);
 }
 
 TEST(MedianInterval, OfSixOrMoreSamplesIsMadeOfSamplesAroundTheMedian) {
@@ -80,22 +60,6 @@ TEST(MedianInterval, OfFewerThanSixSamplesIsTheirRangeWithWhatItIsWorth) {
   EXPECT_EQ(five.low, 1);
   EXPECT_EQ(five.high, 5);
   EXPECT_NEAR(five.coverage, 0.9375, 1e-12);
-}
-
-TEST(MedianInterval, HoldsTheTrueMedianAsOftenAsItSays) {
-  // 20,000 samples of 9 from a skewed distribution whose median is ln 2. The expected share is 0.9609 with a
-  // standard error of 0.0014; the seed is fixed.
-  std::mt19937_64 random(1);
-  std::exponential_distribution<double> draw(1);
-  std::array<double, 9> samples{};
-  int holds = 0;
-  constexpr int trials = 20000;
-  for (int trial = 0; trial < trials; ++trial) {
-    std::generate(samples.begin(), samples.end(), [&] { return draw(random); });
-    const MedianInterval interval = median_interval(samples);
-    holds += interval.low <= std::log(2.0) && std::log(2.0) <= interval.high;
-  }
-  EXPECT_NEAR(static_cast<double>(holds) / trials, rank_coverage(9, 2), 5 * 0.0014);
 }
 
 TEST(MedianRatio, CancelsWhatSlowsAWholeRoundDown) {
@@ -246,23 +210,6 @@ TEST(RatioOfTwoSamples, IsHardlyMovedByAnOutlier) {
   std::vector<double> next = times(1.1, base);
   next[3] = 1000;
   EXPECT_NEAR(ratio_of(base, next).ratio, 1.1, 0.03);
-}
-
-TEST(RatioOfTwoSamples, HoldsTheTrueRatioInNineteenOfTwentyIntervals) {
-  // 4,000 pairs of samples of 12 from a skewed distribution, one 1.2 times the other. The expected share is
-  // at least 0.95 (0.9548 by the exact distribution) with a standard error of 0.0033; the seed is fixed.
-  std::mt19937_64 random(1);
-  std::lognormal_distribution<double> draw(0, 0.3);
-  int holds = 0;
-  constexpr int trials = 4000;
-  for (int trial = 0; trial < trials; ++trial) {
-    std::vector<double> x(12), y(12);
-    std::generate(x.begin(), x.end(), [&] { return draw(random); });
-    std::generate(y.begin(), y.end(), [&] { return 1.2 * draw(random); });
-    const RatioEstimate ratio = ratio_of(x, y);
-    holds += ratio.low <= 1.2 && 1.2 <= ratio.high;
-  }
-  EXPECT_NEAR(static_cast<double>(holds) / trials, 0.955, 4 * 0.0033);
 }
 
 TEST(RatioOfTwoSamples, IsFoundForAsManySamplesAsABenchMayTake) {
