@@ -42,13 +42,6 @@ TEST(ProgressText, SaysNothingOfTimeWhileNobodyKnowsIt) {
   EXPECT_EQ(progress_text(begun, 40, true), "mine   0 %  references");
 }
 
-TEST(ProgressText, KeepsItsPlacesWhateverTheActivity) {
-  Progress other = half;
-  other.activity = "drape";
-  const std::string text = progress_text(half, 80, true);
-  EXPECT_EQ(progress_text(other, 80, true).find("about"), text.find("about"));
-}
-
 // No file that a command writes is another one that it writes or reads.
 
 namespace fs = std::filesystem;

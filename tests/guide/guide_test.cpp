@@ -11,7 +11,10 @@
 namespace mssim {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
 
 /// A point that counts. `cost`: wall seconds a simulated second.
 WorkPoint made_point(std::string_view integrator, double dt_s, double cost, double error,
@@ -64,18 +67,14 @@ TEST(BesideThePaper, SaysWhatBecomesOfTheOrder) {
   EXPECT_THAT(
       beside_the_paper(guide_of({made_point("semi-euler", 1e-4, 10, 1e-3),
                                  made_point("midpoint", 4e-4, 5, 1e-3), made_point("rk4", 2e-3, 2, 1e-3)})),
-      ElementsAre(
-          "On openmp a step of semi-euler, midpoint and rk4 takes 1.00, 2.00 and 4.00 ms; at an error "
-          "of 0.001 a simulated second takes 10.0, 5.00 and 2.00 s with them: rk4 is the cheapest."));
+      ElementsAre(AllOf(HasSubstr("takes 1.00, 2.00 and 4.00 ms"), HasSubstr("takes 10.0, 5.00 and 2.00 s"),
+                        EndsWith("rk4 is the cheapest."))));
   EXPECT_THAT(
       beside_the_paper(guide_of({made_point("semi-euler", 1e-3, 1, 1e-3), made_point("rk4", 1e-3, 4, 1e-4)})),
-      ElementsAre("On openmp a step of semi-euler and rk4 takes 1.00 and 4.00 ms; at an error of 0.001 a "
-                  "simulated second takes 1.00 and 4.00 s with them: the order is the same."));
+      ElementsAre(EndsWith("the order is the same.")));
   EXPECT_THAT(
       beside_the_paper(guide_of({made_point("semi-euler", 1e-3, 1, 1e-2), made_point("rk4", 1e-3, 4, 1e-4)})),
-      ElementsAre("On openmp a step of semi-euler and rk4 takes 1.00 and 4.00 ms; at an error of 0.001 a "
-                  "simulated second takes 4.00 s with rk4, and semi-euler did not reach it: rk4 is the "
-                  "cheapest."));
+      ElementsAre(EndsWith("4.00 s with rk4, and semi-euler did not reach it: rk4 is the cheapest.")));
   EXPECT_THAT(beside_the_paper(guide_of({made_point("semi-euler", 1e-3, 1, 1e-2)})), testing::IsEmpty());
 }
 
@@ -122,20 +121,20 @@ TEST(ParetoFront, HasWhatNothingBeats) {
       made_point("midpoint", 1e-3, 3, 1e-5),    // as fast as rk4, and worse
       made_point("midpoint", 2e-3, 0.5, 1e-1),
   };
-  EXPECT_THAT(front_of(points), testing::ElementsAre(0, 1, 4));
+  EXPECT_THAT(front_of(points), ElementsAre(0, 1, 4));
 }
 
 TEST(ParetoFront, LeavesOutWhatDoesNotCount) {
   EXPECT_THAT(
       front_of({diverged(made_point("rk4", 1e-3, 0.1, 1e-9)),
                 beyond_trust(made_point("rk4", 1e-3, 0.2, 1e-9)), made_point("verlet", 1e-3, 1, 1e-3)}),
-      testing::ElementsAre(2));
+      ElementsAre(2));
   EXPECT_THAT(front_of({}), testing::IsEmpty());
 }
 
 TEST(ParetoFront, KeepsEqualPoints) {
   EXPECT_THAT(front_of({made_point("rk4", 1e-3, 1, 1e-3), made_point("verlet", 1e-3, 1, 1e-3)}),
-              testing::ElementsAre(0, 1));
+              ElementsAre(0, 1));
 }
 
 TEST(StepsAFrame, AreWholeAndNoLonger) {
@@ -162,11 +161,11 @@ TEST(Recommendation, IsTheCheapestThatIsAccurateEnough) {
   EXPECT_EQ(chosen.runner_up, 4U);  // of another integrator
   EXPECT_TRUE(chosen.holds_frames);
   ASSERT_EQ(chosen.sentences.size(), 3U);
-  EXPECT_THAT(chosen.sentences[0], testing::HasSubstr("Take verlet on openmp with a step of 0.0001 s"));
-  EXPECT_THAT(chosen.sentences[0], testing::HasSubstr("167 steps a frame"));
-  EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("60 frames a second hold"));
-  EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("runner-up is rk4 on openmp"));
-  EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("it would win at errors of 1e-06 to below 0.0005."));
+  EXPECT_THAT(chosen.sentences[0], HasSubstr("Take verlet on openmp with a step of 0.0001 s"));
+  EXPECT_THAT(chosen.sentences[0], HasSubstr("167 steps a frame"));
+  EXPECT_THAT(chosen.sentences[1], HasSubstr("60 frames a second hold"));
+  EXPECT_THAT(chosen.sentences[2], HasSubstr("runner-up is rk4 on openmp"));
+  EXPECT_THAT(chosen.sentences[2], HasSubstr("it would win at errors of 1e-06 to below 0.0005."));
 }
 
 /// Each of two methods is the cheaper one for some errors between those for which the other is.
@@ -183,23 +182,23 @@ std::string runner_up_sentence(const std::vector<WorkPoint>& points) {
 TEST(Recommendation, LeavesOutErrorsBetweenThoseForWhichTheRunnerUpIsCheaper) {
   // At 5e-4, say, the winner's own error, it is not.
   EXPECT_THAT(runner_up_sentence(by_turns),
-              testing::EndsWith("it would win at errors of 1e-06 to below 1e-05, 0.0001 to below 0.0005 and "
-                                "0.005 to below 0.02."));
+              EndsWith("it would win at errors of 1e-06 to below 1e-05, 0.0001 to below 0.0005 and "
+                       "0.005 to below 0.02."));
   std::vector<WorkPoint> many = by_turns;
   many.push_back(made_point("rk4", 2e-3, 0.01, 5e-2));
-  EXPECT_THAT(runner_up_sentence(many), testing::EndsWith("0.005 to below 0.02 and some larger ones."));
+  EXPECT_THAT(runner_up_sentence(many), EndsWith("0.005 to below 0.02 and some larger ones."));
 }
 
 TEST(Recommendation, SaysThatTheRunnerUpIsCheaperFromAnErrorOn) {
   EXPECT_THAT(runner_up_sentence({made_point("rk4", 1e-4, 2, 1e-4), made_point("verlet", 1e-4, 0.3, 1e-4),
                                   made_point("rk4", 1e-3, 0.1, 5e-3)}),
-              testing::EndsWith("it would win at errors of 0.005 or more."));
+              EndsWith("it would win at errors of 0.005 or more."));
 }
 
 TEST(Recommendation, TellsNoRangeWhoseEndsAreTheSameInTwoDigits) {
   EXPECT_THAT(
       runner_up_sentence({made_point("rk4", 1e-4, 0.5, 1e-4), made_point("verlet", 1e-4, 0.3, 1.001e-4)}),
-      testing::EndsWith("it would win at errors of about 0.0001."));
+      EndsWith("it would win at errors of about 0.0001."));
 }
 
 TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
@@ -207,8 +206,8 @@ TEST(Recommendation, SaysWhereAFrameTakesTooLong) {
       recommend(std::vector{made_point("verlet", 1e-4, 3, 5e-4)}, {120, 1e-3}, 0.05);
   EXPECT_EQ(chosen.best, 0U);
   EXPECT_FALSE(chosen.holds_frames);
-  EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("120 frames a second do not hold"));
-  EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("No other method"));
+  EXPECT_THAT(chosen.sentences[1], HasSubstr("120 frames a second do not hold"));
+  EXPECT_THAT(chosen.sentences[2], HasSubstr("No other method"));
 }
 
 TEST(Recommendation, CountsWholeStepsForTheTimeOfAFrame) {
@@ -217,7 +216,7 @@ TEST(Recommendation, CountsWholeStepsForTheTimeOfAFrame) {
   const Recommendation chosen =
       recommend(std::vector{made_point("verlet", 1.0 / 150, 0.9, 5e-4)}, {60, 1e-3}, 0.05);
   EXPECT_FALSE(chosen.holds_frames);
-  EXPECT_THAT(chosen.sentences[1], testing::HasSubstr("60 frames a second do not hold (55.6 would)"));
+  EXPECT_THAT(chosen.sentences[1], HasSubstr("60 frames a second do not hold (55.6 would)"));
 }
 
 TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator) {
@@ -225,7 +224,7 @@ TEST(Recommendation, TakesAnotherBackendForRunnerUpWhereThereIsNoOtherIntegrator
                                       made_point("verlet", 1e-4, 3, 5e-4, "serial")};
   const Recommendation chosen = recommend(points, {60, 1e-3}, 0.05);
   EXPECT_EQ(chosen.runner_up, 1U);
-  EXPECT_THAT(chosen.sentences[2], testing::HasSubstr("cheaper at no error"));
+  EXPECT_THAT(chosen.sentences[2], HasSubstr("cheaper at no error"));
 }
 
 TEST(Recommendation, NamesTheNearestWhereNothingIsAccurateEnough) {
@@ -235,8 +234,7 @@ TEST(Recommendation, NamesTheNearestWhereNothingIsAccurateEnough) {
   EXPECT_FALSE(chosen.best);
   EXPECT_EQ(chosen.nearest, 1U);
   ASSERT_EQ(chosen.sentences.size(), 3U);
-  EXPECT_THAT(chosen.sentences[0],
-              testing::HasSubstr("Nothing that was measured keeps the error within 0.0001"));
+  EXPECT_THAT(chosen.sentences[0], HasSubstr("Nothing that was measured keeps the error within 0.0001"));
 }
 
 TEST(Recommendation, SaysThatEverythingDiverged) {

@@ -88,8 +88,6 @@ TEST_F(ChildProcesses, ThatTakeMoreThanTheyMaySayThat) {
   EXPECT_FALSE(run(child).out_of_memory);
 }
 
-TEST_F(ChildProcesses, MayBeNone) { EXPECT_TRUE(run_together({}).empty()); }
-
 TEST(TrialProcess, SaysWhetherWorkEndsAndChangesNothingHere) {
   int here = 0;
   EXPECT_TRUE(ends_in_trial([&] { here = 1; }, 10));

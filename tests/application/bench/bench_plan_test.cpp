@@ -6,15 +6,12 @@
 #include <algorithm>
 #include <set>
 
-#include "application/bench/bench_results.h"
-#include "application/bench/bench_run.h"
 #include "application/bench/suites.h"
 #include "bench/results/result.h"
 #include "integrators/all_integrators.h"
 #include "scene/scene_file.h"
 #include "tests/support/files_fixture.h"
 #include "text/error.h"
-#include "text/text.h"
 
 namespace mssim {
 namespace {
@@ -54,20 +51,6 @@ TEST_F(BenchPlanTest, ExpectsOfABackendItsOwnTime) {
   };
   EXPECT_LT(10 * seconds("openmp"), seconds("serial"));
   EXPECT_GT(seconds("threads-mutex"), seconds("serial"));
-}
-
-TEST_F(BenchPlanTest, OutlivesTheFilesOfItsScenes) {
-  BenchPlan plan = plan_of(options_);
-  put("mine.json", "no scene any more");
-  BenchResults results(plan);
-  TimeBudget budget(plan.time_budget_s, times_of(plan.timed));
-  const StopRequest stop;
-  measure_scenes(plan, budget, stop, results);
-  ASSERT_THAT(results.rows(), SizeIs(1));
-  EXPECT_EQ(results.rows().front().status, "ok");
-  EXPECT_EQ(results.rows().front().nodes, 2500U);
-  ASSERT_THAT(plan.provenance.scenes, SizeIs(1));
-  EXPECT_EQ(plan.provenance.scenes.front().fnv1a_64, fnv1a_64(text_));
 }
 
 TEST_F(BenchPlanTest, RefusesTwoScenesOfOneName) {

@@ -205,13 +205,6 @@ TEST(SecondStretch, MeetsTheFloorAndPassesRightBackends) {
   }
 }
 
-TEST(Verification, FindsAStepOfTheWrongLength) {
-  const System system = low_cloth();
-  const Reference reference = run_reference(system, integrators[0], backend_dt_s);
-  const auto backend = make_serial(system, integrators[0], 1.01 * backend_dt_s, {});
-  EXPECT_TRUE(verify(*backend, system, reference, backend_dt_s).failure);
-}
-
 /// Two nodes of 1 kg, 1 m above each other, and between them a spring of no stiffness that is 2 m long at
 /// rest.
 System two_nodes() {
