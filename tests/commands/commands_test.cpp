@@ -55,8 +55,6 @@ TEST(ChosenFrames, AreAllUnlessAnOptionIsGiven) {
   EXPECT_EQ(chosen_frames({{}, 0.11}, times), Frames{1});
 }
 
-using Frames = std::vector<std::size_t>;
-
 TEST(SpreadOver, GoesFromTheFirstToTheLast) {
   Frames frames;
   for (std::size_t i = 0; i < 31; ++i) frames.push_back(10 + i);

@@ -30,9 +30,6 @@ make() {
 # compare STATUS ARGUMENTS...: mssim compare must exit with STATUS; its results are in $work/out, messages in $work/err
 compare() { ends "$1" compare "${@:2}"; }
 
-# says PATTERN, warns PATTERN: what stands in the results, in the messages
-says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\""; }
-warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\""; }
 
 make base serial=1 openmp=0.1
 make slower serial=1 openmp=0.112

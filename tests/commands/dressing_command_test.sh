@@ -9,8 +9,6 @@ source=$2
 
 # dress STATUS ARGUMENTS...: mssim run must exit with STATUS
 dress() { ends "$1" run "${@:2}"; }
-# value COLUMN: of the row that tells of the dressing
-value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR == 2 { print $c }' "$work/out"; }
 # fit NUMBER: from the lines below it
 fit() { awk -v name="$1" '$1 == name { print $2 }' "$work/out"; }
 misfit() { grep -q "$1" "$work/err" || fail "\"$1\" is not found out"; }

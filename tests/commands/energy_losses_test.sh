@@ -7,16 +7,11 @@ source=$2
 # shellcheck source=tests/support/command_line.sh
 . "$2/tests/support/command_line.sh"
 
-# run ARGUMENTS...: the row goes to $work/row, nothing else than what is written may be said on stderr
+# run ARGUMENTS...: the row goes to $work/out, nothing else than what is written may be said on stderr
 run() {
-  "$mssim" run --backend serial --duration 0.06 --fps 200 "$@" >"$work/row" 2>"$work/err" || fail "mssim run $* exits with $?"
-  cat "$work/row"
+  "$mssim" run --backend serial --duration 0.06 --fps 200 "$@" >"$work/out" 2>"$work/err" || fail "mssim run $* exits with $?"
+  cat "$work/out"
   ! grep -v '^mssim: wrote ' "$work/err" || fail "stderr says $(cat "$work/err")"
-}
-
-# column NAME: that column of the row
-column() {
-  awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$work/row"
 }
 
 # values DATASET: of the trace, one a line
@@ -34,13 +29,13 @@ losses=(damping friction bounce integration)
 for loss in "${losses[@]}"; do
   [ "$(values "/observables/${loss}_loss/value" | wc -l)" -eq 13 ] || fail "the trace has not 13 values of ${loss}_loss"
   in_trace=$(values "/observables/${loss}_loss/value" | tail -1)
-  awk -v a="$in_trace" -v b="$(column "${loss}_loss_j")" 'BEGIN { exit !(a - b <= 1e-3 * (b < 0 ? -b : b) && b - a <= 1e-3 * (b < 0 ? -b : b)) }' ||
-    fail "${loss}_loss ends with $in_trace in the trace and $(column "${loss}_loss_j") in the row"
+  awk -v a="$in_trace" -v b="$(value "${loss}_loss_j")" 'BEGIN { exit !(a - b <= 1e-3 * (b < 0 ? -b : b) && b - a <= 1e-3 * (b < 0 ? -b : b)) }' ||
+    fail "${loss}_loss ends with $in_trace in the trace and $(value "${loss}_loss_j") in the row"
 done
 for loss in damping friction bounce; do
-  awk -v x="$(column "${loss}_loss_j")" 'BEGIN { exit !(x > 0) }' || fail "no ${loss}_loss"
+  awk -v x="$(value "${loss}_loss_j")" 'BEGIN { exit !(x > 0) }' || fail "no ${loss}_loss"
 done
-awk -v x="$(column energy_imbalance)" 'BEGIN { exit !(x < 1e-3 && x > -1e-3) }' || fail "energy_imbalance"
+awk -v x="$(value energy_imbalance)" 'BEGIN { exit !(x < 1e-3 && x > -1e-3) }' || fail "energy_imbalance"
 paste <(values /observables/total_energy/value) <(values /observables/damping_loss/value) \
   <(values /observables/friction_loss/value) <(values /observables/bounce_loss/value) \
   <(values /observables/integration_loss/value) <(values /observables/kinetic_energy/value) |
@@ -53,21 +48,15 @@ paste <(values /observables/total_energy/value) <(values /observables/damping_lo
   fail "the sum over the trace does not stay constant"
 
 run --scene "$work/cloth.json" --losses --energy-curve "$work/curve.csv"
-[ "$(column damping_loss_j)" != - ] || fail "--losses gives an energy curve no losses"
+[ "$(value damping_loss_j)" != - ] || fail "--losses gives an energy curve no losses"
 [ "$(sed -n 2p "$work/curve.csv")" = time_s,kinetic_j,elastic_j,gravitational_j,total_j ] || fail "the curve's header"
 run --scene "$work/cloth.json" --trace "$work/trace.h5"
 if h5dump -n "$work/trace.h5" | grep _loss >/dev/null; then fail "losses in a trace that nobody asked for"; fi
-[ "$(column damping_loss_j) $(column energy_imbalance)" = '- -' ] || fail "losses in a row that nobody asked for"
+[ "$(value damping_loss_j) $(value energy_imbalance)" = '- -' ] || fail "losses in a row that nobody asked for"
 run --scene "$work/cloth.json" --losses
-[ "$(column damping_loss_j)" != - ] || fail "--losses needs a file"
+[ "$(value damping_loss_j)" != - ] || fail "--losses needs a file"
 
 # Who would wait long learns what it costs. The run itself is cut short.
-"$mssim" run --scene cloth2500 --losses --duration 1000 --trace "$work/long.h5" >"$work/row" 2>"$work/err" &
-long=$!
-for ((i = 0; i < 600; ++i)); do
-  grep -q ' s in all' "$work/err" && break
-  sleep 0.1
-done
-kill "$long" 2>/dev/null || true
-wait "$long" || true
-grep -q -- '--losses takes a double-precision step for every step, about [0-9]* s in all' "$work/err" || fail "no word of the cost"
+begins run --scene cloth2500 --losses --duration 1000 --trace "$work/long.h5"
+soon 60 grep -q -- '--losses takes a double-precision step for every step, about [0-9]* s in all' "$work/err" || fail "no word of the cost"
+is_ended 143 TERM

@@ -58,14 +58,8 @@ expect 2 'cut.h5' export cut.h5 --format ply --out never/a.ply
 # A disk that is full, as a limit on the size of files: what stood there before stays.
 for format in obj ply vtkhdf; do
   echo before >"full.$format"
-  status=0
-  (
-    trap '' XFSZ
-    ulimit -f 100
-    exec "$mssim" export cloth.h5 --format "$format" --out "full.$format" --frames last >out 2>err
-  ) || status=$?
-  [ "$status" -eq 4 ] || fail "a full disk gives exit status $status: $(cat err)"
-  grep -q "cannot write full.$format: .* failed: File too large; raise the limit" err || fail "a full disk: $(cat err)"
+  on_full_disk 100 "cannot write full.$format: .* failed: File too large; raise the limit" \
+    export cloth.h5 --format "$format" --out "full.$format" --frames last
   [ "$(cat "full.$format")" = before ] && [ ! -e "full.$format.part" ] || fail "a full disk leaves $(ls full.*)"
 done
 

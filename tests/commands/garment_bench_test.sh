@@ -40,9 +40,8 @@ grep -q '^serial,semi-euler,without,ms_per_iteration,[0-9.e-]*$' jeans/figure6.c
 grep -q '"name": "jeans1k/openmp/semi-euler"' jeans/benchmark.json || fail "benchmark.json"
 
 # The dressing is the one that mssim run shows.
-"$mssim" run --scene jeans1k --backend openmp --threads 1 >out
-iterations=$(awk 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "iterations") c = i } NR == 2 { print $c }' out)
-has jeans/garment.csv dressing_iterations openmp "$iterations"
+ends 0 run --scene jeans1k --backend openmp --threads 1
+has jeans/garment.csv dressing_iterations openmp "$(value iterations)"
 
 # --resume adds rounds and does not dress again; then nothing is left to do.
 dressed=$(column jeans/garment.csv dressing_s serial)$(column jeans/garment.csv dressing_s openmp)
@@ -86,16 +85,9 @@ bench 0 --scene jeans1k --backend serial --integrator semi-euler --time-budget 2
 grep -q '^jeans1k,garment,[0-9]*,[0-9]*,,' out || fail "a garment has a published count"
 
 # Ctrl-C while it dresses ends it soon, and says that there is nothing yet.
-env --default-signal=INT "$mssim" bench --scene jeans64k --backend serial --integrator semi-euler --out stopped >out 2>err </dev/null &
-process=$!
-for ((i = 0; i < 300; ++i)); do
-  if [ -e stopped/provenance.json ]; then break; fi
-  sleep 0.1
-done
+begins bench --scene jeans64k --backend serial --integrator semi-euler --out stopped
+soon 30 test -e stopped/provenance.json || fail "no folder is begun"
 sleep 1
-kill -INT "$process"
-status=0
-wait "$process" || status=$?
-[ "$status" -eq 130 ] || fail "SIGINT gives exit status $status"
+is_ended 130 INT
 grep -q 'nothing was measured yet' err || fail "SIGINT: $(cat err)"
 [ ! -e stopped/timings.csv ] || fail "there are times of what was not timed"

@@ -12,8 +12,6 @@ dress() {
   ends 0 run --scene jeans1k --threads 1 "$@"
   cat out err
 }
-# value COLUMN: of the row that was printed
-value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR == 2 { print $c }' out; }
 # fit: everything printed that does not depend on the clock
 fit() {
   awk 'NR == 1 { for (i = 1; i <= NF; ++i) clock[i] = $i == "wall_s" || $i == "ms_per_iteration" }
@@ -71,16 +69,6 @@ expect 4 'cannot write no/such/a.h5' run --scene jeans1k --trace no/such/a.h5
 expect 2 '"a.xdmf" is not a name of the form NAME.h5' run --scene jeans1k --trace never/a.xdmf
 [ -z "$(ls never)" ] || fail "left: $(ls never)"
 
-# A disk that is full, as a limit on the size of files: what was traced before is kept.
-status=0
-(
-  trap '' XFSZ
-  ulimit -f 1100
-  exec "$mssim" run --scene jeans1k --threads 1 --fps 600 --trace full.h5 >out 2>err
-) || status=$?
-[ "$status" -eq 4 ] || fail "a full disk gives exit status $status"
-grep -q 'cannot write full.h5: .*; full.h5.part keeps the frames written before: [1-9]' err || fail "a full disk: $(cat err)"
-[ ! -e full.h5 ] && [ "$(numbers /particles/garment/position/step full.h5.part | wc -w)" -ge 1 ] || fail "the frames are lost"
 
 # A dressing that blows up shows how.
 sed 's/"dt_s": [0-9.e-]*/"dt_s": 1.5e-3/; s/scene.schema/none/' "$2/scenes/jeans1k.json" >wild.json

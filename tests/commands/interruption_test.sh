@@ -25,25 +25,10 @@ whole() {
   done
 }
 
-# start_and_signal SIGNAL WAIT_FOR_FILE COMMAND...: runs mssim, signals it once the file is there; sets $status
-start_and_signal() {
-  local signal=$1 file=$2 i
-  shift 2
-  # Shells start what runs in the background with SIGINT ignored; env puts it back.
-  env --default-signal=INT "$mssim" "$@" >out 2>err </dev/null &
-  local process=$!
-  for ((i = 0; i < 600; ++i)); do
-    if [ -e "$file" ] || ! kill -0 "$process" 2>/dev/null; then break; fi
-    sleep 0.1
-  done
-  kill -"$signal" "$process" 2>/dev/null || fail "mssim ended before it could be interrupted: $(cat err)"
-  status=0
-  wait "$process" || status=$?
-}
-
 # SIGINT: what is measured stands in whole files and on stdout, and the exit status says it.
-start_and_signal INT int/timings.csv "${bench[@]}" --out int
-[ "$status" -eq 130 ] || fail "SIGINT gives exit status $status"
+begins "${bench[@]}" --out int
+soon 60 test -e int/timings.csv || fail "nothing is measured"
+is_ended 130 INT
 grep -q 'results so far are in int; --resume continues' err || fail "SIGINT: $(cat err)"
 grep -q '^cloth2500: ' out && grep -q '^  [a-z0-9-]*  *serial ' out || fail "after SIGINT nothing is printed"
 whole int
@@ -85,16 +70,11 @@ grep -q 'cannot continue in copied: the device of opencl was .* (copied memory) 
 cmp -s kept.csv copied/timings.csv || fail "a refused --resume has changed the rows"
 expect 2 'overwrite' "${bench[@]}" --out int --resume --overwrite
 cp -r int before
-for signal in INT KILL; do
-  env --default-signal=INT "$mssim" bench --scene cloth350k --backend serial --out int --overwrite >out 2>err </dev/null &
-  process=$!
-  for ((i = 0; i < 300; ++i)); do
-    ! grep -q 'cloth350k (1 of 1)' err || break
-    sleep 0.1
-  done
-  kill -"$signal" "$process"
-  wait "$process" || true
-  [ "$signal" = KILL ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
+for signal in INT:130 KILL:137; do
+  begins bench --scene cloth350k --backend serial --out int --overwrite
+  soon 60 grep -q 'cloth350k (1 of 1)' err || fail "no scene is begun"
+  is_ended "${signal#*:}" "${signal%:*}"
+  [ "$signal" = KILL:137 ] || grep -q 'earlier results are still in int' err || fail "SIGINT before there is a row: $(cat err)"
   diff -r before int || fail "--overwrite that is ended by SIG$signal before it has a row changes what is there"
 done
 ends 0 bench --scene cloth2500 --backend serial --integrator semi-euler --rounds 1 --out int --overwrite
@@ -130,17 +110,10 @@ ends 0 "${bench[@]}" --out killed --resume
 whole killed
 
 # A second bench into the same folder.
-"$mssim" "${scenes[@]}" --backend serial --rounds 1000 --out shared >/dev/null 2>err &
-process=$!
-for ((i = 0; i < 300; ++i)); do
-  if [ -e shared/provenance.json ]; then break; fi
-  sleep 0.1
-done
+begins "${scenes[@]}" --backend serial --rounds 1000 --out shared
+soon 60 test -e shared/provenance.json || fail "no folder is begun"
 expect 4 'another mssim is writing into shared' "${bench[@]}" --out shared --resume
-kill -TERM "$process"
-status=0
-wait "$process" || status=$?
-[ "$status" -eq 143 ] || fail "SIGTERM gives exit status $status"
+is_ended 143 TERM
 
 # A reader of stdout that goes away loses nothing of the folder; a closed stdout is an error.
 "$mssim" bench --scene cloth2500 --backend serial,openmp --integrator semi-euler --threads 1 --rounds 1 --out piped 2>err | head -n 1 >out || true
@@ -152,27 +125,23 @@ status=0
 grep -q 'standard output could not be written' err || fail "a closed stdout: $(cat err)"
 
 # A disk that is full, as a limit on the size of files: the sentence names the file, and no part of one is left.
-status=0
-(
-  ulimit -f 8
-  exec "$mssim" "${bench[@]}" --out full >out 2>err
-) || status=$?
-[ "$status" -eq 4 ] || fail "a full disk gives exit status $status"
-grep -q 'cannot write full/' err || fail "a full disk: $(cat err)"
+on_full_disk 8 'cannot write full/' "${bench[@]}" --out full
 [ -z "$(find full -name '*.part')" ] || fail "a full disk leaves a half-written file"
 whole full
 [ -n "$(rounds full)" ] || fail "a full disk costs what was measured before"
 
 # SIGINT while a simulation is traced: the frames so far are in whole files.
-start_and_signal INT fall.h5.part run --scene cloth2500 --threads 1 --duration 100 --trace fall.h5 --energy-curve fall.csv
-[ "$status" -eq 130 ] || fail "SIGINT in a run gives exit status $status: $(cat err)"
+begins run --scene cloth2500 --threads 1 --duration 100 --trace fall.h5 --energy-curve fall.csv
+soon 60 test -e fall.h5.part || fail "no trace is begun"
+is_ended 130 INT
 [ -s fall.h5 ] && [ ! -e fall.h5.part ] || fail "SIGINT loses a trace"
 [ "$(wc -l <fall.csv)" -ge 2 ] || fail "SIGINT loses the energies"
 h5dump -d /particles/cloth/position/step fall.h5 >frames || fail "the trace cannot be read"
 
 # The same while a garment is dressed.
-start_and_signal INT dress.h5.part run --scene jeans16k --backend serial --trace dress.h5 --energy-curve dress.csv
-[ "$status" -eq 130 ] || fail "SIGINT while dressing gives exit status $status: $(cat err)"
+begins run --scene jeans16k --backend serial --trace dress.h5 --energy-curve dress.csv
+soon 60 test -e dress.h5.part || fail "no trace is begun"
+is_ended 130 INT
 [ -s dress.h5 ] && [ -s dress.xdmf ] && [ ! -e dress.h5.part ] || fail "SIGINT loses the trace of a dressing"
 h5dump -d /particles/garment/position/step dress.h5 >frames || fail "the trace of a dressing cannot be read"
 frames=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) .*/\1/p' frames)

@@ -71,14 +71,13 @@ measure() {
   timeout 60 "$mssim" measure "$@" >"$work/out" 2>"$work/err" </dev/null || status=$?
   [ "$status" -eq "$wanted" ] || fail "measure $*: exit status $status instead of $wanted: $(cat "$work/err")"
 }
-says() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\": $(cat "$work/err")"; }
 
 # What is found, in another unit, with z up, facing -y; and in the formats.
 person 1 +x+y+z >"$work/person.obj"
 person 0.001 +x-z+y >"$work/scan.obj"
 measure 0 "$work/scan.obj" --format csv
 ! grep -q 'not certain' "$work/err" || fail "a person is not certain: $(cat "$work/err")"
-says 'garments ignore what the body has beside trunk and legs'
+warns 'garments ignore what the body has beside trunk and legs'
 [ "$(of_listing "$work/out" unit) $(of_listing "$work/out" up) $(of_listing "$work/out" facing)" = "0.001 z -y" ] ||
   fail "the stance of a scan: $(cat "$work/out")"
 for measure in height:1.68:.001 waist_height:1.04:.02 waist_girth:.74:.02 hip_height:.86:.02 hip_girth:.98:.02 \
@@ -104,12 +103,12 @@ measure 0 "$work/person.obj" --facing=-z --format csv
 [ "$(of_listing "$work/out" facing)" = -z ] || fail "a facing that is given wrongly"
 measure 0 "$work/person.obj" --unit 0.5 --format csv
 [ "$(of_listing "$work/out" unit)" = 0.5 ] || fail "a unit in metres"
-says 'not certain of unit: the body is 0.84 m high in the unit given'
+warns 'not certain of unit: the body is 0.84 m high in the unit given'
 
 # The scene that is written names the body from where it stands, is valid, and dresses it.
 mkdir "$work/scenes"
 measure 0 "$work/scan.obj" --scene "$work/scenes/my.json"
-says "wrote $work/scenes/my.json; mssim run --scene"
+warns "wrote $work/scenes/my.json; mssim run --scene"
 grep -q '"file": "../scan.obj"' "$work/scenes/my.json" || fail "the path of the body: $(cat "$work/scenes/my.json")"
 /usr/bin/python3 -c 'import json, jsonschema, sys
 jsonschema.Draft7Validator(json.load(open(sys.argv[1]))).validate(json.load(open(sys.argv[2])))' \
@@ -125,7 +124,7 @@ measure 0 "$work/scan.obj" --scene "$work/mine.json" --overwrite
 grep -q surface_file "$work/mine.json" || fail "--overwrite does not replace"
 expect 2 'give a file that ends in .json' measure "$work/scan.obj" --scene "$work/scan.obj" --overwrite
 measure 4 "$work/scan.obj" --scene "$work/none/my.json"
-says 'cannot write'
+warns 'cannot write'
 expect 2 'b.obj: there is no such file' measure "$work/b.obj"
 expect 2 'no scene is named' measure jeans4
 echo binary >"$work/t.h5"
@@ -139,14 +138,14 @@ expect 2 'cannot look along z' measure "$work/scan.obj" --up z --facing +z
 person 0.01 +x+y+z neck >"$work/neck.obj"
 person 0.01 +x+y+z waist >"$work/waist.obj"
 measure 2 "$work/neck.obj" --scene "$work/neck.json"
-says 'it has 1 opening: close it where the surface was made, or give --close-holes'
+warns 'it has 1 opening: close it where the surface was made, or give --close-holes'
 grep -q '^opening_1 .*24 edges around (.*, open' "$work/out" || fail "the opening: $(cat "$work/out")"
 [ ! -e "$work/neck.json" ] || fail "a scene of an open body is written"
 measure 0 "$work/neck.obj" --close-holes --scene "$work/neck.json"
 grep -q '^opening_1 .*24 edges around (.*, closed' "$work/out" || fail "the closed opening: $(cat "$work/out")"
 grep -q '"close_holes_m": 0.2' "$work/neck.json" || fail "the scene does not close the hole: $(cat "$work/neck.json")"
 measure 2 "$work/waist.obj" --close-holes --unit cm
-says 'the opening of 24 edges around (.* is 0.2[0-9]* m across, and at most 0.2 m are closed'
+warns 'the opening of 24 edges around (.* is 0.2[0-9]* m across, and at most 0.2 m are closed'
 
 # Triangles of an STL file whose corners differ in their last digits join; farther apart they are no openings to close.
 loose() {
@@ -172,7 +171,7 @@ loose "$work/person.obj" 1e-6 >"$work/loose.stl"
 measure 0 "$work/person.obj" --format csv
 cp "$work/out" "$work/whole"
 measure 0 "$work/loose.stl" --format csv --scene "$work/scenes/loose.json"
-says 'loose.stl: [0-9]* points were merged with others'
+warns 'loose.stl: [0-9]* points were merged with others'
 for measure in waist_girth hip_girth crotch_height knee_girth; do
   near "$(of_listing "$work/out" "$measure")" "$(of_listing "$work/whole" "$measure")" .0002 || fail "$measure of loose triangles: $(cat "$work/out")"
 done
@@ -180,7 +179,7 @@ loose "$work/person.obj" 1e-4 >"$work/apart.stl"
 for close in '' --close-holes; do
   # shellcheck disable=SC2086
   measure 2 "$work/apart.stl" $close
-  says 'its triangles do not join: '
+  warns 'its triangles do not join: '
   ! grep -q 'close-holes' "$work/err" || fail "closing is recommended: $(cat "$work/err")"
 done
 
@@ -193,17 +192,17 @@ wrong() {
   [ "$(wc -l <"$work/err")" -eq 1 ] || fail "a scene with $2: $(cat "$work/err")"
 }
 wrong metres 's/"unit_m": 0.001/"unit_m": 1/'
-says '/garment/surface_file/unit_m is 1, which makes the body 16.* m high: give .*, 0.001 where that is a person in mm'
+warns '/garment/surface_file/unit_m is 1, which makes the body 16.* m high: give .*, 0.001 where that is a person in mm'
 wrong lying 's/"up": "z"/"up": "y"/'
-says '/garment/surface_file/facing is "-y", the axis along which the body stands upright'
+warns '/garment/surface_file/facing is "-y", the axis along which the body stands upright'
 wrong sideways 's/"facing": "-y"/"facing": "+x"/'
-says '/garment/surface_file has no leg on either side of x = 0'
+warns '/garment/surface_file has no leg on either side of x = 0'
 wrong high 's/"waist_height_m": [0-9.]*/"waist_height_m": 1.7/'
-says '/garment/jeans/waist_height_m is 1.7, and the body ends at the height 1.68 m'
+warns '/garment/jeans/waist_height_m is 1.7, and the body ends at the height 1.68 m'
 wrong low 's/"hem_height_m": [0-9.]*/"hem_height_m": 1/'
-says "the knee's height, knee_height_m, which lies above the hem's"
+warns "the knee's height, knee_height_m, which lies above the hem's"
 wrong hip 's/"hip_height_m": [0-9.]*/"hip_height_m": 0.7/'
-says "hip_height_m, which lies above the crotch's"
+warns "hip_height_m, which lies above the crotch's"
 sed 's/"file": [^,]*/"file": "..\/neck.obj"/; s/"unit_m": 0.001/"unit_m": 0.01/; s/"up": "z"/"up": "y"/; s/"facing": "-y"/"facing": "+z"/' \
   "$work/scenes/my.json" >"$work/scenes/open.json"
 expect 2 'it has 1 opening of 24 edges around .* or give "close_holes_m"' run --scene "$work/scenes/open.json"

@@ -11,17 +11,6 @@ export TMPDIR=$work/tmp
 mkdir -p tmp
 let_ranks_share
 
-# scene FILE FLOOR BODY...: makes a scene of these bodies
-scene() {
-  local file=$1 floor=$2
-  shift 2
-  cat >"$file" <<END
-{"kind": "bodies", "description": "of a test", "dt_s": 5e-5, "gravity_m_per_s2": 9.81, "viscous_damping_per_s": 0.1,
- "floor": {"height_m": $floor, "restitution": 0.5, "friction": 0.4},
- "bodies": {"density_kg_per_m3": 1000, "springs": {"stiffness_n_per_m": 10000, "damping_n_s_per_m": 0.5},
-  "list": [$(IFS=,; echo "$*")]}}
-END
-}
 # box CELLS POINTS X Y DOWN: a body of so many cells in each direction and inner points, there, that falls with DOWN m/s
 box() {
   echo "{\"shape\": \"box\", \"box\": {\"size_m\": [0.1, 0.1, 0.1], \"cells_x\": $1, \"cells_y\": $1, \"cells_z\": $1,
@@ -32,7 +21,7 @@ box() {
 notes() { ! grep ',mpi,' bits/timings.csv | grep -v -- "$1" || fail "the note does not say \"$1\": $(cat bits/timings.csv)"; }
 
 # One body, with every explicit integrator.
-scene one.json 0 "$(box 3 20 0 0.3 0)"
+bodies_scene one.json 0 "$(box 3 20 0 0.3 0)"
 for ranks in 1 2 3 4; do
   same_bits ./one.json "$ranks" 1 "$explicit" "$explicit_count"
   [ "$ranks" -eq 1 ] || notes ', 1 body divided"'
@@ -42,7 +31,7 @@ same_bits sphere-medium 4 2 semi-euler,rk4 2
 same_bits box-large 3 1 semi-euler,rk4 2
 
 # Several: whole ones where that is even, and as few as possible divided elsewhere. The last one is small.
-scene three.json 0 "$(box 3 20 0 0.3 0)" "$(box 3 20 0.3 0.3 0)" "$(box 3 20 0.6 0.3 0)"
+bodies_scene three.json 0 "$(box 3 20 0 0.3 0)" "$(box 3 20 0.3 0.3 0)" "$(box 3 20 0.6 0.3 0)"
 for ranks in 1 3; do
   same_bits ./three.json "$ranks" 1 "$explicit" "$explicit_count"
   notes ', whole bodies"'
@@ -51,14 +40,14 @@ same_bits ./three.json 2 1 "$explicit" "$explicit_count"
 notes ', 2 bodies whole, 1 divided"'
 same_bits ./three.json 4 2 semi-euler,rk4 2
 notes ', 3 bodies divided"'
-scene unequal.json 0 "$(box 3 20 0 0.3 0)" "$(box 6 300 0.3 0.3 0)" "$(box 4 60 0.6 0.3 0)" "$(box 2 4 0.9 0.3 0)"
+bodies_scene unequal.json 0 "$(box 3 20 0 0.3 0)" "$(box 6 300 0.3 0.3 0)" "$(box 4 60 0.6 0.3 0)" "$(box 2 4 0.9 0.3 0)"
 for ranks in 2 3 6; do same_bits ./unequal.json "$ranks" 1 semi-euler,midpoint,rk4,verlet 4; done
 same_bits bodies7282 3 1 semi-euler,rk4 2
 notes ', 2 bodies whole, 2 divided"'
 
 # On the floor: bodies that bounce within the time have the same positions as openmp's.
-scene bounce.json 0 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
-scene deep.json -9 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
+bodies_scene bounce.json 0 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
+bodies_scene deep.json -9 "$(box 4 60 0 0.06 2)" "$(box 3 20 0.3 0.07 2)"
 for integrator in semi-euler rk4; do
   for of in openmp_bounce mpi:3_bounce openmp_deep; do
     ends 0 run --scene "./${of#*_}.json" --backend "${of%_*}" --integrator "$integrator" --threads 1 --duration 0.02 --trace "${of/:3/}.h5"

@@ -102,19 +102,12 @@ FAKE_OPENCL=dies ends 3 "${scene[@]}" --backend hybrid,openmp,opencl --out dying
 [ "$(tr -s '"' <dying/timings.csv | grep -c "unavailable: $died")" -eq 2 ] || fail "timings.csv does not say who died: $(cat dying/timings.csv)"
 FAKE_OPENCL=dies expect 3 "^mssim: $died\$" run --scene cloth2500 --backend opencl --duration 0.01
 # One that compiles for ever: mssim says what it waits for, and a signal ends both.
-FAKE_OPENCL=hangs "$mssim" "${scene[@]}" --backend opencl --out hanging >out 2>err &
-bench=$!
-for ((try = 0; try < 600; ++try)); do
-  grep -q 'the OpenCL driver "Portable Computing Language" is compiling the kernels of opencl with semi-euler' err && break
-  sleep 0.1
-done
-((try < 600)) || fail "nobody says that a driver is compiling: $(cat err)"
-compiler=$(pgrep -P "$bench" || true)
-kill -TERM $bench
-status=0
-wait $bench || status=$?
-[ "$status" -eq 143 ] || fail "a bench that is ended while a driver compiles exits with $status: $(cat err)"
-if [ -z "$compiler" ] || kill -0 "$compiler" 2>/dev/null; then fail "the process in which the driver compiles (${compiler:-none}) is left"; fi
+FAKE_OPENCL=hangs begins "${scene[@]}" --backend opencl --out hanging
+soon 60 grep -q 'the OpenCL driver "Portable Computing Language" is compiling the kernels of opencl with semi-euler' err ||
+  fail "nobody says that a driver is compiling: $(cat err)"
+compiler=$(pgrep -P "$process" || true)
+is_ended 143 TERM
+[ -n "$compiler" ] && is_gone "$compiler" || fail "the process in which the driver compiles (${compiler:-none}) is left"
 # Vectors are those that a device has where its driver prefers single numbers.
 FAKE_OPENCL=float-8 "$mssim" list devices --format csv >out 2>err
 [ "$(column_of out float_width)" = 8 ] || fail "float_width is not 8: $(cat out)"
@@ -158,14 +151,8 @@ else
 fi
 
 # Also where a signal ends it.
-HOME=/dev/null "$mssim" bench --scene cloth2500 --backend opencl --integrator semi-euler --threads 1 --rounds 100000 >out 2>err &
-bench=$!
-for ((try = 0; try < 600; ++try)); do
-  sleep 0.1
-  [ -n "$(find tmp -name '*.so' 2>/dev/null)" ] && break
-done
-kill -TERM $bench
-status=0
-wait $bench || status=$?
-[ "$status" -eq 143 ] || fail "an interrupted bench exits with $status: $(cat err)"
+has_kernels() { [ -n "$(find tmp -name '*.so')" ]; }
+HOME=/dev/null begins bench --scene cloth2500 --backend opencl --integrator semi-euler --threads 1 --rounds 100000
+soon 60 has_kernels || fail "no kernel is in a temporary folder"
+is_ended 143 TERM
 [ -z "$(ls tmp)" ] || fail "an interrupted bench leaves $(ls tmp)"

@@ -28,6 +28,7 @@ for command in $commands; do
   cp "$work/page" "$work/help"
   page help "$command"
   cmp "$work/page" "$work/help" || fail "mssim help $command shows another page than mssim $command --help"
+  grep -q Example "$work/page" || fail "mssim help $command shows no example"
   [ "$(awk 'length > 80' "$work/page" | wc -l)" -eq 0 ] || fail "mssim help $command has lines longer than 80 characters"
 done
 page -V
@@ -41,7 +42,6 @@ expect 2 'unknown command "rnu" (did you mean run?): known are ' help rnu
 
 # Options.
 expect 2 'mssim bench has no option "--thread" (did you mean --threads?); see mssim bench --help' bench --scene cloth2500 --thread 2
-expect 2 'mssim run has no option "--sceen" (did you mean --scene?); see mssim run --help' run --sceen cloth2500
 expect 2 'mssim run has no option "-scene" (did you mean --scene?)' run -scene cloth2500
 expect 2 'mssim run has no option "--fsp" (did you mean --fps?)' run --scene cloth2500 --fsp=30
 expect 2 'mssim has no option "--verison" (did you mean --version?); see mssim --help' --verison
@@ -56,7 +56,6 @@ expect 2 'mssim has no option "-v" (did you mean --version?)' -v
 expect 2 'unknown command "version" (did you mean --version?)' version
 expect 2 'mssim run has no option "--suite", which is one of mssim bench;' run --suite table1
 expect 2 '^mssim: unexpected argument "cloth350k" of mssim bench (did you mean --scene cloth350k?);' bench cloth350k
-expect 2 '^mssim: unexpected argument "cloth2500" of mssim run (did you mean --scene cloth2500?);' run cloth2500
 expect 2 '^mssim: "jeans4k" is a scene, not a trace: did you mean --scene jeans4k?' render jeans4k
 expect 2 '^mssim: WHAT is missing: give what to list: scenes, ' list
 expect 2 '^mssim: unexpected argument "twice" of mssim list: ' list scenes twice
@@ -64,9 +63,6 @@ expect 2 '^mssim: --resume and --overwrite exclude each other: leave out one of 
 
 # Values.
 expect 2 '^mssim: --threads: "x" is not a whole number from 1 to 4096; see mssim bench --help$' bench --scene cloth2500 --threads x
-expect 2 '^mssim: --rounds: "1.5" is not a whole number from 1 to ' bench --scene cloth2500 --rounds 1.5
-expect 2 '^mssim: --duration: "-1" is not a positive number;' run --scene cloth2500 --duration -1
-expect 2 '^mssim: --format: unknown value "tabel" (did you mean table?): known are csv, json and table;' list scenes --format tabel
 expect 2 '^mssim: WHAT: unknown word "scnes" (did you mean scenes?): known are ' list scnes
 expect 2 '^mssim: --precision: unknown precision "half": known are single and double;' run --scene cloth2500 --precision half
 expect 2 '^mssim: --suite: unknown suite "all" (did you mean tables?): known are table1, .* and tables;' bench --suite all

@@ -65,9 +65,3 @@ says '1 mutants: 1 killed'
 arguments=()
 mutants 2 'left>wrong' && says 'src/a.cpp does not have the text "left"'
 mutants 2 'r>w' && says 'more than once'
-arguments=(2)
-mutants 2 'right>wrong' && says 'there is no mutant 2'
-arguments=(--random few)
-mutants 2 'right>wrong' && says '--random needs a whole number above 0, not "few"'
-arguments=(--fast)
-mutants 2 'right>wrong' && says 'unknown option --fast'

@@ -34,6 +34,61 @@ ends() {
   [ "$status" -eq "$1" ] || fail "mssim $(printf '%q ' "${@:2}") exits with $status instead of $1: $(cat "$work/out" "$work/err")"
 }
 
+# says PATTERN, warns PATTERN: what mssim has said on stdout, on stderr
+says() { grep -q -- "$1" "$work/out" || fail "stdout does not say \"$1\": $(cat "$work/out")"; }
+warns() { grep -q -- "$1" "$work/err" || fail "stderr does not say \"$1\": $(cat "$work/err")"; }
+
+# value COLUMN: of the one row that mssim has printed, in which no field before it holds a blank
+value() { awk -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i } NR == 2 { print $c }' "$work/out"; }
+
+# begins ARGUMENTS...: mssim runs beside the test, as $process. Shells start such programs with SIGINT ignored; env puts it back.
+begins() {
+  env --default-signal=INT,QUIT "$mssim" "$@" >"$work/out" 2>"$work/err" </dev/null &
+  process=$!
+}
+
+# soon SECONDS COMMAND...: waits until the command succeeds, no longer than that
+soon() {
+  local i
+  for ((i = 0; i < 10 * $1; ++i)); do
+    "${@:2}" 2>/dev/null && return
+    sleep 0.1
+  done
+  return 1
+}
+
+# is_ended STATUS SIGNAL: $process is sent the signal, and must exit with STATUS
+is_ended() {
+  local status=0
+  kill -"$2" "$process" || fail "mssim ended before SIG$2: $(cat "$work/err")"
+  wait "$process" || status=$?
+  [ "$status" -eq "$1" ] || fail "SIG$2 gives exit status $status instead of $1: $(cat "$work/err")"
+}
+
+# is_gone PROCESS
+is_gone() { ! kill -0 "$1" 2>/dev/null; }
+
+# on_full_disk KIB PATTERN ARGUMENTS...: mssim, whose files may not be larger, must exit with 4 and say PATTERN on stderr
+on_full_disk() {
+  local most=$1 pattern=$2 status=0
+  shift 2
+  (ulimit -f "$most" && exec "$mssim" "$@" >"$work/out" 2>"$work/err") || status=$?
+  [ "$status" -eq 4 ] || fail "a full disk gives exit status $status: $(cat "$work/err")"
+  warns "$pattern"
+}
+
+# bodies_scene FILE FLOOR BODY...: makes a scene of these bodies above a floor at FLOOR
+bodies_scene() {
+  local file=$1 floor=$2
+  shift 2
+  cat >"$file" <<END
+{"kind": "bodies", "description": "of a test", "dt_s": 5e-5, "gravity_m_per_s2": 9.81, "viscous_damping_per_s": 0.1,
+ "floor": {"height_m": $floor, "restitution": 0.5, "friction": 0.4},
+ "bodies": {"density_kg_per_m3": 1000, "springs": {"stiffness_n_per_m": 10000, "damping_n_s_per_m": 0.5},
+  "list": [$(IFS=,; echo "$*")]}}
+END
+}
+
 # column_of FILE NAME: that column of a CSV file in which no field before it holds a comma
 column_of() {
   awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' "$1"
