@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "garment/body/mannequin.h"
 #include "mesh/meshing.h"
 #include "tests/support/contact_fixture.h"
 #include "tests/support/mesh_fixture.h"
