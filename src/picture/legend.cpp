@@ -183,17 +183,13 @@ struct LegendSizes {
         most_height(std::max(0, static_cast<int>(0.8 * picture.height) - 4 * margin)) {}
 };
 
-/// Draws a slightly translucent panel for a content of this size into a corner. Returns where the content
-/// goes.
-PixelBox draw_panel(Picture& picture, int content_width, int content_height, Corner corner) {
+/// Draws a slightly translucent panel for a content of this size. Returns where the content goes.
+PixelBox draw_panel(Picture& picture, int content_width, int content_height) {
   constexpr Rgb edge{190, 193, 200};
   constexpr std::uint8_t coverage = 225;
   const int margin = LegendSizes(picture).margin;
   const int width = content_width + 2 * margin, height = content_height + 2 * margin;
-  const bool at_right = corner == Corner::top_right || corner == Corner::bottom_right;
-  const bool at_bottom = corner == Corner::bottom_left || corner == Corner::bottom_right;
-  const int left = at_right ? static_cast<int>(picture.width) - margin - width : margin;
-  const int top = at_bottom ? static_cast<int>(picture.height) - margin - height : margin;
+  const int left = static_cast<int>(picture.width) - margin - width, top = margin;
   fill(picture, {left, top, width, height}, white, coverage);
   fill(picture, {left, top, width, 1}, edge);
   fill(picture, {left, top + height - 1, width, 1}, edge);
@@ -204,7 +200,7 @@ PixelBox draw_panel(Picture& picture, int content_width, int content_height, Cor
 
 }  // namespace
 
-void draw_legend(Picture& picture, std::span<const LegendEntry> entries, Corner corner) {
+void draw_legend(Picture& picture, std::span<const LegendEntry> entries) {
   if (entries.empty()) return;
   const LegendSizes sizes(picture);
   const Letters& letters = sizes.letters;
@@ -222,7 +218,7 @@ void draw_legend(Picture& picture, std::span<const LegendEntry> entries, Corner 
   int widest = 0;
   for (const std::string_view name : names) widest = std::max(widest, text_width(name, letters));
   const int height = static_cast<int>(names.size() - 1) * line + swatch;
-  const PixelBox content = draw_panel(picture, names_from + widest, height, corner);
+  const PixelBox content = draw_panel(picture, names_from + widest, height);
   int top = content.top;
   for (std::size_t i = 0; i < names.size(); ++i, top += line) {
     if (i < shown) fill(picture, {content.left, top, swatch, swatch}, entries[i].colour);
@@ -248,15 +244,9 @@ struct BarLayout {
     title_height = title.empty() ? 0 : letters.line_distance();
     thickness = static_cast<int>(std::lround(1.1 * letters.size_px));
     dash = static_cast<int>(std::lround(0.3 * letters.size_px));
-    const int free =
-        bar.upright ? sizes.most_height - title_height - letters.capital_height() : sizes.most_width;
-    length =
-        std::max(8, std::min(free, static_cast<int>(std::lround((bar.upright ? 11 : 16) * letters.size_px))));
+    const int free = sizes.most_height - title_height - letters.capital_height();
+    length = std::max(8, std::min(free, static_cast<int>(std::lround(11 * letters.size_px))));
     ticks = ticks_between(bar.low, bar.high, 6);
-    if (bar.upright) return;
-    // As many numbers as have room beside each other.
-    for (int most = 6; most > 2 && widest_label() * 3 / 2 * static_cast<int>(ticks.size()) > length; --most)
-      ticks = ticks_between(bar.low, bar.high, most - 1);
   }
 
   int widest_label() const {
@@ -272,54 +262,26 @@ int place_of(double value, const ColourBar& bar, int length) {
   return static_cast<int>(std::lround((value - bar.low) / (bar.high - bar.low) * (length - 1)));
 }
 
-/// Draws the bar with its upper left corner at the place given.
-void draw_bar(Picture& picture, const ColourBar& bar, const BarLayout& layout, int left, int top) {
-  for (int i = 0; i < layout.length; ++i) {
-    const Rgb colour = bar.map.at(static_cast<double>(i) / (layout.length - 1));
-    if (bar.upright)
-      fill(picture, {left, top + layout.length - 1 - i, layout.thickness, 1}, colour);
-    else
-      fill(picture, {left + i, top, 1, layout.thickness}, colour);
-  }
-}
+}  // namespace
 
-void draw_upright(Picture& picture, const ColourBar& bar, const BarLayout& layout, Corner corner) {
+void draw_colour_bar(Picture& picture, const ColourBar& bar) {
+  const BarLayout layout(picture, bar);
   const Letters& letters = layout.sizes.letters;
   const int capital = letters.capital_height(), labels_from = layout.thickness + 2 * layout.dash;
   const int width = std::max(layout.title_width, labels_from + layout.widest_label());
   // A number at an end reaches half its height beyond the bar.
   const int bar_from = layout.title_height + capital / 2;
-  const PixelBox content = draw_panel(picture, width, bar_from + layout.length + capital / 2, corner);
+  const PixelBox content = draw_panel(picture, width, bar_from + layout.length + capital / 2);
   draw_text(picture, layout.title, content.left, content.top + capital, letters);
-  draw_bar(picture, bar, layout, content.left, content.top + bar_from);
+  const int low_end = content.top + bar_from + layout.length - 1;
+  for (int i = 0; i < layout.length; ++i)
+    fill(picture, {content.left, low_end - i, layout.thickness, 1},
+         bar.map.at(static_cast<double>(i) / (layout.length - 1)));
   for (const Tick& tick : layout.ticks) {
-    const int y = content.top + bar_from + layout.length - 1 - place_of(tick.value, bar, layout.length);
+    const int y = low_end - place_of(tick.value, bar, layout.length);
     fill(picture, {content.left + layout.thickness, y, layout.dash, 1}, letters.colour);
     draw_text(picture, tick.label, content.left + labels_from, y + (capital + 1) / 2, letters);
   }
-}
-
-void draw_lying(Picture& picture, const ColourBar& bar, const BarLayout& layout, Corner corner) {
-  const Letters& letters = layout.sizes.letters;
-  const int capital = letters.capital_height(), half_label = layout.widest_label() / 2;
-  const int labels_from = layout.title_height + layout.thickness + 2 * layout.dash;
-  const int width = std::max(layout.title_width, layout.length + 2 * half_label);
-  const PixelBox content = draw_panel(picture, width, labels_from + capital, corner);
-  draw_text(picture, layout.title, content.left, content.top + capital, letters);
-  const int left = content.left + half_label, top = content.top + layout.title_height;
-  draw_bar(picture, bar, layout, left, top);
-  for (const Tick& tick : layout.ticks) {
-    const int x = left + place_of(tick.value, bar, layout.length);
-    fill(picture, {x, top + layout.thickness, 1, layout.dash}, letters.colour);
-    draw_text(picture, tick.label, x, content.top + labels_from + capital, letters, Alignment::centre);
-  }
-}
-
-}  // namespace
-
-void draw_colour_bar(Picture& picture, const ColourBar& bar, Corner corner) {
-  const BarLayout layout(picture, bar);
-  (bar.upright ? draw_upright : draw_lying)(picture, bar, layout, corner);
 }
 
 }  // namespace mssim

@@ -43,17 +43,15 @@ const ColourMap& diverging_map();
 /// easily, in black and white. The first ones differ most.
 const std::array<Rgb, 8>& category_colours();
 
-enum class Corner { top_left, top_right, bottom_left, bottom_right };
-
 /// What a colour stands for.
 struct LegendEntry {
   Rgb colour;
   std::string name;
 };
 
-/// Draws a list of colours and their names, in UTF-8, on a panel in a corner. A name too long is shortened; a
-/// list too long ends with how many more there are. Nothing is drawn for an empty list.
-void draw_legend(Picture& picture, std::span<const LegendEntry> entries, Corner corner);
+/// Draws a list of colours and their names, in UTF-8, on a panel at the upper right. A name too long is
+/// shortened; a list too long ends with how many more there are. Nothing is drawn for an empty list.
+void draw_legend(Picture& picture, std::span<const LegendEntry> entries);
 
 /// Which colour stands for which number.
 struct ColourBar {
@@ -62,13 +60,11 @@ struct ColourBar {
   double low, high;
   /// What the numbers are and their unit, as in "strain in %"; may be empty.
   std::string title;
-  /// Upright with `high` at the top, or lying with `high` at the right.
-  bool upright = true;
 };
 
-/// Draws a colour bar with its title and some numbers on a panel in a corner. A title too long is shortened.
-/// Throws std::invalid_argument unless `low` and `high` are finite and in order; where they are the same, the
-/// only number stands at the middle.
-void draw_colour_bar(Picture& picture, const ColourBar& bar, Corner corner);
+/// Draws an upright colour bar with its title and some numbers on a panel at the upper right. A title too
+/// long is shortened. Throws std::invalid_argument unless `low` and `high` are finite and in order; where
+/// they are the same, the only number stands at the middle.
+void draw_colour_bar(Picture& picture, const ColourBar& bar);
 
 }  // namespace mssim

@@ -151,9 +151,7 @@ int text_width(std::string_view text, const Letters& letters) {
   return walk_along(text, letters, [](const GlyphMask&, int) {});
 }
 
-void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
-               Alignment alignment) {
-  if (alignment != Alignment::left) x -= text_width(text, letters) / (alignment == Alignment::centre ? 2 : 1);
+void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters) {
   walk_along(text, letters, [&](const GlyphMask& mask, int from_start) {
     auto covered = mask.coverage.begin();
     for (int row = 0; row < mask.height; ++row)

@@ -25,17 +25,13 @@ struct Letters {
 /// The size in pixels of letters on a picture of this height: 2.5 % of it, at least 11.
 double letter_size_for(std::uint32_t picture_height);
 
-/// Which part of a text stands at the column that it is written at.
-enum class Alignment { left, centre, right };
-
 /// Pixels from the left edge of the first character to the right edge of the last. `text` is UTF-8; a byte
 /// that is not part of a character counts as U+FFFD.
 int text_width(std::string_view text, const Letters& letters);
 
-/// Draws a line of text at column `x`; the last row of letters without descender is the one above
+/// Draws a line of text that begins at column `x`; the last row of letters without descender is the one above
 /// `baseline`. A character that the font lacks is an empty box. What lies outside of the picture is cut off.
-void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters,
-               Alignment alignment = Alignment::left);
+void draw_text(Picture& picture, std::string_view text, int x, int baseline, const Letters& letters);
 
 /// `text`, or as much of its beginning as leaves room for "…" within `width` pixels.
 std::string shortened(std::string_view text, int width, const Letters& letters);

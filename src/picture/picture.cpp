@@ -160,9 +160,10 @@ Picture sheet_of(std::span<const CaptionedPicture> pictures, std::uint32_t colum
     const auto left = static_cast<int>(margin + i % columns * column_width);
     const auto top = static_cast<int>(margin + i / columns * row_height);
     paste(sheet, pictures[i].picture, left, top);
-    draw_text(sheet, shortened(pictures[i].caption, static_cast<int>(width), letters),
-              left + static_cast<int>(width / 2), top + static_cast<int>(height + margin / 2 + capital),
-              letters, Alignment::centre);
+    const std::string caption = shortened(pictures[i].caption, static_cast<int>(width), letters);
+    const int middle = left + static_cast<int>(width / 2);
+    draw_text(sheet, caption, middle - text_width(caption, letters) / 2,
+              top + static_cast<int>(height + margin / 2 + capital), letters);
   }
   return sheet;
 }

@@ -19,16 +19,15 @@ std::vector<LegendEntry> entries_of(std::size_t count, const std::string& name) 
   return entries;
 }
 
-Picture with_legend(std::uint32_t width, std::uint32_t height, const std::vector<LegendEntry>& entries,
-                    Corner corner = Corner::top_left) {
+Picture with_legend(std::uint32_t width, std::uint32_t height, const std::vector<LegendEntry>& entries) {
   Picture picture(width, height, ground);
-  draw_legend(picture, entries, corner);
+  draw_legend(picture, entries);
   return picture;
 }
 
 TEST(Legend, LetsThePictureShowThrough) {
   Picture dark(640, 480, black), light(640, 480, white);
-  for (Picture* picture : {&dark, &light}) draw_legend(*picture, entries_of(1, "x"), Corner::top_left);
+  for (Picture* picture : {&dark, &light}) draw_legend(*picture, entries_of(1, "x"));
   const PixelBox box = ink_of(dark, black).value();
   const auto x = static_cast<std::uint32_t>(box.left + 2), y = static_cast<std::uint32_t>(box.top + 2);
   EXPECT_GT(dark.at(x, y).red, 200);
@@ -78,19 +77,18 @@ TEST(Legend, CountsWhatHasNoRoom) {
 
 TEST(Legend, DrawsNothingWithoutEntriesAndSurvivesTinyPictures) {
   EXPECT_FALSE(ink_of(with_legend(640, 480, {}), ground));
-  for (const std::uint32_t size : {1u, 7u, 30u})
-    with_legend(size, size, entries_of(5, "panel"), Corner::bottom_right);
+  for (const std::uint32_t size : {1u, 7u, 30u}) with_legend(size, size, entries_of(5, "panel"));
 }
 
 Picture with_bar(std::uint32_t width, std::uint32_t height, const ColourBar& bar) {
   Picture picture(width, height, ground);
-  draw_colour_bar(picture, bar, Corner::top_right);
+  draw_colour_bar(picture, bar);
   return picture;
 }
 
 TEST(ColourBar, MarksNumbersWhereTheirColoursAre) {
   const ColourMap& map = diverging_map();
-  const Picture picture = with_bar(640, 480, {map, -1, 1, "", true});
+  const Picture picture = with_bar(640, 480, {map, -1, 1, ""});
   const PixelBox low = box_of_colour(picture, map.colours.front()).value();
   const PixelBox high = box_of_colour(picture, map.colours.back()).value();
   // Just right of the bar: dashes at -1, -0.5, 0, 0.5 and 1.
@@ -106,7 +104,7 @@ TEST(ColourBar, MarksNumbersWhereTheirColoursAre) {
 }
 
 TEST(ColourBar, HasItsTitleOnlyWhereThereIsOne) {
-  const ColourBar bar{sequential_map(), 0, 1, "", false};
+  const ColourBar bar{sequential_map(), 0, 1, ""};
   ColourBar titled = bar;
   titled.title = "strain in %";
   EXPECT_GT(ink_of(with_bar(640, 480, titled), ground)->height,
@@ -116,23 +114,20 @@ TEST(ColourBar, HasItsTitleOnlyWhereThereIsOne) {
 }
 
 TEST(ColourBar, ShowsARangeWithoutLength) {
-  for (const bool upright : {true, false}) {
-    const ColourMap& map = sequential_map();
-    EXPECT_TRUE(box_of_colour(with_bar(640, 480, {map, 0, 0, "strain", upright}), map.colours.front()));
-  }
+  const ColourMap& map = sequential_map();
+  EXPECT_TRUE(box_of_colour(with_bar(640, 480, {map, 0, 0, "strain"}), map.colours.front()));
 }
 
 TEST(ColourBar, RefusesARangeThatIsNone) {
-  EXPECT_THROW(with_bar(640, 480, {sequential_map(), 1, 0, "strain", true}), std::invalid_argument);
+  EXPECT_THROW(with_bar(640, 480, {sequential_map(), 1, 0, "strain"}), std::invalid_argument);
 }
 
 TEST(ColourBar, SurvivesTinyPicturesAndLongNumbers) {
-  for (const std::uint32_t size : {1u, 7u, 30u, 100u})
-    for (const bool upright : {true, false}) {
-      with_bar(size, size, {sequential_map(), 0, 1, "strain", upright});
-      with_bar(size, size, {sequential_map(), 123'456'788, 123'456'799, "strain", upright});
-      with_bar(size, size, {sequential_map(), 1e17, 1e17 + 64, "strain", upright});
-    }
+  for (const std::uint32_t size : {1u, 7u, 30u, 100u}) {
+    with_bar(size, size, {sequential_map(), 0, 1, "strain"});
+    with_bar(size, size, {sequential_map(), 123'456'788, 123'456'799, "strain"});
+    with_bar(size, size, {sequential_map(), 1e17, 1e17 + 64, "strain"});
+  }
 }
 
 /// CIE's L*.

@@ -140,15 +140,13 @@ void Painter::write_legend(Picture& picture) const {
   constexpr double percent = 100;
   if (options_.colour == ColourBy::strain) {
     draw_colour_bar(picture,
-                    {diverging_map(), -percent * most_strain_, percent * most_strain_, "strain in %", true},
-                    Corner::top_right);
+                    {diverging_map(), -percent * most_strain_, percent * most_strain_, "strain in %"});
     return;
   }
   std::vector<LegendEntry> entries;
   for (std::size_t part = 0; part < skin_.parts.size(); ++part)
     entries.push_back({colour_[part], skin_.parts[part]});
-  if (options_.colour == ColourBy::panel && entries.size() > 1)
-    draw_legend(picture, entries, Corner::top_right);
+  if (options_.colour == ColourBy::panel && entries.size() > 1) draw_legend(picture, entries);
 }
 
 Shot Painter::shot() const {
