@@ -173,6 +173,11 @@ std::string jeans_scene(const std::filesystem::path& file, const MeasuredJeans& 
     ordered_json& dressing = scene["garment"]["dressing"];
     dressing["held"] = "upper edge";
     dressing["seaming_gravity"] = 1;
+    // What is held gives way less, so that seams close later. One that is open when their time is up is sewn
+    // across its gap, and friction keeps the cloth beside it stretched.
+    constexpr double more = 2;
+    for (const char* key : {"seam_force_n_per_m", "longest_seaming_s"})
+      dressing[key] = more * dressing.at(key).get<double>();
     std::string text = scene.dump(2) + '\n';
     parse_scene(file, text);
     return text;

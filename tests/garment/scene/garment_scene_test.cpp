@@ -129,6 +129,9 @@ TEST_F(DressedPerson, IsDressedByTheSceneThatMeasureWritesForItsScan) {
   const auto& garment = std::get<GarmentSpec>(jeans.spec.content);
   EXPECT_TRUE(garment.dressing.edge_held);
   EXPECT_EQ(garment.dressing.seaming_gravity, 1);
+  // Twice what jeans4k has: seams of a held waistband were open after 1 s.
+  EXPECT_EQ(garment.dressing.seam_force, 8);
+  EXPECT_EQ(garment.dressing.longest_seaming_s, 2);
   EXPECT_EQ(garment.jeans->measures.thigh_ease, 0.01);
   EXPECT_EQ(garment.jeans->measures.crotch_ease, 0.04);
   EXPECT_THAT(dressed(jeans).found, IsEmpty());
