@@ -183,7 +183,7 @@ TEST_F(DrawSvg, NoTextIsAnElement) {
     EXPECT_THAT(
         svg,
         HasSubstr("<title id=\"small-title\">&quot;/&gt;&lt;script&gt;1&lt;/script&gt; &amp;lt; ]]&gt;"));
-    EXPECT_EQ(count(svg, ">%g'&quot; @\\&lt;&amp;</text>"), chart.groups.size());
+    EXPECT_EQ(count(svg, ">%g&#39;&quot; @\\&lt;&amp;</text>"), chart.groups.size());
   }
 }
 
