@@ -203,9 +203,7 @@ class Running {
       result_.exit_code = WEXITSTATUS(status);
     result_.out_of_time = result_.out_of_time || result_.signal == SIGXCPU;
     const bool failed = result_.signal != 0 || result_.exit_code != 0;
-    const std::uint64_t peak_bytes = static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
-    result_.out_of_memory =
-        failed && !result_.out_of_time && child_.memory_bytes > 0 && peak_bytes > child_.memory_bytes / 4 * 3;
+    result_.out_of_memory = failed && !result_.out_of_time && child_.memory_bytes > 0 && has_filled(used);
   }
 
   /// The result of a child that has ended.
@@ -223,6 +221,18 @@ class Running {
       if (ended < 0 && errno != EINTR) fail(child_, "waiting for it", errno);
       if (ended >= 0) return ended_ = ended == process_;
     }
+  }
+
+  /// Whether it had most of the memory that it may take. The system counts what this process has as the
+  /// child's, too, which begins as a copy of it: where that is as much, the child's own words tell.
+  bool has_filled(const rusage& used) const {
+    const auto has_most = [&](const rusage& usage) {
+      return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024 > child_.memory_bytes / 4 * 3;
+    };
+    rusage own{};
+    ::getrusage(RUSAGE_SELF, &own);
+    const auto says = [&](const char* word) { return result_.output.find(word) != std::string::npos; };
+    return has_most(used) && (!has_most(own) || says("memory") || says("bad_alloc"));
   }
 
   const ChildProcess& child_;
