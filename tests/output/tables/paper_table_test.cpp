@@ -97,6 +97,18 @@ TEST(PaperTable, ShowsNoTimeThatWasNotVerified) {
   EXPECT_THAT(csv_of(rows), Not(HasSubstr("0.0125")));
 }
 
+TEST(PaperTable, MarksTimesOnMoreProcessorsThanWereAskedFor) {
+  Provenance provenance = made_up_provenance();
+  std::vector<ResultRow> rows = table_rows();
+  for (ResultRow& row : rows) row.threads = row.backend == "hybrid" ? 2 : 1;
+  const auto text = [&] { return page_of(rows, provenance); };
+  EXPECT_THAT(text(), Not(HasSubstr("(!)")));
+  provenance.threads = 1;
+  EXPECT_THAT(text(), HasSubstr("| `hybrid` on Some device, **measured** | **0.0500** (!) (2.00×) | – |\n"));
+  EXPECT_THAT(text(), HasSubstr("| `openmp`, **measured** | **0.0125** (8.00×) | – |\n"));
+  EXPECT_THAT(text(), HasSubstr("\n(!) on more processors than the 1 asked for: hybrid (2).\n"));
+}
+
 TEST(PaperTable, NamesTheDeviceThatIsTheProcessor) {
   std::vector<ResultRow> rows = table_rows();
   rows[2].device = "pthread-A Processor";

@@ -144,6 +144,13 @@ TEST(RowTable, ShowsABlockForEachSceneWithBarsInOneScale) {
             "  semi-euler  serial      1.50      0.750–3.00  ✓         1.00×  █▏\n");
 }
 
+TEST(RowTable, IsAsciiWithoutUtf8) {
+  const std::string text = table_of(table_rows(), {.width = 80});
+  for (const char character : text) ASSERT_LT(static_cast<unsigned char>(character), 0x80);
+  EXPECT_THAT(text, HasSubstr("0.00625-0.0250  yes       8.00x  ########"));
+  EXPECT_THAT(text, HasSubstr("  NO        failed\n"));
+}
+
 TEST(RowTable, HasEveryColumnWhereNothingHasToFit) {
   const std::string text = table_of(table_rows(), {});
   for (const char* header : {"threads", "interval", "published", "roofline", "error", "verified", "speed-up"})
