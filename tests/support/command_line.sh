@@ -27,6 +27,9 @@ expect() {
   [ ! -s "$work/out" ] || fail "stdout is not empty"
 }
 
+# runs_limited: whether mssim runs in a limited address space, in which a sanitizer has no room
+runs_limited() { (ulimit -v 2000000 && "$mssim" --version) &>/dev/null; }
+
 # ends STATUS ARGUMENTS...: mssim must exit with STATUS; what it says is in $work/out and $work/err
 ends() {
   local status=0
