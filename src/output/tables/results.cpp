@@ -29,9 +29,9 @@ bool has_mark(const Table& table) {
   });
 }
 
-std::string legend(bool wanted) {
+std::string legend(bool wanted, std::string_view mark = ratio_mark) {
   if (!wanted) return {};
-  return std::string(ratio_mark) +
+  return std::string(mark) +
          " the two times shown contradict this ratio: their quotient differs from it by more than a quarter, "
          "or names the other one as the faster; trust the ratio, which compares single samples instead of "
          "medians";
@@ -180,7 +180,8 @@ std::string_view mark_of_ratio(double ratio, double time, double other) {
 std::string legend_of_ratios(const Table& table) { return legend(has_mark(table)); }
 
 std::string legend_of_ratios(std::string_view table) {
-  return legend(table.find(ratio_mark) != std::string_view::npos);
+  const auto has = [&](std::string_view mark) { return table.find(mark) != std::string_view::npos; };
+  return has(ascii_ratio_mark) ? legend(true, ascii_ratio_mark) : legend(has(ratio_mark));
 }
 
 std::string legend_of_ratios(const Document& page) {

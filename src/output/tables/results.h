@@ -181,6 +181,8 @@ std::string in_brackets(double ratio);
 /// and, beside them, a ratio that was estimated from the single samples: on a machine whose speed changes,
 /// the quotient of the medians is another number.
 std::string_view mark_of_ratio(double ratio, double time, double other);
+/// What stands for it where only ASCII is shown.
+inline constexpr std::string_view ascii_ratio_mark = "(?)";
 
 /// That mark of the row's speed-up, its time and that of `serial`.
 std::string_view mark_of_speedup(RowPointers rows, const ResultRow& row);

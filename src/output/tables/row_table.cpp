@@ -56,11 +56,12 @@ RowCell speedup_cell(RowPointers rows, const ResultRow& row, bool utf8) {
   if (!counts(row)) return {status.substr(0, status.find(':')), status.starts_with("failed") ? red : dim};
   if (!row.speedup_vs_serial) return {};
   const double ratio = *row.speedup_vs_serial;
+  const std::string_view mark = mark_of_speedup(rows, row);
   return {three_digits(ratio) + (utf8 ? "×" : "x"),
           row.backend == baseline_name ? dim
           : ratio < 1                  ? red
                                        : green,
-          mark_of_speedup(rows, row)};
+          mark.empty() || utf8 ? mark : ascii_ratio_mark};
 }
 
 RowCells cells_of(RowPointers rows, const ResultRow& row, const Provenance& provenance, bool utf8) {
