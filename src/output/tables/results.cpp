@@ -29,8 +29,9 @@ bool has_mark(const Table& table) {
   });
 }
 
-std::string legend(bool wanted, std::string_view mark = ratio_mark) {
-  if (!wanted) return {};
+/// What `mark` means; empty where there is none.
+std::string legend(std::string_view mark) {
+  if (mark.empty()) return {};
   return std::string(mark) +
          " the two times shown contradict this ratio: their quotient differs from it by more than a quarter, "
          "or names the other one as the faster; trust the ratio, which compares single samples instead of "
@@ -177,18 +178,20 @@ std::string_view mark_of_ratio(double ratio, double time, double other) {
   return differs || (shown - 1) * (quotient - 1) < 0 ? ratio_mark : "";
 }
 
-std::string legend_of_ratios(const Table& table) { return legend(has_mark(table)); }
+std::string legend_of_ratios(const Table& table) { return legend(has_mark(table) ? ratio_mark : ""); }
 
 std::string legend_of_ratios(std::string_view table) {
-  const auto has = [&](std::string_view mark) { return table.find(mark) != std::string_view::npos; };
-  return has(ascii_ratio_mark) ? legend(true, ascii_ratio_mark) : legend(has(ratio_mark));
+  for (const std::string_view mark : {ratio_mark, ascii_ratio_mark})
+    if (table.find(mark) != std::string_view::npos) return legend(mark);
+  return "";
 }
 
 std::string legend_of_ratios(const Document& page) {
-  return legend(std::ranges::any_of(page, [](const auto& block) {
+  const bool marked = std::ranges::any_of(page, [](const auto& block) {
     const auto* table = std::get_if<Table>(&block);
     return table != nullptr && has_mark(*table);
-  }));
+  });
+  return legend(marked ? ratio_mark : "");
 }
 
 }  // namespace mssim
