@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "backends/process/process_backend.h"
 #include "hdf5/hdf5.h"
+#include "integrators/all_integrators.h"
 #include "platform/files.h"
 #include "tests/support/files_fixture.h"
 #include "tests/support/sentence_of.h"
@@ -20,6 +22,23 @@ namespace mssim {
 namespace {
 
 using testing::ElementsAre;
+
+TEST(MethodText, NamesStagesAndTerms) {
+  EXPECT_EQ(method_text(*find_integrator("midpoint")),
+            "integrator midpoint\n"
+            "stage x v\n"
+            "assign x_a 1 0 x 0.5 1 v\n"
+            "assign v_a 1 0 v 0.5 1 a\n"
+            "stage x_a v_a\n"
+            "assign x_next 1 0 x 1 1 v_a\n"
+            "assign v_next 1 0 v 1 1 a\n");
+}
+
+TEST(MethodText, WritesCoefficientsThatReadBack) {
+  EXPECT_NE(
+      method_text(*find_integrator("rk4-frozen")).find(" 0.16666666666666666 1 v 0.66666666666666663 1 "),
+      std::string::npos);
+}
 
 class StateFileTest : public TemporaryFolderTest {
  protected:
@@ -38,6 +57,26 @@ class StateFileTest : public TemporaryFolderTest {
   StateFile file_{2, folder()};
   const State state_{{{1, 2, 3}, {4, 5, 6}}, {{7, 8, 9}, {10, 11, 12}}};
 };
+
+TEST_F(StateFileTest, HoldsPositionsAndThenVelocities) {
+  file_.write(state_);
+  std::ifstream stream(file_.path(), std::ios::binary);
+  std::vector<double> numbers(13);
+  stream.read(reinterpret_cast<char*>(numbers.data()), 13 * sizeof(double));
+  EXPECT_EQ(stream.gcount(), 12 * sizeof(double));
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(numbers[i], static_cast<double>(i + 1));
+  const State back = file_.read();
+  EXPECT_EQ(back.position[1].z, 6);
+  EXPECT_EQ(back.velocity[1].x, 10);
+}
+
+TEST_F(StateFileTest, SeesWhatWasNotWritten) {
+  file_.write(state_);
+  file_.clear();
+  EXPECT_EQ(failure(), "wrote 0 of the 4 positions and velocities of the state file");
+  put({1, 2, 3, 4, 5, 6, 7, 8});
+  EXPECT_EQ(failure(), "wrote 2 of the 4 positions and velocities of the state file");
+}
 
 TEST_F(StateFileTest, PassesOnNumbersThatAreNotFinite) {
   file_.clear();
@@ -101,16 +140,37 @@ class SystemFileTest : public TemporaryFolderTest {
   Hdf5File file_;
 };
 
-// That a program which reads the rest takes the right steps, OwnProgram tests.
-TEST_F(SystemFileTest, HoldsTheShapesKindsFloorAndGridOfACloth) {
+std::vector<double> numbers_of(const std::vector<Vec3d>& vectors) {
+  std::vector<double> numbers;
+  for (const Vec3d& vector : vectors) numbers.insert(numbers.end(), {vector.x, vector.y, vector.z});
+  return numbers;
+}
+
+TEST_F(SystemFileTest, HoldsACloth) {
   const System system = cloth_system(5, 7);
   write(system);
   EXPECT_THAT(extents("/position"), ElementsAre(35, 3));
+  EXPECT_EQ(doubles("/position"), numbers_of(system.start.position));
+  EXPECT_EQ(doubles("/velocity"), numbers_of(system.start.velocity));
+  EXPECT_EQ(doubles("/mass"), system.node_mass);
+  EXPECT_EQ(counts("/pins"), system.pins);
   EXPECT_THAT(extents("/springs"), ElementsAre(system.springs.size(), 2));
-  const auto kinds = counts("/kind");
-  ASSERT_EQ(kinds.size(), system.springs.size());
-  for (std::size_t i = 0; i < kinds.size(); ++i) EXPECT_EQ(kinds[i], system.springs[i].kind);
+  const auto ends = counts("/springs"), kinds = counts("/kind");
+  const auto rest_lengths = doubles("/rest_length"), stiffness = doubles("/stiffness"),
+             damping = doubles("/damping");
+  ASSERT_EQ(rest_lengths.size(), system.springs.size());
+  for (std::size_t i = 0; i < system.springs.size(); ++i) {
+    const Spring& spring = system.springs[i];
+    EXPECT_EQ(ends[2 * i], spring.first);
+    EXPECT_EQ(ends[2 * i + 1], spring.second);
+    EXPECT_EQ(rest_lengths[i], spring.rest_length);
+    EXPECT_EQ(kinds[i], spring.kind);
+    EXPECT_EQ(stiffness[i], system.materials[spring.kind].stiffness);
+    EXPECT_EQ(damping[i], system.materials[spring.kind].damping);
+  }
+  EXPECT_THAT(doubles("/gravity"), ElementsAre(0, -9.81, 0));
   EXPECT_THAT(extents("/viscous_damping"), ElementsAre());
+  EXPECT_THAT(doubles("/viscous_damping"), ElementsAre(system.viscous_damping));
   EXPECT_THAT(doubles("/floor/height"), ElementsAre(system.floor.height));
   EXPECT_THAT(doubles("/floor/restitution"), ElementsAre(system.floor.restitution));
   EXPECT_THAT(doubles("/floor/friction"), ElementsAre(system.floor.friction));
@@ -133,8 +193,12 @@ TEST_F(SystemFileTest, HoldsBodiesWithoutPins) {
 TEST_F(SystemFileTest, SaysTheUnits) {
   write(cloth_system(3, 3));
   EXPECT_EQ(unit("/position"), "m");
+  EXPECT_EQ(unit("/velocity"), "m/s");
+  EXPECT_EQ(unit("/mass"), "kg");
+  EXPECT_EQ(unit("/stiffness"), "N/m");
   EXPECT_EQ(unit("/damping"), "N s/m");
   EXPECT_EQ(unit("/gravity"), "m/s^2");
+  EXPECT_EQ(unit("/viscous_damping"), "1/s");
   EXPECT_EQ(unit("/floor/height"), "m");
   EXPECT_FALSE(has_attribute(file_.get(), "/springs", "unit"));
 }
