@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <deque>
@@ -311,8 +312,10 @@ bool ends_in_trial(const std::function<void()>& work, unsigned most_seconds) {
 
 namespace {
 
-// What a signal handler may touch has to be global.
-volatile std::sig_atomic_t noted = 0;
+// What a signal handler may touch has to be global. The system chooses the thread that handles a signal,
+// hence atomic.
+std::atomic<int> noted = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a handler may not wait for a lock");
 
 }  // namespace
 
@@ -320,11 +323,7 @@ void note_ending_signal(int signal) { noted = signal; }
 
 int noted_ending_signal() { return noted; }
 
-int take_ending_signal() {
-  const int signal = noted;
-  noted = 0;
-  return signal;
-}
+int take_ending_signal() { return noted.exchange(0); }
 
 EndingSignals::EndingSignals(void (*handler)(int signal), int flags) {
   for (std::size_t i = 0; i < ending_signals.size(); ++i) {
@@ -344,13 +343,12 @@ void EndingSignals::restore() const {
 
 namespace {
 
-// What a signal handler may touch has to be global.
-volatile std::sig_atomic_t watched_group = 0;
-volatile std::sig_atomic_t received_signal = 0;
+std::atomic<pid_t> watched_group = 0;
+std::atomic<int> received_signal = 0;
 
 void end_group(int signal) {
   received_signal = signal;
-  if (watched_group > 0) ::kill(-watched_group, SIGKILL);
+  if (const pid_t group = watched_group; group > 0) ::kill(-group, SIGKILL);
 }
 
 }  // namespace
@@ -387,10 +385,7 @@ void InterruptionGuard::watch(pid_t group) {
 }
 
 void InterruptionGuard::throw_if_interrupted() {
-  if (received_signal == 0) return;
-  const int signal = received_signal;
-  received_signal = 0;
-  throw Interrupted{signal};
+  if (const int signal = received_signal.exchange(0); signal != 0) throw Interrupted{signal};
 }
 
 }  // namespace mssim
