@@ -10,8 +10,8 @@
   ROW(stiffness) /* k, N/m */       \
   ROW(damping)   /* c, N s/m, along the spring */
 
-#define MSSIM_COUNTED(name) +1
-enum { spring_constant_count = MSSIM_SPRING_CONSTANTS(MSSIM_COUNTED) };
+#define MSSIM_NUMBER(name) spring_constant_##name,
+enum { MSSIM_SPRING_CONSTANTS(MSSIM_NUMBER) spring_constant_count };
 
 /* As the host gives them to kernels. */
 #define MSSIM_FLOAT(name) float name;

@@ -40,9 +40,11 @@ inline Real where_less(Real a, Real b, Real yes, Real no) {
 
 template <class Real>
 inline bool operator==(const SpringConstants<Real>& a, const SpringConstants<Real>& b) {
-#define MSSIM_EQUAL(name) (a.name == b.name)&&
-  return MSSIM_SPRING_CONSTANTS(MSSIM_EQUAL) true;
-#undef MSSIM_EQUAL
+  bool equal = true;
+#define MSSIM_COMPARE(name) equal = equal && a.name == b.name;
+  MSSIM_SPRING_CONSTANTS(MSSIM_COMPARE)
+#undef MSSIM_COMPARE
+  return equal;
 }
 
 /// Puts a node that has fallen below y = height (m) back onto the floor and changes its velocity as

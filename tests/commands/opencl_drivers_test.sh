@@ -141,8 +141,10 @@ HOME=/dev/null ends 0 run --scene cloth2500 --backend opencl --duration 0.01
 grep -q "^mssim: $costs" err || fail "run does not say that kernels are compiled anew: $(cat err)"
 [ -z "$(ls tmp)" ] || fail "run leaves $(ls tmp)"
 
-# A missing /dev/null is named, and not the program that needs it.
-if unshare --mount --map-root-user mount -t tmpfs none /dev 2>err; then
+# A missing /dev/null is named, and not the program that needs it. clang's OpenMP ends a process that has no /dev/shm.
+if ldd "$mssim" | grep -q libomp; then
+  echo "not tried: no /dev/null (mssim has clang's OpenMP)"
+elif unshare --mount --map-root-user mount -t tmpfs none /dev 2>err; then
   # shellcheck disable=SC2016 # the inner shell expands $0
   unshare --mount --map-root-user sh -c 'mount -t tmpfs none /dev && exec "$0" list devices' "$mssim" >out 2>err </dev/null || true
   grep -q 'opening /dev/null failed (No such file or directory)$' err || fail "without /dev/null: $(cat err)"

@@ -25,7 +25,7 @@ ranks_here() {
 # rank_of NUMBER PATTERN: the process of that rank, once it is there, of the ranks with a variable that matches
 rank_of() {
   local pid i
-  for ((i = 0; i < 100; ++i)); do
+  for ((i = 0; i < 900; ++i)); do  # a sanitizer's take their time
     for pid in $(pgrep -f "^[^ ]*/mssim-mpi rank$"); do
       grep -qz -- "$2" "/proc/$pid/environ" 2>/dev/null || continue
       grep -qzx "OMPI_COMM_WORLD_RANK=$1" "/proc/$pid/environ" 2>/dev/null && echo "$pid" && return
