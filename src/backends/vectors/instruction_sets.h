@@ -62,6 +62,7 @@ std::vector<StepKernel<Data>> compiled_kernels() {
 
 /// Makes compiled_kernels<Data, MSSIM_STAGES>(), in mssim and once for all instruction sets, of functions
 /// `kernel` in HWY_NAMESPACE that return a StepKernel<Data>.
+// NOLINTBEGIN(bugprone-macro-parentheses): a type has no parentheses
 #define MSSIM_COMPILED_KERNELS(Data, kernel)                        \
   HWY_EXPORT(kernel);                                               \
   template <>                                                       \
@@ -71,3 +72,4 @@ std::vector<StepKernel<Data>> compiled_kernels() {
     }                                                               \
   };                                                                \
   template std::vector<StepKernel<Data>> compiled_kernels<Data, MSSIM_STAGES>();
+// NOLINTEND(bugprone-macro-parentheses)
