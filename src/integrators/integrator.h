@@ -77,6 +77,9 @@ constexpr bool is_implicit(const Integrator& integrator) { return integrator.sol
 
 constexpr std::size_t index(Slot slot) { return static_cast<std::size_t>(slot); }
 constexpr std::size_t index(Pair pair) { return static_cast<std::size_t>(pair); }
+inline constexpr std::array<std::string_view, slot_kinds> slot_names{
+    "x", "v", "x_next", "v_next", "x_a", "v_a", "x_b", "v_b", "a", "temporary_1", "temporary_2"};
+constexpr std::string_view name_of(Slot slot) { return slot_names[index(slot)]; }
 constexpr Slot position_slot(Pair pair) { return static_cast<Slot>(2 * index(pair)); }
 constexpr Slot velocity_slot(Pair pair) { return static_cast<Slot>(2 * index(pair) + 1); }
 

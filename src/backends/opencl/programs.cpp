@@ -14,10 +14,7 @@ namespace mssim {
 namespace {
 
 constexpr std::array<std::string_view, pair_kinds> pair_names{"state", "next", "trial_a", "trial_b"};
-constexpr std::array<std::string_view, slot_kinds> slot_names{
-    "x", "v", "x_next", "v_next", "x_a", "v_a", "x_b", "v_b", "a", "temporary_1", "temporary_2"};
-
-std::string name(Slot slot) { return std::string(slot_names[index(slot)]); }
+std::string name(Slot slot) { return std::string(name_of(slot)); }
 
 /// The name by which kernels know the arrays of `stored`, and those that hold `pair` until the stage.
 std::string name_of(Pair stored) { return std::string(pair_names[index(stored)]); }
