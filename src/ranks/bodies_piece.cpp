@@ -47,12 +47,16 @@ void require_same_meshes(const Session& session, const std::vector<SceneCounts>&
                         session.name_of(rank), session.name_of(0));
 }
 
+std::string bodies_in_words(std::size_t count) {
+  return fmt::format("{} {}", count, count == 1 ? "body" : "bodies");
+}
+
 std::vector<std::vector<BodyShare>> shares_for(int ranks, const std::vector<std::size_t>& nodes) {
   if (auto shares = body_shares(nodes, ranks)) return std::move(*shares);
   throw Unsupported(
       "{} cannot be cut for {}: a part of a body has at least {} nodes, so give at most --ranks {}",
-      nodes.size() == 1 ? "1 body" : fmt::format("{} bodies", nodes.size()),
-      pluralize(static_cast<std::uint64_t>(ranks), "rank"), least_share, most_ranks(nodes, ranks));
+      bodies_in_words(nodes.size()), pluralize(static_cast<std::uint64_t>(ranks), "rank"), least_share,
+      most_ranks(nodes, ranks));
 }
 
 std::vector<std::size_t> nodes_of(const std::vector<SceneCounts>& bodies) {
@@ -215,14 +219,10 @@ BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
 std::string BodiesPiece::note() const {
   const auto divided = static_cast<std::size_t>(
       std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
-  std::string text = std::string(kernel_.instruction_set) + ", ";
-  if (divided == 0) return text + "whole bodies";
-  const auto bodies = [](std::size_t count) {
-    return fmt::format("{}{}", count, count == 1 ? " body" : " bodies");
-  };
   const std::size_t whole = shares_.size() - divided;
-  return fmt::format("{}{} divided", text,
-                     whole == 0 ? bodies(divided) : fmt::format("{} whole, {}", bodies(whole), divided));
+  if (divided == 0) return fmt::format("{}, whole bodies", kernel_.instruction_set);
+  if (whole == 0) return fmt::format("{}, {} divided", kernel_.instruction_set, bodies_in_words(divided));
+  return fmt::format("{}, {} whole, {} divided", kernel_.instruction_set, bodies_in_words(whole), divided);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
-#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <optional>
 
 #include "backends/layouts/band_grid.h"
+#include "platform/machine.h"
 #include "ranks/piece.h"
 #include "scene/builders.h"
 #include "text/text.h"
@@ -152,10 +152,10 @@ double ClothPiece::trial_seconds(const Session& session) {
   constexpr double trial_s = 0.01;
   constexpr int trials = 3, most_steps = 500, first_steps = 16;
   const auto seconds_of = [&](int steps) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     step(steps);
     session.meet();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / steps;
+    return watch.seconds() / steps;
   };
   seconds_of(first_steps);
   const auto wanted = static_cast<int>(std::min<double>(most_steps, trial_s / seconds_of(first_steps)));

@@ -62,16 +62,13 @@ std::string pair_names_of(const StoredStage& stage) {
 
 /// The call that reads or writes the slot's memory: kernels/*_stage.cl have these functions.
 std::string access(const char* what, Slot slot, Pair arrays, const std::string& value = "") {
-  const bool velocity = index(slot) % 2 == 1;
-  return fmt::format("{}{}{}{}, tile, shape)", what, velocity ? "_velocity(" : "_position(", value,
-                     name_of(arrays));
+  return fmt::format("{}_part({}{}, {}, tile, shape)", what, value, name_of(arrays), index(slot) % 2);
 }
 Pair pair_of(Slot slot) { return static_cast<Pair>(index(slot) / 2); }
 
 /// `update_N`: the assignments of stage N for the nodes of a tile, once their springs are summed. It takes
 /// the pairs, the tile, its nodes, the spring forces per mass, the shape of the topology and the step
-/// parameters, and asks the topology for Tile, Shape, load_position, load_velocity, store_position and
-/// store_velocity.
+/// parameters, and asks the topology for Tile, Shape, load_part and store_part.
 std::string update_text(const StoredStage& stored_stage) {
   const auto& [integrator, number, storage] = stored_stage;
   const Stage& stage = stored_stage.stage();
