@@ -2,13 +2,8 @@
  * a column, and the kernel that takes steps, are generated from the table of integrators
  * (src/backends/opencl/programs.cpp) and follow this text.
  *
- * The layout is that of BandLayout (src/backends/layouts/band_grid.h): the rows are cut into MSSIM_LANES
- * bands of `height` rows, lane b holds band b, and a pair is
- *
- *     [column][row -2 .. height + 1][x y z u v w][lane],
- *
- * so that every neighbour is an aligned load of the same lane. Two halo rows above and below repeat rows of
- * the neighbouring bands.
+ * The layout is that of BandLayout (src/backends/layouts/band_grid.h) with MSSIM_LANES bands, whose halo rows
+ * repeat rows of the neighbouring bands.
  *
  * A work-item walks over its columns from the left, down the rows in each, and computes every spring once, at
  * its left or upper end. What a spring does to the other end waits: in registers for the rows below, in

@@ -95,6 +95,14 @@ constexpr std::size_t assignment_count(const Stage& stage) {
   return count;
 }
 
+/// The row of an explicit integrator.
+constexpr Integrator of_stages(std::string_view name, int order, std::string_view description,
+                               std::string_view paper_name, const std::array<Stage, max_stages>& stages) {
+  std::size_t count = 0;
+  while (count < max_stages && assignment_count(stages[count]) > 0) ++count;
+  return {name, order, count, description, paper_name, stages};
+}
+
 /// Does the stage write this slot?
 constexpr bool writes(const Stage& stage, Slot slot) {
   for (const Assignment& assignment : stage.assignments)
@@ -129,9 +137,7 @@ constexpr bool touches(const Integrator& integrator, Pair pair) {
 /// Where neighbours are gathered while others are being written, a stage must not write what it gathers from.
 constexpr bool gathers_safely(const Integrator& integrator) {
   for (std::size_t s = 0; s < integrator.stage_count; ++s)
-    if (writes(integrator.stages[s], position_slot(integrator.stages[s].gather)) ||
-        writes(integrator.stages[s], velocity_slot(integrator.stages[s].gather)))
-      return false;
+    if (writes(integrator.stages[s], integrator.stages[s].gather)) return false;
   return true;
 }
 

@@ -159,7 +159,37 @@ BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHe
 /// something to say to each other while they step.
 class BodiesPiece final : public Piece {
  public:
-  BodiesPiece(const Session& session, const RankJob& job);
+  BodiesPiece(const Session& session, const RankJob& job)
+      : kernel_(common_kernel(session, step_kernels<SlicedBodies>(*job.integrator), job.roots)) {
+    const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
+    require_same_meshes(session, counts);
+    const std::vector<std::size_t> nodes = nodes_of(counts);
+    for (const std::size_t body : nodes) scene_nodes_ += body;
+    shares_ = shares_for(session.ranks(), nodes);
+    std::vector<std::size_t> numbers;
+    std::vector<BodySpec> specs;
+    for (std::size_t body = 0; body < shares_.size(); ++body)
+      if (std::ranges::find(shares_[body], session.rank(), &BodyShare::rank) != shares_[body].end()) {
+        numbers.push_back(body);
+        specs.push_back(list_of(job.scene)[body]);
+      }
+    const System system = build_system(with_bodies(job.scene, specs));
+    const std::vector<BodyHere> here = bodies_here(system, numbers, nodes);
+    const std::vector<std::vector<int>> rank_of = ranks_of_nodes(session, here, shares_, nodes);
+    runs_ = runs_of_ranks(session.ranks(), shares_, rank_of, nodes);
+    for (std::size_t rank = 0; rank < runs_.size() && session.rank() != 0; ++rank)
+      if (static_cast<int>(rank) != session.rank()) runs_[rank] = {};
+
+    const BodiesPart part = part_of_rank(session.rank(), system, here, rank_of);
+    if (part.graph.own == system.nodes()) {
+      whole_ = make_openmp(system, *job.integrator, job.dt_s, {job.threads, ""}, kernel_.instruction_set);
+      return;
+    }
+    bodies_.emplace(part.system, SlicedGraph(part.system, kernel_.lanes, part.graph), *job.integrator,
+                    job.dt_s, static_cast<std::size_t>(job.threads));
+    if (!part.neighbours.empty()) bodies_->messages = &messages_.emplace(session, part, *bodies_);
+    bodies_->set_state(part.system.start);
+  }
 
   /// Without ghosts: messages bring those before the first stage.
   std::vector<NodeRun> taken_by(int rank) const override { return runs_[static_cast<std::size_t>(rank)]; }
@@ -172,7 +202,14 @@ class BodiesPiece final : public Piece {
   void step(int count) override { whole_ ? whole_->step(count) : kernel_.step(*bodies_, count); }
   RankCosts costs() const override { return messages_ ? messages_->costs() : RankCosts{}; }
   int threads() const override { return whole_ ? whole_->threads() : static_cast<int>(bodies_->threads); }
-  std::string note() const override;
+  std::string note() const override {
+    const auto divided = static_cast<std::size_t>(
+        std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
+    const std::size_t whole = shares_.size() - divided;
+    if (divided == 0) return fmt::format("{}, whole bodies", kernel_.instruction_set);
+    if (whole == 0) return fmt::format("{}, {} divided", kernel_.instruction_set, bodies_in_words(divided));
+    return fmt::format("{}, {} whole, {} divided", kernel_.instruction_set, bodies_in_words(whole), divided);
+  }
 
  private:
   StepKernel<SlicedBodies> kernel_;
@@ -183,47 +220,6 @@ class BodiesPiece final : public Piece {
   std::optional<SlicedBodies> bodies_;  ///< else
   std::optional<GhostMessages> messages_;
 };
-
-BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
-    : kernel_(common_kernel(session, step_kernels<SlicedBodies>(*job.integrator), job.roots)) {
-  const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
-  require_same_meshes(session, counts);
-  const std::vector<std::size_t> nodes = nodes_of(counts);
-  for (const std::size_t body : nodes) scene_nodes_ += body;
-  shares_ = shares_for(session.ranks(), nodes);
-  std::vector<std::size_t> numbers;
-  std::vector<BodySpec> specs;
-  for (std::size_t body = 0; body < shares_.size(); ++body)
-    if (std::ranges::find(shares_[body], session.rank(), &BodyShare::rank) != shares_[body].end()) {
-      numbers.push_back(body);
-      specs.push_back(list_of(job.scene)[body]);
-    }
-  const System system = build_system(with_bodies(job.scene, specs));
-  const std::vector<BodyHere> here = bodies_here(system, numbers, nodes);
-  const std::vector<std::vector<int>> rank_of = ranks_of_nodes(session, here, shares_, nodes);
-  runs_ = runs_of_ranks(session.ranks(), shares_, rank_of, nodes);
-  for (std::size_t rank = 0; rank < runs_.size() && session.rank() != 0; ++rank)
-    if (static_cast<int>(rank) != session.rank()) runs_[rank] = {};
-
-  const BodiesPart part = part_of_rank(session.rank(), system, here, rank_of);
-  if (part.graph.own == system.nodes()) {
-    whole_ = make_openmp(system, *job.integrator, job.dt_s, {job.threads, ""}, kernel_.instruction_set);
-    return;
-  }
-  bodies_.emplace(part.system, SlicedGraph(part.system, kernel_.lanes, part.graph), *job.integrator, job.dt_s,
-                  static_cast<std::size_t>(job.threads));
-  if (!part.neighbours.empty()) bodies_->messages = &messages_.emplace(session, part, *bodies_);
-  bodies_->set_state(part.system.start);
-}
-
-std::string BodiesPiece::note() const {
-  const auto divided = static_cast<std::size_t>(
-      std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
-  const std::size_t whole = shares_.size() - divided;
-  if (divided == 0) return fmt::format("{}, whole bodies", kernel_.instruction_set);
-  if (whole == 0) return fmt::format("{}, {} divided", kernel_.instruction_set, bodies_in_words(divided));
-  return fmt::format("{}, {} whole, {} divided", kernel_.instruction_set, bodies_in_words(whole), divided);
-}
 
 }  // namespace
 

@@ -311,26 +311,20 @@ RankCosts GhostMessages::costs() const {
 }
 
 void GhostMessages::begin(const float* records) {
-  pack(records);
+  {
+    const SecondsAdded timed(packed_s_);
+    float* to = sent_.data();
+    for (const std::uint32_t slot : edge_slots_) {
+      const float* record = records + std::size_t{slot} * record_floats;
+      to = std::copy_n(record, 3, to);
+      to = std::copy_n(record + velocity, 3, to);
+    }
+  }
   messages_.begin();
 }
 
 void GhostMessages::finish(float* records) {
   messages_.finish();
-  unpack(records);
-}
-
-void GhostMessages::pack(const float* records) {
-  const SecondsAdded timed(packed_s_);
-  float* to = sent_.data();
-  for (const std::uint32_t slot : edge_slots_) {
-    const float* record = records + std::size_t{slot} * record_floats;
-    to = std::copy_n(record, 3, to);
-    to = std::copy_n(record + velocity, 3, to);
-  }
-}
-
-void GhostMessages::unpack(float* records) {
   const SecondsAdded timed(packed_s_);
   float* record = records + first_ghost_slot_ * record_floats;
   for (std::size_t i = 0; i < received_.size(); i += node_floats, record += record_floats) {

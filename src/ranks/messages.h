@@ -150,10 +150,6 @@ class GhostMessages final : public NodeMessages {
   RankCosts costs() const;
 
  private:
-  /// Between the records and the arrays of the messages.
-  void pack(const float* records);
-  void unpack(float* records);
-
   std::vector<std::uint32_t> edge_slots_;  ///< of each neighbour's after the other, with repetitions
   std::size_t first_ghost_slot_;
   std::vector<float> sent_, received_;  ///< [nodes][position, velocity] in the order of the slots

@@ -146,8 +146,6 @@ class ProcessBackend final : public WindowBackend {
     // Where a wait was cut short there is no time for manners.
     if (std::uncaught_exceptions() == 0) end_politely();
   }
-  ProcessBackend(const ProcessBackend&) = delete;
-  ProcessBackend& operator=(const ProcessBackend&) = delete;
 
   void set_state(const State& state) override {
     failing_alone([&] { state_file_.write(state); });
