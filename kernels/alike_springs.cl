@@ -20,11 +20,11 @@ __kernel void alike_spring_forces(__global const float* restrict nodes, __global
     const size_t number = part / spring_parts, lane = part % spring_parts * MSSIM_LANES;
     const uint4 spring = springs[number];
     const struct SpringFloats shape = shapes[spring.w];
-    const Node first = load_node_of_slice(nodes + slice_floats * (size_t)spring.x + lane);
-    const Node second = load_node_of_slice(nodes + slice_floats * (size_t)spring.y + lane);
+    const Node first = load_components(nodes + slice_floats * (size_t)spring.x + lane, MSSIM_SLICE);
+    const Node second = load_components(nodes + slice_floats * (size_t)spring.y + lane, MSSIM_SLICE);
     const Vector d = minus(second.x, first.x);
     const Real pull = spring_pull(dot_product(d, d), dot_product(minus(second.v, first.v), d),
                                   spring_in_every_lane(shape, (Real)(as_float(spring.z))));
-    store_to_slice(times(pull, d), forces + number * 3 * MSSIM_SLICE + lane);
+    store_vector(times(pull, d), forces + number * 3 * MSSIM_SLICE + lane, MSSIM_SLICE);
   }
 }

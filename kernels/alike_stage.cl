@@ -29,21 +29,15 @@ static inline Tile tile_at(uint number, const Mesh* mesh) {
 #define own_floats(pair, tile) ((pair) + slice_floats * (tile).slice + (tile).lane)
 
 static inline Node load_node(__global const float* restrict pair, Tile tile) {
-  return load_node_of_slice(own_floats(pair, tile));
+  return load_components(own_floats(pair, tile), MSSIM_SLICE);
 }
 
-/* The tile's own vectors in a pair. */
-static inline Vector load_position(__global const float* pair, Tile tile, Shape mesh) {
-  return load_of_slice(own_floats(pair, tile));
+/* The tile's own position (part 0) or velocity (part 1) in a pair. */
+MSSIM_INLINE Vector load_part(__global const float* pair, int part, Tile tile, Shape mesh) {
+  return load_vector(own_floats(pair, tile) + 3 * part * MSSIM_SLICE, MSSIM_SLICE);
 }
-static inline Vector load_velocity(__global const float* pair, Tile tile, Shape mesh) {
-  return load_of_slice(own_floats(pair, tile) + 3 * MSSIM_SLICE);
-}
-static inline void store_position(Vector value, __global float* pair, Tile tile, Shape mesh) {
-  store_to_slice(value, own_floats(pair, tile));
-}
-static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape mesh) {
-  store_to_slice(value, own_floats(pair, tile) + 3 * MSSIM_SLICE);
+MSSIM_INLINE void store_part(Vector value, __global float* pair, int part, Tile tile, Shape mesh) {
+  store_vector(value, own_floats(pair, tile) + 3 * part * MSSIM_SLICE, MSSIM_SLICE);
 }
 
 /* The forces of all springs on the tile's nodes, m/s^2. */
@@ -55,7 +49,7 @@ static inline Vector gather_springs(__global const float* restrict pair, Tile ti
   Vector sum = no_vector();
   for (uint number = own.x; number < own.y; ++number) {
     const uint2 spring = mesh->springs[number];
-    const Node other = load_node_of_slice(bodies + slice_floats * (size_t)spring.x);
+    const Node other = load_components(bodies + slice_floats * (size_t)spring.x, MSSIM_SLICE);
     const Vector d = minus(other.x, node.x);
     const Real pull = spring_pull(dot_product(d, d), dot_product(minus(other.v, node.v), d),
                                   spring_in_every_lane(constants, (Real)(as_float(spring.y))));

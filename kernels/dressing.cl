@@ -36,18 +36,9 @@ typedef struct {
 #define item ((int)get_local_id(0))
 #define items ((int)get_local_size(0))
 
-MSSIM_INLINE Vector load_vector(__global const float* from, int plane) {
-  Vector value = {load_aligned(from), load_aligned(from + plane), load_aligned(from + 2 * plane)};
-  return value;
-}
 MSSIM_INLINE Vector load_vector_anywhere(__global const float* from, int plane) {
   Vector value = {load_lanes(from), load_lanes(from + plane), load_lanes(from + 2 * plane)};
   return value;
-}
-MSSIM_INLINE void store_vector(Vector value, __global float* to, int plane) {
-  store_aligned(value.x, to);
-  store_aligned(value.y, to + plane);
-  store_aligned(value.z, to + 2 * plane);
 }
 MSSIM_INLINE void store_vector_anywhere(Vector value, __global float* to, int plane) {
   store_lanes(value.x, to);

@@ -2,13 +2,8 @@
  * a column, and the kernel that takes steps, are generated from the table of integrators
  * (src/backends/opencl/programs.cpp) and follow this text.
  *
- * The layout is that of BandLayout (src/backends/layouts/band_grid.h): the rows are cut into MSSIM_LANES
- * bands of `height` rows, lane b holds band b, and a pair is
- *
- *     [column][row -2 .. height + 1][x y z u v w][lane],
- *
- * so that every neighbour is an aligned load of the same lane. Two halo rows above and below repeat rows of
- * the neighbouring bands.
+ * The layout is that of BandLayout (src/backends/layouts/band_grid.h) with MSSIM_LANES bands, whose halo rows
+ * repeat rows of the neighbouring bands.
  *
  * A work-item walks over its columns from the left, down the rows in each, and computes every spring once, at
  * its left or upper end. What a spring does to the other end waits: in registers for the rows below, in
@@ -97,35 +92,17 @@ static inline __global float* ring_column(int pair, int column, const Walk* walk
          halo * row_floats;
 }
 
-static inline Vector load_vector(__global const float* from) {
-  Vector value = {load_aligned(from), load_aligned(from + MSSIM_LANES), load_aligned(from + 2 * MSSIM_LANES)};
-  return value;
+/* The tile's own position (part 0) or velocity (part 1) in a pair, of which `pair` is row 0 of the column. */
+MSSIM_INLINE Vector load_part(__global const float* pair, int part, Tile tile, Shape grid) {
+  return load_vector(pair + tile.first + 3 * part * MSSIM_LANES, MSSIM_LANES);
 }
-static inline void store_vector(Vector value, __global float* to) {
-  store_aligned(value.x, to);
-  store_aligned(value.y, to + MSSIM_LANES);
-  store_aligned(value.z, to + 2 * MSSIM_LANES);
-}
-
-/* The tile's own vectors in a pair, of which `pair` is row 0 of the column. */
-static inline Vector load_position(__global const float* pair, Tile tile, Shape grid) {
-  return load_vector(pair + tile.first);
-}
-static inline Vector load_velocity(__global const float* pair, Tile tile, Shape grid) {
-  return load_vector(pair + tile.first + 3 * MSSIM_LANES);
-}
-static inline void store_position(Vector value, __global float* pair, Tile tile, Shape grid) {
-  store_vector(value, pair + tile.first);
-}
-static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape grid) {
-  store_vector(value, pair + tile.first + 3 * MSSIM_LANES);
+MSSIM_INLINE void store_part(Vector value, __global float* pair, int part, Tile tile, Shape grid) {
+  store_vector(value, pair + tile.first + 3 * part * MSSIM_LANES, MSSIM_LANES);
 }
 
 /* The nodes of a row. column: where its row 0 begins. */
 static inline Node load_node(__global const float* column, int row) {
-  __global const float* from = column + row * row_floats;
-  Node node = {load_vector(from), load_vector(from + 3 * MSSIM_LANES)};
-  return node;
+  return load_components(column + row * row_floats, MSSIM_LANES);
 }
 
 /* A column under way. */
@@ -193,15 +170,15 @@ static inline void prefetch_row(__global const float* row) {
  * is gathered; other pairs are in a cache. */
 MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry, int prefetch, Shape grid) {
   const Rows number = cloth_rows(row, grid);
-  Vector force = plus(carry->below, load_vector(at->on_here + row * 3 * MSSIM_LANES));
+  Vector force = plus(carry->below, load_vector(at->on_here + row * 3 * MSSIM_LANES, MSSIM_LANES));
   Vector on_below = carry->below_2, on_below_2 = no_vector(), on_right_2 = no_vector();
   add_spring(&force, &on_below, node, load_node(at->here, row + 1), number < at->down_rows, structural, grid);
   add_spring(&force, &on_below_2, node, load_node(at->here, row + 2), number < at->down_2_rows, bending,
              grid);
   add_spring(&force, &carry->right_above, node, load_node(at->next, row - 1), number - 1 < at->diagonal_rows,
              shear, grid);
-  if (row > 0) store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES);
-  Vector on_right = plus(carry->right_below, load_vector(at->on_next + row * 3 * MSSIM_LANES));
+  if (row > 0) store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES, MSSIM_LANES);
+  Vector on_right = plus(carry->right_below, load_vector(at->on_next + row * 3 * MSSIM_LANES, MSSIM_LANES));
   add_spring(&force, &on_right, node, load_node(at->next, row), number < at->right_rows, structural, grid);
   carry->right_above = on_right;
   carry->right_below = no_vector();
@@ -209,7 +186,7 @@ MSSIM_INLINE Vector walk_row(const Column* at, Node node, int row, Carry* carry,
              shear, grid);
   if (prefetch) prefetch_row(at->next_2 + row * row_floats);
   add_spring(&force, &on_right_2, node, load_node(at->next_2, row), number < at->right_2_rows, bending, grid);
-  store_vector(on_right_2, at->on_next_2 + row * 3 * MSSIM_LANES);
+  store_vector(on_right_2, at->on_next_2 + row * 3 * MSSIM_LANES, MSSIM_LANES);
   carry->below = on_below;
   carry->below_2 = on_below_2;
   return force;
@@ -236,7 +213,7 @@ MSSIM_INLINE void end_column(const Column* at, Carry* carry, Shape grid) {
   const int row = grid->height;
   add_spring(&on_halo, &carry->right_above, load_node(at->here, row), load_node(at->next, row - 1),
              cloth_rows(row - 1, grid) < at->diagonal_rows, shear, grid);
-  store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES);
+  store_vector(carry->right_above, at->on_next + (row - 1) * 3 * MSSIM_LANES, MSSIM_LANES);
 }
 
 /* Repeats the rows at the ends of the bands of a column that is written in the halo rows of their neighbours.

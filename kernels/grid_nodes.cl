@@ -25,36 +25,18 @@ static inline Tile tile_at(int row, int column, Shape grid, __global const int* 
   return tile;
 }
 
-static inline Vector load_vector(__global const float* from, int plane) {
-  Vector value = {from[0], from[plane], from[2 * plane]};
-  return value;
+/* The tile's own position (part 0) or velocity (part 1) in a pair. */
+MSSIM_INLINE Vector load_part(__global const float* pair, int part, Tile tile, Shape grid) {
+  return load_vector(pair + tile.first + 3 * part * grid->plane, grid->plane);
 }
-static inline void store_vector(Vector value, __global float* to, int plane) {
-  to[0] = value.x;
-  to[plane] = value.y;
-  to[2 * plane] = value.z;
-}
-
-/* The tile's own vectors in a pair. */
-static inline Vector load_position(__global const float* pair, Tile tile, Shape grid) {
-  return load_vector(pair + tile.first, grid->plane);
-}
-static inline Vector load_velocity(__global const float* pair, Tile tile, Shape grid) {
-  return load_vector(pair + tile.first + 3 * grid->plane, grid->plane);
-}
-static inline void store_position(Vector value, __global float* pair, Tile tile, Shape grid) {
-  store_vector(value, pair + tile.first, grid->plane);
-}
-static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape grid) {
-  store_vector(value, pair + tile.first + 3 * grid->plane, grid->plane);
+MSSIM_INLINE void store_part(Vector value, __global float* pair, int part, Tile tile, Shape grid) {
+  store_vector(value, pair + tile.first + 3 * part * grid->plane, grid->plane);
 }
 
 /* The node `down` rows below the tile and `right` columns to its right. */
 static inline Node load_node(__global const float* restrict pair, Tile tile, int down, int right,
                              Shape grid) {
-  __global const float* from = pair + tile.first + down * grid->stride + right;
-  Node node = {load_vector(from, grid->plane), load_vector(from + 3 * grid->plane, grid->plane)};
-  return node;
+  return load_components(pair + tile.first + down * grid->stride + right, grid->plane);
 }
 
 static inline Mask is_on_cloth(Tile tile, int down, int right, Shape grid) {

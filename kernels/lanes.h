@@ -24,33 +24,32 @@ typedef MSSIM_PASTE(int, MSSIM_LANES) Mask; /* sign bit set: true */
 #define load_aligned_mask(from) (*(__global const Mask*)(from))
 #define store_aligned(value, to) (*(__global Real*)(to) = (value))
 
-/* Not any(): PoCL 3.1 makes a branch per lane of it. */
+/* any_lane is not any(): PoCL 3.1 makes a branch per lane of that. lane_number: the number of each lane.
+ * from_lane_before, from_lane_after: what the neighbouring lane holds; the first, and the last, keep their
+ * own.
+ */
+#define any_of_four(four) (((four).s0 | (four).s1 | (four).s2 | (four).s3) < 0)
 #if MSSIM_LANES == 1
 #define any_lane(mask) ((mask) != 0)
+#define lane_number ((Mask)(0))
 #elif MSSIM_LANES == 4
-static inline int any_lane(int4 mask) { return (mask.s0 | mask.s1 | mask.s2 | mask.s3) < 0; }
+static inline int any_lane(int4 mask) { return any_of_four(mask); }
+#define lane_number ((Mask)(0, 1, 2, 3))
+#define from_lane_before(a) (a).s0012
+#define from_lane_after(a) (a).s1233
 #elif MSSIM_LANES == 8
-static inline int any_lane(int8 mask) {
-  int4 four = mask.lo | mask.hi;
-  return (four.s0 | four.s1 | four.s2 | four.s3) < 0;
-}
+static inline int any_lane(int8 mask) { return any_of_four(mask.lo | mask.hi); }
+#define lane_number ((Mask)(0, 1, 2, 3, 4, 5, 6, 7))
+#define from_lane_before(a) (a).s00123456
+#define from_lane_after(a) (a).s12345677
 #elif MSSIM_LANES == 16
 static inline int any_lane(int16 mask) {
   int8 eight = mask.lo | mask.hi;
-  int4 four = eight.lo | eight.hi;
-  return (four.s0 | four.s1 | four.s2 | four.s3) < 0;
+  return any_of_four(eight.lo | eight.hi);
 }
-#endif
-
-/* The number of each lane. */
-#if MSSIM_LANES == 1
-#define lane_number ((Mask)(0))
-#elif MSSIM_LANES == 4
-#define lane_number ((Mask)(0, 1, 2, 3))
-#elif MSSIM_LANES == 8
-#define lane_number ((Mask)(0, 1, 2, 3, 4, 5, 6, 7))
-#elif MSSIM_LANES == 16
 #define lane_number ((Mask)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define from_lane_before(a) (a).s00123456789abcde
+#define from_lane_after(a) (a).s123456789abcdeff
 #endif
 
 /* A scalar condition in every lane. */
@@ -106,14 +105,18 @@ static inline Vector where(Mask condition, Vector yes, Vector no) {
   return chosen;
 }
 
-/* What the neighbouring lane holds; the first, and the last, keep their own. */
-#if MSSIM_LANES == 4
-#define from_lane_before(a) (a).s0012
-#define from_lane_after(a) (a).s1233
-#elif MSSIM_LANES == 8
-#define from_lane_before(a) (a).s00123456
-#define from_lane_after(a) (a).s12345677
-#elif MSSIM_LANES == 16
-#define from_lane_before(a) (a).s00123456789abcde
-#define from_lane_after(a) (a).s123456789abcdeff
-#endif
+/* At components that lie `step` floats apart, and begin where a Real may (load_aligned). */
+MSSIM_INLINE Vector load_vector(__global const float* from, int step) {
+  const Vector value = {load_aligned(from), load_aligned(from + step), load_aligned(from + 2 * step)};
+  return value;
+}
+MSSIM_INLINE void store_vector(Vector value, __global float* to, int step) {
+  store_aligned(value.x, to);
+  store_aligned(value.y, to + step);
+  store_aligned(value.z, to + 2 * step);
+}
+/* x y z u v w. */
+MSSIM_INLINE Node load_components(__global const float* from, int step) {
+  const Node node = {load_vector(from, step), load_vector(from + 3 * step, step)};
+  return node;
+}

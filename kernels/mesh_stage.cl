@@ -33,18 +33,13 @@ static inline Node load_node(__global const float* restrict pair, Tile tile) {
   return load_records(pair, own_record);
 }
 
-/* The tile's own vectors in a pair. */
-static inline Vector load_position(__global const float* pair, Tile tile, Shape mesh) {
-  return load_node(pair, tile).x;
+/* The tile's own position (part 0) or velocity (part 1) in a pair. */
+MSSIM_INLINE Vector load_part(__global const float* pair, int part, Tile tile, Shape mesh) {
+  const Node node = load_node(pair, tile);
+  return part ? node.v : node.x;
 }
-static inline Vector load_velocity(__global const float* pair, Tile tile, Shape mesh) {
-  return load_node(pair, tile).v;
-}
-static inline void store_position(Vector value, __global float* pair, Tile tile, Shape mesh) {
-  store_quads(value, pair + record_floats * tile.first, record_floats);
-}
-static inline void store_velocity(Vector value, __global float* pair, Tile tile, Shape mesh) {
-  store_quads(value, pair + record_floats * tile.first + 4, record_floats);
+MSSIM_INLINE void store_part(Vector value, __global float* pair, int part, Tile tile, Shape mesh) {
+  store_quads(value, pair + record_floats * tile.first + 4 * part, record_floats);
 }
 
 /* The forces of all springs on the tile's nodes, m/s^2. Where a lane has fewer springs than its slice has

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "platform/machine.h"
-#include "ranks/programs.h"
 #include "ranks/requests.h"
 
 int main(int argc, char** argv) {

@@ -93,9 +93,8 @@ const BackendInfo& baseline_backend() { return only_row(BackendRole::baseline); 
 const BackendInfo& best_host_backend() { return only_row(BackendRole::best_of_host); }
 
 const BackendInfo* find_backend(std::string_view name) {
-  for (const BackendInfo& backend : table)
-    if (backend.name == name) return &backend;
-  return nullptr;
+  const auto row = std::ranges::find(table, name, &BackendInfo::name);
+  return row == table.end() ? nullptr : &*row;
 }
 
 BackendInfo own_backend(const BackendProgram& program) {
@@ -136,7 +135,7 @@ std::unique_ptr<WindowBackend> make_window_backend(const BackendInfo& backend, c
                                                    const ExecutionOptions& options,
                                                    std::size_t window_nodes) {
   if (!has_windows(backend)) throw Unsupported("it needs the whole cloth");
-  return make_process_window_backend(*backend.program, outline, integrator, dt_s, options, window_nodes);
+  return make_process_backend(*backend.program, outline, integrator, dt_s, options, window_nodes);
 }
 
 std::unique_ptr<DressingBackend> make_dressing_backend(const BackendInfo& backend, const System& system,

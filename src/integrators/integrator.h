@@ -77,6 +77,9 @@ constexpr bool is_implicit(const Integrator& integrator) { return integrator.sol
 
 constexpr std::size_t index(Slot slot) { return static_cast<std::size_t>(slot); }
 constexpr std::size_t index(Pair pair) { return static_cast<std::size_t>(pair); }
+inline constexpr std::array<std::string_view, slot_kinds> slot_names{
+    "x", "v", "x_next", "v_next", "x_a", "v_a", "x_b", "v_b", "a", "temporary_1", "temporary_2"};
+constexpr std::string_view name_of(Slot slot) { return slot_names[index(slot)]; }
 constexpr Slot position_slot(Pair pair) { return static_cast<Slot>(2 * index(pair)); }
 constexpr Slot velocity_slot(Pair pair) { return static_cast<Slot>(2 * index(pair) + 1); }
 
@@ -90,6 +93,14 @@ constexpr std::size_t assignment_count(const Stage& stage) {
   std::size_t count = 0;
   while (count < max_assignments && term_count(stage.assignments[count]) > 0) ++count;
   return count;
+}
+
+/// The row of an explicit integrator.
+constexpr Integrator of_stages(std::string_view name, int order, std::string_view description,
+                               std::string_view paper_name, const std::array<Stage, max_stages>& stages) {
+  std::size_t count = 0;
+  while (count < max_stages && assignment_count(stages[count]) > 0) ++count;
+  return {name, order, count, description, paper_name, stages};
 }
 
 /// Does the stage write this slot?
@@ -126,9 +137,7 @@ constexpr bool touches(const Integrator& integrator, Pair pair) {
 /// Where neighbours are gathered while others are being written, a stage must not write what it gathers from.
 constexpr bool gathers_safely(const Integrator& integrator) {
   for (std::size_t s = 0; s < integrator.stage_count; ++s)
-    if (writes(integrator.stages[s], position_slot(integrator.stages[s].gather)) ||
-        writes(integrator.stages[s], velocity_slot(integrator.stages[s].gather)))
-      return false;
+    if (writes(integrator.stages[s], integrator.stages[s].gather)) return false;
   return true;
 }
 

@@ -40,9 +40,6 @@ bool is_stable(const Integrator& integrator, double dt_s, const ModeBound& bound
   return largest_amplification(integrator, dt_s, bound) <= 1 + tolerated_growth;
 }
 
-/// Is the row a method that Hong et al. compare, and not only one of their costs?
-bool is_papers_method(const Integrator& integrator) { return integrator.paper_name == integrator.name; }
-
 }  // namespace
 
 double amplification(const Integrator& integrator, double dt_s, double stiffness, double damping) {
@@ -99,8 +96,9 @@ double largest_stable_dt(const Integrator& integrator, const ModeBound& bound) {
 double auto_dt(const ModeBound& bound) {
   constexpr double safety = 0.5;
   double limit = std::numeric_limits<double>::infinity();
-  for (const Integrator& integrator : integrators)
-    if (is_papers_method(integrator)) limit = std::min(limit, largest_stable_dt(integrator, bound));
+  for (const Integrator& integrator : integrators)  // the methods of the paper, not only its costs
+    if (integrator.paper_name == integrator.name)
+      limit = std::min(limit, largest_stable_dt(integrator, bound));
   if (std::isinf(limit))
     throw std::invalid_argument(
         "dt_s \"auto\" needs a system with springs or damping, which bound it: give a number");

@@ -47,12 +47,16 @@ void require_same_meshes(const Session& session, const std::vector<SceneCounts>&
                         session.name_of(rank), session.name_of(0));
 }
 
+std::string bodies_in_words(std::size_t count) {
+  return fmt::format("{} {}", count, count == 1 ? "body" : "bodies");
+}
+
 std::vector<std::vector<BodyShare>> shares_for(int ranks, const std::vector<std::size_t>& nodes) {
   if (auto shares = body_shares(nodes, ranks)) return std::move(*shares);
   throw Unsupported(
       "{} cannot be cut for {}: a part of a body has at least {} nodes, so give at most --ranks {}",
-      nodes.size() == 1 ? "1 body" : fmt::format("{} bodies", nodes.size()),
-      pluralize(static_cast<std::uint64_t>(ranks), "rank"), least_share, most_ranks(nodes, ranks));
+      bodies_in_words(nodes.size()), pluralize(static_cast<std::uint64_t>(ranks), "rank"), least_share,
+      most_ranks(nodes, ranks));
 }
 
 std::vector<std::size_t> nodes_of(const std::vector<SceneCounts>& bodies) {
@@ -155,7 +159,37 @@ BodiesPart part_of_rank(int rank, const System& system, const std::vector<BodyHe
 /// something to say to each other while they step.
 class BodiesPiece final : public Piece {
  public:
-  BodiesPiece(const Session& session, const RankJob& job);
+  BodiesPiece(const Session& session, const RankJob& job)
+      : kernel_(common_kernel(session, step_kernels<SlicedBodies>(*job.integrator), job.roots)) {
+    const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
+    require_same_meshes(session, counts);
+    const std::vector<std::size_t> nodes = nodes_of(counts);
+    for (const std::size_t body : nodes) scene_nodes_ += body;
+    shares_ = shares_for(session.ranks(), nodes);
+    std::vector<std::size_t> numbers;
+    std::vector<BodySpec> specs;
+    for (std::size_t body = 0; body < shares_.size(); ++body)
+      if (std::ranges::find(shares_[body], session.rank(), &BodyShare::rank) != shares_[body].end()) {
+        numbers.push_back(body);
+        specs.push_back(list_of(job.scene)[body]);
+      }
+    const System system = build_system(with_bodies(job.scene, specs));
+    const std::vector<BodyHere> here = bodies_here(system, numbers, nodes);
+    const std::vector<std::vector<int>> rank_of = ranks_of_nodes(session, here, shares_, nodes);
+    runs_ = runs_of_ranks(session.ranks(), shares_, rank_of, nodes);
+    for (std::size_t rank = 0; rank < runs_.size() && session.rank() != 0; ++rank)
+      if (static_cast<int>(rank) != session.rank()) runs_[rank] = {};
+
+    const BodiesPart part = part_of_rank(session.rank(), system, here, rank_of);
+    if (part.graph.own == system.nodes()) {
+      whole_ = make_openmp(system, *job.integrator, job.dt_s, {job.threads, ""}, kernel_.instruction_set);
+      return;
+    }
+    bodies_.emplace(part.system, SlicedGraph(part.system, kernel_.lanes, part.graph), *job.integrator,
+                    job.dt_s, static_cast<std::size_t>(job.threads));
+    if (!part.neighbours.empty()) bodies_->messages = &messages_.emplace(session, part, *bodies_);
+    bodies_->set_state(part.system.start);
+  }
 
   /// Without ghosts: messages bring those before the first stage.
   std::vector<NodeRun> taken_by(int rank) const override { return runs_[static_cast<std::size_t>(rank)]; }
@@ -168,7 +202,14 @@ class BodiesPiece final : public Piece {
   void step(int count) override { whole_ ? whole_->step(count) : kernel_.step(*bodies_, count); }
   RankCosts costs() const override { return messages_ ? messages_->costs() : RankCosts{}; }
   int threads() const override { return whole_ ? whole_->threads() : static_cast<int>(bodies_->threads); }
-  std::string note() const override;
+  std::string note() const override {
+    const auto divided = static_cast<std::size_t>(
+        std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
+    const std::size_t whole = shares_.size() - divided;
+    if (divided == 0) return fmt::format("{}, whole bodies", kernel_.instruction_set);
+    if (whole == 0) return fmt::format("{}, {} divided", kernel_.instruction_set, bodies_in_words(divided));
+    return fmt::format("{}, {} whole, {} divided", kernel_.instruction_set, bodies_in_words(whole), divided);
+  }
 
  private:
   StepKernel<SlicedBodies> kernel_;
@@ -179,51 +220,6 @@ class BodiesPiece final : public Piece {
   std::optional<SlicedBodies> bodies_;  ///< else
   std::optional<GhostMessages> messages_;
 };
-
-BodiesPiece::BodiesPiece(const Session& session, const RankJob& job)
-    : kernel_(common_kernel(session, step_kernels<SlicedBodies>(*job.integrator), job.roots)) {
-  const std::vector<SceneCounts> counts = counts_of_bodies(job.scene);
-  require_same_meshes(session, counts);
-  const std::vector<std::size_t> nodes = nodes_of(counts);
-  for (const std::size_t body : nodes) scene_nodes_ += body;
-  shares_ = shares_for(session.ranks(), nodes);
-  std::vector<std::size_t> numbers;
-  std::vector<BodySpec> specs;
-  for (std::size_t body = 0; body < shares_.size(); ++body)
-    if (std::ranges::find(shares_[body], session.rank(), &BodyShare::rank) != shares_[body].end()) {
-      numbers.push_back(body);
-      specs.push_back(list_of(job.scene)[body]);
-    }
-  const System system = build_system(with_bodies(job.scene, specs));
-  const std::vector<BodyHere> here = bodies_here(system, numbers, nodes);
-  const std::vector<std::vector<int>> rank_of = ranks_of_nodes(session, here, shares_, nodes);
-  runs_ = runs_of_ranks(session.ranks(), shares_, rank_of, nodes);
-  for (std::size_t rank = 0; rank < runs_.size() && session.rank() != 0; ++rank)
-    if (static_cast<int>(rank) != session.rank()) runs_[rank] = {};
-
-  const BodiesPart part = part_of_rank(session.rank(), system, here, rank_of);
-  if (part.graph.own == system.nodes()) {
-    whole_ = make_openmp(system, *job.integrator, job.dt_s, {job.threads, ""}, kernel_.instruction_set);
-    return;
-  }
-  bodies_.emplace(part.system, SlicedGraph(part.system, kernel_.lanes, part.graph), *job.integrator, job.dt_s,
-                  static_cast<std::size_t>(job.threads));
-  if (!part.neighbours.empty()) bodies_->messages = &messages_.emplace(session, part, *bodies_);
-  bodies_->set_state(part.system.start);
-}
-
-std::string BodiesPiece::note() const {
-  const auto divided = static_cast<std::size_t>(
-      std::ranges::count_if(shares_, [](const auto& shares) { return shares.size() > 1; }));
-  std::string text = std::string(kernel_.instruction_set) + ", ";
-  if (divided == 0) return text + "whole bodies";
-  const auto bodies = [](std::size_t count) {
-    return fmt::format("{}{}", count, count == 1 ? " body" : " bodies");
-  };
-  const std::size_t whole = shares_.size() - divided;
-  return fmt::format("{}{} divided", text,
-                     whole == 0 ? bodies(divided) : fmt::format("{} whole, {}", bodies(whole), divided));
-}
 
 }  // namespace
 

@@ -1,9 +1,9 @@
-#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <optional>
 
 #include "backends/layouts/band_grid.h"
+#include "platform/machine.h"
 #include "ranks/piece.h"
 #include "scene/builders.h"
 #include "text/text.h"
@@ -36,10 +36,40 @@ class ClothPiece final : public Piece {
   std::vector<NodeRun> owned_by(int rank) const override { return runs_of(columns_of(rank)); }
   std::size_t scene_nodes() const override { return bands_->layout.rows * columns_; }
   void set_state(const State& state) override { bands_->set_state(state); }
-  State state() const override;
-  void restart(double seconds) override;
-  std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const override;
-  State state(const GridWindow& window) const override;
+  State state() const override {
+    const State with_ghosts = bands_->state();
+    const std::size_t pitch = bands_->layout.columns;
+    State own;
+    for (std::size_t row = 0; row < bands_->layout.rows; ++row) {
+      const auto copy = [&](const std::vector<Vec3d>& from, std::vector<Vec3d>& to) {
+        const auto first = from.begin() + static_cast<std::ptrdiff_t>(row * pitch + bands_->own.first);
+        to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(bands_->own.count));
+      };
+      copy(with_ghosts.position, own.position);
+      copy(with_ghosts.velocity, own.velocity);
+    }
+    return own;
+  }
+  void restart(double seconds) override {
+    State start = nodes_at_start().start;
+    if (seconds != 0)
+      for (std::size_t i = 0; i < start.position.size(); ++i)
+        start.position[i] += seconds * start.velocity[i];
+    bands_->set_state(start);
+  }
+  std::vector<NodeRun> owned_by(int rank, const GridWindow& window) const override {
+    const GridWindow part = part_of_window(rank, window);
+    std::vector<NodeRun> runs;
+    for (std::size_t row = 0; row < part.rows && part.columns > 0; ++row)
+      runs.push_back({row * window.columns + part.column - window.column, part.columns});
+    return runs;
+  }
+  State state(const GridWindow& window) const override {
+    GridWindow part = part_of_window(rank_, window);
+    if (part.columns == 0) return {};
+    part.column -= static_cast<std::uint32_t>(with_ghosts(rank_).first);
+    return bands_->state(part);
+  }
   void step(int count) override { kernel_.step(*bands_, count); }
   RankCosts costs() const override { return messages_->costs(); }
   int threads() const override { return static_cast<int>(bands_->threads); }
@@ -50,25 +80,110 @@ class ClothPiece final : public Piece {
 
  private:
   /// Makes bands and messages for so many steps between two messages, at the scene's start state.
-  void make(const Session& session, const RankJob& job, std::size_t steps);
+  void make(const Session& session, const RankJob& job, std::size_t steps) {
+    messages_.reset();
+    bands_.reset();
+    ghosts_ = ghost_columns(*job.integrator, steps);
+    require_memory(session, memory_bytes(steps));
+    const ColumnRange own = columns_of(rank_), all = with_ghosts(rank_);
+    const System system = nodes_at_start();
+    bands_.emplace(system, std::get<GridPatch>(system.topology), *job.integrator, job.dt_s, kernel_.lanes,
+                   static_cast<std::size_t>(job.threads),
+                   BandCut{.steps_per_pass = steps, .piece = ColumnRange{own.first - all.first, own.count}});
+    messages_.emplace(session, *bands_);
+    if (ranks_ > 1) bands_->messages = &*messages_;
+    bands_->set_state(system.start);
+  }
   /// How many steps there had best be between two messages, by trials of all ranks together: fewer messages
   /// cost more columns that are computed twice. The result has the same bits with any number. Rank 0 decides.
-  std::size_t chosen_steps(const Session& session, const RankJob& job);
+  std::size_t chosen_steps(const Session& session, const RankJob& job) {
+    const Integrator& integrator = *job.integrator;
+    const auto& cloth = std::get<ClothSpec>(job.scene.content);
+    const GridPatch on_host{cloth.rows, static_cast<std::uint32_t>(columns_on_host(session, columns_)),
+                            cloth.spacing_m};
+    const std::size_t found = steps_per_pass_for(
+        BandLayout(on_host, kernel_.lanes), integrator,
+        static_cast<std::size_t>(session.ranks_on_host()) * static_cast<std::size_t>(job.threads));
+    const std::size_t usual = std::stoul(session.share(std::to_string(found)));
+    const std::size_t narrowest = columns_ / static_cast<std::size_t>(ranks_);
+    // Of a larger piece messages are a small part, and making it takes long.
+    constexpr std::size_t largest_tried = 1'000'000;  // nodes
+    const bool tries = ranks_ > 1 && narrowest * cloth.rows <= largest_tried && !session.shares_processors();
+    if (session.share(tries ? "try" : "") != "try") return usual;
+    // Another number must be so much faster: trials are short, and other programs may run.
+    constexpr double clearly_faster = 0.95;
+    std::vector<std::size_t> candidates{usual};
+    for (std::size_t steps = 1; steps * integrator.stage_count <= stages_under_way; steps *= 2)
+      if (steps != usual && ghost_columns(integrator, steps) <= narrowest) candidates.push_back(steps);
+    std::vector<double> least(candidates.size(), std::numeric_limits<double>::infinity());
+    // In turns: another program that runs for a while shall not decide.
+    constexpr int turns = 2;
+    for (int turn = 0; turn < turns; ++turn)
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        make(session, job, candidates[i]);
+        least[i] = std::min(least[i], trial_seconds(session));
+      }
+    least.front() *= clearly_faster;
+    const std::size_t chosen =
+        candidates[static_cast<std::size_t>(std::ranges::min_element(least) - least.begin())];
+    return std::stoul(session.share(std::to_string(chosen)));
+  }
   /// Seconds that a step takes as the piece is made.
-  double trial_seconds(const Session& session);
+  double trial_seconds(const Session& session) {
+    constexpr double trial_s = 0.01;
+    constexpr int trials = 3, most_steps = 500, first_steps = 16;
+    const auto seconds_of = [&](int steps) {
+      const Stopwatch watch;
+      step(steps);
+      session.meet();
+      return watch.seconds() / steps;
+    };
+    seconds_of(first_steps);
+    const auto wanted = static_cast<int>(std::min<double>(most_steps, trial_s / seconds_of(first_steps)));
+    const int steps = std::stoi(session.share(std::to_string(std::max(first_steps, wanted))));
+    double least = seconds_of(steps);
+    for (int trial = 1; trial < trials; ++trial) least = std::min(least, seconds_of(steps));
+    return least;
+  }
   /// The columns of the scene that a rank owns.
   ColumnRange columns_of(int rank) const {
     return part_of({0, columns_}, static_cast<std::size_t>(rank), static_cast<std::size_t>(ranks_));
   }
   /// Those and its ghosts.
   ColumnRange with_ghosts(int rank) const { return mssim::with_ghosts(columns_of(rank), ghosts_, columns_); }
-  std::vector<NodeRun> runs_of(ColumnRange columns) const;
+  std::vector<NodeRun> runs_of(ColumnRange columns) const {
+    std::vector<NodeRun> runs;
+    for (std::size_t row = 0; row < bands_->layout.rows; ++row)
+      runs.push_back({row * columns_ + columns.first, columns.count});
+    return runs;
+  }
   /// The nodes that this rank has, at the scene's start state.
-  System nodes_at_start() const;
+  System nodes_at_start() const {
+    const ColumnRange all = with_ghosts(rank_);
+    System system = build_cloth_window(scene_, {.row = 0,
+                                                .column = static_cast<std::uint32_t>(all.first),
+                                                .rows = std::get<ClothSpec>(scene_.content).rows,
+                                                .columns = static_cast<std::uint32_t>(all.count)});
+    round_start_to_single(system);
+    return system;
+  }
   /// The part of a window that a rank owns.
-  GridWindow part_of_window(int rank, const GridWindow& window) const;
+  GridWindow part_of_window(int rank, const GridWindow& window) const {
+    const ColumnRange own = columns_of(rank);
+    const std::size_t begin = std::max<std::size_t>(own.first, window.column);
+    const std::size_t end = std::min<std::size_t>(own.end(), window.column + window.columns);
+    return {window.row, static_cast<std::uint32_t>(begin), window.rows,
+            static_cast<std::uint32_t>(end - std::min(begin, end))};
+  }
   /// That this rank needs for so many steps between two messages.
-  std::uint64_t memory_bytes(std::size_t steps) const;
+  std::uint64_t memory_bytes(std::size_t steps) const {
+    // A node's start with its mass, while the piece is filled, and its state in the bands.
+    constexpr std::uint64_t node_bytes =
+        2 * sizeof(Vec3d) + sizeof(double) + BandLayout::components * sizeof(float);
+    const std::size_t ghosts = 2 * ghost_columns(*integrator_, steps);
+    const std::uint64_t columns = columns_ / static_cast<std::size_t>(ranks_) + ghosts;
+    return node_bytes * columns * std::get<ClothSpec>(scene_.content).rows;
+  }
 
   SceneSpec scene_;
   int ranks_;
@@ -80,142 +195,6 @@ class ClothPiece final : public Piece {
   std::optional<BandGrid> bands_;
   std::optional<NeighbourMessages> messages_;
 };
-
-void ClothPiece::make(const Session& session, const RankJob& job, std::size_t steps) {
-  messages_.reset();
-  bands_.reset();
-  ghosts_ = ghost_columns(*job.integrator, steps);
-  require_memory(session, memory_bytes(steps));
-  const ColumnRange own = columns_of(rank_), all = with_ghosts(rank_);
-  const System system = nodes_at_start();
-  bands_.emplace(system, std::get<GridPatch>(system.topology), *job.integrator, job.dt_s, kernel_.lanes,
-                 static_cast<std::size_t>(job.threads),
-                 BandCut{.steps_per_pass = steps, .piece = ColumnRange{own.first - all.first, own.count}});
-  messages_.emplace(session, *bands_);
-  if (ranks_ > 1) bands_->messages = &*messages_;
-  bands_->set_state(system.start);
-}
-
-System ClothPiece::nodes_at_start() const {
-  const ColumnRange all = with_ghosts(rank_);
-  System system = build_cloth_window(scene_, {.row = 0,
-                                              .column = static_cast<std::uint32_t>(all.first),
-                                              .rows = std::get<ClothSpec>(scene_.content).rows,
-                                              .columns = static_cast<std::uint32_t>(all.count)});
-  round_start_to_single(system);
-  return system;
-}
-
-std::uint64_t ClothPiece::memory_bytes(std::size_t steps) const {
-  // A node's start with its mass, while the piece is filled, and its state in the bands.
-  constexpr std::uint64_t node_bytes =
-      2 * sizeof(Vec3d) + sizeof(double) + BandLayout::components * sizeof(float);
-  const std::size_t ghosts = 2 * ghost_columns(*integrator_, steps);
-  const std::uint64_t columns = columns_ / static_cast<std::size_t>(ranks_) + ghosts;
-  return node_bytes * columns * std::get<ClothSpec>(scene_.content).rows;
-}
-
-std::size_t ClothPiece::chosen_steps(const Session& session, const RankJob& job) {
-  const Integrator& integrator = *job.integrator;
-  const auto& cloth = std::get<ClothSpec>(job.scene.content);
-  const GridPatch on_host{cloth.rows, static_cast<std::uint32_t>(columns_on_host(session, columns_)),
-                          cloth.spacing_m};
-  const std::size_t found = steps_per_pass_for(
-      BandLayout(on_host, kernel_.lanes), integrator,
-      static_cast<std::size_t>(session.ranks_on_host()) * static_cast<std::size_t>(job.threads));
-  const std::size_t usual = std::stoul(session.share(std::to_string(found)));
-  const std::size_t narrowest = columns_ / static_cast<std::size_t>(ranks_);
-  // Of a larger piece messages are a small part, and making it takes long.
-  constexpr std::size_t largest_tried = 1'000'000;  // nodes
-  const bool tries = ranks_ > 1 && narrowest * cloth.rows <= largest_tried && !session.shares_processors();
-  if (session.share(tries ? "try" : "") != "try") return usual;
-  // Another number must be so much faster: trials are short, and other programs may run.
-  constexpr double clearly_faster = 0.95;
-  std::vector<std::size_t> candidates{usual};
-  for (std::size_t steps = 1; steps * integrator.stage_count <= stages_under_way; steps *= 2)
-    if (steps != usual && ghost_columns(integrator, steps) <= narrowest) candidates.push_back(steps);
-  std::vector<double> least(candidates.size(), std::numeric_limits<double>::infinity());
-  // In turns: another program that runs for a while shall not decide.
-  constexpr int turns = 2;
-  for (int turn = 0; turn < turns; ++turn)
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      make(session, job, candidates[i]);
-      least[i] = std::min(least[i], trial_seconds(session));
-    }
-  least.front() *= clearly_faster;
-  const std::size_t chosen =
-      candidates[static_cast<std::size_t>(std::ranges::min_element(least) - least.begin())];
-  return std::stoul(session.share(std::to_string(chosen)));
-}
-
-double ClothPiece::trial_seconds(const Session& session) {
-  constexpr double trial_s = 0.01;
-  constexpr int trials = 3, most_steps = 500, first_steps = 16;
-  const auto seconds_of = [&](int steps) {
-    const auto begin = std::chrono::steady_clock::now();
-    step(steps);
-    session.meet();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / steps;
-  };
-  seconds_of(first_steps);
-  const auto wanted = static_cast<int>(std::min<double>(most_steps, trial_s / seconds_of(first_steps)));
-  const int steps = std::stoi(session.share(std::to_string(std::max(first_steps, wanted))));
-  double least = seconds_of(steps);
-  for (int trial = 1; trial < trials; ++trial) least = std::min(least, seconds_of(steps));
-  return least;
-}
-
-std::vector<NodeRun> ClothPiece::runs_of(ColumnRange columns) const {
-  std::vector<NodeRun> runs;
-  for (std::size_t row = 0; row < bands_->layout.rows; ++row)
-    runs.push_back({row * columns_ + columns.first, columns.count});
-  return runs;
-}
-
-State ClothPiece::state() const {
-  const State with_ghosts = bands_->state();
-  const std::size_t pitch = bands_->layout.columns;
-  State own;
-  for (std::size_t row = 0; row < bands_->layout.rows; ++row) {
-    const auto copy = [&](const std::vector<Vec3d>& from, std::vector<Vec3d>& to) {
-      const auto first = from.begin() + static_cast<std::ptrdiff_t>(row * pitch + bands_->own.first);
-      to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(bands_->own.count));
-    };
-    copy(with_ghosts.position, own.position);
-    copy(with_ghosts.velocity, own.velocity);
-  }
-  return own;
-}
-
-void ClothPiece::restart(double seconds) {
-  State start = nodes_at_start().start;
-  if (seconds != 0)
-    for (std::size_t i = 0; i < start.position.size(); ++i) start.position[i] += seconds * start.velocity[i];
-  bands_->set_state(start);
-}
-
-GridWindow ClothPiece::part_of_window(int rank, const GridWindow& window) const {
-  const ColumnRange own = columns_of(rank);
-  const std::size_t begin = std::max<std::size_t>(own.first, window.column);
-  const std::size_t end = std::min<std::size_t>(own.end(), window.column + window.columns);
-  return {window.row, static_cast<std::uint32_t>(begin), window.rows,
-          static_cast<std::uint32_t>(end - std::min(begin, end))};
-}
-
-std::vector<NodeRun> ClothPiece::owned_by(int rank, const GridWindow& window) const {
-  const GridWindow part = part_of_window(rank, window);
-  std::vector<NodeRun> runs;
-  for (std::size_t row = 0; row < part.rows && part.columns > 0; ++row)
-    runs.push_back({row * window.columns + part.column - window.column, part.columns});
-  return runs;
-}
-
-State ClothPiece::state(const GridWindow& window) const {
-  GridWindow part = part_of_window(rank_, window);
-  if (part.columns == 0) return {};
-  part.column -= static_cast<std::uint32_t>(with_ghosts(rank_).first);
-  return bands_->state(part);
-}
 
 }  // namespace
 

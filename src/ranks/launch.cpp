@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -25,7 +26,6 @@
 #include "platform/machine.h"
 #include "platform/process.h"
 #include "ranks/piece.h"
-#include "ranks/programs.h"
 #include "ranks/requests.h"
 #include "scene/scene_file.h"
 #include "text/text.h"
@@ -40,13 +40,6 @@ using namespace std::chrono_literals;
 constexpr std::chrono::seconds start_limit = 25s;
 /// How long a launcher that is to end gets to end the ranks.
 constexpr std::chrono::seconds patience = 3s;
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
 
 /// A launcher that runs.
 class Launcher {
@@ -147,7 +140,7 @@ void set_defaults() {
 int answer_alone(const std::string& answer) {
   Requests requests;
   requests.read_introduction();
-  requests.answer(in_one_line(answer));
+  requests.answer(answer);
   return 0;
 }
 
@@ -162,7 +155,8 @@ void require_cuttable(int ranks) {
 int launch_ranks(bool copies) {
   const std::string launcher = variable("MSSIM_LAUNCHER", "mpirun");
   const std::string ranks = variable("MSSIM_RANKS", "1");
-  std::vector<std::string> words = words_of(launcher);
+  std::istringstream in(launcher);
+  std::vector<std::string> words{std::istream_iterator<std::string>(in), {}};
   try {
     if (words.empty()) throw std::runtime_error("MSSIM_LAUNCHER is empty");
     // The user's names of files, in --launcher, are as seen from where mssim was started.

@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "backends/interface/backend.h"
-#include "platform/machine.h"
 #include "ranks/requests.h"
 #include "text/text.h"
 
@@ -51,67 +50,51 @@ constexpr std::size_t few_bytes = 8;
 constexpr std::size_t many_bytes = std::size_t{1} << 16;
 constexpr int trials = 100;
 
-/// Messages to another rank and from there. Of all trials the shortest counts: other programs only ever add
-/// to a time.
-class Partner {
- public:
-  Partner(const Session& session, int rank) : session_(session), rank_(rank) {}
+/// Starts a message to a rank, or from there: `start` is MPI_Isend or MPI_Irecv.
+template <class Start>
+MPI_Request started(const Start& start, std::span<char> bytes, int rank) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  check_mpi(
+      start(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, rank, link_tag, MPI_COMM_WORLD, &request),
+      "measuring a link");
+  return request;
+}
 
-  /// Half of there and back: one sends when the other has received.
-  double one_way_s() {
-    std::array<char, few_bytes> bytes{};
-    return least_seconds([&] {
-             if (session_.rank() < rank_) send(bytes);
-             receive(bytes);
-             if (session_.rank() > rank_) send(bytes);
-           }) /
-           2;
+/// Of all trials the shortest counts: other programs only ever add to a time.
+template <class Exchange>
+double least_seconds(const Exchange& exchange) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int trial = 0; trial < trials; ++trial) {
+    const Stopwatch watch;
+    exchange();
+    least = std::min(least, watch.seconds());
   }
+  return least;
+}
 
-  /// Both send at the same time.
-  double both_ways_s() {
-    std::vector<char> sent(many_bytes), received(many_bytes);
-    return least_seconds([&] {
-      std::array<MPI_Request, 2> requests{MPI_REQUEST_NULL, MPI_REQUEST_NULL};
-      check_mpi(MPI_Irecv(received.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
-                          MPI_COMM_WORLD, &requests[0]),
-                "measuring a link");
-      check_mpi(MPI_Isend(sent.data(), static_cast<int>(many_bytes), MPI_CHAR, rank_, link_tag,
-                          MPI_COMM_WORLD, &requests[1]),
-                "measuring a link");
-      session_.wait(requests, std::array{rank_});
-    });
-  }
+/// Half of the time of a message to a rank and back: one sends when the other has received.
+double one_way_s(const Session& session, int rank) {
+  std::array<char, few_bytes> bytes{};
+  const auto pass = [&](auto start) {
+    MPI_Request request = started(start, bytes, rank);
+    session.wait({&request, 1}, std::array{rank});
+  };
+  return least_seconds([&] {
+           if (session.rank() < rank) pass(MPI_Isend);
+           pass(MPI_Irecv);
+           if (session.rank() > rank) pass(MPI_Isend);
+         }) /
+         2;
+}
 
- private:
-  template <class Exchange>
-  double least_seconds(const Exchange& exchange) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int trial = 0; trial < trials; ++trial) {
-      const auto begin = std::chrono::steady_clock::now();
-      exchange();
-      least =
-          std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    }
-    return least;
-  }
-
-  void send(std::array<char, few_bytes>& bytes) {
-    MPI_Request request = MPI_REQUEST_NULL;
-    check_mpi(MPI_Isend(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
-              "measuring a link");
-    session_.wait({&request, 1}, std::array{rank_});
-  }
-  void receive(std::array<char, few_bytes>& bytes) {
-    MPI_Request request = MPI_REQUEST_NULL;
-    check_mpi(MPI_Irecv(bytes.data(), few_bytes, MPI_CHAR, rank_, link_tag, MPI_COMM_WORLD, &request),
-              "measuring a link");
-    session_.wait({&request, 1}, std::array{rank_});
-  }
-
-  const Session& session_;
-  int rank_;
-};
+/// Both send at the same time.
+double both_ways_s(const Session& session, int rank) {
+  std::vector<char> sent(many_bytes), received(many_bytes);
+  return least_seconds([&] {
+    std::array requests{started(MPI_Irecv, received, rank), started(MPI_Isend, sent, rank)};
+    session.wait(requests, std::array{rank});
+  });
+}
 
 }  // namespace
 
@@ -292,7 +275,7 @@ void StandingMessages::finish() {
   attempt([&] { session_.wait(requests_, peers_); });
 }
 
-NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : messages_(session) {
+NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : StandingMessages(session) {
   const std::size_t ghosts = ghost_columns(*bands.integrator, bands.steps_per_pass);
   const std::size_t floats = ghosts * bands.layout.column_floats();
   const ColumnRange own = bands.own;
@@ -300,10 +283,9 @@ NeighbourMessages::NeighbourMessages(const Session& session, BandGrid& bands) : 
     return std::span(partition.column(bands.layout, Pair::state, first), floats);
   };
   BandPartition &first = bands.partitions.front(), &last = bands.partitions.back();
-  if (own.first > 0)
-    messages_.add(session.rank() - 1, columns(first, own.first), columns(first, own.first - ghosts));
+  if (own.first > 0) add(session.rank() - 1, columns(first, own.first), columns(first, own.first - ghosts));
   if (own.end() < bands.layout.columns)
-    messages_.add(session.rank() + 1, columns(last, own.end() - ghosts), columns(last, own.end()));
+    add(session.rank() + 1, columns(last, own.end() - ghosts), columns(last, own.end()));
 }
 
 GhostMessages::GhostMessages(const Session& session, const BodiesPart& part, const SlicedBodies& bodies)
@@ -329,26 +311,20 @@ RankCosts GhostMessages::costs() const {
 }
 
 void GhostMessages::begin(const float* records) {
-  pack(records);
+  {
+    const SecondsAdded timed(packed_s_);
+    float* to = sent_.data();
+    for (const std::uint32_t slot : edge_slots_) {
+      const float* record = records + std::size_t{slot} * record_floats;
+      to = std::copy_n(record, 3, to);
+      to = std::copy_n(record + velocity, 3, to);
+    }
+  }
   messages_.begin();
 }
 
 void GhostMessages::finish(float* records) {
   messages_.finish();
-  unpack(records);
-}
-
-void GhostMessages::pack(const float* records) {
-  const SecondsAdded timed(packed_s_);
-  float* to = sent_.data();
-  for (const std::uint32_t slot : edge_slots_) {
-    const float* record = records + std::size_t{slot} * record_floats;
-    to = std::copy_n(record, 3, to);
-    to = std::copy_n(record + velocity, 3, to);
-  }
-}
-
-void GhostMessages::unpack(float* records) {
   const SecondsAdded timed(packed_s_);
   float* record = records + first_ghost_slot_ * record_floats;
   for (std::size_t i = 0; i < received_.size(); i += node_floats, record += record_floats) {
@@ -369,24 +345,23 @@ void require_memory(const Session& session, std::uint64_t bytes) {
 
 LinkSpeed measure_links(const Session& session) {
   if (session.ranks() == 1) return {};
-  double latency_s = 0, both_ways_s = 0;
+  double one_way = 0, both_ways = 0;
   for (int first = 0; first < 2; ++first) {
     session.meet();
     const bool is_left = (session.rank() - first) % 2 == 0;
     const int rank = session.rank() + (is_left ? 1 : -1);
     if (rank < 0 || rank >= session.ranks()) continue;
-    Partner partner(session, rank);
-    latency_s = std::max(latency_s, partner.one_way_s());
-    both_ways_s = std::max(both_ways_s, partner.both_ways_s());
+    one_way = std::max(one_way, one_way_s(session, rank));
+    both_ways = std::max(both_ways, both_ways_s(session, rank));
   }
-  for (const std::string& other : session.gather(decimal(latency_s) + ' ' + decimal(both_ways_s))) {
+  for (const std::string& other : session.gather(decimal(one_way) + ' ' + decimal(both_ways))) {
     std::istringstream of_rank(other);
     double latency = 0, seconds = 0;
     of_rank >> latency >> seconds;
-    latency_s = std::max(latency_s, latency);
-    both_ways_s = std::max(both_ways_s, seconds);
+    one_way = std::max(one_way, latency);
+    both_ways = std::max(both_ways, seconds);
   }
-  return {latency_s, static_cast<double>(many_bytes) / both_ways_s};
+  return {one_way, static_cast<double>(many_bytes) / both_ways};
 }
 
 }  // namespace mssim

@@ -2,7 +2,6 @@
 
 #include <mpi.h>
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,6 +10,7 @@
 
 #include "backends/layouts/band_grid.h"
 #include "backends/openmp/bodies.h"
+#include "platform/machine.h"
 #include "ranks/shares.h"
 
 namespace mssim {
@@ -29,14 +29,13 @@ struct RankCosts {
 class SecondsAdded {
  public:
   explicit SecondsAdded(double& seconds) : seconds_(seconds) {}
-  ~SecondsAdded() { seconds_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  ~SecondsAdded() { seconds_ += watch_.seconds(); }
   SecondsAdded(const SecondsAdded&) = delete;
   SecondsAdded& operator=(const SecondsAdded&) = delete;
 
  private:
-  using Clock = std::chrono::steady_clock;
   double& seconds_;
-  Clock::time_point begin_ = Clock::now();
+  Stopwatch watch_;
 };
 
 /// Longest wait for a message of another rank, s. All ranks do the same work at the same time: one that is
@@ -96,23 +95,20 @@ void check_mpi(int result, const char* action);
 /// Messages to and from other ranks that go again and again between the same places: MPI is told once what
 /// goes where (persistent requests). Threads of a step call them, one at a time, which no exception may
 /// leave: where something fails, all ranks end.
-class StandingMessages {
+class StandingMessages : public ColumnMessages {
  public:
   explicit StandingMessages(const Session& session) : session_(session) {}
-  StandingMessages(const StandingMessages&) = delete;
-  StandingMessages& operator=(const StandingMessages&) = delete;
-  ~StandingMessages();
+  ~StandingMessages() override;
 
   /// `sent` goes to a rank, and `received` comes from there; both must stay where they are. Throws
   /// RankFailure.
   void add(int rank, std::span<const float> sent, std::span<float> received);
 
-  /// Starts all. Does not wait.
-  void begin();
-  /// Lets those under way go on. Does not wait.
-  void advance();
+  /// Starts all.
+  void begin() override;
+  void advance() override;
   /// Waits until all have arrived, and what was sent may change again.
-  void finish();
+  void finish() override;
 
   /// What they have cost so far; this rank waits in finish().
   const RankCosts& costs() const { return costs_; }
@@ -132,20 +128,11 @@ class StandingMessages {
 
 /// The columns at the ends of a rank's piece of a cloth as messages to the ranks beside it, straight from and
 /// into the arrays of the state: nothing is packed.
-class NeighbourMessages final : public ColumnMessages {
+class NeighbourMessages final : public StandingMessages {
  public:
   /// `bands` must stay where its arrays are; both must outlive this. Rank r has the columns to the right of
   /// those of rank r - 1.
   NeighbourMessages(const Session& session, BandGrid& bands);
-
-  void begin() override { messages_.begin(); }
-  void advance() override { messages_.advance(); }
-  void finish() override { messages_.finish(); }
-
-  const RankCosts& costs() const { return messages_.costs(); }
-
- private:
-  StandingMessages messages_;
 };
 
 /// The edge nodes of a rank's part of bodies as messages to the ranks that have them as ghosts: positions and
@@ -163,10 +150,6 @@ class GhostMessages final : public NodeMessages {
   RankCosts costs() const;
 
  private:
-  /// Between the records and the arrays of the messages.
-  void pack(const float* records);
-  void unpack(float* records);
-
   std::vector<std::uint32_t> edge_slots_;  ///< of each neighbour's after the other, with repetitions
   std::size_t first_ghost_slot_;
   std::vector<float> sent_, received_;  ///< [nodes][position, velocity] in the order of the slots

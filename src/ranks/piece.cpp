@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -14,6 +13,7 @@
 
 #include "backends/openmp/openmp.h"
 #include "model/system.h"
+#include "platform/machine.h"
 #include "platform/process.h"
 #include "scene/scene_kinds.h"
 #include "text/text.h"
@@ -135,16 +135,6 @@ struct Message {
   Vec3d* velocities() { return vectors.data() + nodes; }
 };
 
-/// Calls `take` with every run of a message and its place there.
-template <class Take>
-void for_each_run(const std::vector<NodeRun>& runs, const Take& take) {
-  std::size_t place = 0;
-  for (const NodeRun& run : runs) {
-    take(run, place);
-    place += run.count;
-  }
-}
-
 /// Calls `pass` for every message between rank 0 and a rank in which this process has a part: the rank, the
 /// runs and the message.
 template <class RunsOf, class Pass>
@@ -175,30 +165,23 @@ template <class RunsOf>
 void gather(const Session& session, const std::filesystem::path& file, std::size_t nodes,
             const RunsOf& runs_of, const State& own) {
   std::size_t given = 0;
-  const auto fill = [&](Message& message) {
-    std::copy_n(own.position.data() + given, message.nodes, message.positions());
-    std::copy_n(own.velocity.data() + given, message.nodes, message.velocities());
-    given += message.nodes;
-  };
   std::optional<MappedState> all;
   if (session.rank() == 0) all.emplace(file, nodes);
   for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
-    if (session.rank() == rank)
-      fill(message);
-    else
+    if (session.rank() == rank) {
+      std::copy_n(own.position.data() + given, message.nodes, message.positions());
+      std::copy_n(own.velocity.data() + given, message.nodes, message.velocities());
+      given += message.nodes;
+    } else {
       exchange(session, message, rank, MPI_Irecv);
-    if (all)
-      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
-        std::copy_n(message.positions() + place, run.count, all->position(run.first));
-        std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
-      });
-    else
-      exchange(session, message, 0, MPI_Isend);
+    }
+    if (!all) return exchange(session, message, 0, MPI_Isend);
+    for (std::size_t place = 0; const NodeRun& run : runs) {
+      std::copy_n(message.positions() + place, run.count, all->position(run.first));
+      std::copy_n(message.velocities() + place, run.count, all->velocity(run.first));
+      place += run.count;
+    }
   });
-}
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 }  // namespace
@@ -225,25 +208,21 @@ std::unique_ptr<Piece> make_piece(const Session& session, const RankJob& job) {
 
 void scatter_state(const Session& session, const std::filesystem::path& file, Piece& piece) {
   State own;
-  const auto keep = [&](Message& message) {
-    own.position.insert(own.position.end(), message.positions(), message.positions() + message.nodes);
-    own.velocity.insert(own.velocity.end(), message.velocities(), message.velocities() + message.nodes);
-  };
   std::optional<MappedState> all;
   if (session.rank() == 0) all.emplace(file, piece.scene_nodes());
   const auto runs_of = [&](int rank) { return piece.taken_by(rank); };
   for_each_message(session, runs_of, [&](int rank, const std::vector<NodeRun>& runs, Message& message) {
-    if (all)
-      for_each_run(runs, [&](const NodeRun& run, std::size_t place) {
+    if (!all)
+      exchange(session, message, 0, MPI_Irecv);
+    else
+      for (std::size_t place = 0; const NodeRun& run : runs) {
         std::copy_n(all->position(run.first), run.count, message.positions() + place);
         std::copy_n(all->velocity(run.first), run.count, message.velocities() + place);
-      });
-    else
-      exchange(session, message, 0, MPI_Irecv);
-    if (session.rank() == rank)
-      keep(message);
-    else
-      exchange(session, message, rank, MPI_Isend);
+        place += run.count;
+      }
+    if (session.rank() != rank) return exchange(session, message, rank, MPI_Isend);
+    own.position.insert(own.position.end(), message.positions(), message.positions() + message.nodes);
+    own.velocity.insert(own.velocity.end(), message.velocities(), message.velocities() + message.nodes);
   });
   piece.set_state(own);
 }
@@ -261,12 +240,12 @@ void gather_window(const Session& session, const std::filesystem::path& file, co
 }
 
 void StepCosts::step(const Session& session, Piece& piece, int count) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch all;
   piece.step(count);
-  const auto stepped = std::chrono::steady_clock::now();
+  const Stopwatch stepped;
   session.meet();
-  met_s_ += seconds_since(stepped);
-  seconds_ += seconds_since(begin);
+  met_s_ += stepped.seconds();
+  seconds_ += all.seconds();
   steps_ += count;
 }
 

@@ -17,7 +17,6 @@
 #include "platform/machine.h"
 #include "ranks/messages.h"
 #include "ranks/piece.h"
-#include "ranks/programs.h"
 #include "ranks/requests.h"
 #include "scene/scene_file.h"
 #include "text/text.h"
@@ -112,10 +111,10 @@ void introduce(const Session& session, const Piece& piece, const std::string& cr
   requests.answer(fmt::format("threads {}", session.ranks() * piece.threads()));
   requests.answer("precision single");
   requests.answer("tells costs");
-  requests.answer(in_one_line(fmt::format(
+  requests.answer(fmt::format(
       "note {}, {} of {}, {}", library, pluralize(static_cast<std::uint64_t>(session.ranks()), "rank"),
-      pluralize(static_cast<std::uint64_t>(piece.threads()), "thread"), piece.note())));
-  if (!crowded.empty()) requests.answer(in_one_line("untimed " + crowded));
+      pluralize(static_cast<std::uint64_t>(piece.threads()), "thread"), piece.note()));
+  if (!crowded.empty()) requests.answer("untimed " + crowded);
   requests.answer("ready 1");
 }
 
@@ -185,9 +184,9 @@ void work(Session& session, bool copies) {
     if (requests) introduce(session, *piece, where_crowded, *requests);
     serve(session, *piece, requests, introduction["state"]);
   } catch (const Unsupported& unsupported) {  // by all ranks alike
-    if (requests) requests->answer(in_one_line(std::string("unsupported ") + unsupported.what()));
+    if (requests) requests->answer(std::string("unsupported ") + unsupported.what());
   } catch (const Unavailable& unavailable) {
-    if (requests) requests->answer(in_one_line(std::string("unavailable ") + unavailable.what()));
+    if (requests) requests->answer(std::string("unavailable ") + unavailable.what());
   }
 }
 

@@ -14,16 +14,16 @@
 namespace mssim {
 
 Requests::Requests() : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-  const char* path = std::getenv("MSSIM_SOCKET");
-  if (!path || !*path)
+  const std::string path = variable("MSSIM_SOCKET");
+  if (path.empty())
     throw std::runtime_error(
         "MSSIM_SOCKET is not set: mssim starts this program (mssim bench --backend mpi)");
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  if (std::strlen(path) >= sizeof address.sun_path)
+  if (path.size() >= sizeof address.sun_path)
     throw std::runtime_error(
         "the path of the socket in MSSIM_SOCKET is too long: set TMPDIR to a shorter one");
-  std::strcpy(address.sun_path, path);
+  std::ranges::copy(path, std::begin(address.sun_path));
   if (::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     throw std::runtime_error(fmt::format("cannot connect to {} ({})", path, std::strerror(errno)));
 }
@@ -53,8 +53,10 @@ std::string Requests::next() {
   }
 }
 
-void Requests::answer(std::string_view line) {
-  std::string text(line);
+void Requests::answer(std::string text) {
+  constexpr std::size_t longest = 4000;  // mssim takes 4,096 bytes
+  std::ranges::replace(text, '\n', ' ');
+  text.resize(std::min(text.size(), longest));
   text += '\n';
   for (std::string_view rest = text; !rest.empty();) {
     const ssize_t count = ::send(socket_.get(), rest.data(), rest.size(), MSG_NOSIGNAL);
@@ -62,12 +64,6 @@ void Requests::answer(std::string_view line) {
     if (count < 0) return;  // next() says that mssim has gone
     rest.remove_prefix(static_cast<std::size_t>(count));
   }
-}
-
-std::string in_one_line(std::string text) {
-  constexpr std::size_t longest = 4000;  // an answer has at most 4,096 bytes
-  std::ranges::replace(text, '\n', ' ');
-  return text.substr(0, longest);
 }
 
 void LauncherOutput::take(std::string_view bytes) {

@@ -28,6 +28,16 @@ inline constexpr std::string_view ranks_have_started = "mssim-mpi: all ranks hav
 /// On stderr, before the sentence with which a rank fails.
 inline constexpr std::string_view sentence_mark = "mssim-mpi: ";
 
+/// What mssim starts: runs the launcher of MPI (MSSIM_LAUNCHER, default `mpirun`) with MSSIM_RANKS times
+/// `mssim-mpi rank`, or `mssim-mpi rank copies`, passes on what they print, and waits for its end. Where they
+/// fail, the last line on stderr is the sentence that says why. Returns the exit code.
+int launch_ranks(bool copies);
+
+/// What a launcher of MPI starts as many times as there are ranks (`mssim-mpi rank`): steps a part of the
+/// scene, or (`mssim-mpi rank copies`) the whole; rank 0 speaks with mssim. Returns the exit code. Where a
+/// rank fails, its sentence is on stderr, and all ranks are ended.
+int run_rank(int argc, char** argv);
+
 /// The program's end of the protocol of own backends (docs/own-backends.md): what mssim says comes line by
 /// line.
 class Requests {
@@ -40,16 +50,13 @@ class Requests {
   std::map<std::string, std::string> read_introduction();
   /// The next line, without its newline; "end" where mssim has gone.
   std::string next();
-  /// Sends a line, and its newline.
-  void answer(std::string_view line);
+  /// Sends a text as one line, of as many bytes as an answer may have at most.
+  void answer(std::string text);
 
  private:
   Descriptor socket_;
   std::string received_;
 };
-
-/// A sentence as what follows the first word of an answer: in one line.
-std::string in_one_line(std::string text);
 
 /// What a launcher of MPI and its ranks print, of which some lines say why they have failed.
 class LauncherOutput {

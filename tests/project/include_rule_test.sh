@@ -122,7 +122,7 @@ backends/opencl       opencl
 backends/hybrid       hybrid
 backends/process      process_backend
 backends/described    backend_description
-ranks                 programs requests
+ranks                 requests
 bench/machine         provenance
 bench/results         result comparison
 bench/roofline        roofline

@@ -6,7 +6,6 @@
 #include <memory>
 #include <mutex>
 #include <numeric>
-#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -39,7 +38,6 @@ class ListMethod final : public Backend {
 
   void set_state(const State& state) override { list_.set_state(state); }
   State state() const override { return list_.state(); }
-  std::string device() const override { return "cpu"; }
   int threads() const override { return threads_; }
 
   void step(int count) override {
@@ -246,7 +244,14 @@ constexpr AccumulationMethod of_list(std::string_view name, std::string_view des
           repeatable};
 }
 
-const std::array<AccumulationMethod, 9>& table() {
+}  // namespace
+
+std::string_view name_of(Repeatable repeatable) {
+  constexpr std::array<std::string_view, 3> names{"no", "at the same number of threads", "yes"};
+  return names.at(static_cast<std::size_t>(repeatable));
+}
+
+std::span<const AccumulationMethod> accumulation_methods() {
   static const std::array<AccumulationMethod, 9> rows{{
       {baseline_backend(), "none", "once", Repeatable::always},
       of_list("mutex-per-group",
@@ -281,21 +286,5 @@ const std::array<AccumulationMethod, 9>& table() {
   }};
   return rows;
 }
-
-}  // namespace
-
-std::string_view name_of(Repeatable repeatable) {
-  switch (repeatable) {
-    case Repeatable::never:
-      return "no";
-    case Repeatable::at_same_threads:
-      return "at the same number of threads";
-    case Repeatable::always:
-      return "yes";
-  }
-  return "";
-}
-
-std::span<const AccumulationMethod> accumulation_methods() { return table(); }
 
 }  // namespace mssim

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -23,16 +22,10 @@ using PairRows = RowLayout<6>;
 
 /// What the vector code needs to take steps of a cloth. Pairs have PairRows::floats.
 struct PaddedRows : SeparateSteps {
-  /// A node that is put back after every update.
-  struct Pin {
-    std::size_t offset;  ///< PairRows::offset
-    std::array<float, 3> position;
-  };
-
   PairRows layout;
   std::vector<SpringPerMass> springs;  ///< [kinds]
   std::size_t threads = 1;
-  std::vector<Pin> pins;               ///< row by row
+  std::vector<PlacedPin> pins;         ///< row by row, at PairRows::offset
   std::vector<std::size_t> first_pin;  ///< [rows + 1] where a row's pins begin
 
   /// Throws Unsupported where the nodes differ in mass. Set a state before the first step.

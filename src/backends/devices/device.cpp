@@ -116,15 +116,8 @@ std::optional<cl::Device> make_part(cl::Device device, int count) {
 }  // namespace
 
 std::string_view name_of(OpenclDeviceType type) {
-  switch (type) {
-    case OpenclDeviceType::cpu:
-      return "cpu";
-    case OpenclDeviceType::gpu:
-      return "gpu";
-    case OpenclDeviceType::other:
-      break;
-  }
-  return "other";
+  constexpr std::array<std::string_view, 3> names{"cpu", "gpu", "other"};
+  return names.at(static_cast<std::size_t>(type));
 }
 
 OpenclDevice choose_opencl_device(std::span<const OpenclDevice> devices, std::string_view wanted) {

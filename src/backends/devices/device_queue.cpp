@@ -5,22 +5,17 @@
 #include "platform/files.h"
 
 namespace mssim {
-namespace {
-
-std::string kernel_file(const char* file) {
-  const auto path = data_folder() / "kernels" / file;
-  try {
-    return read_file(path);
-  } catch (const ReadError& error) {
-    throw std::runtime_error(error.sentence(path, "the OpenCL backends are made from it"));
-  }
-}
-
-}  // namespace
 
 std::string program_text(int lanes, std::initializer_list<const char*> files) {
   std::string text = fmt::format("#define MSSIM_LANES {}\n", lanes);
-  for (const char* file : files) text += kernel_file(file);
+  for (const char* file : files) {
+    const auto path = data_folder() / "kernels" / file;
+    try {
+      text += read_file(path);
+    } catch (const ReadError& error) {
+      throw std::runtime_error(error.sentence(path, "the OpenCL backends are made from it"));
+    }
+  }
   return text;
 }
 

@@ -1,4 +1,3 @@
-// Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -8,9 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "integrators/integrator.h"
@@ -117,8 +115,8 @@ class Backend {
   virtual void step(int count) = 0;
   /// The present state, in the scene's node order.
   virtual State state() const = 0;
-  /// What the steps run on, for the `device` column, for example "cpu" or an OpenCL device's name.
-  virtual std::string device() const = 0;
+  /// What the steps run on, for the `device` column, for example an OpenCL device's name.
+  virtual std::string device() const { return "cpu"; }
   /// Processors of this machine that compute a step; of a device with processors of its own, the thread that
   /// waits for it. More than ExecutionOptions::threads only where a driver cannot keep to it.
   virtual int threads() const = 0;

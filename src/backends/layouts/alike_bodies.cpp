@@ -7,14 +7,6 @@
 #include "backends/layouts/spring_graph.h"
 
 namespace mssim {
-namespace {
-
-bool are_alike(const AlikeBodies& a, const AlikeBodies& b) {
-  return a.constants == b.constants && a.pinned == b.pinned && a.first_spring == b.first_spring &&
-         a.springs == b.springs;
-}
-
-}  // namespace
 
 std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) {
   const std::vector<std::uint32_t> order = reverse_cuthill_mckee(system.nodes(), system.springs);
@@ -51,7 +43,10 @@ std::optional<std::vector<AlikeBodies>> find_alike_bodies(const System& system) 
     }
     body.first_spring.push_back(static_cast<std::uint32_t>(body.springs.size()));
     begin = end;
-    const auto known = std::ranges::find_if(all, [&](const AlikeBodies& of) { return are_alike(of, body); });
+    const auto known = std::ranges::find_if(all, [&](const AlikeBodies& of) {
+      return of.constants == body.constants && of.pinned == body.pinned &&
+             of.first_spring == body.first_spring && of.springs == body.springs;
+    });
     if (known == all.end())
       all.push_back(std::move(body));
     else

@@ -138,7 +138,13 @@ BandGrid::BandGrid(const System& system, const GridPatch& grid, const Integrator
   cut(most_threads);
   const std::vector<SpringPerMass> springs = springs_per_mass(system, grid);
   for (BandPartition& partition : partitions) {
-    make_arrays(partition);
+    const std::size_t local_columns = partition.ghosts + partition.count + partition.ghosts;
+    for (const Pair pair : stored_pairs(method, Storage::in_place))
+      partition.pairs[index(pair)] =
+          AlignedArray((pair == Pair::state ? local_columns : ring_columns) * layout.column_floats());
+    partition.forces = AlignedArray(stages_under_way * 2 * layout.force_floats());
+    partition.column_rows.resize(local_columns);
+    partition.pins.resize(local_columns);
     choose_rows(partition, springs);
     add_pins(partition, system);
   }
@@ -177,14 +183,6 @@ void BandGrid::add_partition(ColumnRange its) {
   partition.first_of_cloth = layout.halves == 1 ? its.first : layout.halves * (its.first - own.first);
 }
 
-void BandGrid::make_arrays(BandPartition& partition) const {
-  const std::size_t local_columns = partition.ghosts + partition.count + partition.ghosts;
-  for (const Pair pair : stored_pairs(*integrator, Storage::in_place))
-    partition.pairs[index(pair)] =
-        AlignedArray((pair == Pair::state ? local_columns : ring_columns) * layout.column_floats());
-  partition.forces = AlignedArray(stages_under_way * 2 * layout.force_floats());
-}
-
 ColumnRange BandGrid::filled_columns(const BandPartition& partition) const {
   return with_ghosts({partition.first, partition.count}, partition.ghosts, columns);
 }
@@ -196,7 +194,6 @@ void BandGrid::choose_rows(BandPartition& partition, const std::vector<SpringPer
     return std::min(static_cast<std::size_t>(left), BandRows::far_from_end);
   };
   const ColumnRange filled = filled_columns(partition);
-  partition.column_rows.resize(partition.ghosts + partition.count + partition.ghosts);
   for (std::size_t column = filled.first; column < filled.end(); ++column) {
     ColumnsToEnd key{};
     for (std::size_t half = 0; half < layout.halves; ++half)
@@ -208,7 +205,6 @@ void BandGrid::choose_rows(BandPartition& partition, const std::vector<SpringPer
 
 void BandGrid::add_pins(BandPartition& partition, const System& system) const {
   const ColumnRange filled = filled_columns(partition);
-  partition.pins.resize(partition.ghosts + partition.count + partition.ghosts);
   for (const std::uint32_t node : system.pins)
     for (std::size_t half = 0; half < layout.halves; ++half) {
       const std::size_t row = node / layout.columns;

@@ -12,8 +12,8 @@
 
 #include "backends/interface/backend.h"
 #include "backends/layouts/node_arrays.h"
+#include "backends/threads/spin_wait.h"
 #include "backends/threads/team_gain.h"
-#include "backends/threads/thread_progress.h"
 #include "integrators/all_integrators.h"
 #include "model/system.h"
 
@@ -164,12 +164,6 @@ class ColumnMessages {
   virtual void finish() = 0;
 };
 
-/// A node that must be put back after every update.
-struct BandPin {
-  std::size_t offset;  ///< floats from the column's start to the node's x
-  std::array<float, 3> position;
-};
-
 /// Columns behind the first stage that the last one under way still gathers from, and so the columns that a
 /// trial pair keeps: they are used in turn.
 inline constexpr std::size_t ring_columns = std::bit_ceil(BandLayout::halo * stages_under_way);
@@ -203,7 +197,7 @@ struct BandPartition {
   /// The state [ghosts + count + ghosts][column_floats], other pairs [ring_columns][column_floats]; empty
   /// where not stored.
   std::array<AlignedArray, pair_kinds> pairs;
-  std::vector<std::vector<BandPin>> pins;    ///< [ghosts + count + ghosts] by column
+  std::vector<std::vector<PlacedPin>> pins;  ///< [ghosts + count + ghosts] by column
   std::vector<const BandRows*> column_rows;  ///< the same: what the rows of a column compute with
   AlignedArray forces;                       ///< [stages_under_way][2][force_floats], columns under way
   /// Its first `ghosts` columns for the partition before it and its last ones for the one behind; empty where
@@ -266,7 +260,6 @@ struct BandGrid : ExplicitSteps {
   std::size_t first_column_ = 0;
   void cut(std::size_t most_threads);
   void add_partition(ColumnRange its);
-  void make_arrays(BandPartition& partition) const;
   void choose_rows(BandPartition& partition, const std::vector<SpringPerMass>& springs);
   void add_pins(BandPartition& partition, const System& system) const;
   /// The columns of a partition that are filled: own ones and ghosts, where the layout has them.

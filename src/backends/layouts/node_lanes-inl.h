@@ -94,6 +94,14 @@ HWY_INLINE NodeLanes load_node(const float* from, auto pitch) {
   return {load_components(from, pitch), load_components(from + 3 * pitch, pitch)};
 }
 
+/// What the floor does to the new state of the nodes that are `free` (a Mask or EveryLane).
+template <class Free>
+HWY_INLINE void touch_floor(Free free, const Surroundings& surroundings, Lanes3& x, Lanes3& v) {
+  const Lanes height(surroundings.floor_height);
+  touch_floor(both(free, hn::Lt(x.y.v, height.v)), height, Lanes(surroundings.restitution),
+              Lanes(surroundings.friction), x, v);
+}
+
 /// One stage at the nodes of one vector. `pull`: the acceleration that the springs give them; `node`: what
 /// they are in the gathered pair; those not `free` (a Mask or EveryLane) stay as they are. `gravity`, m/s^2,
 /// in place of that of `surroundings`. `load` and `store` are update_stage's.
@@ -103,12 +111,9 @@ HWY_INLINE void update_lanes(const NodeLanes& node, const Lanes3& pull, Free fre
                              Load load, Store store) {
   // What is held is at rest; without acceleration every assignment gives it back as it was.
   const Lanes3 a = keep(free, node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping), gravity));
-  update_stage<method, stage>(
-      coefficients, node.x, node.v, a, load, store, [&](Lanes3& x, Lanes3& v) MSSIM_INLINE_LAMBDA {
-        const Lanes height(surroundings.floor_height);
-        touch_floor(both(free, hn::Lt(x.y.v, height.v)), height, Lanes(surroundings.restitution),
-                    Lanes(surroundings.friction), x, v);
-      });
+  update_stage<method, stage>(coefficients, node.x, node.v, a, load, store,
+                              [&](Lanes3& x, Lanes3& v)
+                                  MSSIM_INLINE_LAMBDA { touch_floor(free, surroundings, x, v); });
 }
 
 }  // namespace mssim::HWY_NAMESPACE

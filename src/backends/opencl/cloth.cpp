@@ -69,11 +69,9 @@ struct NodeShape {
   }
 
   PairLayout pair_layout() const {
-    PairLayout pair;
-    pair.floats = 6 * plane;
+    PairLayout pair(6 * plane, plane);
     for (std::size_t node = 0; node < grid.nodes(); ++node)
       pair.node.push_back((node / grid.columns + halo_rows) * stride + left_halo + node % grid.columns);
-    for (std::size_t i = 0; i < pair.component.size(); ++i) pair.component[i] = i * plane;
     return pair;
   }
 };
@@ -102,36 +100,11 @@ class OpenclBands final : public OpenclBackend {
  public:
   OpenclBands(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
               const OpenclDevice& device, DeviceMemory memory, const BandShape& shape)
-      : OpenclBands(system, grid, integrator, dt_s, device, memory, shape, shape.state_layout(),
-                    shape.ghost_layout()) {}
-
-  void set_state(const State& state) override {
-    write_state(state_, layout_, state);
-    write_state(ghosts_, ghost_layout_, state, swapped_ ? ghost_layout_.floats : 0);
-  }
-  void step(int count) override {
-    opencl_call<std::runtime_error>([&] {
-      const int launches = (count + steps_per_launch_ - 1) / steps_per_launch_;
-      queue_.take_steps(launches, [&](int launch) {
-        const int steps = std::min(steps_per_launch_, count - launch * steps_per_launch_);
-        const bool swapped = swapped_ != (launch % 2 != 0);
-        return std::span(&launches_[swapped ? 1 : 0][static_cast<std::size_t>(steps) - 1], 1);
-      });
-      if (launches % 2 != 0) swapped_ = !swapped_;
-    });
-  }
-  State state() const override { return read_state(state_); }
-  int steps_per_pass() const override { return steps_per_launch_; }
-
- private:
-  OpenclBands(const System& system, const GridPatch& grid, const Integrator& integrator, double dt_s,
-              const OpenclDevice& device, DeviceMemory memory, const BandShape& shape,
-              const PairLayout& layout, PairLayout ghost_layout)
-      : OpenclBackend(system, integrator, dt_s, device, memory, layout,
-                      std::array<std::uint64_t, 4>{layout.floats * sizeof(float),
-                                                   2 * ghost_layout.floats * sizeof(float),
+      : OpenclBackend(system, integrator, dt_s, device, memory, shape.state_layout(),
+                      std::array<std::uint64_t, 4>{shape.state_floats() * sizeof(float),
+                                                   2 * shape.ghost_floats() * sizeof(float),
                                                    ring_bytes(shape, integrator), sum_bytes(shape)}),
-        ghost_layout_(std::move(ghost_layout)),
+        ghost_layout_(shape.ghost_layout()),
         steps_per_launch_(static_cast<int>(shape.steps)),
         state_(queue_.zeros<float>(layout_.floats)),
         ghosts_(queue_.zeros<float>(2 * ghost_layout_.floats)) {
@@ -172,6 +145,25 @@ class OpenclBands final : public OpenclBackend {
     warm_up(*this, system.start, 2 * steps_per_launch_);
   }
 
+  void set_state(const State& state) override {
+    write_state(state_, layout_, state);
+    write_state(ghosts_, ghost_layout_, state, swapped_ ? ghost_layout_.floats : 0);
+  }
+  void step(int count) override {
+    opencl_call<std::runtime_error>([&] {
+      const int launches = (count + steps_per_launch_ - 1) / steps_per_launch_;
+      queue_.take_steps(launches, [&](int launch) {
+        const int steps = std::min(steps_per_launch_, count - launch * steps_per_launch_);
+        const bool swapped = swapped_ != (launch % 2 != 0);
+        return std::span(&launches_[swapped ? 1 : 0][static_cast<std::size_t>(steps) - 1], 1);
+      });
+      if (launches % 2 != 0) swapped_ = !swapped_;
+    });
+  }
+  State state() const override { return read_state(state_); }
+  int steps_per_pass() const override { return steps_per_launch_; }
+
+ private:
   static std::uint64_t ring_bytes(const BandShape& shape, const Integrator& integrator) {
     const std::size_t pairs = stored_pairs(integrator, Storage::in_place).size() - 1;
     return shape.partitions * pairs * shape.ring() * shape.bands.column_floats() * sizeof(float);
@@ -251,61 +243,41 @@ double BandShape::step_cost(const Integrator& integrator, std::size_t units) con
 std::size_t BandShape::ring() const { return std::bit_ceil(ghosts); }
 
 PairLayout BandShape::state_layout() const {
-  PairLayout pair = column_layout();
-  pair.floats = bands.columns * bands.column_floats();
-  for (const auto& [offset, row] : rows_in_bands())
+  PairLayout pair(state_floats(), bands.lanes);
+  for (std::size_t row = 0; row < bands.rows; ++row)
     for (std::size_t column = 0; column < bands.columns; ++column)
-      pair.node.push_back(column * bands.column_floats() + offset);
+      pair.node.push_back(column * bands.column_floats() + bands.offset(row));
   const Places halos = rows_in_halos();
   for (std::size_t column = 0; column < bands.columns; ++column)
-    add_column(pair, column * bands.column_floats(), column, halos);
+    for (const auto& [offset, row] : halos)
+      pair.copies.emplace_back(column * bands.column_floats() + offset, row * bands.columns + column);
   return pair;
 }
 
 PairLayout BandShape::ghost_layout() const {
-  PairLayout pair = column_layout();
-  pair.floats = partitions * 2 * ghosts * bands.column_floats();
-  const Places in_bands = rows_in_bands(), in_halos = rows_in_halos();
-  for (std::size_t partition = 0; partition < partitions; ++partition)
-    for (std::size_t ghost = 0; ghost < 2 * ghosts; ++ghost) {
-      const std::size_t column = first(ghost < ghosts ? partition : partition + 1) + ghost - ghosts;
-      if (column >= bands.columns) continue;  // left of the cloth it wraps to a huge number
-      for (const Places* rows : {&in_bands, &in_halos})
-        add_column(pair, (partition * 2 * ghosts + ghost) * bands.column_floats(), column, *rows);
-    }
-  return pair;
-}
-
-PairLayout BandShape::column_layout() const {
-  PairLayout pair;
-  for (std::size_t i = 0; i < pair.component.size(); ++i) pair.component[i] = i * bands.lanes;
-  return pair;
-}
-
-BandShape::Places BandShape::rows_in_bands() const {
-  Places places;
+  PairLayout pair(ghost_floats(), bands.lanes);
+  Places places = rows_in_halos();
   for (std::size_t row = 0; row < bands.rows; ++row) places.emplace_back(bands.offset(row), row);
-  return places;
+  for (std::size_t number = 0; number < partitions * 2 * ghosts; ++number) {
+    const std::size_t partition = number / (2 * ghosts), ghost = number % (2 * ghosts);
+    const std::size_t column = first(ghost < ghosts ? partition : partition + 1) + ghost - ghosts;
+    if (column >= bands.columns) continue;  // left of the cloth it wraps to a huge number
+    for (const auto& [offset, row] : places)
+      pair.copies.emplace_back(number * bands.column_floats() + offset, row * bands.columns + column);
+  }
+  return pair;
 }
 
 BandShape::Places BandShape::rows_in_halos() const {
   Places places;
   for (std::size_t row = 0; row < bands.rows; ++row) {
     const std::size_t lane = row / bands.height, in_band = row % bands.height + halo;
-    const auto offset = [&](std::size_t layout_row, std::size_t in_lane) {
-      return layout_row * bands.row_floats() + in_lane;
-    };
-    if (in_band < 2 * halo && lane > 0) places.emplace_back(offset(in_band + bands.height, lane - 1), row);
+    if (in_band < 2 * halo && lane > 0)
+      places.emplace_back((in_band + bands.height) * bands.row_floats() + lane - 1, row);
     if (in_band >= bands.height && lane + 1 < bands.lanes)
-      places.emplace_back(offset(in_band - bands.height, lane + 1), row);
+      places.emplace_back((in_band - bands.height) * bands.row_floats() + lane + 1, row);
   }
   return places;
-}
-
-void BandShape::add_column(PairLayout& pair, std::size_t start, std::size_t column,
-                           const Places& rows) const {
-  for (const auto& [offset, row] : rows)
-    pair.copies.emplace_back(start + offset, row * bands.columns + column);
 }
 
 }  // namespace mssim

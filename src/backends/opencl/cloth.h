@@ -42,23 +42,20 @@ struct BandShape {
 
   /// Layout of the state, which is one piece.
   PairLayout state_layout() const;
+  std::size_t state_floats() const { return bands.columns * bands.column_floats(); }
   /// Layout of the ghosts, [partitions][2 ghosts] columns, all of them copies.
   PairLayout ghost_layout() const;
+  std::size_t ghost_floats() const { return partitions * 2 * ghosts * bands.column_floats(); }
 
  private:
-  /// Places in a column of rows of the cloth: offset and row.
-  using Places = std::vector<std::pair<std::size_t, std::size_t>>;
-
   /// The shape with so many steps a launch, and with so many partitions if the cloth has the columns.
   BandShape with(std::size_t steps_in_a_launch, std::size_t most_partitions,
                  const Integrator& integrator) const;
   /// How long a step takes, in the time in which a compute unit takes a node through a stage.
   double step_cost(const Integrator& integrator, std::size_t units) const;
-
-  PairLayout column_layout() const;
-  Places rows_in_bands() const;
+  /// Places in a column of rows of the cloth, offset and row: those of halo rows.
+  using Places = std::vector<std::pair<std::size_t, std::size_t>>;
   Places rows_in_halos() const;
-  void add_column(PairLayout& pair, std::size_t start, std::size_t column, const Places& rows) const;
 };
 
 }  // namespace mssim

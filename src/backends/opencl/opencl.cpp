@@ -18,8 +18,7 @@ namespace mssim {
 namespace {
 
 PairLayout record_layout(const SlicedGraph& graph) {
-  PairLayout pair;
-  pair.floats = record_floats * graph.slots();
+  PairLayout pair(record_floats * graph.slots(), 1);
   pair.component = {0, 1, 2, 4, 5, 6};
   for (const std::uint32_t slot : graph.slot) pair.node.push_back(record_floats * slot);
   return pair;
@@ -107,9 +106,7 @@ void require_numbers(const std::vector<AlikeBodies>& bodies, std::size_t slots) 
 }
 
 PairLayout slice_layout(const AlikeSlices& slices) {
-  PairLayout pair;
-  pair.floats = slices.floats();
-  for (std::size_t i = 0; i < pair.component.size(); ++i) pair.component[i] = i * slices.lanes;
+  PairLayout pair(slices.floats(), slices.lanes);
   pair.node.resize(slices.nodes, pair.floats);
   for (std::size_t slot = 0; slot < slices.scene_node.size(); ++slot) {
     const std::uint32_t node = slices.scene_node[slot];

@@ -14,18 +14,10 @@ namespace mssim {
 namespace {
 
 constexpr std::array<std::string_view, pair_kinds> pair_names{"state", "next", "trial_a", "trial_b"};
-constexpr std::array<std::string_view, slot_kinds> slot_names{
-    "x", "v", "x_next", "v_next", "x_a", "v_a", "x_b", "v_b", "a", "temporary_1", "temporary_2"};
+std::string name(Slot slot) { return std::string(name_of(slot)); }
 
-std::string name(Slot slot) { return std::string(slot_names[index(slot)]); }
-
-/// The name by which kernels know the arrays of `stored`, and those that hold `pair` until the stage.
+/// The name by which kernels know the arrays of `stored`.
 std::string name_of(Pair stored) { return std::string(pair_names[index(stored)]); }
-std::string name_of(const StoredStage& stage, Pair pair) { return name_of(stage.stored(pair)); }
-
-bool reads_pair(const Stage& stage, Pair pair) {
-  return stage.gather == pair || reads(stage, position_slot(pair)) || reads(stage, velocity_slot(pair));
-}
 
 /// The sum of an assignment, the last term first, so that the large first term is added last.
 std::string sum_of_terms(const Assignment& assignment, std::size_t stage, std::size_t number) {
@@ -65,16 +57,13 @@ std::string pair_names_of(const StoredStage& stage) {
 
 /// The call that reads or writes the slot's memory: kernels/*_stage.cl have these functions.
 std::string access(const char* what, Slot slot, Pair arrays, const std::string& value = "") {
-  const bool velocity = index(slot) % 2 == 1;
-  return fmt::format("{}{}{}{}, tile, shape)", what, velocity ? "_velocity(" : "_position(", value,
-                     name_of(arrays));
+  return fmt::format("{}_part({}{}, {}, tile, shape)", what, value, name_of(arrays), index(slot) % 2);
 }
 Pair pair_of(Slot slot) { return static_cast<Pair>(index(slot) / 2); }
 
 /// `update_N`: the assignments of stage N for the nodes of a tile, once their springs are summed. It takes
 /// the pairs, the tile, its nodes, the spring forces per mass, the shape of the topology and the step
-/// parameters, and asks the topology for Tile, Shape, load_position, load_velocity, store_position and
-/// store_velocity.
+/// parameters, and asks the topology for Tile, Shape, load_part and store_part.
 std::string update_text(const StoredStage& stored_stage) {
   const auto& [integrator, number, storage] = stored_stage;
   const Stage& stage = stored_stage.stage();
@@ -139,7 +128,7 @@ std::string update_call(const StoredStage& stage) {
 }
 
 std::string nodes_kernel_text(const StoredStage& stage) {
-  const std::string gathered = name_of(stage, stage.stage().gather);
+  const std::string gathered = name_of(stage.stored(stage.stage().gather));
   std::ostringstream text;
   text
       << "__kernel void " << stage_kernel_name(stage.number) << "(" << pair_parameters(stage)
@@ -257,7 +246,7 @@ constexpr MeshText alike{
 
 std::string kernel_text(const StoredStage& stage, const MeshText& mesh) {
   const std::size_t number = stage.number;
-  const std::string gathered = name_of(stage, stage.stage().gather);
+  const std::string gathered = name_of(stage.stored(stage.stage().gather));
   std::ostringstream text;
   text << "__kernel void " << stage_kernel_name(number) << "(" << pair_parameters(stage)
        << "__constant struct StepParameters* step,\n"
@@ -294,10 +283,12 @@ std::vector<Pair> stage_arguments(const StoredStage& stage) {
   const auto add = [&](Pair arrays) {
     if (std::find(pairs.begin(), pairs.end(), arrays) == pairs.end()) pairs.push_back(arrays);
   };
+  const Stage& its = stage.stage();
   for (std::size_t i = 0; i < pair_kinds; ++i) {
     const Pair pair = static_cast<Pair>(i);
-    if (reads_pair(stage.stage(), pair)) add(stage.stored(pair));
-    if (writes(stage.stage(), pair)) add(stage.written(pair));
+    if (its.gather == pair || reads(its, position_slot(pair)) || reads(its, velocity_slot(pair)))
+      add(stage.stored(pair));
+    if (writes(its, pair)) add(stage.written(pair));
   }
   return pairs;
 }

@@ -97,10 +97,6 @@ const OpenclBuffer<float>& OpenclStages::arrays(Pair pair, bool swapped) const {
   return *pairs_[index(pair)];
 }
 
-void OpenclStages::set_state(const State& state) {
-  write_state(arrays(Pair::state, swapped_), layout_, state);
-}
-
 void OpenclStages::step(int count) {
   opencl_call<std::runtime_error>([&] {
     queue_.take_steps(count, [&](int step) -> const std::vector<Launch>& {
@@ -109,7 +105,5 @@ void OpenclStages::step(int count) {
     if (count % 2 != 0) swapped_ = !swapped_;
   });
 }
-
-State OpenclStages::state() const { return read_state(arrays(Pair::state, swapped_)); }
 
 }  // namespace mssim

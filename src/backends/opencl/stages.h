@@ -28,11 +28,15 @@ std::span<const std::byte> bytes_of(const T& value) {
 
 /// How a topology's nodes lie in the buffer of a pair.
 struct PairLayout {
-  std::size_t floats = 0;         ///< in the buffer
+  std::size_t floats;             ///< in the buffer
   std::vector<std::size_t> node;  ///< [nodes] where the node's numbers begin
   /// Where a node's numbers stand besides: where they begin, and the node. Kernels keep them up to date.
   std::vector<std::pair<std::size_t, std::size_t>> copies;
-  std::array<std::size_t, 6> component{};  ///< from there on x, y, z, u, v, w
+  std::array<std::size_t, 6> component;  ///< from there on x, y, z, u, v, w
+
+  /// Components that lie so many floats apart, and no nodes yet.
+  PairLayout(std::size_t of_buffer, std::size_t step)
+      : floats(of_buffer), component{0, step, 2 * step, 3 * step, 4 * step, 5 * step} {}
 };
 
 /// What all OpenCL backends have: a device, the arguments of their kernels, and two sets of launches. Their
@@ -88,9 +92,9 @@ class OpenclStages final : public OpenclBackend {
   OpenclStages(const System& system, const Integrator& integrator, double dt_s, const OpenclDevice& device,
                DeviceMemory memory, const StageKernels& kernels);
 
-  void set_state(const State& state) override;
+  void set_state(const State& state) override { write_state(arrays(Pair::state, swapped_), layout_, state); }
   void step(int count) override;
-  State state() const override;
+  State state() const override { return read_state(arrays(Pair::state, swapped_)); }
   std::optional<std::uint64_t> stored_springs() const override { return stored_springs_; }
 
  private:

@@ -22,11 +22,11 @@ constexpr std::size_t least_chunks = 4;
 constexpr int slice_spins = 300;
 
 /// Cuts these slices into `count` ranges of about the same number of entries.
-std::vector<BodySteps::Chunk> balanced_chunks(const std::vector<std::uint32_t>& first_entry,
-                                              BodySteps::Chunk slices, std::size_t count) {
+std::vector<IndexRange> balanced_chunks(const std::vector<std::uint32_t>& first_entry, IndexRange slices,
+                                        std::size_t count) {
   const std::size_t before = cost_of_slices_before(first_entry, slices.begin);
   const std::size_t cost = cost_of_slices_before(first_entry, slices.end) - before;
-  std::vector<BodySteps::Chunk> chunks;
+  std::vector<IndexRange> chunks;
   std::size_t slice = slices.begin;
   for (std::size_t p = 0; p < count; ++p) {
     const std::size_t begin = slice, target = before + cost * (p + 1) / count;
@@ -129,14 +129,6 @@ std::vector<Cut> cut_groups_into(const std::vector<AlikeSlices::Group>& groups,
   return cut_groups(groups, costs, high);
 }
 
-BodyLanes::Shape shape_of(const AlikeBodies& bodies, std::size_t node_floats) {
-  BodyLanes::Shape shape{bodies.constants, bodies.pinned, bodies.first_spring, {}};
-  shape.springs.reserve(bodies.springs.size());
-  for (const AlikeBodies::SpringAhead& spring : bodies.springs)
-    shape.springs.push_back({static_cast<std::uint32_t>(spring.other * node_floats), spring.stiffness_rest});
-  return shape;
-}
-
 BodyLanes::Piece piece_of(const AlikeSlices::Group& group, const Cut& cut, const AlikeBodies& bodies,
                           std::size_t node_floats) {
   BodyLanes::Piece piece{group.shape, 2 * node_floats * group.first_slice, cut.begin, cut.end, cut.end, {}};
@@ -191,7 +183,9 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
     if (of.nodes() > allowed_nodes)
       throw Unsupported("a body has {} nodes; openmp supports at most {}", of.nodes(), allowed_nodes);
     most_nodes = std::max(most_nodes, of.nodes());
-    shapes.push_back(shape_of(of, node_floats));
+    shapes.push_back({of.constants, of.pinned, of.first_spring, of.springs, {}});
+    for (AlikeBodies::SpringAhead& spring : shapes.back().springs)
+      spring.other *= static_cast<std::uint32_t>(node_floats);
     costs.emplace_back(of);
   }
 
@@ -220,7 +214,7 @@ BodyLanes::BodyLanes(const System& system, const std::vector<AlikeBodies>& bodie
 
 std::uint64_t BodyLanes::stored_springs() const {
   std::uint64_t stored = 0;
-  for (const Shape& shape : shapes) stored += shape.springs.size();
+  for (const AlikeBodies& shape : shapes) stored += shape.springs.size();
   return stored;
 }
 

@@ -14,13 +14,9 @@ namespace mssim {
 
 /// What steps of bodies take, however these lie in memory.
 struct BodySteps : SeparateSteps {
-  /// What a thread takes at a time: slices, or pieces, [begin, end).
-  struct Chunk {
-    std::size_t begin, end;
-  };
-
   std::size_t threads = 1;
-  std::vector<Chunk> chunks;  ///< of about the same work
+  /// What a thread takes at a time, slices or pieces: of about the same work.
+  std::vector<IndexRange> chunks;
   /// Of a thread that waits for others before it offers its core: about as long as a chunk takes.
   int spins = 0;
 
@@ -58,7 +54,7 @@ struct SlicedBodies : BodySteps {
   AlignedArray constants;
   static constexpr std::size_t slice_constants = spring_constant_count + 1;
   /// Of a part, whose `chunks` have the slices without edge nodes and may be empty: as many of the others.
-  std::vector<Chunk> edge_chunks;
+  std::vector<IndexRange> edge_chunks;
   NodeMessages* messages = nullptr;  ///< of a part: what brings its ghosts; null of a whole
 
   /// Cuts the bodies into slices of `slice_lanes` nodes, for at most `thread_count` threads.
@@ -80,19 +76,8 @@ struct SlicedBodies : BodySteps {
 /// complete when the walk over the nodes, which computes each spring at its first end, comes to it. Pairs are
 /// as `slices` has them.
 struct BodyLanes : BodySteps {
-  /// What a group's bodies have in common. Offsets are where a node's force starts, in floats from the
-  /// body's first one: 3 * lanes for each node. A pair has twice that.
-  struct Shape {
-    struct Spring {
-      std::uint32_t other;   ///< offset
-      float stiffness_rest;  ///< AlikeBodies::SpringAhead::stiffness_rest
-    };
-    SpringConstants<float> constants;
-    std::vector<std::uint8_t> pinned;         ///< [nodes]
-    std::vector<std::uint32_t> first_spring;  ///< [nodes + 1]
-    std::vector<Spring> springs;
-  };
-  /// A spring whose first end is in another piece.
+  /// A spring whose first end is in another piece. Offsets are where a node's force starts, in floats from
+  /// the body's first one: 3 * lanes for each node. A pair has twice that.
   struct CutSpring {
     std::uint32_t first, second;  ///< offsets
     float stiffness_rest;
@@ -107,7 +92,8 @@ struct BodyLanes : BodySteps {
   };
 
   AlikeSlices slices;
-  std::vector<Shape> shapes;
+  /// What a group's bodies have in common, without the `bodies`; `other` of a spring is an offset.
+  std::vector<AlikeBodies> shapes;
   std::vector<Piece> pieces;
   /// [threads] of the piece that a thread works on, from its body's first node on; zero between pieces.
   std::vector<AlignedArray> forces;

@@ -1,7 +1,6 @@
 // The walk over a banded cloth: stages one behind the other, partitions beside each other, ghosts between
 // them.
-// Compiled once per instruction set (hwy/foreach_target.h includes this file again for each) and for the
-// integrators of MSSIM_STAGES.
+// Compiled for the integrators of MSSIM_STAGES.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -130,7 +129,7 @@ HWY_INLINE void put_pins_back(const BandLayout& layout, BandPartition& partition
   const auto put_back = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) MSSIM_INLINE_LAMBDA {
     constexpr Pair pair = static_cast<Pair>(i), stored = walk_writes_to(integrators[method], stage, pair);
     if constexpr (writes_to_gather(integrators[method], stage, pair))
-      for (const BandPin& pin : partition.pins[partition.local(column)])
+      for (const PlacedPin& pin : partition.pins[partition.local(column)])
         for (std::size_t k = 0; k < 3; ++k) {
           float* component = partition.column(layout, stored, column) + pin.offset + k * lane_count();
           component[0] = pin.position[k];

@@ -1,7 +1,6 @@
 // The walks over bodies: over those in slices, chunk by chunk, and over alike ones, one a lane, node by node
 // and each spring once.
-// Compiled once per instruction set (hwy/foreach_target.h includes this file again for each) and for the
-// integrators of MSSIM_STAGES.
+// Compiled for the integrators of MSSIM_STAGES.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -134,7 +133,7 @@ HWY_INLINE void step_slice(const SlicedBodies& bodies, const Pairs& base, std::s
 }
 
 template <std::size_t method, std::size_t stage>
-HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, BodySteps::Chunk chunk,
+HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, IndexRange chunk,
                              std::uint32_t /*thread*/) {
   EntryWalk entries(bodies, base[index(integrators[method].stages[stage].gather)], chunk.begin);
   for (std::size_t slice = chunk.begin; slice < chunk.end; ++slice)
@@ -145,7 +144,7 @@ HWY_NOINLINE void step_chunk(const SlicedBodies& bodies, const Pairs& base, Body
 HWY_INLINE NodeLanes load_bodies(const float* from) { return {load3(from), load3(from + 3 * vector_nodes)}; }
 
 /// Adds to the forces on a piece's nodes those of springs from nodes before it.
-HWY_NOINLINE inline void add_cut_springs(const BodyLanes::Shape& shape, const BodyLanes::Piece& piece,
+HWY_NOINLINE inline void add_cut_springs(const AlikeBodies& shape, const BodyLanes::Piece& piece,
                                          const float* gathered, float* forces) {
   const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
   for (const BodyLanes::CutSpring& cut : piece.cut) {
@@ -163,7 +162,7 @@ template <std::size_t method, std::size_t stage>
 HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const BodyLanes::Piece& piece,
                              float* const forces) {
   constexpr std::size_t force_floats = 3 * vector_nodes;
-  const BodyLanes::Shape& shape = bodies.shapes[piece.shape];
+  const AlikeBodies& shape = bodies.shapes[piece.shape];
   const SpringConstants<Lanes> constants = in_every_lane(shape.constants);
   // Copies: a vector's store may change all else, as far as the compiler knows.
   const Coefficients<float> coefficients = bodies.coefficients;
@@ -171,7 +170,7 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
   const std::size_t end = piece.end, reach = piece.reach;
   const std::uint32_t* const first_spring = shape.first_spring.data();
   const std::uint8_t* const pinned = shape.pinned.data();
-  const BodyLanes::Shape::Spring* const all = shape.springs.data();
+  const AlikeBodies::SpringAhead* const all = shape.springs.data();
   Pairs pairs = base;
   for (float*& pair : pairs)
     if (pair != nullptr) pair += piece.offset;
@@ -183,8 +182,8 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
     const NodeLanes here = load_bodies(gathered + 2 * offset);
     Lanes3 sum = load3(forces + offset);
     store3(forces + offset, zero3());
-    const BodyLanes::Shape::Spring* const last = all + first_spring[node + 1];
-    for (const BodyLanes::Shape::Spring* spring = all + first_spring[node]; spring < last; ++spring) {
+    const AlikeBodies::SpringAhead* const last = all + first_spring[node + 1];
+    for (const AlikeBodies::SpringAhead* spring = all + first_spring[node]; spring < last; ++spring) {
       const NodeLanes other = load_bodies(gathered + 2 * std::size_t{spring->other});
       const Lanes3 to_other = other.x - here.x;
       const Lanes pull =
@@ -207,15 +206,14 @@ HWY_NOINLINE void step_piece(const BodyLanes& bodies, const Pairs& base, const B
 }
 
 template <std::size_t method, std::size_t stage>
-HWY_INLINE void step_chunk(BodyLanes& bodies, const Pairs& base, BodySteps::Chunk chunk,
-                           std::uint32_t thread) {
+HWY_INLINE void step_chunk(BodyLanes& bodies, const Pairs& base, IndexRange chunk, std::uint32_t thread) {
   for (std::size_t piece = chunk.begin; piece < chunk.end; ++piece)
     step_piece<method, stage>(bodies, base, bodies.pieces[piece], bodies.forces[thread].data());
 }
 
 /// A thread works on a chunk in a stage, counted from the first one of the call.
 template <std::size_t method, class Bodies>
-HWY_INLINE void work_on(Bodies& bodies, std::uint32_t number, BodySteps::Chunk chunk, std::uint32_t thread) {
+HWY_INLINE void work_on(Bodies& bodies, std::uint32_t number, IndexRange chunk, std::uint32_t thread) {
   const Pairs base = pairs_in<method>(bodies.base, number);
   for_each_stage<method>([&](auto stage) HWY_ATTR {
     if (number % integrators[method].stage_count == stage)

@@ -10,13 +10,11 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <sstream>
 #include <utility>
 
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// Longest line, its newline included.
@@ -27,6 +25,8 @@ constexpr int slice_ms = 100;
 /// Where the names of sockets, which have 107 bytes, are short.
 constexpr const char* folder_of_short_name = "/tmp";
 
+using Cause = ConversationFailure::Cause;
+
 bool is_readable(int descriptor) {
   pollfd waiting{descriptor, POLLIN, 0};
   return descriptor >= 0 && ::poll(&waiting, 1, 0) > 0;
@@ -34,129 +34,6 @@ bool is_readable(int descriptor) {
 
 /// What of a line can be shown in a sentence.
 std::string in_quotes(std::string_view line) { return '"' + printable(line) + '"'; }
-
-}  // namespace
-
-Conversation::Conversation(const std::filesystem::path& folder) : socket_(folder / "socket") {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (socket_.native().size() >= sizeof address.sun_path)
-    socket_ = short_.emplace(folder_of_short_name).path() / "socket";
-  std::ranges::copy(socket_.native(), std::begin(address.sun_path));
-  listener_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!listener_.is_open() ||
-      ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(listener_.get(), 2) != 0)
-    throw std::runtime_error(
-        fmt::format("cannot listen at {} ({}); set TMPDIR to a writable folder, and raise the limit of open "
-                    "files (ulimit -n) where it is too low",
-                    socket_.string(), std::strerror(errno)));
-}
-
-void Conversation::fail(ConversationFailure::Cause cause, const std::string& sentence) const {
-  throw ConversationFailure(cause, sentence);
-}
-
-void Conversation::begin(std::chrono::duration<double> time_limit, int end_descriptor) {
-  time_limit_ = time_limit;
-  end_descriptor_ = end_descriptor;
-  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit);
-  accept();
-  // A wait for bytes alone is the fastest answer there is; every slice it looks at all else.
-  const timeval slice{0, slice_ms * 1000};
-  if (::setsockopt(connection_.get(), SOL_SOCKET, SO_RCVTIMEO, &slice, sizeof slice) != 0)
-    throw std::runtime_error(fmt::format("cannot set a socket's time limit ({})", std::strerror(errno)));
-}
-
-void Conversation::accept() {
-  using Cause = ConversationFailure::Cause;
-  for (;;) {
-    throw_if_ending_signal_noted();
-    std::array<pollfd, 2> waiting{{{listener_.get(), POLLIN, 0}, {end_descriptor_, POLLIN, 0}}};
-    ::poll(waiting.data(), waiting.size(), slice_ms);
-    connection_ = Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
-    if (connection_.is_open()) return;
-    if (errno == EMFILE || errno == ENFILE)
-      throw std::runtime_error(std::string("cannot take the program's connection (") + std::strerror(errno) +
-                               "); raise the limit of open files (ulimit -n)");
-    if (is_readable(end_descriptor_)) fail(Cause::closed, "before it connected to MSSIM_SOCKET");
-    if (Clock::now() > deadline_) {
-      std::ostringstream text;
-      text << "did not connect to MSSIM_SOCKET within " << time_limit_.count() << " s";
-      fail(Cause::silence, text.str());
-    }
-  }
-}
-
-void Conversation::ask(std::string_view lines, const std::string& asked) {
-  using Cause = ConversationFailure::Cause;
-  std::array<char, longest_line> early;
-  if (received_.empty()) {
-    const ssize_t bytes = ::recv(connection_.get(), early.data(), early.size(), MSG_DONTWAIT);
-    if (bytes > 0) received_.assign(early.data(), static_cast<std::size_t>(bytes));
-  }
-  if (!received_.empty())
-    fail(Cause::answer, fmt::format("sent {} after its answer to {}, where nothing was asked",
-                                    in_quotes(received_.substr(0, received_.find('\n'))), asked_));
-  asked_ = '"' + asked + '"';
-  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit_);
-  while (!lines.empty()) {
-    const ssize_t bytes = ::send(connection_.get(), lines.data(), lines.size(), MSG_NOSIGNAL);
-    if (bytes < 0 && errno == EINTR) continue;
-    if (bytes < 0) fail(Cause::closed, "before it was asked " + asked_);
-    lines.remove_prefix(static_cast<std::size_t>(bytes));
-  }
-}
-
-std::string Conversation::answer() {
-  using Cause = ConversationFailure::Cause;
-  std::size_t searched = 0;
-  for (;;) {
-    const std::size_t end = received_.find('\n', searched);
-    if (std::min(end, received_.size()) >= longest_line)
-      fail(Cause::answer, fmt::format("answered {} with a line of more than {} bytes, which begins {}",
-                                      asked_, longest_line, in_quotes(received_.substr(0, 40))));
-    if (end != std::string::npos) {
-      std::string line = received_.substr(0, end);
-      received_.erase(0, end + 1);
-      return line;
-    }
-    searched = received_.size();
-    throw_if_ending_signal_noted();
-    std::array<char, longest_line> bytes;
-    // Once the time is over, what has come by then counts, and nothing is waited for, however little is
-    // missing.
-    const int waiting = Clock::now() > deadline_ ? MSG_DONTWAIT : 0;
-    const ssize_t count = ::recv(connection_.get(), bytes.data(), bytes.size(), waiting);
-    if (count > 0)
-      received_.append(bytes.data(), static_cast<std::size_t>(count));
-    else if (count == 0 || (errno != EAGAIN && errno != EINTR))
-      fail(Cause::closed, "before it answered " + asked_);
-    else
-      look_around();
-  }
-}
-
-void Conversation::look_around() const {
-  using Cause = ConversationFailure::Cause;
-  throw_if_ending_signal_noted();
-  // What it sent before it ended has been read.
-  if (is_readable(end_descriptor_)) fail(Cause::closed, "before it answered " + asked_);
-  if (is_readable(listener_.get()))
-    fail(Cause::answer, "connected a second time before it answered " + asked_);
-  if (Clock::now() > deadline_) {
-    std::ostringstream text;
-    text << "did not answer " << asked_ << " within " << time_limit_.count() << " s";
-    fail(Cause::silence, text.str());
-  }
-}
-
-void Conversation::say_last(std::string_view lines) {
-  if (connection_.is_open())
-    static_cast<void>(::send(connection_.get(), lines.data(), lines.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
-}
-
-namespace {
 
 constexpr int most_threads = 4096;
 
@@ -188,6 +65,116 @@ bool is_at_least_zero(const std::optional<double>& number) {
 }
 
 }  // namespace
+
+Conversation::Conversation(const std::filesystem::path& folder) : socket_(folder / "socket") {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (socket_.native().size() >= sizeof address.sun_path)
+    socket_ = short_.emplace(folder_of_short_name).path() / "socket";
+  std::ranges::copy(socket_.native(), std::begin(address.sun_path));
+  listener_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!listener_.is_open() ||
+      ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listener_.get(), 2) != 0)
+    throw std::runtime_error(
+        fmt::format("cannot listen at {} ({}); set TMPDIR to a writable folder, and raise the limit of open "
+                    "files (ulimit -n) where it is too low",
+                    socket_.string(), std::strerror(errno)));
+}
+
+void Conversation::begin(std::chrono::duration<double> time_limit, int end_descriptor) {
+  time_limit_ = time_limit;
+  end_descriptor_ = end_descriptor;
+  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit);
+  accept();
+  // A wait for bytes alone is the fastest answer there is; every slice it looks at all else.
+  const timeval slice{0, slice_ms * 1000};
+  if (::setsockopt(connection_.get(), SOL_SOCKET, SO_RCVTIMEO, &slice, sizeof slice) != 0)
+    throw std::runtime_error(fmt::format("cannot set a socket's time limit ({})", std::strerror(errno)));
+}
+
+void Conversation::accept() {
+  for (;;) {
+    throw_if_ending_signal_noted();
+    std::array<pollfd, 2> waiting{{{listener_.get(), POLLIN, 0}, {end_descriptor_, POLLIN, 0}}};
+    ::poll(waiting.data(), waiting.size(), slice_ms);
+    connection_ = Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (connection_.is_open()) return;
+    if (errno == EMFILE || errno == ENFILE)
+      throw std::runtime_error(std::string("cannot take the program's connection (") + std::strerror(errno) +
+                               "); raise the limit of open files (ulimit -n)");
+    if (is_readable(end_descriptor_))
+      throw ConversationFailure(Cause::closed, "before it connected to MSSIM_SOCKET");
+    if (Clock::now() > deadline_)
+      throw ConversationFailure(
+          Cause::silence, fmt::format("did not connect to MSSIM_SOCKET within {:g} s", time_limit_.count()));
+  }
+}
+
+void Conversation::ask(std::string_view lines, const std::string& asked) {
+  std::array<char, longest_line> early;
+  if (received_.empty()) {
+    const ssize_t bytes = ::recv(connection_.get(), early.data(), early.size(), MSG_DONTWAIT);
+    if (bytes > 0) received_.assign(early.data(), static_cast<std::size_t>(bytes));
+  }
+  if (!received_.empty())
+    throw ConversationFailure(Cause::answer,
+                              fmt::format("sent {} after its answer to {}, where nothing was asked",
+                                          in_quotes(received_.substr(0, received_.find('\n'))), asked_));
+  asked_ = '"' + asked + '"';
+  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time_limit_);
+  while (!lines.empty()) {
+    const ssize_t bytes = ::send(connection_.get(), lines.data(), lines.size(), MSG_NOSIGNAL);
+    if (bytes < 0 && errno == EINTR) continue;
+    if (bytes < 0) throw ConversationFailure(Cause::closed, "before it was asked " + asked_);
+    lines.remove_prefix(static_cast<std::size_t>(bytes));
+  }
+}
+
+std::string Conversation::answer() {
+  std::size_t searched = 0;
+  for (;;) {
+    const std::size_t end = received_.find('\n', searched);
+    if (std::min(end, received_.size()) >= longest_line)
+      throw ConversationFailure(
+          Cause::answer, fmt::format("answered {} with a line of more than {} bytes, which begins {}", asked_,
+                                     longest_line, in_quotes(received_.substr(0, 40))));
+    if (end != std::string::npos) {
+      std::string line = received_.substr(0, end);
+      received_.erase(0, end + 1);
+      return line;
+    }
+    searched = received_.size();
+    throw_if_ending_signal_noted();
+    std::array<char, longest_line> bytes;
+    // Once the time is over, what has come by then counts, and nothing is waited for, however little is
+    // missing.
+    const int waiting = Clock::now() > deadline_ ? MSG_DONTWAIT : 0;
+    const ssize_t count = ::recv(connection_.get(), bytes.data(), bytes.size(), waiting);
+    if (count > 0)
+      received_.append(bytes.data(), static_cast<std::size_t>(count));
+    else if (count == 0 || (errno != EAGAIN && errno != EINTR))
+      throw ConversationFailure(Cause::closed, "before it answered " + asked_);
+    else
+      look_around();
+  }
+}
+
+void Conversation::look_around() const {
+  throw_if_ending_signal_noted();
+  // What it sent before it ended has been read.
+  if (is_readable(end_descriptor_)) throw ConversationFailure(Cause::closed, "before it answered " + asked_);
+  if (is_readable(listener_.get()))
+    throw ConversationFailure(Cause::answer, "connected a second time before it answered " + asked_);
+  if (Clock::now() > deadline_)
+    throw ConversationFailure(Cause::silence,
+                              fmt::format("did not answer {} within {:g} s", asked_, time_limit_.count()));
+}
+
+void Conversation::say_last(std::string_view lines) {
+  if (connection_.is_open())
+    static_cast<void>(::send(connection_.get(), lines.data(), lines.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
+}
 
 bool take_introduction(Introduction& introduction, const std::string& line) {
   const auto [word, text] = split(line);

@@ -56,7 +56,6 @@ class Conversation {
  private:
   using Clock = std::chrono::steady_clock;
 
-  [[noreturn]] void fail(ConversationFailure::Cause cause, const std::string& sentence) const;
   void accept();
   /// Looks after a tenth of a second without an answer whether one can still come.
   void look_around() const;

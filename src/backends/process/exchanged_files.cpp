@@ -18,7 +18,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 constexpr const char* shared_memory = "/dev/shm";
@@ -47,79 +46,6 @@ bool read_at(const Descriptor& file, std::size_t byte, void* data, std::size_t b
   }
   return true;
 }
-
-}  // namespace
-
-StateFile::StateFile(std::size_t nodes, const std::filesystem::path& elsewhere) : nodes_(nodes) {
-  if (::access(shared_memory, W_OK) == 0) {
-    shared_.emplace(shared_memory);
-    if (make(shared_->path())) return;
-    shared_.reset();
-  }
-  if (!make(elsewhere))
-    throw std::runtime_error(
-        fmt::format("cannot make {} of {} bytes ({}); set TMPDIR to a folder with more room", path_.string(),
-                    bytes_of(nodes), std::strerror(errno)));
-}
-
-bool StateFile::make(const std::filesystem::path& folder) {
-  path_ = folder / "state";
-  file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
-  if (!file_.is_open()) return false;
-  // Room that is there now will not be missing in the middle of a run.
-  const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes_of(nodes_)));
-  errno = error;
-  return error == 0;
-}
-
-void StateFile::write_at(std::size_t byte, const void* data, std::size_t bytes) const {
-  while (bytes > 0) {
-    const ssize_t count = ::pwrite(file_.get(), data, bytes, static_cast<off_t>(byte));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0)
-      throw std::runtime_error(
-          fmt::format("cannot write {} ({}); make room there", path_.string(), std::strerror(errno)));
-    data = static_cast<const char*>(data) + count;
-    byte += static_cast<std::size_t>(count);
-    bytes -= static_cast<std::size_t>(count);
-  }
-}
-
-void StateFile::write(const State& state) const {
-  const std::size_t half = sizeof(Vec3d) * nodes_;
-  write_at(0, state.position.data(), half);
-  write_at(half, state.velocity.data(), half);
-}
-
-void StateFile::clear() const {
-  constexpr std::size_t numbers = 8192;
-  const std::vector<double> block(numbers, std::bit_cast<double>(unwritten));
-  const std::size_t bytes = bytes_of(nodes_);
-  for (std::size_t byte = 0; byte < bytes; byte += numbers * sizeof(double))
-    write_at(byte, block.data(), std::min(numbers * sizeof(double), bytes - byte));
-}
-
-State StateFile::read() const {
-  State state;
-  state.position.resize(nodes_);
-  state.velocity.resize(nodes_);
-  const std::size_t half = sizeof(Vec3d) * nodes_;
-  if (!read_at(file_, 0, state.position.data(), half) || !read_at(file_, half, state.velocity.data(), half)) {
-    struct stat status {};
-    ::fstat(file_.get(), &status);
-    throw StateFileFailure(fmt::format("left a state file of {} instead of {}",
-                                       pluralize(static_cast<std::uint64_t>(status.st_size), "byte"),
-                                       bytes_of(nodes_)));
-  }
-  const auto missing = static_cast<std::size_t>(std::ranges::count_if(state.position, is_unwritten) +
-                                                std::ranges::count_if(state.velocity, is_unwritten));
-  if (missing > 0)
-    throw StateFileFailure(fmt::format("wrote {} of the {} positions and velocities of the state file",
-                                       2 * nodes_ - missing, 2 * nodes_));
-  return state;
-}
-
-namespace {
 
 hid_t file_type(double /*number*/) { return H5T_IEEE_F64LE; }
 hid_t file_type(std::uint32_t /*number*/) { return H5T_STD_U32LE; }
@@ -228,6 +154,75 @@ void write_topology(hid_t file, const Topology& topology) {
 }
 
 }  // namespace
+
+StateFile::StateFile(std::size_t nodes, const std::filesystem::path& elsewhere) : nodes_(nodes) {
+  if (::access(shared_memory, W_OK) == 0) {
+    shared_.emplace(shared_memory);
+    if (make(shared_->path())) return;
+    shared_.reset();
+  }
+  if (!make(elsewhere))
+    throw std::runtime_error(
+        fmt::format("cannot make {} of {} bytes ({}); set TMPDIR to a folder with more room", path_.string(),
+                    bytes_of(nodes), std::strerror(errno)));
+}
+
+bool StateFile::make(const std::filesystem::path& folder) {
+  path_ = folder / "state";
+  file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!file_.is_open()) return false;
+  // Room that is there now will not be missing in the middle of a run.
+  const int error = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes_of(nodes_)));
+  errno = error;
+  return error == 0;
+}
+
+void StateFile::write_at(std::size_t byte, const void* data, std::size_t bytes) const {
+  while (bytes > 0) {
+    const ssize_t count = ::pwrite(file_.get(), data, bytes, static_cast<off_t>(byte));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0)
+      throw std::runtime_error(
+          fmt::format("cannot write {} ({}); make room there", path_.string(), std::strerror(errno)));
+    data = static_cast<const char*>(data) + count;
+    byte += static_cast<std::size_t>(count);
+    bytes -= static_cast<std::size_t>(count);
+  }
+}
+
+void StateFile::write(const State& state) const {
+  const std::size_t half = sizeof(Vec3d) * nodes_;
+  write_at(0, state.position.data(), half);
+  write_at(half, state.velocity.data(), half);
+}
+
+void StateFile::clear() const {
+  constexpr std::size_t numbers = 8192;
+  const std::vector<double> block(numbers, std::bit_cast<double>(unwritten));
+  const std::size_t bytes = bytes_of(nodes_);
+  for (std::size_t byte = 0; byte < bytes; byte += numbers * sizeof(double))
+    write_at(byte, block.data(), std::min(numbers * sizeof(double), bytes - byte));
+}
+
+State StateFile::read() const {
+  State state;
+  state.position.resize(nodes_);
+  state.velocity.resize(nodes_);
+  const std::size_t half = sizeof(Vec3d) * nodes_;
+  if (!read_at(file_, 0, state.position.data(), half) || !read_at(file_, half, state.velocity.data(), half)) {
+    struct stat status {};
+    ::fstat(file_.get(), &status);
+    throw StateFileFailure(fmt::format("left a state file of {} instead of {}",
+                                       pluralize(static_cast<std::uint64_t>(status.st_size), "byte"),
+                                       bytes_of(nodes_)));
+  }
+  const auto missing = static_cast<std::size_t>(std::ranges::count_if(state.position, is_unwritten) +
+                                                std::ranges::count_if(state.velocity, is_unwritten));
+  if (missing > 0)
+    throw StateFileFailure(fmt::format("wrote {} of the {} positions and velocities of the state file",
+                                       2 * nodes_ - missing, 2 * nodes_));
+  return state;
+}
 
 void write_system(const std::filesystem::path& file, const System& system) {
   prepare_hdf5();

@@ -3,14 +3,9 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <exception>
-#include <iomanip>
-#include <limits>
-#include <optional>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -25,7 +20,6 @@
 #include "text/text.h"
 
 namespace mssim {
-
 namespace {
 
 /// NAME=VALUE: what the program finds in its environment beside this process's. `socket`: where mssim
@@ -59,36 +53,6 @@ std::vector<int> first_cpus(int threads) {
   cpus.resize(static_cast<std::size_t>(threads));
   return cpus;
 }
-
-constexpr std::array<std::string_view, slot_kinds> slot_names{
-    "x", "v", "x_next", "v_next", "x_a", "v_a", "x_b", "v_b", "a", "temporary_1", "temporary_2"};
-
-std::string_view name_of(Slot slot) { return slot_names.at(index(slot)); }
-
-}  // namespace
-
-std::string method_text(const Integrator& integrator) {
-  std::ostringstream text;
-  text << std::setprecision(std::numeric_limits<double>::max_digits10);
-  text << "integrator " << integrator.name << '\n';
-  for (std::size_t s = 0; s < integrator.stage_count; ++s) {
-    const Stage& stage = integrator.stages.at(s);
-    text << "stage " << name_of(position_slot(stage.gather)) << ' ' << name_of(velocity_slot(stage.gather))
-         << '\n';
-    for (std::size_t i = 0; i < assignment_count(stage); ++i) {
-      const Assignment& assignment = stage.assignments.at(i);
-      text << "assign " << name_of(assignment.out);
-      for (std::size_t t = 0; t < term_count(assignment); ++t) {
-        const Term& term = assignment.terms.at(t);
-        text << ' ' << term.coefficient << ' ' << term.dt_power << ' ' << name_of(term.slot);
-      }
-      text << '\n';
-    }
-  }
-  return text.str();
-}
-
-namespace {
 
 using namespace std::chrono_literals;
 
@@ -164,15 +128,14 @@ class ProcessBackend final : public WindowBackend {
         program.folder,
         first_cpus(processors),
         {folder_.path(), state_file_.path().parent_path(), conversation_.socket().parent_path()}});
-    std::ostringstream lines;
-    lines << std::setprecision(std::numeric_limits<double>::max_digits10) << "mssim-backend 1\nscene "
-          << escaped(options.scene) << "\ndt " << dt_s << "\nthreads " << processors << '\n'
-          << method_text(integrator) << "system " << system_file.string() << "\nstate "
-          << state_file_.path().string() << "\nprepare\n";
+    const std::string lines =
+        fmt::format("mssim-backend 1\nscene {}\ndt {:.17g}\nthreads {}\n{}system {}\nstate {}\nprepare\n",
+                    escaped(options.scene), dt_s, processors, method_text(integrator), system_file.string(),
+                    state_file_.path().string());
     introduction_.threads = processors;
     conversing([&] {
       conversation_.begin(std::chrono::duration<double>(program.time_limit_s), process_->end_descriptor());
-      conversation_.ask(lines.str(), "prepare");
+      conversation_.ask(lines, "prepare");
       introduce();
     });
     std::error_code ignored;  // it goes with its folder in any case
@@ -183,8 +146,6 @@ class ProcessBackend final : public WindowBackend {
     // Where a wait was cut short there is no time for manners.
     if (std::uncaught_exceptions() == 0) end_politely();
   }
-  ProcessBackend(const ProcessBackend&) = delete;
-  ProcessBackend& operator=(const ProcessBackend&) = delete;
 
   void set_state(const State& state) override {
     failing_alone([&] { state_file_.write(state); });
@@ -195,16 +156,10 @@ class ProcessBackend final : public WindowBackend {
 
   State state() const override { return get("get"); }
 
-  void restart() override {
-    std::ostringstream line;
-    line << std::setprecision(std::numeric_limits<double>::max_digits10) << "restart " << ahead_s_;
-    request(line.str());
-  }
+  void restart() override { request(fmt::format("restart {:.17g}", ahead_s_)); }
 
   State window(const GridWindow& window) const override {
-    std::ostringstream line;
-    line << "get " << window.row << ' ' << window.column << ' ' << window.rows << ' ' << window.columns;
-    State state = get(line.str());
+    State state = get(fmt::format("get {} {} {} {}", window.row, window.column, window.rows, window.columns));
     if (ahead_s_ != 0) move_back(state, ahead_s_, floor_height_);
     return state;
   }
@@ -276,10 +231,7 @@ class ProcessBackend final : public WindowBackend {
     const auto take = [&](const std::string& line) { return take_introduction(introduction_, line); };
     try {
       take_answers("prepare", take);
-    } catch (const Unsupported&) {  // it may have to tidy up
-      end_politely();
-      throw;
-    } catch (const Unavailable&) {
+    } catch (const Error&) {  // Unsupported or Unavailable: it may have to tidy up
       end_politely();
       throw;
     }
@@ -328,18 +280,26 @@ class ProcessBackend final : public WindowBackend {
   mutable std::optional<SupervisedProcess> process_;
 };
 
-std::unique_ptr<ProcessBackend> start(const BackendProgram& program, const System& system,
-                                      const Integrator& integrator, double dt_s,
-                                      const ExecutionOptions& options, std::size_t nodes) {
-  if (!program.missing.empty()) throw Unavailable(program.missing);
-  require_support(program, system, integrator);
-  // Whether or not somebody waits for these signals already: folders of this backend must not stay behind.
-  const EndingSignals during_preparation(note_ending_signal, 0);
-  return failing_alone(
-      [&] { return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options, nodes); });
-}
-
 }  // namespace
+
+std::string method_text(const Integrator& integrator) {
+  std::string text = fmt::format("integrator {}\n", integrator.name);
+  for (std::size_t s = 0; s < integrator.stage_count; ++s) {
+    const Stage& stage = integrator.stages.at(s);
+    text += fmt::format("stage {} {}\n", name_of(position_slot(stage.gather)),
+                        name_of(velocity_slot(stage.gather)));
+    for (std::size_t i = 0; i < assignment_count(stage); ++i) {
+      const Assignment& assignment = stage.assignments.at(i);
+      text += fmt::format("assign {}", name_of(assignment.out));
+      for (std::size_t t = 0; t < term_count(assignment); ++t) {
+        const Term& term = assignment.terms.at(t);
+        text += fmt::format(" {:.17g} {} {}", term.coefficient, term.dt_power, name_of(term.slot));
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
 
 RankCount ranks_of(const BackendProgram& program, const ExecutionOptions& options) {
   const int asked = program.ranks > 0 ? program.ranks : options.ranks;
@@ -353,19 +313,18 @@ int processors_of(const BackendProgram& program, const ExecutionOptions& options
   return count.ranks * count.threads;
 }
 
-std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
-                                              const Integrator& integrator, double dt_s,
-                                              const ExecutionOptions& options) {
-  return start(program, system, integrator, dt_s, options, system.nodes());
-}
-
-std::unique_ptr<WindowBackend> make_process_window_backend(const BackendProgram& program,
-                                                           const System& outline,
-                                                           const Integrator& integrator, double dt_s,
-                                                           const ExecutionOptions& options,
-                                                           std::size_t window_nodes) {
-  if (!program.has_windows) throw Unsupported("it cannot restart and give windows of a cloth");
-  return start(program, outline, integrator, dt_s, options, window_nodes);
+std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& program, const System& system,
+                                                    const Integrator& integrator, double dt_s,
+                                                    const ExecutionOptions& options,
+                                                    std::optional<std::size_t> window_nodes) {
+  if (!program.missing.empty()) throw Unavailable(program.missing);
+  require_support(program, system, integrator);
+  // Whether or not somebody waits for these signals already: folders of this backend must not stay behind.
+  const EndingSignals during_preparation(note_ending_signal, 0);
+  return failing_alone([&] {
+    return std::make_unique<ProcessBackend>(program, system, integrator, dt_s, options,
+                                            window_nodes.value_or(system.nodes()));
+  });
 }
 
 }  // namespace mssim

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,20 +53,14 @@ RankCount ranks_of(const BackendProgram& program, const ExecutionOptions& option
 int processors_of(const BackendProgram& program, const ExecutionOptions& options);
 
 /// Starts the program for a cloth or bodies and waits until it is prepared. `program` and `system` must
-/// outlive the backend. A call of it takes about 15 us beside what the program does with it (measured with
+/// outlive the backend. `window_nodes`: of every window that it will be asked for, where `system` is an
+/// outline of a cloth, and the program has windows; the backend moves the states of an integrator that is
+/// ahead. A call of it takes about 15 us beside what the program does with it (measured with
 /// tests/backends/process/ on two cores of an AMD EPYC, Zen 4). Throws Unavailable, Unsupported and, like
 /// each call of the backend, BackendFailure where the program does what docs/own-backends.md does not allow.
-std::unique_ptr<Backend> make_process_backend(const BackendProgram& program, const System& system,
-                                              const Integrator& integrator, double dt_s,
-                                              const ExecutionOptions& options);
-
-/// Starts the program for a cloth of which this process has an outline alone, and a program that has windows
-/// (Unsupported where it has not). `window_nodes`: of every window that it will be asked for. The backend
-/// moves the states of an integrator that is ahead.
-std::unique_ptr<WindowBackend> make_process_window_backend(const BackendProgram& program,
-                                                           const System& outline,
-                                                           const Integrator& integrator, double dt_s,
-                                                           const ExecutionOptions& options,
-                                                           std::size_t window_nodes);
+std::unique_ptr<WindowBackend> make_process_backend(const BackendProgram& program, const System& system,
+                                                    const Integrator& integrator, double dt_s,
+                                                    const ExecutionOptions& options,
+                                                    std::optional<std::size_t> window_nodes = {});
 
 }  // namespace mssim

@@ -1,5 +1,3 @@
-#include <string>
-
 #include "backends/spring_list/list_backends.h"
 #include "backends/spring_list/spring_list.h"
 
@@ -14,7 +12,6 @@ class Serial final : public Backend {
 
   void set_state(const State& state) override { list_.set_state(state); }
   State state() const override { return list_.state(); }
-  std::string device() const override { return "cpu"; }
   int threads() const override { return 1; }
 
   void step(int count) override {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,15 +31,45 @@ class SpringList {
     Vec3<Real> v;  ///< m/s
   };
 
-  SpringList(const System& system, const Integrator& integrator, double dt_s);
+  SpringList(const System& system, const Integrator& integrator, double dt_s)
+      : system_(system),
+        integrator_(integrator),
+        coefficients_(coefficients_of<Real>(integrator, dt_s)),
+        materials_(materials_of<Real>(system)),
+        pinned_(system.nodes()),
+        force_(system.nodes()) {
+    inverse_mass_.reserve(system.nodes());
+    for (const double mass : system.node_mass) inverse_mass_.push_back(static_cast<Real>(1 / mass));
+    for (const std::uint32_t node : system.pins) pinned_[node] = 1;
+    for (std::size_t pair = 0; pair < pair_kinds; ++pair)
+      if (stores(integrator, static_cast<Pair>(pair), storage)) pairs_[pair].resize(system.nodes());
+    set_state(system.start);
+  }
 
-  void set_state(const State& state);
-  State state() const;
+  void set_state(const State& state) {
+    for (std::size_t pair = 0; pair < pair_kinds; ++pair)
+      place_[pair] = index(storage_of(integrator_, static_cast<Pair>(pair), storage));
+    for (std::vector<Node>& nodes : pairs_)  // the trial pairs too: pinned nodes are never updated
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        nodes[i] = {vec3_cast<Real>(state.position[i]), vec3_cast<Real>(state.velocity[i])};
+  }
+  State state() const {
+    State state;
+    state.position.reserve(nodes());
+    state.velocity.reserve(nodes());
+    for (const Node& node : array(Pair::state)) {
+      state.position.push_back(vec3_cast<double>(node.x));
+      state.velocity.push_back(vec3_cast<double>(node.v));
+    }
+    return state;
+  }
 
   std::size_t nodes() const { return force_.size(); }
   std::span<const Spring> springs() const { return system_.springs; }
 
-  void clear_forces(std::size_t first, std::size_t last);
+  void clear_forces(std::size_t first, std::size_t last) {
+    std::fill(force_.data() + first, force_.data() + last, Vec3<Real>{});
+  }
   /// Force of a spring on its first end, N; the second end gets the opposite.
   Vec3<Real> force_of(const Spring& spring, Pair gather) const {
     const Node& first = array(gather)[spring.first];
@@ -56,9 +87,34 @@ class SpringList {
   Vec3<Real>& force(std::size_t node) { return force_[node]; }
   /// The table's assignments for nodes first .. last - 1, once all forces are complete.
   template <std::size_t method, std::size_t stage>
-  void update_nodes(std::size_t first, std::size_t last);
+  void update_nodes(std::size_t first, std::size_t last) {
+    const std::vector<Node>& gathered = array(integrators[method].stages[stage].gather);
+    std::array<Node*, pair_kinds> nodes;
+    for (std::size_t pair = 0; pair < pair_kinds; ++pair) nodes[pair] = array(static_cast<Pair>(pair)).data();
+    const Real viscous_damping = static_cast<Real>(system_.viscous_damping);
+    const Real gravity = static_cast<Real>(system_.gravity);
+    const Floor& floor = system_.floor;
+    for (std::size_t i = first; i < last; ++i) {
+      if (pinned_[i] != 0) continue;
+      const Node node = gathered[i];
+      const Vec3<Real> a = node_acceleration(inverse_mass_[i] * force_[i], node.v, viscous_damping, gravity);
+      const auto slot_of = [&](auto slot) -> Vec3<Real>& {
+        constexpr std::size_t s = index(decltype(slot)::value);
+        return s % 2 == 0 ? nodes[s / 2][i].x : nodes[s / 2][i].v;
+      };
+      update_stage<method, stage>(
+          coefficients_, node.x, node.v, a, slot_of,
+          [&](auto slot, const Vec3<Real>& value) { slot_of(slot) = value; },
+          [&](Vec3<Real>& x, Vec3<Real>& v) {
+            touch_floor(x, v, static_cast<Real>(floor.height), static_cast<Real>(floor.restitution),
+                        static_cast<Real>(floor.friction));
+          });
+    }
+  }
   /// Ends a step: what the last stage wrote becomes the state.
-  void end_step();
+  void end_step() {
+    if (swaps_state(integrator_, storage)) std::swap(place_[index(Pair::state)], place_[index(Pair::next)]);
+  }
 
  private:
   /// All forces of a stage are known before a node is updated, so pairs may share arrays.
@@ -76,35 +132,5 @@ class SpringList {
   std::array<std::vector<Node>, pair_kinds> pairs_;  ///< [nodes] each; empty where not stored
   std::array<std::size_t, pair_kinds> place_{};      ///< role -> element of pairs_
 };
-
-template <class Real>
-template <std::size_t method, std::size_t stage>
-void SpringList<Real>::update_nodes(std::size_t first, std::size_t last) {
-  const std::vector<Node>& gathered = array(integrators[method].stages[stage].gather);
-  std::array<Node*, pair_kinds> nodes;
-  for (std::size_t pair = 0; pair < pair_kinds; ++pair) nodes[pair] = array(static_cast<Pair>(pair)).data();
-  const Real viscous_damping = static_cast<Real>(system_.viscous_damping);
-  const Real gravity = static_cast<Real>(system_.gravity);
-  const Floor& floor = system_.floor;
-  for (std::size_t i = first; i < last; ++i) {
-    if (pinned_[i] != 0) continue;
-    const Node node = gathered[i];
-    const Vec3<Real> a = node_acceleration(inverse_mass_[i] * force_[i], node.v, viscous_damping, gravity);
-    const auto slot_of = [&](auto slot) -> Vec3<Real>& {
-      constexpr std::size_t s = index(decltype(slot)::value);
-      return s % 2 == 0 ? nodes[s / 2][i].x : nodes[s / 2][i].v;
-    };
-    update_stage<method, stage>(
-        coefficients_, node.x, node.v, a, slot_of,
-        [&](auto slot, const Vec3<Real>& value) { slot_of(slot) = value; },
-        [&](Vec3<Real>& x, Vec3<Real>& v) {
-          touch_floor(x, v, static_cast<Real>(floor.height), static_cast<Real>(floor.restitution),
-                      static_cast<Real>(floor.friction));
-        });
-  }
-}
-
-extern template class SpringList<float>;
-extern template class SpringList<double>;
 
 }  // namespace mssim

@@ -3,7 +3,6 @@
 #include <barrier>
 #include <future>
 #include <mutex>
-#include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -30,7 +29,6 @@ class ThreadsMutex final : public Backend {
 
   void set_state(const State& state) override { list_.set_state(state); }
   State state() const override { return list_.state(); }
-  std::string device() const override { return "cpu"; }
   int threads() const override { return static_cast<int>(threads_); }
 
   void step(int count) override {

@@ -41,7 +41,10 @@ class SpinBarrier {
   /// waited for others since the last such meeting, apart from here.
   template <class TakeRound>
   std::size_t end_round(TakeRound&& take_round, TeamGain::Duration waited = {}) {
-    note_wait(waited);
+    TeamGain::Duration::rep longest = longest_wait_.load(std::memory_order_relaxed);
+    while (waited.count() > longest &&
+           !longest_wait_.compare_exchange_weak(longest, waited.count(), std::memory_order_relaxed)) {
+    }
     const Arrival mine = arrive();
     if (mine.is_last) {
       rounds_alone_ = 0;
@@ -77,13 +80,6 @@ class SpinBarrier {
     unsigned phase;
     bool is_first, is_last;
   };
-
-  void note_wait(TeamGain::Duration waited) {
-    TeamGain::Duration::rep longest = longest_wait_.load(std::memory_order_relaxed);
-    while (waited.count() > longest &&
-           !longest_wait_.compare_exchange_weak(longest, waited.count(), std::memory_order_relaxed)) {
-    }
-  }
 
   Arrival arrive() {
     const unsigned phase = phase_.load(std::memory_order_acquire);

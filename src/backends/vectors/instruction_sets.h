@@ -1,7 +1,8 @@
 #pragma once
 
-// What Highway compiles vector code for, and what of it this processor can run. Highway reads the macro below
-// when it is included, so this header comes first in every file of vector code (step_*.cpp).
+// What Highway compiles vector code for, and what of it this processor can run. A file of vector code
+// (step_*.cpp) is compiled once per instruction set: hwy/foreach_target.h includes it again for each. Highway
+// reads the macro below when it is included, so this header comes first there.
 #ifdef HIGHWAY_HWY_DETECT_TARGETS_H_
 #error "backends/vectors/instruction_sets.h must be included before Highway"
 #endif

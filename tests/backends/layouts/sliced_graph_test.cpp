@@ -88,7 +88,7 @@ TEST(SlicedBodies, GiveEverySliceToOneLotInFairShares) {
     ASSERT_EQ(bodies.threads, std::min(threads, bodies.slices()));
     ASSERT_EQ(bodies.chunks.size(), std::min(4 * threads, bodies.slices()));
     std::size_t next = 0;
-    for (const SlicedBodies::Chunk& chunk : bodies.chunks) {
+    for (const IndexRange& chunk : bodies.chunks) {
       EXPECT_EQ(chunk.begin, next);
       next = chunk.end;
       if (threads > 2) continue;  // a slice more or less is then a large share

@@ -75,7 +75,7 @@ TEST(BodyLanes, AreCutIntoFairShares) {
   const BodyLanes bodies(system, *find_alike_bodies(system), integrators[0], 1e-4, 16, 3);
   ASSERT_EQ(bodies.pieces.size(), 3U);
   ASSERT_EQ(bodies.chunks.size(), 3U);
-  const BodyLanes::Shape& shape = bodies.shapes.front();
+  const AlikeBodies& shape = bodies.shapes.front();
   std::vector<double> springs;
   for (const BodyLanes::Piece& piece : bodies.pieces)
     springs.push_back(static_cast<double>(shape.first_spring[piece.end] - shape.first_spring[piece.begin] +

@@ -11,8 +11,8 @@
 
 #include "backends/threads/chunk_tickets.h"
 #include "backends/threads/spin_barrier.h"
+#include "backends/threads/spin_wait.h"
 #include "backends/threads/team_gain.h"
-#include "backends/threads/thread_progress.h"
 
 namespace mssim {
 namespace {

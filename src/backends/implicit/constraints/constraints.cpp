@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <string>
 #include <tuple>
 #include <variant>
 
@@ -63,7 +62,6 @@ class SerialConstraints final : public Backend {
     for (std::size_t i = 0; i < nodes_.size(); ++i) state.position[i] += vec3_cast<double>(rest_[i]);
     return state;
   }
-  std::string device() const override { return "cpu"; }
   int threads() const override { return 1; }
 
   void step(int count) override {
@@ -194,12 +192,6 @@ SpringColouring spring_order(const System& system) {
   for (const Spring& spring : system.springs) order.springs[next[colour_of(*grid, spring)]++] = spring;
   return order;
 }
-
-QuarterLayout::QuarterLayout(const GridPatch& grid, std::size_t lane_count)
-    : lanes(lane_count),
-      rows(grid.rows),
-      columns(grid.columns),
-      pitch(odd_pitch((columns + streams - 1) / streams, lanes)) {}
 
 QuarteredRows::QuarteredRows(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
     : SmallSteps(system, dt_s),

@@ -1,5 +1,4 @@
 // Small steps of xpbd: what moves a vector of nodes, of a cloth pass by pass, of bodies colour by colour.
-// Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -28,10 +27,8 @@ HWY_INLINE Lanes3 fallen(Mask moves, const Lanes3& v, Lanes fall, Lanes kept) {
 
 /// The floor, at the end of a step. What lies on it has no rest, which could be negative.
 HWY_INLINE void meet_floor(Mask moves, const Surroundings& surroundings, NodeLanes& node, Lanes3& rest) {
-  const auto height = hn::Set(FloatTag(), surroundings.floor_height);
-  touch_floor(hn::And(moves, hn::Lt(node.x.y.v, height)), Lanes(height), Lanes(surroundings.restitution),
-              Lanes(surroundings.friction), node.x, node.v);
-  rest.y = keep(hn::Gt(node.x.y.v, height), rest.y);
+  touch_floor(moves, surroundings, node.x, node.v);
+  rest.y = keep(hn::Gt(node.x.y.v, Lanes(surroundings.floor_height).v), rest.y);
 }
 
 HWY_INLINE SpringLanes select(Mask first, const SpringLanes& a, const SpringLanes& b) {
@@ -207,12 +204,6 @@ constexpr std::size_t lag(std::size_t small_step, BlockLevel level) {
   return 2 * small_step + behind[static_cast<std::size_t>(level)];
 }
 
-/// Blocks [begin, end) of a level that a thread can do without what its neighbours do in this pass: those of
-/// its own, less some at each end that is not the cloth's.
-struct BlockRange {
-  std::size_t begin, end;
-};
-
 /// A thread's blocks of a cloth of `all` blocks.
 struct BlockShare {
   std::size_t begin, end, all;
@@ -220,8 +211,9 @@ struct BlockShare {
   BlockShare(const Team& team, std::size_t blocks)
       : begin(team.begin(blocks)), end(team.end(blocks)), all(blocks) {}
 
-  /// What it can do alone.
-  BlockRange alone(std::size_t small_step, BlockLevel level) const {
+  /// Blocks of a level that it can do without what its neighbours do in this pass: those of its own, less
+  /// some at each end that is not the cloth's.
+  IndexRange alone(std::size_t small_step, BlockLevel level) const {
     constexpr std::array<std::size_t, block_levels> missing_before{0, 1, 1, 2, 2};
     const std::size_t before = 2 * small_step + missing_before[static_cast<std::size_t>(level)];
     return {begin == 0 ? 0 : begin + before, end == all ? all : end - lag(small_step, level)};
@@ -270,13 +262,13 @@ HWY_NOINLINE void walk_down(QuarteredRows& cloth, std::size_t begin, std::size_t
       for (std::size_t level = 0; level < block_levels; ++level) act(small, static_cast<BlockLevel>(level));
   };
   for_each_level([&](std::size_t small, BlockLevel level) HWY_ATTR {
-    const BlockRange blocks = range(small, level);
+    const IndexRange blocks = range(small, level);
     first = std::min(first, blocks.begin + lag(small, level));
     last = std::max(last, blocks.end + lag(small, level));
   });
   for (std::size_t front = first; front < last; ++front)
     for_each_level([&](std::size_t small, BlockLevel level) HWY_ATTR {
-      const BlockRange blocks = range(small, level);
+      const IndexRange blocks = range(small, level);
       const std::size_t block = front - lag(small, level);
       if (front < blocks.begin + lag(small, level) || block >= blocks.end) return;
       do_level(cloth, level, block, (begin + small + 1) % cloth.substeps == 0);
@@ -295,7 +287,7 @@ void step_cloth(QuarteredRows& cloth, int count) {
   };
   const auto pass_alone = [&](std::size_t pass) HWY_ATTR {
     if (pass >= passes) return false;
-    walk(pass, [&](std::size_t, BlockLevel) HWY_ATTR { return BlockRange{0, blocks}; });
+    walk(pass, [&](std::size_t, BlockLevel) HWY_ATTR { return IndexRange{0, blocks}; });
     return true;
   };
   const std::size_t begin = cloth.team_gain.take_rounds(pass_alone);
@@ -309,7 +301,7 @@ void step_cloth(QuarteredRows& cloth, int count) {
       if (team.thread + 1 < team.threads) {
         const BlockShare next({team.thread + 1, team.threads, team.barrier}, blocks);
         walk(pass, [&](std::size_t small, BlockLevel level) HWY_ATTR {
-          return BlockRange{own.alone(small, level).end, next.alone(small, level).begin};
+          return IndexRange{own.alone(small, level).end, next.alone(small, level).begin};
         });
       }
       pass += team.end_round([&](std::size_t taken) HWY_ATTR { return pass_alone(pass + 1 + taken); });
@@ -379,8 +371,8 @@ HWY_INLINE void project_batch(SpringBatches& bodies, const SpringBatches::Batch&
 }
 
 /// Vectors [begin, end) of the springs of a colour.
-HWY_NOINLINE inline void project_colour(SpringBatches& bodies, const SpringBatches::Colour& colour,
-                                        std::size_t begin, std::size_t end) {
+HWY_NOINLINE inline void project_colour(SpringBatches& bodies, const IndexRange& colour, std::size_t begin,
+                                        std::size_t end) {
   const std::size_t first = bodies.batches[colour.begin].begin;
   for (std::size_t i = colour.begin; i < colour.end; ++i) {
     const SpringBatches::Batch& batch = bodies.batches[i];

@@ -98,7 +98,11 @@ struct QuarterLayout {
   std::size_t lanes, rows, columns;
   std::size_t pitch;  ///< floats from one component of a stream to the next, an odd number of vectors
 
-  QuarterLayout(const GridPatch& grid, std::size_t lane_count);
+  QuarterLayout(const GridPatch& grid, std::size_t lane_count)
+      : lanes(lane_count),
+        rows(grid.rows),
+        columns(grid.columns),
+        pitch(odd_pitch((columns + streams - 1) / streams, lanes)) {}
 
   std::size_t row_floats() const { return streams * components * pitch; }
   std::size_t rest_row_floats() const { return streams * 3 * pitch; }
@@ -153,10 +157,6 @@ struct SpringBatches : SmallSteps {
     SpringConstants<float> constants;       ///< of compliant_spring
     float first_mobility, second_mobility;  ///< 1/kg
   };
-  /// Batches [begin, end) of a colour.
-  struct Colour {
-    std::size_t begin, end;
-  };
   /// Vectors [begin, end) of nodes and colours [first_colour, end_colour) of one or several bodies.
   struct Part {
     std::size_t begin, end;
@@ -174,7 +174,7 @@ struct SpringBatches : SmallSteps {
   AlignedArray springs;
   static constexpr std::size_t offset_floats = record_floats;
   std::vector<Batch> batches;
-  std::vector<Colour> colours;
+  std::vector<IndexRange> colours;  ///< the batches of each
   std::vector<Part> parts;
 
   std::size_t threads = 1;
@@ -190,7 +190,7 @@ struct SpringBatches : SmallSteps {
 
   /// Floats from the start of `rest` to the x of a slot.
   std::size_t rest_offset(std::size_t at) const { return at / lanes * 3 * lanes + at % lanes; }
-  std::size_t vectors(const Colour& colour) const {
+  std::size_t vectors(const IndexRange& colour) const {
     return batches[colour.end - 1].end - batches[colour.begin].begin;
   }
 };

@@ -53,7 +53,6 @@ class LocalGlobalSerial final : public Backend {
 
   void set_state(const State& state) override { nodes_.set_state(state); }
   State state() const override { return nodes_.state(); }
-  std::string device() const override { return "cpu"; }
   int threads() const override { return 1; }
 
   void step(int count) override {
@@ -138,7 +137,7 @@ FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
   const std::size_t most = threads == 1 ? all : all / (threads * subtrees_per_thread);
 
   std::vector<std::size_t> phase(count);  // 0: within a subtree that is one item
-  std::vector<std::vector<Item>> items(1);
+  std::vector<std::vector<IndexRange>> items(1);
   for (std::size_t part = 0; part < count; ++part) {
     const bool is_top = parts[part].parent == Dissection::no_part || cost[parts[part].parent] > most;
     if (cost[part] <= most) {
@@ -151,20 +150,20 @@ FrontSchedule::FrontSchedule(const BlockFactor& factor, std::size_t threads) {
     if (phase[part] == items.size()) items.emplace_back();
     items[phase[part]].push_back({part, part + 1});
   }
-  for (std::vector<Item>& of_phase : items) {
-    const auto item_cost = [&](const Item& item) {
+  for (std::vector<IndexRange>& of_phase : items) {
+    const auto item_cost = [&](const IndexRange& item) {
       return item.end - item.begin == 1 ? factor.cost(item.begin) : cost[item.end - 1];
     };
     // The dearest first, each to who has least: then in order again.
     std::ranges::stable_sort(of_phase, std::ranges::greater{}, item_cost);
-    std::vector<std::vector<Item>> shares(threads);
+    std::vector<std::vector<IndexRange>> shares(threads);
     std::vector<std::size_t> load(threads);
-    for (const Item& item : of_phase) {
+    for (const IndexRange& item : of_phase) {
       const auto thread = static_cast<std::size_t>(std::ranges::min_element(load) - load.begin());
       shares[thread].push_back(item);
       load[thread] += item_cost(item);
     }
-    for (std::vector<Item>& share : shares) std::ranges::sort(share, {}, &Item::begin);
+    for (std::vector<IndexRange>& share : shares) std::ranges::sort(share, {}, &IndexRange::begin);
     phases.push_back(std::move(shares));
   }
 }

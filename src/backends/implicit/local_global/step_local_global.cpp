@@ -1,5 +1,5 @@
 // Steps of fast-springs with vectors: forces of whole vectors of nodes, products of dense blocks with three
-// vectors at once. Compiled once per instruction set: hwy/foreach_target.h includes this file again for each.
+// vectors at once.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -147,7 +147,7 @@ HWY_NOINLINE void pass_downwards(LocalGlobalNodes<Nodes>& system, std::size_t pa
 
 /// The state becomes what the iterations start from.
 template <class Nodes>
-HWY_NOINLINE void begin_step(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
+HWY_NOINLINE void begin_step(LocalGlobalNodes<Nodes>& system, IndexRange chunk) {
   for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
     const Lanes3 v = vector.load(system.v.data());
     vector.store(system.w.data(), v);
@@ -155,25 +155,32 @@ HWY_NOINLINE void begin_step(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
   });
 }
 
-/// The local step.
+/// The local step, with the accelerations by springs, the air and gravity at positions y and velocities w.
 template <class Nodes>
-HWY_NOINLINE void find_missing(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
+HWY_NOINLINE void find_missing(LocalGlobalNodes<Nodes>& system, IndexRange chunk) {
+  const Surroundings& around = system.nodes.surroundings;
   const float *const y = system.y.data(), *const w = system.w.data(), *const v = system.v.data();
   for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
-    const Lanes3 a = acceleration_at(vector, y, w, system.nodes.surroundings);
-    const Lanes3 change = vector.load(w) - vector.load(v);
-    vector.store_free(system.e.data(), Lanes(system.dt) * a - change);
+    const NodeLanes node{vector.load(y), vector.load(w)};
+    Lanes3 pull = zero3();
+    vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
+      const Lanes3 to_other = springs.load(y) - node.x;
+      const Lanes factor = spring_pull_at(inverse_length(dot(to_other, to_other)),
+                                          dot(springs.load(w) - node.v, to_other), springs.law);
+      pull = mul_add(keep(springs.exists, factor), to_other, pull);
+    });
+    const Lanes3 a = node_acceleration(pull, node.v, Lanes(around.viscous_damping), Lanes(around.gravity));
+    const Lanes3 change = node.v - vector.load(v);
+    vector.store(system.e.data(), keep(vector.free, Lanes(system.dt) * a - change));
   });
 }
 
 /// What the iterations have found becomes the state, on which the floor acts.
 template <class Nodes>
-HWY_NOINLINE void end_step(LocalGlobalNodes<Nodes>& system, NodeChunk chunk) {
-  const Surroundings& around = system.nodes.surroundings;
+HWY_NOINLINE void end_step(LocalGlobalNodes<Nodes>& system, IndexRange chunk) {
   for_each_vector(system.nodes, chunk, [&](const auto& vector) HWY_ATTR {
     Lanes3 x = vector.load(system.y.data()), v = vector.load(system.w.data());
-    const Mask under = both(vector.free, hn::Lt(x.y.v, Lanes(around.floor_height).v));
-    touch_floor(under, Lanes(around.floor_height), Lanes(around.restitution), Lanes(around.friction), x, v);
+    touch_floor(vector.free, system.nodes.surroundings, x, v);
     vector.store(system.x.data(), x);
     vector.store(system.v.data(), v);
   });
@@ -196,7 +203,7 @@ void take_steps(LocalGlobalNodes<Nodes>& system, int count) {
         for_chunks(find_missing<Nodes>);
         for (const auto& phase : phases) {
           for (std::size_t share = team.thread; share < system.threads; share += team.threads)
-            for (const FrontSchedule::Item& item : phase[share])
+            for (const IndexRange& item : phase[share])
               for (std::size_t part = item.begin; part < item.end; ++part)
                 pass_upwards(system, part, scratch.data());
           team.meet();

@@ -13,12 +13,8 @@ namespace mssim {
 /// phase has parts whose children are done. Upwards the phases follow each other, and each thread takes its
 /// items in order; downwards all is reversed. It decides nothing about the result: a part's sums are its own.
 struct FrontSchedule {
-  /// Parts [begin, end), children before parents.
-  struct Item {
-    std::size_t begin, end;
-  };
-  /// [phases][threads]
-  std::vector<std::vector<std::vector<Item>>> phases;
+  /// [phases][threads] items: parts, children before parents.
+  std::vector<std::vector<std::vector<IndexRange>>> phases;
 
   FrontSchedule(const BlockFactor& factor, std::size_t threads);
 };
@@ -47,13 +43,8 @@ struct LocalGlobalNodes {
   /// A state must be set before the first step.
   LocalGlobalNodes(const System& system, double dt_s, std::size_t lanes, std::size_t thread_count)
       : LocalGlobalNodes(system, {system, dt_s}, dt_s, lanes, thread_count) {}
-  void set_state(const State& state) {
-    write_field(nodes, state.position, x.data());
-    write_field(nodes, state.velocity, v.data());
-  }
-  State state() const {
-    return {.position = read_field(nodes, x.data()), .velocity = read_field(nodes, v.data())};
-  }
+  void set_state(const State& state) { write_fields(nodes, state, x, v); }
+  State state() const { return read_fields(nodes, x, v); }
 
  private:
   LocalGlobalNodes(const System& system, const StepMatrix& matrix, double dt_s, std::size_t lanes,

@@ -21,7 +21,6 @@ class NewtonSerial final : public Backend {
 
   void set_state(const State& state) override { equation_.set_state(state); }
   State state() const override { return equation_.state(); }
-  std::string device() const override { return "cpu"; }
   int threads() const override { return 1; }
   std::string note() const override { return note_of(work_); }
 

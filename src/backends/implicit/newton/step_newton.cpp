@@ -1,6 +1,5 @@
 // The threads that take a step together, each running the methods of newton_method.h, and what each function
-// of the equation does to a chunk of nodes. Compiled once per instruction set: hwy/foreach_target.h includes
-// this file again for each.
+// of the equation does to a chunk of nodes.
 #include "backends/vectors/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -35,12 +34,6 @@ class DoubleSum {
   hn::Vec<Tag> low_, high_;
 };
 
-/// What springs whose ends are d apart (m) add to A at the end of a step of dt.
-HWY_INLINE SlopeLanes slope_of(const SpringLanes& spring, const Lanes3& d, Lanes dt) {
-  const Lanes inverse_root = inverse_length(dot(d, d));
-  return {inverse_root * d, dt * (dt * spring_across_definite(inverse_root, spring))};
-}
-
 /// The block of P of a vector of nodes, from where it stands in VectorEquation::inverse.
 HWY_INLINE SymmetricBlock<Lanes> load_block(const float* from) {
   const std::size_t n = lane_count();
@@ -58,14 +51,14 @@ HWY_INLINE void store_block(float* to, Free free, const SymmetricBlock<Lanes>& b
 
 /// Calls act(float) with a vector of floats' offset in a field, for all of a chunk's.
 template <class Nodes, class Act>
-HWY_INLINE void for_each_float(const Nodes& nodes, NodeChunk chunk, Act&& act) {
-  const NodeChunk floats = nodes.floats_of(chunk);
+HWY_INLINE void for_each_float(const Nodes& nodes, IndexRange chunk, Act&& act) {
+  const IndexRange floats = nodes.floats_of(chunk);
   for (std::size_t i = floats.begin; i < floats.end; i += lane_count()) act(i);
 }
 
 /// e, A and P. Returns e . M^-1 e, undivided. at_state: at x and w = v, and e that of the first Newton step.
 template <bool at_state, class Nodes>
-HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Lanes dt(equation.dt), viscous_damping(equation.nodes.surroundings.viscous_damping),
       gravity(equation.nodes.surroundings.gravity);
   const Lanes inertia = mul_add(dt, viscous_damping, Lanes(1.0F));
@@ -109,7 +102,7 @@ HWY_NOINLINE double linearise_chunk(VectorEquation<Nodes>& equation, NodeChunk c
 
 /// s = 0, p = 0, z = P e. Returns e . z.
 template <class Nodes>
-HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   float *const s = equation.s.data(), *const p = equation.p.data(), *const z = equation.z.data();
   const float *const e = equation.e.data(), *const inverse = equation.inverse.data();
   DoubleSum sum;
@@ -128,7 +121,7 @@ HWY_NOINLINE double start_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk
 
 /// p = z + factor p.
 template <class Nodes>
-HWY_NOINLINE void turn_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk, float factor) {
+HWY_NOINLINE void turn_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, float factor) {
   const FloatTag d;
   float* const p = equation.p.data();
   const float* const z = equation.z.data();
@@ -140,7 +133,7 @@ HWY_NOINLINE void turn_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk, f
 
 /// q = A p. Returns p . q. What it writes for nodes that do not move, or do not exist, is of no use.
 template <class Nodes>
-HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Lanes dt(equation.dt);
   const Lanes inertia = mul_add(dt, Lanes(equation.nodes.surroundings.viscous_damping), Lanes(1.0F));
   float* const q = equation.q.data();
@@ -162,7 +155,7 @@ HWY_NOINLINE double multiply_chunk(VectorEquation<Nodes>& equation, NodeChunk ch
 
 /// Multiplies where slopes are not kept: they are found again from the positions of the linearisation.
 template <class Nodes>
-HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Lanes dt(equation.dt);
   const Lanes inertia = mul_add(dt, Lanes(equation.nodes.surroundings.viscous_damping), Lanes(1.0F));
   float* const q = equation.q.data();
@@ -173,10 +166,12 @@ HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, NodeChu
     Lanes3 product = inertia * here;
     vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
       const SpringLanes& spring = springs.law;
-      const SlopeLanes slope = slope_of(spring, springs.load(y) - place, dt);
-      product = product -
-                keep(springs.exists, spring_jacobian_times(slope.n, spring_step_along(dt, spring.constants),
-                                                           slope.across, springs.load(p) - here));
+      const Lanes3 d = springs.load(y) - place;
+      const Lanes inverse_root = inverse_length(dot(d, d));
+      const Lanes across = dt * (dt * spring_across_definite(inverse_root, spring));
+      product = product - keep(springs.exists, spring_jacobian_times(inverse_root * d,
+                                                                     spring_step_along(dt, spring.constants),
+                                                                     across, springs.load(p) - here));
     });
     product = keep(vector.free, product);
     vector.store(q, product);
@@ -187,7 +182,7 @@ HWY_NOINLINE double multiply_chunk_anew(VectorEquation<Nodes>& equation, NodeChu
 
 /// s += factor p, e -= factor q, z = P e. Returns e . z.
 template <class Nodes>
-HWY_NOINLINE double advance_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk, float factor) {
+HWY_NOINLINE double advance_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, float factor) {
   float *const s = equation.s.data(), *const e = equation.e.data(), *const z = equation.z.data();
   const float *const p = equation.p.data(), *const q = equation.q.data(),
                      *const inverse = equation.inverse.data();
@@ -204,21 +199,21 @@ HWY_NOINLINE double advance_chunk(VectorEquation<Nodes>& equation, NodeChunk chu
   return sum.total();
 }
 
-/// to = from + factor step, which may be null: then to = from.
+/// w += factor s.
 template <class Nodes>
-HWY_NOINLINE void add_chunk(const Nodes& nodes, NodeChunk chunk, float* to, const float* from, float factor,
-                            const float* step) {
+HWY_NOINLINE void add_chunk(VectorEquation<Nodes>& equation, IndexRange chunk, float factor) {
   const FloatTag d;
+  float* const w = equation.w.data();
+  const float* const s = equation.s.data();
   const auto f = hn::Set(d, factor);
-  for_each_float(nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
-    const auto value = hn::Load(d, from + i);
-    hn::Store(step == nullptr ? value : hn::MulAdd(f, hn::Load(d, step + i), value), d, to + i);
+  for_each_float(equation.nodes, chunk, [&](std::size_t i) MSSIM_INLINE_LAMBDA {
+    hn::Store(hn::MulAdd(f, hn::Load(d, s + i), hn::Load(d, w + i)), d, w + i);
   });
 }
 
 /// a . M b, undivided, for fields a and b that are zero where nothing moves.
 template <class Nodes>
-HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, NodeChunk chunk, const float* a,
+HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, IndexRange chunk, const float* a,
                                   const float* b) {
   DoubleSum sum;
   for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
@@ -229,7 +224,7 @@ HWY_NOINLINE double product_chunk(const VectorEquation<Nodes>& equation, NodeChu
 
 /// (w - v) . M (w - v), undivided.
 template <class Nodes>
-HWY_NOINLINE double change_chunk(const VectorEquation<Nodes>& equation, NodeChunk chunk) {
+HWY_NOINLINE double change_chunk(const VectorEquation<Nodes>& equation, IndexRange chunk) {
   const float *const w = equation.w.data(), *const v = equation.v.data();
   DoubleSum sum;
   for_each_whole_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
@@ -241,16 +236,14 @@ HWY_NOINLINE double change_chunk(const VectorEquation<Nodes>& equation, NodeChun
 
 /// v = w, x += dt w, and the floor acts.
 template <class Nodes>
-HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, NodeChunk chunk) {
+HWY_NOINLINE void end_chunk(VectorEquation<Nodes>& equation, IndexRange chunk) {
   const Surroundings surroundings = equation.nodes.surroundings;
-  const Lanes dt(equation.dt), height(surroundings.floor_height), restitution(surroundings.restitution),
-      friction(surroundings.friction);
+  const Lanes dt(equation.dt);
   float *const x = equation.x.data(), *const v = equation.v.data();
   const float* const w = equation.w.data();
   for_each_vector(equation.nodes, chunk, [&](const auto& vector) MSSIM_INLINE_LAMBDA {
     Lanes3 velocity = vector.load(w), position = mul_add(dt, velocity, vector.load(x));
-    touch_floor(both(vector.free, hn::Lt(position.y.v, height.v)), height, restitution, friction, position,
-                velocity);
+    touch_floor(vector.free, surroundings, position, velocity);
     vector.store(x, position);
     vector.store(v, velocity);
   });
@@ -268,45 +261,45 @@ class TeamEquation {
         end_(team.end(shared.nodes.chunks.size())) {}
 
   void begin() {
-    for_own_chunks([&](NodeChunk chunk) HWY_ATTR {
-      add_chunk(shared_.nodes, chunk, shared_.w.data(), shared_.v.data(), 0, nullptr);
+    for_own_chunks([&](IndexRange chunk) HWY_ATTR {
+      const IndexRange floats = shared_.nodes.floats_of(chunk);
+      std::copy(shared_.v.data() + floats.begin, shared_.v.data() + floats.end,
+                shared_.w.data() + floats.begin);
     });
   }
   void linearise_at_state() {
     barrier_.wait();  // others have written x and v
-    sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return linearise_chunk<true>(shared_, chunk); });
+    sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return linearise_chunk<true>(shared_, chunk); });
   }
   double linearise() {
     barrier_.wait();  // others have written x and w
-    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return linearise_chunk<false>(shared_, chunk); });
+    return sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return linearise_chunk<false>(shared_, chunk); });
   }
   double start_solving() {
-    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return start_chunk(shared_, chunk); });
+    return sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return start_chunk(shared_, chunk); });
   }
   double turn(double factor) {
-    for_own_chunks([&](NodeChunk chunk) HWY_ATTR { turn_chunk(shared_, chunk, static_cast<float>(factor)); });
+    for_own_chunks([&](IndexRange chunk)
+                       HWY_ATTR { turn_chunk(shared_, chunk, static_cast<float>(factor)); });
     barrier_.wait();
-    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR {
+    return sum_over_chunks([&](IndexRange chunk) HWY_ATTR {
       return shared_.keeps_slopes() ? multiply_chunk(shared_, chunk) : multiply_chunk_anew(shared_, chunk);
     });
   }
   double advance(double factor) {
     return sum_over_chunks(
-        [&](NodeChunk chunk) HWY_ATTR { return advance_chunk(shared_, chunk, static_cast<float>(factor)); });
+        [&](IndexRange chunk) HWY_ATTR { return advance_chunk(shared_, chunk, static_cast<float>(factor)); });
   }
   void add(double factor) {
-    for_own_chunks([&](NodeChunk chunk) HWY_ATTR {
-      add_chunk(shared_.nodes, chunk, shared_.w.data(), shared_.w.data(), static_cast<float>(factor),
-                shared_.s.data());
-    });
+    for_own_chunks([&](IndexRange chunk) HWY_ATTR { add_chunk(shared_, chunk, static_cast<float>(factor)); });
   }
   double along_solution() { return product(shared_.e.data(), shared_.s.data()); }
   double motion() { return product(shared_.w.data(), shared_.w.data()); }
   double change() {
-    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return change_chunk(shared_, chunk); });
+    return sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return change_chunk(shared_, chunk); });
   }
   void end() {
-    for_own_chunks([&](NodeChunk chunk) HWY_ATTR { end_chunk(shared_, chunk); });
+    for_own_chunks([&](IndexRange chunk) HWY_ATTR { end_chunk(shared_, chunk); });
   }
 
  private:
@@ -316,7 +309,7 @@ class TeamEquation {
   }
 
   double product(const float* a, const float* b) {
-    return sum_over_chunks([&](NodeChunk chunk) HWY_ATTR { return product_chunk(shared_, chunk, a, b); });
+    return sum_over_chunks([&](IndexRange chunk) HWY_ATTR { return product_chunk(shared_, chunk, a, b); });
   }
 
   /// The sum of what act(chunk) returns for all chunks, of all threads, when all have called it.

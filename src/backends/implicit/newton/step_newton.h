@@ -59,13 +59,8 @@ struct VectorEquation {
   std::string note() const { return note_of(work); }
   bool keeps_slopes() const { return y.size() == 0; }
 
-  void set_state(const State& state) {
-    write_field(nodes, state.position, x.data());
-    write_field(nodes, state.velocity, v.data());
-  }
-  State state() const {
-    return {.position = read_field(nodes, x.data()), .velocity = read_field(nodes, v.data())};
-  }
+  void set_state(const State& state) { write_fields(nodes, state, x, v); }
+  State state() const { return read_fields(nodes, x, v); }
 };
 
 }  // namespace mssim

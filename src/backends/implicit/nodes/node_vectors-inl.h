@@ -1,5 +1,5 @@
-// The walk over the nodes of a cloth or of bodies (node_vectors.h), vector by vector, and the forces on a
-// vector of nodes. Compiled once per instruction set, so the guard toggles.
+// The walk over the nodes of a cloth or of bodies (node_vectors.h), vector by vector. Compiled once per
+// instruction set, so the guard toggles.
 #if defined(MSSIM_NODE_VECTORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MSSIM_NODE_VECTORS_INL_H_
 #undef MSSIM_NODE_VECTORS_INL_H_
@@ -68,8 +68,6 @@ struct RowVector {
   HWY_INLINE void store(float* field, const Lanes3& value) const {
     store3(field + offset, value, constants.pitch);
   }
-  /// Stores zero where no node moves.
-  HWY_INLINE void store_free(float* field, const Lanes3& value) const { store(field, keep(free, value)); }
   /// What sums over nodes are weighted with, in proportion to their masses: here they are the same.
   HWY_INLINE Lanes weighted(Lanes value) const { return value; }
 
@@ -115,29 +113,23 @@ struct RowWalk {
   HWY_INLINE RowVector<edge> vector(std::size_t row, std::size_t column, Place place, Free free) const {
     const auto r = static_cast<std::ptrdiff_t>(row + NodeRows::Layout::ring);
     const std::ptrdiff_t c = margin + static_cast<std::ptrdiff_t>(column);
-    return {constants,
-            place,
-            free,
-            r * node_row + c,
-            r * slope_row + c,
-            row * row_vectors + column / lane_count()};
+    const std::size_t number = row * row_vectors + column / lane_count();
+    return {constants, place, free, r * node_row + c, r * slope_row + c, number};
   }
   HWY_INLINE RowVector<false> inner_vector(std::size_t row, std::size_t column) const {
     return vector<false>(row, column, InnerVector{}, EveryLane{});
   }
   HWY_INLINE RowVector<true> edge_vector(std::size_t row, std::size_t column, const float* free) const {
-    const auto iota = [](std::size_t first)
-                          HWY_ATTR { return hn::Iota(IndexTag(), static_cast<std::uint32_t>(first)); };
-    return vector<true>(row, column,
-                        EdgeVector{static_cast<std::uint32_t>(row), iota(column),
-                                   static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(columns)},
-                        hn::Ne(hn::Load(FloatTag(), free), hn::Zero(FloatTag())));
+    const EdgeVector place{static_cast<std::uint32_t>(row),
+                           hn::Iota(IndexTag(), static_cast<std::uint32_t>(column)),
+                           static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(columns)};
+    return vector<true>(row, column, place, hn::Ne(hn::Load(FloatTag(), free), hn::Zero(FloatTag())));
   }
 };
 
 /// Calls act(vector) for all vectors of nodes in a chunk of rows: a RowVector<true> or RowVector<false>.
 template <class Act>
-HWY_INLINE void for_each_vector(const NodeRows& nodes, NodeChunk chunk, Act&& act) {
+HWY_INLINE void for_each_vector(const NodeRows& nodes, IndexRange chunk, Act&& act) {
   const RowWalk walk(nodes);
   for (std::size_t row = chunk.begin; row < chunk.end; ++row) {
     const auto inner = nodes.layout.inner_columns(row, lane_count());
@@ -152,7 +144,7 @@ HWY_INLINE void for_each_vector(const NodeRows& nodes, NodeChunk chunk, Act&& ac
 
 /// Acts as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
 template <class Act>
-HWY_INLINE void for_each_whole_vector(const NodeRows& nodes, NodeChunk chunk, Act&& act) {
+HWY_INLINE void for_each_whole_vector(const NodeRows& nodes, IndexRange chunk, Act&& act) {
   const RowWalk walk(nodes);
   for (std::size_t row = chunk.begin; row < chunk.end; ++row)
     for (std::size_t column = 0; column < walk.columns; column += lane_count())
@@ -259,8 +251,6 @@ struct SliceVector {
   }
   HWY_INLINE Lanes3 load(const float* field) const { return load_slice(field + offset); }
   HWY_INLINE void store(float* field, const Lanes3& value) const { store_slice(field + offset, value); }
-  /// Stores zero where no node moves.
-  HWY_INLINE void store_free(float* field, const Lanes3& value) const { store(field, keep(free, value)); }
   /// What sums over nodes are weighted with, in proportion to their masses.
   HWY_INLINE Lanes weighted(Lanes value) const { return constant(NodeSlices::mass) * value; }
 
@@ -280,7 +270,7 @@ struct SliceVector {
 
 /// Calls act(vector) for all slices of a chunk.
 template <class Act>
-HWY_INLINE void for_each_vector(const NodeSlices& nodes, NodeChunk chunk, Act&& act) {
+HWY_INLINE void for_each_vector(const NodeSlices& nodes, IndexRange chunk, Act&& act) {
   const float *const entries = nodes.entries.data(), *const all_constants = nodes.constants.data();
   const std::uint32_t* const first_entry = nodes.first_entry.data();
   constexpr std::size_t entry_floats = 2 * slice_lanes;
@@ -297,24 +287,8 @@ HWY_INLINE void for_each_vector(const NodeSlices& nodes, NodeChunk chunk, Act&& 
 
 /// Acts as if all nodes and springs existed and no node were pinned: for what is zero where they do not.
 template <class Act>
-HWY_INLINE void for_each_whole_vector(const NodeSlices& nodes, NodeChunk chunk, Act&& act) {
+HWY_INLINE void for_each_whole_vector(const NodeSlices& nodes, IndexRange chunk, Act&& act) {
   for_each_vector(nodes, chunk, act);
-}
-
-/// Accelerations (m/s^2) of a vector of nodes (RowVector, SliceVector) by their springs, the air and gravity,
-/// at the positions (m) and velocities (m/s) of two fields. Also where a node is pinned.
-template <class Vector>
-HWY_INLINE Lanes3 acceleration_at(const Vector& vector, const float* x, const float* v,
-                                  const Surroundings& surroundings) {
-  const NodeLanes node{vector.load(x), vector.load(v)};
-  Lanes3 pull = zero3();
-  vector.for_each_spring([&](const auto& springs) MSSIM_INLINE_LAMBDA {
-    const Lanes3 to_other = springs.load(x) - node.x;
-    const Lanes factor = spring_pull_at(inverse_length(dot(to_other, to_other)),
-                                        dot(springs.load(v) - node.v, to_other), springs.law);
-    pull = mul_add(keep(springs.exists, factor), to_other, pull);
-  });
-  return node_acceleration(pull, node.v, Lanes(surroundings.viscous_damping), Lanes(surroundings.gravity));
 }
 
 }  // namespace mssim::HWY_NAMESPACE

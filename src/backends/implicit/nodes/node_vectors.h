@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <variant>
 #include <vector>
 
 #include "backends/interface/backend.h"
@@ -17,22 +16,17 @@ namespace mssim {
 /// AlignedArray is. The vector code (node_vectors-inl.h) walks over the nodes and loads any field at a node
 /// or at its neighbours.
 
-/// What a thread takes at a time, and whose sum is a number of its own: rows of a cloth or slices of bodies
-/// [begin, end). Chunks depend on the system alone, so that sums over them do, too.
-struct NodeChunk {
-  std::size_t begin, end;
-};
-
-/// Chunks of a system: enough for the threads of one machine to have about the same work, few enough that
-/// adding up their sums takes no time.
+/// A chunk is what a thread takes at a time, and whose sum is a number of its own: rows of a cloth or slices
+/// of bodies. Chunks depend on the system alone, so that sums over them do, too: enough for the threads of
+/// one machine to have about the same work, few enough that adding up their sums takes no time.
 inline constexpr std::size_t most_node_chunks = 256;
 
 /// Cuts `count` things into at most most_node_chunks chunks of about the same cost. cost_before(i): what
 /// those before the i-th cost in all.
 template <class CostBefore>
-std::vector<NodeChunk> balanced_node_chunks(std::size_t count, CostBefore cost_before) {
+std::vector<IndexRange> balanced_node_chunks(std::size_t count, CostBefore cost_before) {
   const std::size_t parts = std::min(count, most_node_chunks);
-  std::vector<NodeChunk> chunks;
+  std::vector<IndexRange> chunks;
   std::size_t end = 0;
   for (std::size_t part = 1; part <= parts; ++part) {
     const std::size_t begin = end;
@@ -60,7 +54,7 @@ struct NodeRows {
   double mass = 0;                        ///< of each node, kg
   AlignedArray free;                      ///< [Plane::floats] 1 at nodes that move, 0 at pins and outside
   std::vector<std::uint8_t> row_is_free;  ///< [rows] 1 where no node of the row is pinned
-  std::vector<NodeChunk> chunks;          ///< of rows
+  std::vector<IndexRange> chunks;         ///< of rows
 
   /// Of a system that is a cloth. `lanes`: floats of a vector. Throws Unsupported where the nodes differ in
   /// mass.
@@ -75,7 +69,7 @@ struct NodeRows {
   std::size_t row_vectors() const { return (layout.columns + layout.lanes - 1) / layout.lanes; }
   std::size_t vectors() const { return layout.rows * row_vectors(); }
   /// The floats of a field that belong to a chunk's nodes, whole vectors; and zeros beside them.
-  NodeChunk floats_of(NodeChunk chunk) const {
+  IndexRange floats_of(IndexRange chunk) const {
     return {(chunk.begin + Layout::ring) * layout.row_floats(),
             (chunk.end + Layout::ring) * layout.row_floats()};
   }
@@ -103,7 +97,7 @@ struct NodeSlices {
   /// [slices][constant_count][lanes] SlicedGraph's constants, 1 where a node moves or else 0, and mass in kg,
   /// 0 where no node is.
   AlignedArray constants;
-  std::vector<NodeChunk> chunks;  ///< of slices
+  std::vector<IndexRange> chunks;  ///< of slices
 
   /// Throws Unsupported like SlicedGraph, and for more nodes than entries can name.
   NodeSlices(const System& system, std::size_t lanes);
@@ -114,7 +108,7 @@ struct NodeSlices {
   /// Four of every entry.
   std::size_t slope_floats() const { return first_entry.back() * 4 * lanes; }
   std::size_t vectors() const { return slices(); }
-  NodeChunk floats_of(NodeChunk chunk) const {
+  IndexRange floats_of(IndexRange chunk) const {
     const std::size_t slice_floats = lanes * record_floats;
     return {chunk.begin * slice_floats, chunk.end * slice_floats};
   }
@@ -122,22 +116,23 @@ struct NodeSlices {
   static constexpr std::size_t component_step() { return 1; }
 };
 
-/// Writes an array in the scene's node order to a field. Rounds to float.
+/// Writes a state to fields of positions and velocities. Rounds to float.
 template <class Nodes>
-void write_field(const Nodes& nodes, const std::vector<Vec3d>& values, float* field) {
-  const std::size_t step = nodes.component_step();
-  for (std::size_t node = 0; node < values.size(); ++node)
-    write_vector(field + nodes.offset(node), step, values[node]);
+void write_fields(const Nodes& nodes, const State& state, AlignedArray& x, AlignedArray& v) {
+  for (std::size_t node = 0; node < nodes.nodes; ++node) {
+    write_vector(x.data() + nodes.offset(node), nodes.component_step(), state.position[node]);
+    write_vector(v.data() + nodes.offset(node), nodes.component_step(), state.velocity[node]);
+  }
 }
 
 template <class Nodes>
-std::vector<Vec3d> read_field(const Nodes& nodes, const float* field) {
-  std::vector<Vec3d> values;
-  values.reserve(nodes.nodes);
-  const std::size_t step = nodes.component_step();
-  for (std::size_t node = 0; node < nodes.nodes; ++node)
-    values.push_back(read_vector(field + nodes.offset(node), step));
-  return values;
+State read_fields(const Nodes& nodes, const AlignedArray& x, const AlignedArray& v) {
+  State state{std::vector<Vec3d>(nodes.nodes), std::vector<Vec3d>(nodes.nodes)};
+  for (std::size_t node = 0; node < nodes.nodes; ++node) {
+    state.position[node] = read_vector(x.data() + nodes.offset(node), nodes.component_step());
+    state.velocity[node] = read_vector(v.data() + nodes.offset(node), nodes.component_step());
+  }
+  return state;
 }
 
 }  // namespace mssim
