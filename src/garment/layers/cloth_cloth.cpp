@@ -17,8 +17,9 @@ void require(bool good, const char* what, double value, const char* wanted) {
 
 void validate(const ClothClothSettings& settings) {
   const auto not_negative = [](double value) { return value >= 0 && std::isfinite(value); };
-  require(settings.thickness > 0 && std::isfinite(settings.thickness), "the thickness in metres",
-          settings.thickness, "a positive one");
+  const auto thickness = static_cast<float>(settings.thickness);  // as it is searched with
+  require(thickness > 0 && std::isfinite(thickness), "the thickness in metres", settings.thickness,
+          "a positive one");
   require(not_negative(settings.friction), "the friction", settings.friction, "a coefficient from 0 on");
   require(not_negative(settings.push_speed), "the push speed in m/s", settings.push_speed, "one from 0 on");
   require(settings.sweeps >= 1, "the number of sweeps", settings.sweeps, "at least 1");
@@ -36,11 +37,9 @@ Vec3<float> difference(const ClothContact& contact, const std::array<std::span<f
 
 }  // namespace
 
-ClothClothCollision::ClothClothCollision(const Garment& garment, const ClothLayers& layers,
-                                         std::span<const float> node_mass, const ClothClothSettings& settings,
-                                         int threads)
-    : settings_((validate(settings), settings)),
-      search_(garment, layers, node_mass.size(), settings.thickness, threads) {
+ClothClothCollision::ClothClothCollision(const Garment& garment, std::span<const float> node_mass,
+                                         const ClothClothSettings& settings, int threads)
+    : settings_((validate(settings), settings)), search_(garment, settings.thickness, threads) {
   inverse_mass_.reserve(node_mass.size());
   for (const float mass : node_mass) {
     if (!(mass > 0))
@@ -53,18 +52,15 @@ ClothClothCollision::ClothClothCollision(const Garment& garment, const ClothLaye
 }
 
 void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
-  for (const auto& arrays : {nodes.position, nodes.velocity}) {
-    for (const std::span<float> array : arrays) {
+  for (const auto& arrays : {nodes.position, nodes.velocity})
+    for (const std::span<float> array : arrays)
       if (array.size() != inverse_mass_.size())
         throw std::invalid_argument(
             fmt::format("cloth-cloth collision: an array has {} numbers for {} nodes, give one for each",
                         array.size(), inverse_mass_.size()));
-    }
-  }
   contacts_ = search_.find({nodes.position[0], nodes.position[1], nodes.position[2]});
-  for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep) {
+  for (std::uint32_t sweep = 0; sweep < settings_.sweeps; ++sweep)
     for (const ClothContact& contact : contacts_) stop_approach(contact, nodes);
-  }
   const auto farthest = static_cast<float>(settings_.push_speed * dt);
   for (const ClothContact& contact : contacts_) push_apart(contact, nodes, farthest);
 }

@@ -17,7 +17,7 @@ struct NodeArrays {
 };
 
 /// Collisions between different panels (Vassilev, "Cloth-cloth collision detection"): finds the contacts of
-/// the listed pairs and responds to each. With w the triangle's weights, a contact is a node and a point of a
+/// the pairs of layers and responds to each. With w the triangle's weights, a contact is a node and a point of a
 /// triangle; an impulse j (N s) along its normal, or across, changes the node's velocity by j/m and those of
 /// the triangle's nodes by -w j/m, which conserves momentum. For every contact, in the order in which
 /// ClothContactSearch gives them, so that the result is the same to the last bit for any number of threads:
@@ -31,10 +31,10 @@ struct NodeArrays {
 /// collision, which then has the last word about the inner layer.
 class ClothClothCollision {
  public:
-  /// node_mass: [nodes] kg, positive; infinite for a node that is held. Without pairs, or with a garment of
-  /// one layer, collide() does nothing. Throws std::invalid_argument, in one sentence, for settings out of
-  /// their ranges, for a mass that is not positive, and where ClothContactSearch does.
-  ClothClothCollision(const Garment& garment, const ClothLayers& layers, std::span<const float> node_mass,
+  /// node_mass: [nodes] kg, positive; infinite for a node that is held. With a garment of one layer,
+  /// collide() does nothing. Throws std::invalid_argument, in one sentence, for settings out of their ranges
+  /// and for a mass that is not positive.
+  ClothClothCollision(const Garment& garment, std::span<const float> node_mass,
                       const ClothClothSettings& settings, int threads);
 
   /// Finds the contacts and responds, for a step of dt (s). Throws std::invalid_argument if an array has

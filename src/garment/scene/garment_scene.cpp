@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "garment/contact/body_maps.h"
-#include "garment/layers/cloth_contacts.h"
 #include "garment/pattern/jeans.h"
 #include "geometry/geometry.h"
 #include "text/error.h"
@@ -280,7 +279,7 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
   std::vector<std::shared_ptr<const BodyMaps>> maps;
   try {
     for (std::uint32_t layer = 0; layer <= outermost; ++layer) {
-      const double beneath = layer > 0 ? layer * garment.touching->settings.thickness : 0;
+      const double beneath = layer > 0 ? layer * garment.touching->thickness : 0;
       maps.push_back(std::make_shared<BodyMaps>(
           body, BodyMapSettings{.pixel = garment_of(spec).pixel_m, .offset = offset + beneath}));
     }
@@ -313,7 +312,7 @@ BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body
 
   Garment dressed = build.garment;
   dressed.dressing = garment.dressing;
-  if (garment.layers) dressed.touching = {{layer_pairs(dressed), {}}, *garment.layers};
+  dressed.touching = garment.layers;
   const TrunkAndLegs& met = body->profile.trunk_and_legs();
   dressed.body_maps = maps_for_layers(spec, dressed, met.surface, cut.body_offset);
   system.topology = std::move(dressed);

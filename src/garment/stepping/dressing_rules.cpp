@@ -22,7 +22,7 @@ void require_semi_euler(const Integrator& integrator) {
 
 LayerCollision::LayerCollision(const System& system, const Garment& garment, int threads)
     : threads_(system.nodes() < least_shared_nodes ? 1 : threads),
-      collision_(garment, garment.touching->layers, masses_of(system), garment.touching->settings, threads_) {
+      collision_(garment, masses_of(system), *garment.touching, threads_) {
   for (std::vector<float>& array : position_) array.resize(system.nodes());
   for (std::vector<float>& array : velocity_) array.resize(system.nodes());
 }
