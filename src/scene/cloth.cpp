@@ -197,7 +197,6 @@ System build_cloth_window(const SceneSpec& spec, const GridWindow& window) {
 
 System build_cloth(const SceneSpec& spec) {
   const ClothSpec& cloth = cloth_of(spec);
-  require_memory(spec, "/cloth", cloth_counts(spec));
   System system = build_cloth_window(spec, {.rows = cloth.rows, .columns = cloth.columns});
   system.springs = springs_of(std::get<GridPatch>(system.topology));
   return system;

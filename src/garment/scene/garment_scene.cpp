@@ -289,12 +289,9 @@ std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& sp
   return maps;
 }
 
-SceneCounts counts_of(const GarmentBuild& build) { return {build.placed.size(), build.springs.size()}; }
-
 BuiltScene built(const SceneSpec& spec, std::shared_ptr<const MeasuredBody> body, const FittedGarment& cut) {
   const GarmentSpec& garment = garment_of(spec);
   const GarmentBuild& build = cut.build;
-  require_memory(spec, "/garment", counts_of(build));
   const double lowest_start = std::ranges::min(build.placed, {}, &Vec3d::y).y;
   if (lowest_start < spec.floor.height)
     refuse(spec.file, "/floor/height_m",
@@ -393,11 +390,12 @@ std::optional<SceneCounts> stated(const SceneSpec& spec) {
 ///
 /// The scene has the panels placed around the body, at rest, and the maps of the body that they collide with;
 /// its note says what of the body they ignore. Deterministic. Building it throws SceneError when the garment
-/// starts below the floor or the memory does not suffice.
+/// starts below the floor.
 SceneParts read(const SceneSpec& spec) {
   const auto body = std::make_shared<const MeasuredBody>(measured_body(spec));
   const auto cut = std::make_shared<const FittedGarment>(cut_and_placed(spec, body->profile));
-  return {counts_of(cut->build), stated(spec),
+  return {{cut->build.placed.size(), cut->build.springs.size()},
+          stated(spec),
           [body, cut](const SceneSpec& of) { return built(of, body, *cut); }};
 }
 
