@@ -63,6 +63,22 @@ void require_thighs_below_hip(const BodyMeasures& m) {
                      shown(m.hip.girth), shown(std::floor(most * 1000) / 1000)));
 }
 
+void check_measures(const BodyMeasures& m) {
+  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
+                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
+                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
+  for (const NamedGirth& girth : girths) {
+    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
+    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
+  }
+  require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
+  require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
+  require_between("thigh gap", m.thigh_gap, " m", 0.004, 0.04);
+  require_between("stance", m.stance, " m", 0.02, 1);
+  require_heights_in_order(m);
+  require_thighs_below_hip(m);
+}
+
 class Tube {
  public:
   Tube(Surface& surface, const std::vector<EllipseSection>& sections, const TubeCells& cells)
@@ -290,8 +306,7 @@ class Figure {
   /// Between the sections a leg's inner edge is monotone, so they are all there is to look at.
   void check_apart(const std::vector<EllipseSection>& leg) const {
     constexpr double least = 0.002;
-    const auto nearest = std::min_element(leg.begin(), leg.end(),
-                                          [](const auto& a, const auto& b) { return a.x_min < b.x_min; });
+    const auto nearest = std::ranges::min_element(leg, {}, &EllipseSection::x_min);
     if (nearest->x_min >= least) return;
     double needed = m_.stance;
     for (const EllipseSection& section : leg) {
@@ -322,22 +337,6 @@ std::vector<EllipseSection> mirrored(std::vector<EllipseSection> sections) {
 }
 
 }  // namespace
-
-void check_measures(const BodyMeasures& m) {
-  const std::array girths{NamedGirth{"bust", m.bust}, NamedGirth{"waist", m.waist},
-                          NamedGirth{"hip", m.hip},   NamedGirth{"thigh", m.thigh},
-                          NamedGirth{"knee", m.knee}, NamedGirth{"ankle", m.ankle}};
-  for (const NamedGirth& girth : girths) {
-    require_between(std::string(girth.name) + " girth", girth.at.girth, " m", 0.1, 3);
-    require_between(std::string(girth.name) + " height", girth.at.height, " m", 0.03, 2.5);
-  }
-  require_between("crotch height", m.crotch_height, " m", 0.03, 2.5);
-  require_between("hip aspect (depth over width)", m.hip_aspect, "", 0.5, 1);
-  require_between("thigh gap", m.thigh_gap, " m", 0.004, 0.04);
-  require_between("stance", m.stance, " m", 0.02, 1);
-  require_heights_in_order(m);
-  require_thighs_below_hip(m);
-}
 
 double ellipse_perimeter(double half_axis, double other_half_axis) {
   const double sum = half_axis + other_half_axis;

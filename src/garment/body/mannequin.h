@@ -33,10 +33,6 @@ struct BodyMeasures {
   bool operator==(const BodyMeasures&) const = default;
 };
 
-/// Throws InputError that names measure, value and remedy unless the measures make a body: every number in
-/// its range, the heights in their order and a little apart, thighs not much wider than the hip.
-void check_measures(const BodyMeasures& measures);
-
 /// Depth over width of a thigh: no measure, but what its width follows from.
 inline constexpr double thigh_aspect = 1.1;
 
@@ -83,7 +79,8 @@ struct MannequinResolution {
 /// monotone between them; the legs' tops end inside the torso. The girths are the measures' at their heights,
 /// whatever the resolution; from the hip upwards the torso is the whole section. The thighs meet nowhere:
 /// below the crotch's height the body is two legs. Throws InputError that names measure, value and remedy for
-/// measures that make no body (check_measures), for legs that would touch, and for points around that are not
+/// measures that make no body (a number out of its range, heights that are not in order and a little apart,
+/// thighs much wider than the hip), for legs that would touch, and for points around that are not
 /// a multiple of four from 16 to 512.
 Surface mannequin(const BodyMeasures& measures, const MannequinResolution& resolution = {});
 

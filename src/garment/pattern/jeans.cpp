@@ -416,7 +416,7 @@ GarmentPattern jeans_pattern(const JeansMeasures& measures, std::uint32_t nodes,
       placement.behind = behind;
       placement.axis = [leg_axis, is_left](double y) { return is_left ? leg_axis(y) : -leg_axis(y); };
       placement.radius = behind ? 0.13 : 0.105;
-      const PanelGrid cells{grid.rows, behind ? grid.back_columns : grid.front_columns, {crotch}, {}};
+      const PanelGrid cells{grid.rows, behind ? grid.back_columns : grid.front_columns, {crotch}};
       pattern.panels.push_back({piece_of(name, outline, mirror), cells, cloth, placement, 0});
     }
   const double front_crotch = crotch_fraction(draft.front), back_crotch = crotch_fraction(draft.back);
