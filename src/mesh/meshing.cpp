@@ -50,10 +50,8 @@ std::optional<MeshDefect> node_twice(const TetMesh& mesh) {
   const auto key = [&](std::size_t n) {
     return std::tuple(mesh.nodes[n].x, mesh.nodes[n].y, mesh.nodes[n].z, n);
   };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-  const auto same = std::adjacent_find(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return mesh.nodes[a] == mesh.nodes[b];
-  });
+  std::ranges::sort(order, {}, key);
+  const auto same = std::ranges::adjacent_find(order, {}, [&](std::size_t n) { return mesh.nodes[n]; });
   if (same == order.end()) return std::nullopt;
   return MeshDefect{MeshDefect::node, *(same + 1),
                     fmt::format("another node is at {} too; merge the two", place(mesh.nodes[*same]))};
@@ -395,15 +393,15 @@ TetMesh surface_mesh(const SurfaceShape& body) {
   auto [surface, note] = read_surface(body.file);
   for (Vec3d& point : surface.points) point = body.unit_m * point;
   validate_surface(surface, name);
-  // A limit far below the body's volume would fill the memory.
-  constexpr double most_tetrahedra = 1e7;
+  const double volume = volume_of(surface);
+  const double tetrahedra = body.largest_volume_m3 > 0 ? volume / body.largest_volume_m3 : 0;  // at least
   constexpr double tetrahedra_a_node = 7;  // of a fine mesh, a little fewer
-  if (body.largest_volume_m3 > 0 && volume_of(surface) / body.largest_volume_m3 > most_tetrahedra)
-    throw InputError(name + ": tetrahedra of at most " + decimal(body.largest_volume_m3) +
-                     " m^3 in a body of " + shown(volume_of(surface)) +
-                     " m^3 would be more than ten million; give a larger volume");
-  const double tetrahedra =
-      body.largest_volume_m3 > 0 ? volume_of(surface) / body.largest_volume_m3 : 0;  // at least
+  // A limit far below the body's volume would fill the memory.
+  if (tetrahedra > 1e7)
+    throw InputError(
+        "{}: tetrahedra of at most {} m^3 in a body of {} m^3 would be more than ten million; give a larger "
+        "volume",
+        name, decimal(body.largest_volume_m3), shown(volume));
   const auto nodes = std::max(std::uint64_t{surface.points.size()},
                               static_cast<std::uint64_t>(tetrahedra / tetrahedra_a_node));
   try {

@@ -155,11 +155,6 @@ OwnShape own_shape(const BodyShape& shape, const std::filesystem::path& folder) 
   return {body.shape, scene.file.parent_path(), body.expected};
 }
 
-/// What files state about the mesh of a body of that shape.
-std::optional<MeshSize> stated_size(const BodySpec& body, const OwnShape& shape) {
-  return std::holds_alternative<ShapeOfScene>(body.shape) ? shape.stated_by_other : body.expected;
-}
-
 /// How a shape becomes a mesh, one overload a kind.
 struct Mesher {
   const std::filesystem::path& folder;
@@ -360,7 +355,9 @@ std::optional<SceneCounts> stated_counts_of(const SceneSpec& spec,
   SceneCounts counts;
   const std::vector<BodySpec>& list = bodies_of(spec).list;
   for (std::size_t body = 0; body < list.size(); ++body) {
-    const std::optional<MeshSize> size = stated_size(list[body], shape_of(body));
+    const std::optional<MeshSize> size = std::holds_alternative<ShapeOfScene>(list[body].shape)
+                                             ? shape_of(body).stated_by_other
+                                             : list[body].expected;
     if (!size) return std::nullopt;
     counts.nodes += size->nodes;
     counts.springs_unique += size->springs;
@@ -415,9 +412,8 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
   fields.object(
       {"springs", "How the springs answer stretching."}, Presence::required,
       [&](FieldVisitor& springs) { visit_material(springs, bodies.springs, above(0, largest_stiffness)); });
-  fields.list({"list", "The bodies."}, Presence::required, most_bodies,
-              {"One body, and how it starts.",
-               [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); }});
+  fields.list({"list", "The bodies."}, Presence::required, most_bodies, "One body, and how it starts.",
+              [&](FieldVisitor& body) { visit_body(body, bodies.list.emplace_back()); });
 }
 
 /// Every turn has an axis.

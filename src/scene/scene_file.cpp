@@ -145,12 +145,6 @@ std::vector<SceneSpec> shipped_scenes() {
   return specs;
 }
 
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
-  for (const SceneSpec& spec : shipped_scenes()) names.push_back(spec.file.stem().string());
-  return names;
-}
-
 bool is_path_of_scene(std::string_view name_or_path) {
   return name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".json");
 }

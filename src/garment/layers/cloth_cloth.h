@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -17,10 +16,11 @@ struct NodeArrays {
 };
 
 /// Collisions between different panels (Vassilev, "Cloth-cloth collision detection"): finds the contacts of
-/// the pairs of layers and responds to each. With w the triangle's weights, a contact is a node and a point of a
-/// triangle; an impulse j (N s) along its normal, or across, changes the node's velocity by j/m and those of
-/// the triangle's nodes by -w j/m, which conserves momentum. For every contact, in the order in which
-/// ClothContactSearch gives them, so that the result is the same to the last bit for any number of threads:
+/// the pairs of layers and responds to each. With w the triangle's weights, a contact is a node and a point
+/// of a triangle; an impulse j (N s) along its normal, or across, changes the node's velocity by j/m and
+/// those of the triangle's nodes by -w j/m, which conserves momentum. For every contact, in the order in
+/// which ClothContactSearch gives them, so that the result is the same to the last bit for any number of
+/// threads:
 ///
 /// - what approaches along the normal stops (an inelastic impact), and what slides across loses speed by an
 ///   impulse of at most friction times the one along the normal;

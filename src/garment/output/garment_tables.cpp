@@ -38,28 +38,23 @@ using Line = std::pair<std::string, std::string>;
 
 /// The rows laid out: scenes are columns, by their number of vertices, and combinations that have a time or a
 /// dressing anywhere are lines.
-class Layout {
- public:
-  explicit Layout(Rows rows) : rows_(std::move(rows)) {
-    for (const ResultRow* row : rows_) {
-      if (std::ranges::find(scenes_, row->scene, &ResultRow::scene) == scenes_.end()) scenes_.push_back(row);
+struct Layout {
+  explicit Layout(Rows all) : rows(std::move(all)) {
+    for (const ResultRow* row : rows) {
+      if (std::ranges::find(scenes, row->scene, &ResultRow::scene) == scenes.end()) scenes.push_back(row);
       const Line line(row->backend, row->integrator);
-      if (row->dressing && std::ranges::find(lines_, line) == lines_.end()) lines_.push_back(line);
+      if (row->dressing && std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
     }
-    std::ranges::stable_sort(scenes_, {}, &ResultRow::nodes);
+    std::ranges::stable_sort(scenes, {}, &ResultRow::nodes);
   }
 
-  const Rows& rows() const { return rows_; }
-  const Rows& scenes() const { return scenes_; }
-  const std::vector<Line>& lines() const { return lines_; }
   const ResultRow* find(const ResultRow& scene, const Line& line) const {
-    return find_row(rows_, scene.scene, line.first, line.second);
+    return find_row(rows, scene.scene, line.first, line.second);
   }
 
- private:
-  Rows rows_;
-  Rows scenes_;  ///< the first row of each
-  std::vector<Line> lines_;
+  Rows rows;
+  Rows scenes;  ///< the first row of each
+  std::vector<Line> lines;
 };
 
 bool is_baseline(const Line& line) { return line.first == baseline_name; }
@@ -84,14 +79,14 @@ using MakeCell = Cell (*)(RowPointers rows, const ResultRow& row);
 
 Table table_of(const Layout& layout, const Provenance& provenance, const std::string& title, MakeCell make) {
   Table table{{{title}}, {}};
-  for (const ResultRow* scene : layout.scenes()) table.columns.push_back(scene_column(*scene));
-  for (const Line& line : layout.lines()) {
+  for (const ResultRow* scene : layout.scenes) table.columns.push_back(scene_column(*scene));
+  for (const Line& line : layout.lines) {
     std::vector<Cell>& cells = table.rows.emplace_back();
     cells.emplace_back((is_baseline(line) ? "without: " : "with: ") +
-                       backend_label(layout.rows(), line.first, provenance));
-    for (const ResultRow* scene : layout.scenes()) {
+                       backend_label(layout.rows, line.first, provenance));
+    for (const ResultRow* scene : layout.scenes) {
       const ResultRow* row = layout.find(*scene, line);
-      Cell& cell = cells.emplace_back(row ? make(layout.rows(), *row) : Cell());
+      Cell& cell = cells.emplace_back(row ? make(layout.rows, *row) : Cell());
       if (row) cell.suffix += mark_of_excess(*row, provenance);
     }
   }
@@ -101,7 +96,7 @@ Table table_of(const Layout& layout, const Provenance& provenance, const std::st
 Document page_of(const Layout& layout, const Provenance& provenance) {
   Document page{
       Heading{1, "Figure 6 of Vassilev: milliseconds an iteration against vertices of jeans"},
-      measured_on(layout.rows(), provenance),
+      measured_on(layout.rows, provenance),
       Paragraph{
           "One iteration of Algorithm 1, medians, of jeans that hang draped on the body: springs, joints, "
           "collision with the body and the correction of velocities are at work. In brackets how many "
@@ -115,9 +110,9 @@ Document page_of(const Layout& layout, const Provenance& provenance) {
           "`garment.csv` says how each fits."},
       table_of(layout, provenance, "dressing", dressing_cell)};
   add_sentence(page, legend_of_ratios(page));
-  add_sentence(page, legend_of_excess(layout.rows(), provenance));
-  add_sentence(page, reason_without_speedups(layout.rows()));
-  add_rows_without_a_time(page, layout.rows());
+  add_sentence(page, legend_of_excess(layout.rows, provenance));
+  add_sentence(page, reason_without_speedups(layout.rows));
+  add_rows_without_a_time(page, layout.rows);
   return page;
 }
 
@@ -125,15 +120,15 @@ Table data_of(const Layout& layout) {
   Table table{{{"backend"}, {"integrator"}, {"parallel"}, {"quantity"}}, {}};
   std::vector<Cell>& vertices = table.rows.emplace_back();
   vertices = {{}, {}, {}, "vertices"};
-  for (const ResultRow* scene : layout.scenes()) {
+  for (const ResultRow* scene : layout.scenes) {
     table.columns.push_back({scene->scene});
     vertices.emplace_back(scene->nodes);
   }
-  for (const Line& line : layout.lines()) {
+  for (const Line& line : layout.lines) {
     const auto add = [&](std::string_view quantity, auto&& value) {
       std::vector<Cell>& cells = table.rows.emplace_back();
       cells = {line.first, line.second, is_baseline(line) ? "without" : "with", quantity};
-      for (const ResultRow* scene : layout.scenes()) {
+      for (const ResultRow* scene : layout.scenes) {
         const ResultRow* row = layout.find(*scene, line);
         cells.push_back(row ? Cell(value(*row)) : Cell());
       }

@@ -210,8 +210,6 @@ void visit_correction(FieldVisitor& fields, DressingSettings& dressing, Velocity
                   dressing.correction_rate, from(0, 1));
 }
 
-constexpr std::array<std::string_view, 2> held_names{"nothing", "upper edge"};
-
 void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
   fields.number({"seam_force_n_per_m", "Force that draws a seam together at first, per length, N/m."},
                 dressing.seam_force, from(0, 1e6));
@@ -225,12 +223,12 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
                 dressing.seaming_gravity, from(0, 1));
   fields.number({"longest_seaming_s", "Simulated time after which open seams are sewn as they are, s."},
                 dressing.longest_seaming_s, from(0, 1e6));
-  auto held = static_cast<std::uint32_t>(dressing.edge_held);
-  fields.choice({"held",
-                 "What keeps its height while the seams close, as if hands held it: \"nothing\", or the "
-                 "\"upper edge\" of every panel; nothing where it is not given."},
-                Presence::optional, held_names, held);
-  dressing.edge_held = held != 0;
+  constexpr std::array<std::string_view, 2> held_names{"nothing", "upper edge"};
+  visit_choice(fields,
+               {"held",
+                "What keeps its height while the seams close, as if hands held it: \"nothing\", or the "
+                "\"upper edge\" of every panel; nothing where it is not given."},
+               Presence::optional, held_names, dressing.edge_held);
   visit_length(fields, {"sewn_gap_m", "Gap below which a joint counts as sewn and its ends move as one, m."},
                dressing.sewn_gap);
   fields.number({"closing_share", "Share of a sewn joint's gap that a step closes at most, without unit."},

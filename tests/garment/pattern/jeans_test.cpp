@@ -58,7 +58,7 @@ struct JeansBody {
     return {[body = *this](double y) { return body.depth(y); },
             [body = *this](double y) { return -body.depth(y); }};
   }
-  LegAxis leg_axis() const {
+  std::function<double(double)> leg_axis() const {
     return [body = *this](double y) { return body.leg_x(y) + 0.01; };
   }
 };

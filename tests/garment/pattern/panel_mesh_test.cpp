@@ -108,14 +108,13 @@ TEST(PanelMesh, ABentBoundaryFadesLinearlyTowardsTheOppositeOne) {
   }
 }
 
-TEST(PanelMesh, GridLinesEndWhereTheyAreTold) {
-  const PanelMesh mesh = mesh_panel(rectangle_piece("p", 1, 1), {6, 4, {{2, 0.5, 0.6}}, {{1, 0.1, 0.2}}});
+TEST(PanelMesh, RowsEndWhereTheyAreTold) {
+  const PanelMesh mesh = mesh_panel(rectangle_piece("p", 1, 1), {6, 4, {{2, 0.5, 0.6}}});
   expect_node(mesh, 2, 0, 0, 0.5);
   expect_node(mesh, 2, 3, 1, 0.6);
   expect_node(mesh, 1, 0, 0, 0.25);
   expect_node(mesh, 5 - 1, 3, 1, 0.6 + 2.0 / 3 * 0.4);
-  expect_node(mesh, 0, 1, 0.1, 0);
-  expect_node(mesh, 5, 1, 0.2, 1);
+  expect_node(mesh, 0, 1, 1.0 / 3, 0);
   EXPECT_THAT(mesh.arcs_on(PanelEdge::left),
               testing::ElementsAre(0, 0.25, 0.5, testing::DoubleEq(0.5 + 0.5 / 3),
                                    testing::DoubleEq(0.5 + 1.0 / 3), 1));
@@ -177,7 +176,7 @@ TEST(PanelMesh, BadGridsAreRefused) {
       AllOf(StartsWith("front: row 3 cannot end at the fractions 0.5 and 0.5"), HasSubstr("from 1 to 2")));
   EXPECT_THAT(complaint(piece, {9, 4, {{2, 0.5, 0.5}, {3, 0.6, 0.4}}}),
               StartsWith("front: row 3 cannot end"));
-  EXPECT_THAT(complaint(piece, {4, 9, {}, {{2, 0.5, 1}}}), StartsWith("front: column 2 cannot end"));
+  EXPECT_THAT(complaint(piece, {9, 4, {{2, 0.5, 1}}}), StartsWith("front: row 2 cannot end"));
 }
 
 }  // namespace
