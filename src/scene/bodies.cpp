@@ -117,19 +117,6 @@ constexpr auto shape_kinds = std::to_array<ShapeKind>({
 });
 static_assert(shape_kinds.size() == std::variant_size_v<BodyShape>);
 
-/// Names the fields that say what shape a body has: the text `shape` and the section of that name, with their
-/// targets in `body`.
-void visit_shape_fields(FieldVisitor& fields, BodySpec& body) {
-  std::vector<Section> sections;
-  for (const ShapeKind& kind : shape_kinds)
-    sections.push_back({kind.section, [&](FieldVisitor& section) {
-                          kind.visit_fields(section, body);
-                          if (!std::holds_alternative<ShapeOfScene>(body.shape))
-                            visit_expected(section, body);
-                        }});
-  fields.one_of({"shape", "Which of the sections says what shape the body has."}, sections);
-}
-
 /// A shape that is not that of another scene any more.
 struct OwnShape {
   BodyShape shape;
@@ -200,7 +187,13 @@ constexpr double shortest_spring = 1e-7, longest_spring = 1e6;
 const BodiesSpec& bodies_of(const SceneSpec& spec) { return std::get<BodiesSpec>(spec.content); }
 
 void visit_body(FieldVisitor& fields, BodySpec& body) {
-  visit_shape_fields(fields, body);
+  std::vector<Section> shapes;
+  for (const ShapeKind& kind : shape_kinds)
+    shapes.push_back({kind.section, [&](FieldVisitor& section) {
+                        kind.visit_fields(section, body);
+                        if (!std::holds_alternative<ShapeOfScene>(body.shape)) visit_expected(section, body);
+                      }});
+  fields.one_of({"shape", "Which of the sections says what shape the body has."}, shapes);
   fields.vector({"centre_m", "Where the centre of mass starts, [x, y, z], m."}, Presence::required,
                 body.centre_m, from(-1e6, 1e6));
   fields.object({"turn", "How the shape is turned about its centre at the start."}, Presence::optional,

@@ -39,7 +39,11 @@ Vec3<float> difference(const ClothContact& contact, const std::array<std::span<f
 
 ClothClothCollision::ClothClothCollision(const Garment& garment, std::span<const float> node_mass,
                                          const ClothClothSettings& settings, int threads)
-    : settings_((validate(settings), settings)), search_(garment, settings.thickness, threads) {
+    : settings_((validate(settings), settings)),
+      threads_(threads),
+      search_(garment, settings.thickness, threads) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (auto* arrays : {&position_, &velocity_}) (*arrays)[axis].resize(node_mass.size());
   inverse_mass_.reserve(node_mass.size());
   for (const float mass : node_mass) {
     if (!(mass > 0))
@@ -63,6 +67,17 @@ void ClothClothCollision::collide(const NodeArrays& nodes, double dt) {
     for (const ClothContact& contact : contacts_) stop_approach(contact, nodes);
   const auto farthest = static_cast<float>(settings_.push_speed * dt);
   for (const ClothContact& contact : contacts_) push_apart(contact, nodes, farthest);
+}
+
+void ClothClothCollision::put(std::size_t node, const NodeState& state) {
+  const auto& [x, v] = state;
+  position_[0][node] = x.x, position_[1][node] = x.y, position_[2][node] = x.z;
+  velocity_[0][node] = v.x, velocity_[1][node] = v.y, velocity_[2][node] = v.z;
+}
+
+NodeState ClothClothCollision::at(std::size_t node) const {
+  return {{position_[0][node], position_[1][node], position_[2][node]},
+          {velocity_[0][node], velocity_[1][node], velocity_[2][node]}};
 }
 
 void ClothClothCollision::stop_approach(const ClothContact& contact, const NodeArrays& nodes) const {

@@ -139,7 +139,7 @@ TEST(LayeredDressing, IsTheSameToTheLastBitForAnyNumberOfThreads) {
   // Searched by one thread and by many.
   for (const std::uint32_t side : {20U, 91U}) {
     const System system = flying_sheet(side);
-    ASSERT_EQ(system.nodes() < LayerCollision::least_shared_nodes, side == 20);
+    ASSERT_EQ(system.nodes() < least_shared_nodes, side == 20);
     const auto one = make_openmp_dressing(system, semi_euler, dressing_dt_s, 1);
     one->step(30);
     const State wanted = one->state();
