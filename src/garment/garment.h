@@ -103,7 +103,7 @@ struct Garment {
   /// [layers] The body as the panels of each layer meet it; layers beyond the last one meet it as that does.
   /// Empty: nothing to dress.
   std::vector<std::shared_ptr<const BodyMaps>> body_maps;
-  CloseCloth close;                            ///< to the body; no nodes: anywhere else it may hang as it likes
+  CloseCloth close;  ///< to the body; no nodes: anywhere else it may hang as it likes
   std::optional<ClothClothSettings> touching;  ///< none: layers go through each other
 
   /// The panel that a node belongs to.

@@ -199,20 +199,17 @@ class Run {
       fail(ended);
     const std::string node_file = read_text(nodes);
     const std::string ele_file = read_text(tetrahedra);
-    TetMesh mesh = parsed(node_file, ele_file);
+    TetMesh mesh;
+    try {
+      mesh = parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
+    } catch (const InputError& error) {
+      throw InputError("the output of {} cannot be used: {}", program_.executable.string(), error.what());
+    }
     require_volume(mesh);
     return mesh;
   }
 
  private:
-  TetMesh parsed(const std::string& node_file, const std::string& ele_file) const {
-    try {
-      return parse_tetgen_files({"TetGen's .node file", node_file}, {"TetGen's .ele file", ele_file});
-    } catch (const InputError& error) {
-      throw InputError("the output of {} cannot be used: {}", program_.executable.string(), error.what());
-    }
-  }
-
   ChildResult tetgen(const std::string& switches) const {
     return run({program_.executable,
                 {switches, "body.smesh"},

@@ -91,11 +91,11 @@ struct ClothContact {
 ///
 /// A cell's triangles are (low left, low right, high right) and (low left, high right, high left).
 ///
-/// The right side of an inner panel for nodes of the outer one is where its normal points (GarmentPanel), that
-/// of an outer panel for nodes of the inner one is the other. The nearest point of a triangle's inside is
-/// told by the triangle's normal, that on an edge or corner by the normals at its nodes, so that a fold does
-/// not turn sides over. A node beyond the border of a panel, that is, whose nearest point lies on it, is a
-/// contact on the right side only: the panel says nothing about where that node belongs, but has a rim.
+/// The right side of an inner panel for nodes of the outer one is where its normal points (GarmentPanel),
+/// that of an outer panel for nodes of the inner one is the other. The nearest point of a triangle's inside
+/// is told by the triangle's normal, that on an edge or corner by the normals at its nodes, so that a fold
+/// does not turn sides over. A node beyond the border of a panel, that is, whose nearest point lies on it, is
+/// a contact on the right side only: the panel says nothing about where that node belongs, but has a rim.
 class ClothContactSearch {
  public:
   /// Searches between layer_pairs, by `threads` threads, one or more. Nodes nearer than `reach` (m, positive)

@@ -66,8 +66,6 @@ struct JeansGrid {
   std::uint32_t crotch_row = 0;  ///< ends in the crotch point
   std::uint32_t front_columns = 0;
   std::uint32_t back_columns = 0;
-
-  std::uint32_t nodes() const { return 2 * rows * (front_columns + back_columns); }
 };
 
 /// Cells about square, and the number of nodes within 3 % of the wanted one. Throws InputError for less than

@@ -256,18 +256,6 @@ void visit_dressing(FieldVisitor& fields, DressingSettings& dressing) {
                 sections);
 }
 
-void visit_layers(FieldVisitor& fields, ClothClothSettings& layers) {
-  visit_length(fields,
-               {"thickness_m", "Distance that layers keep, m; more than what they approach in a step."},
-               layers.thickness);
-  fields.number({"friction", "Coulomb's coefficient of friction between layers."}, layers.friction,
-                from(0, 100));
-  fields.number({"push_speed_m_per_s",
-                 "Speed at which layers that are too near or have crossed are moved apart at most, m/s."},
-                layers.push_speed, from(0, 1000));
-  fields.integer({"sweeps", "Sweeps over all contacts in a step."}, layers.sweeps, 1, 1000);
-}
-
 /// The body as each layer meets it: where layers touch, an outer one has no room but for what lies under it.
 std::vector<std::shared_ptr<const BodyMaps>> maps_for_layers(const SceneSpec& spec, const Garment& garment,
                                                              const Surface& body, double offset) {
@@ -357,11 +345,23 @@ void visit_fields(FieldVisitor& fields, SceneSpec& spec) {
                 Presence::required, [&](FieldVisitor& cloth) { visit_cloth(cloth, garment.cloth); });
   fields.object({"dressing", "How the panels are drawn together and draped."}, Presence::required,
                 [&](FieldVisitor& dressing) { visit_dressing(dressing, garment.dressing); });
-  fields.object({"layers",
-                 "How layers of cloth keep apart; left out, they go through each other. The body lies "
-                 "further out for each layer by the thickness."},
-                Presence::optional,
-                [&](FieldVisitor& layers) { visit_layers(layers, garment.layers.emplace()); });
+  fields.object(
+      {"layers",
+       "How layers of cloth keep apart; left out, they go through each other. The body lies "
+       "further out for each layer by the thickness."},
+      Presence::optional, [&](FieldVisitor& section) {
+        ClothClothSettings& layers = garment.layers.emplace();
+        visit_length(section,
+                     {"thickness_m", "Distance that layers keep, m; more than what they approach in a step."},
+                     layers.thickness);
+        section.number({"friction", "Coulomb's coefficient of friction between layers."}, layers.friction,
+                       from(0, 100));
+        section.number(
+            {"push_speed_m_per_s",
+             "Speed at which layers that are too near or have crossed are moved apart at most, m/s."},
+            layers.push_speed, from(0, 1000));
+        section.integer({"sweeps", "Sweeps over all contacts in a step."}, layers.sweeps, 1, 1000);
+      });
   fields.object(
       {"expected", "What the pattern comes to, for listings."}, Presence::optional,
       [&](FieldVisitor& expected) {
